@@ -1,0 +1,157 @@
+"""The numeric view of a wall that every method computes on: blocks, interfaces and loads as arrays.
+
+Sign conventions, used everywhere in Drystone
+---------------------------------------------
+* A block i has the velocity (ux, uy, omega) at its centroid c; omega is counter-clockwise.
+  The velocity of its point x is (ux - omega (y - cy), uy + omega (x - cx)).
+* An interface p joins block a to block b along the segment end 1 -> end 2. Its unit normal n points
+  from a into b, its unit tangent t from end 1 to end 2; (t, n) is right-handed or left-handed as the
+  geometry has it.
+* Contact forces (n1, n2, s) are the forces *of a on b*: (n1 + n2) n + s t, with n1, n2 >= 0 compression at
+  the two ends and s the shear. Block a receives the opposite.
+* Generalised strains (open1, open2, slip) are the velocity of b relative to a: along n at end 1, along n at
+  end 2, along t. Friction opposes slip: slip > 0 goes with s = -mu (n1 + n2).
+* Equilibrium of the free blocks: C' r + dead + multiplier * live = 0, where C u = strains.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+import scipy.sparse as sp
+from numpy.typing import NDArray
+
+FloatArray = NDArray[np.float64]
+IntArray = NDArray[np.int64]
+BoolArray = NDArray[np.bool_]
+
+
+@dataclass(frozen=True, eq=False)
+class Assembly:
+    """Blocks in dry contact, as arrays. n = number of blocks, m = number of interfaces.
+
+    Attributes:
+        name: what the wall is called, for messages.
+        block_ids: (n,) names of the blocks.
+        polygons: (n,) arrays (k, 2) of vertices, counter-clockwise [length].
+        centroid: (n, 2) centroids [length].
+        weight: (n,) weights, zero or more [force].
+        fixed: (n,) whether the block cannot move.
+        block_a, block_b: (m,) indices of the two blocks of each interface.
+        end1, end2: (m, 2) the two contact points of each interface [length].
+        face1, face2: (m, 2) ends of the touching segment before contact points were set in [length].
+        normal: (m, 2) unit normals, from a into b.
+        friction: (m,) friction coefficients mu = tan(phi), zero or more.
+        joint: (m,) names of the joints ("bed", "head" or as given).
+        dead, live: (n, 3) generalised loads (fx, fy, moment about the centroid); zero on fixed blocks.
+    """
+
+    name: str
+    block_ids: tuple[str, ...]
+    polygons: tuple[FloatArray, ...]
+    centroid: FloatArray
+    weight: FloatArray
+    fixed: BoolArray
+    block_a: IntArray
+    block_b: IntArray
+    end1: FloatArray
+    end2: FloatArray
+    face1: FloatArray
+    face2: FloatArray
+    normal: FloatArray
+    friction: FloatArray
+    joint: tuple[str, ...]
+    dead: FloatArray
+    live: FloatArray
+
+    @property
+    def n_blocks(self) -> int:
+        """Number of blocks, the fixed ones included."""
+        return len(self.weight)
+
+    @property
+    def n_interfaces(self) -> int:
+        """Number of interfaces."""
+        return len(self.friction)
+
+    @cached_property
+    def free(self) -> IntArray:
+        """(n_free,) indices of the blocks that can move."""
+        return np.flatnonzero(~self.fixed)
+
+    @property
+    def n_free(self) -> int:
+        """Number of blocks that can move: the paper's n."""
+        return len(self.free)
+
+    @cached_property
+    def length(self) -> FloatArray:
+        """(m,) distance between the two contact points of each interface [length]."""
+        return np.linalg.norm(self.end2 - self.end1, axis=1)
+
+    @cached_property
+    def tangent(self) -> FloatArray:
+        """(m, 2) unit tangents, from end 1 to end 2."""
+        return (self.end2 - self.end1) / self.length[:, None]
+
+    @cached_property
+    def force_scale(self) -> float:
+        """Total magnitude of the dead load on the free blocks (their total weight in the usual case) [force]."""
+        total = float(np.linalg.norm(self.dead[self.free, :2], axis=1).sum())
+        if total > 0.0:
+            return total
+        total = float(self.weight[self.free].sum())
+        if total > 0.0:
+            return total
+        return float(np.linalg.norm(self.live[self.free, :2], axis=1).sum()) or 1.0
+
+    @cached_property
+    def length_scale(self) -> float:
+        """Typical size of a free block: mean square root of the polygon areas [length]."""
+        areas = [polygon_area(self.polygons[i]) for i in self.free]
+        return float(np.mean(np.sqrt(areas)))
+
+    @property
+    def has_live_load(self) -> bool:
+        """Whether any free block carries a live load."""
+        return bool(np.any(self.live[self.free] != 0.0))
+
+    @cached_property
+    def kinematic_matrix(self) -> sp.csr_matrix:
+        """Sparse (3m, 3 n_free) matrix C: rows (open1, open2, slip) per interface, columns (ux, uy, omega) per free block.
+
+        Used by the methods; the judge does not use it.
+        """
+        column = np.full(self.n_blocks, -1, dtype=np.int64)
+        column[self.free] = np.arange(self.n_free)
+        rows: list[IntArray] = []
+        columns: list[IntArray] = []
+        values: list[FloatArray] = []
+        base = 3 * np.arange(self.n_interfaces)
+        for side, sign in ((self.block_a, -1.0), (self.block_b, 1.0)):
+            moving = column[side] >= 0
+            for k, (direction, point) in enumerate(
+                ((self.normal, self.end1), (self.normal, self.end2), (self.tangent, self.end1))
+            ):
+                arm = point - self.centroid[side]
+                lever = arm[:, 0] * direction[:, 1] - arm[:, 1] * direction[:, 0]
+                for j, value in enumerate((direction[:, 0], direction[:, 1], lever)):
+                    rows.append((base + k)[moving])
+                    columns.append((3 * column[side] + j)[moving])
+                    values.append((sign * value)[moving])
+        return sp.csr_matrix(
+            (np.concatenate(values), (np.concatenate(rows), np.concatenate(columns))),
+            shape=(3 * self.n_interfaces, 3 * self.n_free),
+        )
+
+    def free_loads(self) -> tuple[FloatArray, FloatArray]:
+        """Dead and live load vectors (3 n_free,) on the free blocks, in the column order of `kinematic_matrix`."""
+        return self.dead[self.free].ravel(), self.live[self.free].ravel()
+
+
+def polygon_area(polygon: FloatArray) -> float:
+    """Area enclosed by a polygon (k, 2) [length^2], without sign."""
+    x, y = polygon[:, 0], polygon[:, 1]
+    return float(abs(np.dot(x, np.roll(y, -1)) - np.dot(y, np.roll(x, -1))) / 2.0)

@@ -1,0 +1,123 @@
+"""What a method is: a name, its settings and one function from an assembly to an answer."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from enum import StrEnum
+from importlib.metadata import entry_points
+from typing import Any, ClassVar, Protocol
+
+from pydantic import BaseModel, ConfigDict
+
+from harness.model.assembly import Assembly, FloatArray
+
+
+class Status(StrEnum):
+    """How a run ended. It says nothing about whether the value is right: that is the verdict."""
+
+    OK = "ok"
+    NOT_CONVERGED = "not_converged"
+    REFUSED = "refused"
+    TIMEOUT = "timeout"
+    OUT_OF_MEMORY = "out_of_memory"
+    CRASHED = "crashed"
+
+
+class Finding(StrEnum):
+    """What an answer says about the wall."""
+
+    COLLAPSES = "collapses"
+    """At the multiplier given, by the mechanism given."""
+    STANDS = "stands"
+    """Under its dead load; no live load was asked about."""
+    FALLS = "falls"
+    """Already under its dead load, at multiplier zero."""
+    UNBOUNDED = "unbounded"
+    """The live load cannot make it collapse."""
+    NONE = "none"
+    """Nothing was found."""
+
+
+@dataclass
+class Answer:
+    """What a method found. n = number of blocks (fixed ones included), m = number of interfaces.
+
+    Attributes:
+        status: ok, not_converged or refused; the engine adds the other endings.
+        finding: what this says about the wall.
+        sentence: one sentence for a reader: what was found, or why nothing was.
+        multiplier: collapse multiplier, or None. None unless `finding` is COLLAPSES (falls, stands, unbounded: None).
+        bracket: (lower, upper), or None; `bracket_meaning` says what the two ends are.
+        forces: (m, 3) contact forces (n1, n2, s) [force], conventions of `assembly`, in equilibrium with
+            dead + forces_multiplier * live; or None.
+        forces_multiplier: the multiplier the forces belong to; None means `multiplier`.
+        mechanism: (n, 3) block velocities (ux, uy, omega) at any scale, zero on fixed blocks; or None.
+        flow: which flow rule the mechanism obeys: "non-associated" (zero dilatancy), "associated" (dilatancy mu),
+            or "approximate" (a measured velocity field, as of a distinct-element run; its flow is not judged).
+        iterations: iterations of the method's main loop.
+        path: columns of equal length that record the way, e.g. {"multiplier": [...], "live_displacement": [...]}.
+        details: further findings by name; JSON values only.
+    """
+
+    status: Status
+    finding: Finding
+    sentence: str
+    multiplier: float | None = None
+    bracket: tuple[float, float] | None = None
+    bracket_meaning: str = ""
+    forces: FloatArray | None = None
+    forces_multiplier: float | None = None
+    mechanism: FloatArray | None = None
+    flow: str = "non-associated"
+    iterations: int = 0
+    path: dict[str, list[float]] = field(default_factory=dict)
+    details: dict[str, Any] = field(default_factory=dict)
+
+
+class Settings(BaseModel):
+    """Base of every method's settings: immutable, unknown names refused, NaN refused."""
+
+    model_config = ConfigDict(frozen=True, extra="forbid", allow_inf_nan=False, ser_json_inf_nan="constants")
+
+
+class Method(Protocol):
+    """A method: found by name through the entry-point group `drystone.methods`.
+
+    Attributes:
+        name: the name users type, e.g. "la".
+        family: "fe", "la", "de" or a word of your own; the report groups by it.
+        title: a few words for the head of a column.
+        tolerance: the largest relative residual the judge may find in an answer of this method
+        Settings: the class of its settings; its defaults are what `drystone compare` runs.
+    """
+
+    name: ClassVar[str]
+    family: ClassVar[str]
+    title: ClassVar[str]
+    tolerance: ClassVar[float]
+    Settings: ClassVar[type[Settings]]
+
+    def solve(self, assembly: Assembly, settings: Any) -> Answer:
+        """Answer for this assembly. May raise; the engine turns any exception into a row with a sentence."""
+        ...
+
+
+GROUP = "drystone.methods"
+
+
+def method_names() -> list[str]:
+    """Names of all installed methods, sorted."""
+    return sorted({point.name for point in entry_points(group=GROUP)})
+
+
+def load_method(name: str) -> Method:
+    """The method of this name.
+
+    Raises:
+        KeyError: no installed method has this name; the message lists those there are.
+    """
+    for point in entry_points(group=GROUP):
+        if point.name == name:
+            method: Method = point.load()()
+            return method
+    raise KeyError(f"no method is called {name!r}; there are: {', '.join(method_names())}")
