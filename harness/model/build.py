@@ -1,0 +1,381 @@
+"""A wall becomes its assembly: polygons checked, interfaces found or taken, friction and loads assigned."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable
+from dataclasses import dataclass
+
+import numpy as np
+import scipy.sparse as sp
+from scipy.sparse.csgraph import connected_components
+
+from harness.model import geometry
+from harness.model.assembly import Assembly, FloatArray, IntArray, polygon_area
+from harness.model.errors import InputError
+from harness.model.pattern import blocks_of
+from harness.model.wall import Block, Detection, Friction, Inset, Interface, Load, PatternBase, Wall
+
+DEFAULT_TOLERANCE = 1e-6
+"""Tolerance of contact detection as a fraction of the typical block size."""
+
+
+@dataclass(frozen=True)
+class Built:
+    """An assembly with what a person should hear about it.
+
+    Attributes:
+        assembly: the numeric view of the wall.
+        wall: the explicit form, with every block and interface written out.
+        warnings: sentences about contacts at corners and very short interfaces.
+    """
+
+    assembly: Assembly
+    wall: Wall
+    warnings: tuple[str, ...]
+
+
+def build(wall: Wall, name: str = "wall") -> Built:
+    """The assembly of a wall.
+
+    Raises:
+        InputError: naming the block, interface or load that is wrong.
+    """
+    blocks = _all_blocks(wall)
+    names = tuple(block.id for block in blocks)
+    index = {block_id: k for k, block_id in enumerate(names)}
+    polygons = tuple(_polygon(block) for block in blocks)
+    fixed = np.array([block.fixed for block in blocks], dtype=bool)
+    if not fixed.any():
+        raise InputError("no block is fixed", 'Mark the supports with "fixed": true', "blocks")
+    if fixed.all():
+        raise InputError("every block is fixed", "Leave at least one block free to move", "blocks")
+    weight = np.array([_weight(block, wall) for block in blocks])
+    centroids = np.array([geometry.centroid(polygon) for polygon in polygons])
+
+    size = geometry.typical_size([polygon for polygon, still in zip(polygons, fixed, strict=True) if not still])
+    found = isinstance(wall.interfaces, Detection)
+    tolerance = DEFAULT_TOLERANCE * size
+    if isinstance(wall.interfaces, Detection) and wall.interfaces.tolerance is not None:
+        tolerance = wall.interfaces.tolerance
+    geometry.check_overlaps(polygons, names, fixed, tolerance)
+    corners = np.empty((0, 2), dtype=np.int64)
+    if isinstance(wall.interfaces, Detection):
+        contacts = geometry.find_contacts(polygons, fixed, tolerance)
+        corners = contacts.corners
+        interfaces = [
+            Interface.model_validate({"between": (names[a], names[b]), "from": tuple(start), "to": tuple(end)})
+            for a, b, start, end in zip(
+                contacts.block_a.tolist(),
+                contacts.block_b.tolist(),
+                contacts.start.tolist(),
+                contacts.end.tolist(),
+                strict=True,
+            )
+        ]
+    else:
+        interfaces = wall.interfaces
+    block_a, block_b, face1, face2 = _faces(interfaces, index, fixed)
+    _check_held(names, fixed, block_a, block_b, corners)
+    normal = _normals(polygons, centroids, block_a, block_b, face1, face2, interfaces, trusted=found, size=size)
+    joints = tuple(
+        interface.joint or _inclination(start, end)
+        for interface, start, end in zip(interfaces, face1, face2, strict=True)
+    )
+    friction = np.array(
+        [_friction(wall, interface, joint, blocks, index) for interface, joint in zip(interfaces, joints, strict=True)]
+    )
+    end1, end2 = _set_in(interfaces, wall.contact_inset, face1, face2)
+    assembly = Assembly(
+        name=name,
+        block_ids=names,
+        polygons=polygons,
+        centroid=centroids,
+        weight=weight,
+        fixed=fixed,
+        block_a=block_a,
+        block_b=block_b,
+        end1=end1,
+        end2=end2,
+        face1=face1,
+        face2=face2,
+        normal=normal,
+        friction=friction,
+        joint=joints,
+        dead=_load(wall.loads.dead, "loads.dead", blocks, index, weight, centroids, fixed),
+        live=_load(wall.loads.live or Load(), "loads.live", blocks, index, weight, centroids, fixed),
+    )
+    return Built(
+        assembly,
+        _explicit(wall, blocks, weight, interfaces, joints, friction),
+        _warnings(assembly, corners, size),
+    )
+
+
+def _all_blocks(wall: Wall) -> list[Block]:
+    patterns: Iterable[PatternBase] = (
+        [] if wall.pattern is None else wall.pattern if isinstance(wall.pattern, list) else [wall.pattern]
+    )
+    blocks = [block for pattern in patterns for block in blocks_of(pattern)] + list(wall.blocks)
+    if not blocks:
+        raise InputError("the wall has no blocks", 'Give "blocks" or a "pattern"', "blocks")
+    seen: set[str] = set()
+    for block in blocks:
+        if block.id in seen:
+            raise InputError(
+                "two blocks have this id", "Give every block an id of its own (patterns: a prefix)", f'block "{block.id}"'
+            )
+        seen.add(block.id)
+    return blocks
+
+
+def _polygon(block: Block) -> FloatArray:
+    polygon = np.array(block.polygon, dtype=float)
+    geometry.check_polygon(polygon, f'block "{block.id}"')
+    return geometry.counter_clockwise(polygon)
+
+
+def _weight(block: Block, wall: Wall) -> float:
+    if block.weight is not None:
+        return block.weight
+    unit_weight = block.unit_weight if block.unit_weight is not None else wall.unit_weight
+    if unit_weight is None:
+        if block.fixed:
+            return 0.0
+        raise InputError(
+            "it has no weight",
+            'Give it "weight", or "unit_weight" for it or for the wall',
+            f'block "{block.id}"',
+        )
+    area = polygon_area(np.array(block.polygon, dtype=float))
+    return unit_weight * area * (block.thickness if block.thickness is not None else wall.thickness)
+
+
+def _faces(
+    interfaces: list[Interface], index: dict[str, int], fixed: np.ndarray
+) -> tuple[IntArray, IntArray, FloatArray, FloatArray]:
+    for number, interface in enumerate(interfaces):
+        element = f"interfaces[{number}]"
+        for block_id in interface.between:
+            if block_id not in index:
+                raise InputError(f'no block is called "{block_id}"', "Name a block of this wall", element)
+        a, b = (index[block_id] for block_id in interface.between)
+        if a == b:
+            raise InputError("a block cannot touch itself", "Name two blocks", element)
+        if interface.start == interface.end:
+            raise InputError("its two ends coincide", 'Give a segment of some length in "from" and "to"', element)
+        if fixed[a] and fixed[b]:
+            raise InputError("both of its blocks are fixed", "Leave it out: it carries no unknown", element)
+    pairs = np.array([[index[block_id] for block_id in interface.between] for interface in interfaces], dtype=np.int64)
+    pairs = pairs.reshape(-1, 2)
+    starts = np.array([interface.start for interface in interfaces], dtype=float).reshape(-1, 2)
+    ends = np.array([interface.end for interface in interfaces], dtype=float).reshape(-1, 2)
+    return pairs[:, 0], pairs[:, 1], starts, ends
+
+
+def _check_held(
+    names: tuple[str, ...], fixed: np.ndarray, block_a: IntArray, block_b: IntArray, corners: IntArray
+) -> None:
+    count = len(names)
+    graph = sp.coo_matrix((np.ones(len(block_a)), (block_a, block_b)), shape=(count, count))
+    _, component = connected_components(graph, directed=False)
+    floating = ~np.isin(component, component[fixed])
+    if not floating.any():
+        return
+    listed = [names[k] for k in np.flatnonzero(floating)]
+    shown = ", ".join(f'"{name}"' for name in listed[:5]) + (f" and {len(listed) - 5} more" if len(listed) > 5 else "")
+    at_corner = bool(len(corners) and np.any(floating[corners[:, 0]] | floating[corners[:, 1]]))
+    raise InputError(
+        "no chain of interfaces joins "
+        + ("it" if len(listed) == 1 else "them")
+        + " to a fixed block: floating"
+        + (" (a touch at a corner is no interface)" if at_corner else ""),
+        "Let faces meet along a length, or raise interfaces.tolerance if the drawing has gaps",
+        f"block {shown}" if len(listed) == 1 else f"blocks {shown}",
+    )
+
+
+def _normals(
+    polygons: tuple[FloatArray, ...],
+    centroids: FloatArray,
+    block_a: IntArray,
+    block_b: IntArray,
+    face1: FloatArray,
+    face2: FloatArray,
+    interfaces: list[Interface],
+    *,
+    trusted: bool,
+    size: float,
+) -> FloatArray:
+    """Unit normals from a into b. Found contacts run counter-clockwise round a; given ones are tested at the midpoint."""
+    tangent = face2 - face1
+    tangent = tangent / np.linalg.norm(tangent, axis=1)[:, None]
+    outward = np.stack([tangent[:, 1], -tangent[:, 0]], axis=1)
+    if trusted or not len(interfaces):
+        return outward
+    import shapely
+
+    middle = 0.5 * (face1 + face2)
+    step = 1e-3 * np.minimum(np.linalg.norm(face2 - face1, axis=1), size)[:, None] * outward
+    shapes = geometry._shapes(polygons)
+    inside = {
+        (side, way): shapely.contains_xy(shapes[block], *(middle + way * step).T)
+        for side, block in (("a", block_a), ("b", block_b))
+        for way in (1.0, -1.0)
+    }
+    votes = (
+        inside["b", 1.0].astype(int)
+        + inside["a", -1.0].astype(int)
+        - inside["b", -1.0].astype(int)
+        - inside["a", 1.0].astype(int)
+    )
+    unclear = votes == 0
+    across = np.einsum("kd,kd->k", centroids[block_b] - centroids[block_a], outward)
+    same_side = unclear & (
+        (inside["a", 1.0] & inside["b", 1.0]) | (inside["a", -1.0] & inside["b", -1.0]) | (abs(across) < 1e-9 * size)
+    )
+    if same_side.any():
+        number = int(np.flatnonzero(same_side)[0])
+        raise InputError(
+            "its blocks do not lie on opposite sides of the segment",
+            'Let "from" and "to" run along the faces that touch',
+            f"interfaces[{number}] between {' and '.join(interfaces[number].between)}",
+        )
+    sign = np.where(unclear, np.sign(across), np.sign(votes))
+    return outward * sign[:, None]
+
+
+def _inclination(start: FloatArray, end: FloatArray) -> str:
+    dx, dy = abs(end - start)
+    return "bed" if dx >= dy else "head"
+
+
+def _friction(wall: Wall, interface: Interface, joint: str, blocks: list[Block], index: dict[str, int]) -> float:
+    if interface.friction is not None:
+        return interface.friction
+    if not isinstance(wall.friction, Friction):
+        return float(wall.friction)
+    pair = set(interface.between)
+    materials = sorted(blocks[index[block_id]].material for block_id in interface.between)
+    by_kind: dict[str, float] = {}
+    for rule in wall.friction.rules:
+        if rule.between is not None and set(rule.between) == pair:
+            by_kind["between"] = rule.value
+        elif rule.joint is not None and rule.joint == joint:
+            by_kind["joint"] = rule.value
+        elif rule.materials is not None and sorted(rule.materials) == materials:
+            by_kind["materials"] = rule.value
+    for kind in ("between", "joint", "materials"):
+        if kind in by_kind:
+            return by_kind[kind]
+    return float(wall.friction.default)
+
+
+def _set_in(
+    interfaces: list[Interface], general: Inset | None, face1: FloatArray, face2: FloatArray
+) -> tuple[FloatArray, FloatArray]:
+    length = np.linalg.norm(face2 - face1, axis=1)
+    depth = np.zeros(len(interfaces))
+    for number, interface in enumerate(interfaces):
+        inset = interface.inset or general
+        if inset is None:
+            continue
+        depth[number] = inset.length if inset.length is not None else (inset.fraction or 0.0) * length[number]
+        if depth[number] >= 0.5 * length[number]:
+            raise InputError(
+                f"contact points set in by {depth[number]:.6g} from both ends leave nothing of its length {length[number]:.6g}",
+                "Give an inset below half of the shortest interface",
+                f"interface between {' and '.join(interface.between)}",
+            )
+    step = (depth / length)[:, None] * (face2 - face1) if len(interfaces) else face1
+    return face1 + step, face2 - step
+
+
+def _load(
+    load: Load,
+    where: str,
+    blocks: list[Block],
+    index: dict[str, int],
+    weight: FloatArray,
+    centroids: FloatArray,
+    fixed: np.ndarray,
+) -> FloatArray:
+    generalised = np.zeros((len(blocks), 3))
+    groups: dict[str, list[int]] = {}
+    for k, block in enumerate(blocks):
+        for group in block.groups:
+            groups.setdefault(group, []).append(k)
+    for number, body in enumerate(load.body):
+        element = f"{where}.body[{number}]"
+        if body.group is not None:
+            if body.group not in groups:
+                known = ", ".join(sorted(groups)) or "none"
+                raise InputError(f'no block is in a group "{body.group}"', f"Groups of this wall: {known}", element)
+            chosen = groups[body.group]
+        elif body.blocks is not None:
+            for block_id in body.blocks:
+                _known(block_id, index, element)
+            chosen = sorted({index[block_id] for block_id in body.blocks})
+        else:
+            chosen = list(range(len(blocks)))
+        generalised[chosen, :2] += weight[chosen, None] * np.array(body.per_weight)
+    for number, point in enumerate(load.points):
+        element = f"{where}.points[{number}]"
+        _known(point.block, index, element)
+        k = index[point.block]
+        if fixed[k]:
+            raise InputError(f'block "{point.block}" is fixed', "Load a block that is free to move", element)
+        arm = np.array(point.at) - centroids[k]
+        force = np.array(point.force)
+        generalised[k] += [force[0], force[1], arm[0] * force[1] - arm[1] * force[0]]
+    generalised[fixed] = 0.0
+    return generalised
+
+
+def _known(block_id: str, index: dict[str, int], element: str) -> None:
+    if block_id not in index:
+        raise InputError(f'no block is called "{block_id}"', "Name a block of this wall", element)
+
+
+def _explicit(
+    wall: Wall,
+    blocks: list[Block],
+    weight: FloatArray,
+    interfaces: list[Interface],
+    joints: tuple[str, ...],
+    friction: FloatArray,
+) -> Wall:
+    return wall.model_copy(
+        update={
+            "pattern": None,
+            "blocks": [
+                block.model_copy(update={"weight": float(w), "unit_weight": None, "thickness": None})
+                for block, w in zip(blocks, weight, strict=True)
+            ],
+            "interfaces": [
+                interface.model_copy(update={"joint": joint, "friction": float(mu)})
+                for interface, joint, mu in zip(interfaces, joints, friction, strict=True)
+            ],
+        }
+    )
+
+
+def _warnings(assembly: Assembly, corners: IntArray, size: float) -> tuple[str, ...]:
+    sentences = []
+    if len(corners):
+        shown = ", ".join(f"{assembly.block_ids[a]}/{assembly.block_ids[b]}" for a, b in corners[:5])
+        more = f" and {len(corners) - 5} more" if len(corners) > 5 else ""
+        sentences.append(
+            f"{len(corners)} pair(s) of blocks touch only at a corner and do not support each other there: {shown}{more}"
+        )
+    short = np.flatnonzero(assembly.length < 1e-3 * size)
+    if len(short):
+        p = short[int(np.argmin(assembly.length[short]))]
+        sentences.append(
+            f"{len(short)} interface(s) are shorter than a thousandth of a block; the shortest, between "
+            f"{assembly.block_ids[assembly.block_a[p]]} and {assembly.block_ids[assembly.block_b[p]]}, "
+            f"is {assembly.length[p]:.3g} long: results may depend on it"
+        )
+    if not math.isfinite(assembly.force_scale):
+        raise InputError("its loads are too large to compute with", "Check the units", "loads")
+    return tuple(sentences)
