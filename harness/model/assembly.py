@@ -120,7 +120,7 @@ class Assembly:
 
     @cached_property
     def kinematic_matrix(self) -> sp.csr_matrix:
-        """Sparse (3m, 3 n_free) matrix C: rows (open1, open2, slip) per interface, columns (ux, uy, omega) per free block.
+        """Sparse (3m, 3 n_free) matrix C: rows (open1, open2, slip), columns (ux, uy, omega) of the free blocks.
 
         Used by the methods; the judge does not use it.
         """

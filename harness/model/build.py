@@ -123,7 +123,9 @@ def _all_blocks(wall: Wall) -> list[Block]:
     for block in blocks:
         if block.id in seen:
             raise InputError(
-                "two blocks have this id", "Give every block an id of its own (patterns: a prefix)", f'block "{block.id}"'
+                "two blocks have this id",
+                "Give every block an id of its own (patterns: a prefix)",
+                f'block "{block.id}"',
             )
         seen.add(block.id)
     return blocks

@@ -151,7 +151,9 @@ class RunningBond(PatternBase):
     type: Literal["running_bond"]
     block_length: Positive
     block_height: Positive
-    courses: list[list[float]] | None = Field(None, description="bottom to top; 1 = one block length, -1 = a gap of one")
+    courses: list[list[float]] | None = Field(
+        None, description="bottom to top; 1 = one block length, -1 = a gap of one"
+    )
     count: Annotated[int, Field(ge=1)] | None = Field(None, description="number of courses, instead of `courses`")
     bricks: Annotated[int, Field(ge=1)] | None = Field(None, description="whole bricks in a full course, with `count`")
     start: Literal["half", "full"] = Field("half", description="bottom course begins with half a brick, or a whole one")
@@ -196,7 +198,9 @@ class Stack(PatternBase):
     height: Positive
     count: Annotated[int, Field(ge=1)]
     offsets: list[float] | None = Field(None, description="[length] of each block's left edge from the origin")
-    base: tuple[float, float] | None = Field(None, description="left and right edge of the fixed block; as wide as a block")
+    base: tuple[float, float] | None = Field(
+        None, description="left and right edge of the fixed block; as wide as a block"
+    )
 
     @model_validator(mode="after")
     def _one_offset_each(self) -> Stack:

@@ -1,0 +1,178 @@
+"""A case: a wall with what is known of it. One folder, `case.toml` beside `wall.json`."""
+
+from __future__ import annotations
+
+import tomllib
+from dataclasses import dataclass
+from enum import StrEnum
+from functools import cached_property
+from pathlib import Path
+from typing import Annotated, Any, Literal
+
+from pydantic import Field, model_validator
+
+from harness.model.assembly import Assembly
+from harness.model.build import Built, build
+from harness.model.errors import InputError
+from harness.model.reading import parse_wall, read_json, validate
+from harness.model.wall import Strict, Wall
+
+
+class ReferenceType(StrEnum):
+    """Where a reference value comes from, and so what a disagreement would mean."""
+
+    EXACT = "exact"
+    """A closed form, or proved: verification."""
+    BOUND = "bound"
+    """A value no right answer may pass: verification."""
+    PUBLISHED = "published"
+    """Computed by others: benchmark."""
+    MEASURED = "measured"
+    """Found by an experiment: validation."""
+    REGRESSION = "regression"
+    """Our own value of an earlier release."""
+
+
+class Reference(Strict):
+    """One thing that is known of a case.
+
+    `relation` says how an answer must stand to `value`: equal (within the tolerance), at_most, at_least, inside
+    (a pair: the whole bracket, or the multiplier), or contains (the bracket must contain the value).
+    """
+
+    id: Annotated[str, Field(min_length=1)]
+    type: ReferenceType
+    quantity: Annotated[
+        str, Field(description='"multiplier", "finding", "blocks", "interfaces", "unknowns", a detail')
+    ] = "multiplier"
+    relation: Literal["equal", "at_most", "at_least", "inside", "contains"] = "equal"
+    value: float | tuple[float, float] | str
+    tolerance: Annotated[float, Field(ge=0.0)] = 0.0
+    tolerance_reason: str = ""
+    applies_to: Annotated[list[str], Field(min_length=1, description="names of methods")]
+    gate: bool = Field(False, description="a violation makes `drystone check` fail")
+    tier: Literal["quick", "full"] = Field("quick", description="the tier of `drystone check` that runs it")
+    settings: dict[str, Any] = Field(default_factory=dict, description="method settings the reference asks for")
+    source: Annotated[str, Field(min_length=1)]
+    requirement: Annotated[str, Field(min_length=1, description="one sentence a reader can hold us to")]
+
+    @model_validator(mode="after")
+    def _fitting_value(self) -> Reference:
+        if (self.relation == "inside") != isinstance(self.value, tuple):
+            raise ValueError('relation "inside" goes with a pair of values, the others with one')
+        if isinstance(self.value, str) and self.relation != "equal":
+            raise ValueError("a word is compared by relation equal")
+        return self
+
+
+class Erratum(Strict):
+    """Something the source leaves open, or states otherwise than we find."""
+
+    text: Annotated[str, Field(min_length=1)]
+
+
+class CaseFile(Strict):
+    """The content of `case.toml`."""
+
+    id: Annotated[str, Field(pattern=r"^[a-z0-9][a-z0-9-]*$")]
+    title: Annotated[str, Field(min_length=1)]
+    summary: str = ""
+    kind: Literal["multiplier", "stability"] = "multiplier"
+    wall: str = "wall.json"
+    suites: list[str] = Field(default_factory=list)
+    source: Annotated[str, Field(min_length=1)]
+    methods: list[str] | None = Field(None, description="methods that are run on it; the suite's otherwise")
+    errata: list[Erratum] = Field(default_factory=list)
+    references: list[Reference] = Field(default_factory=list)
+
+
+@dataclass(frozen=True)
+class Case:
+    """A case as the engine runs it."""
+
+    file: CaseFile
+    wall: Wall
+    origin: str
+
+    @cached_property
+    def built(self) -> Built:
+        """The wall's assembly, explicit form and warnings."""
+        try:
+            return build(self.wall, self.file.id)
+        except InputError as error:
+            error.source = error.source or self.origin
+            raise
+
+    @property
+    def assembly(self) -> Assembly:
+        """The numeric view of the wall."""
+        return self.built.assembly
+
+    @property
+    def id(self) -> str:
+        """The name users type."""
+        return self.file.id
+
+
+def read_case(folder: Path) -> Case:
+    """The case of a folder.
+
+    Raises:
+        InputError: naming the file and the element.
+    """
+    path = folder / "case.toml"
+    try:
+        data = tomllib.loads(path.read_text(encoding="utf-8"))
+    except FileNotFoundError:
+        raise InputError(
+            "there is no case.toml", "A case is a folder with case.toml and wall.json", source=str(folder)
+        ) from None
+    except (OSError, UnicodeDecodeError, tomllib.TOMLDecodeError) as error:
+        raise InputError(f"it cannot be read ({error})", "Give valid TOML", source=str(path)) from None
+    file = validate(CaseFile, data, str(path))
+    if file.id != folder.name:
+        raise InputError(f'id is "{file.id}" in a folder called "{folder.name}"', "Give both one name", "id", str(path))
+    wall_path = folder / file.wall
+    return Case(file, parse_wall(read_json(wall_path), str(wall_path)), str(wall_path))
+
+
+def case_of_wall(path: Path) -> Case:
+    """A case without references from a wall file that stands alone.
+
+    Raises:
+        InputError: naming the file and the element.
+    """
+    wall = parse_wall(read_json(path), str(path))
+    name = "".join(letter if letter.isalnum() and letter.isascii() else "-" for letter in path.stem.lower()).strip("-")
+    file = CaseFile(
+        id=name or "wall", title=wall.title or path.stem, source=str(wall.metadata.get("source", "the user"))
+    )
+    return Case(file, wall, str(path))
+
+
+def shipped_cases() -> Path:
+    """The folder of the cases that come with Drystone."""
+    import importlib.util
+
+    spec = importlib.util.find_spec("cases")
+    assert spec is not None
+    assert spec.submodule_search_locations is not None
+    return Path(next(iter(spec.submodule_search_locations)))
+
+
+def case_folders(roots: list[Path]) -> dict[str, Path]:
+    """Folders with a `case.toml` below the roots, by case id, in alphabetical order.
+
+    Raises:
+        InputError: a root that is no folder, or one id in two of them.
+    """
+    found: dict[str, Path] = {}
+    for root in roots:
+        if not root.is_dir():
+            raise InputError("it is not a folder", "Name a folder that holds case folders", source=str(root))
+        for path in sorted(root.glob("*/case.toml")):
+            name = path.parent.name
+            if name in found:
+                raise InputError(f'the case "{name}" is also in {found[name].parent}', "Rename one", source=str(root))
+            found[name] = path.parent
+    return dict(sorted(found.items()))

@@ -1,0 +1,60 @@
+"""What the engine hands to the report: cases, their results, and the theory gates that join them."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import Any
+
+from pydantic import BaseModel, ConfigDict
+
+from harness.model.case import Case
+from harness.model.result import Result
+
+
+class Gate(BaseModel):
+    """A statement of theory tested on the results of one case (Baggio & Trovalusci 1995; bounds of limit analysis).
+
+    Attributes:
+        name: short name, e.g. "fe-below-associated".
+        statement: what theory says.
+        passed: whether it holds; None where a result it needs is missing.
+        sentence: the figures.
+    """
+
+    model_config = ConfigDict(extra="forbid")
+    name: str
+    statement: str
+    passed: bool | None
+    sentence: str
+
+
+@dataclass(frozen=True)
+class CaseResults:
+    """One case with the results of every method asked for, failed ones included."""
+
+    case: Case
+    results: list[Result]
+    gates: list[Gate] = field(default_factory=list)
+
+    def of(self, method: str) -> Result | None:
+        """The result of a method, or None."""
+        return next((result for result in self.results if result.method == method), None)
+
+
+@dataclass(frozen=True)
+class ComparisonRun:
+    """Everything one `drystone compare` left: what the report is made of.
+
+    Attributes:
+        title: what was compared, e.g. "suite paper".
+        command: the command that repeats it.
+        created: ISO time of the run [UTC].
+        cases: in the order asked for.
+        provenance: versions, commit, machine, limits of the comparison as a whole.
+    """
+
+    title: str
+    command: str
+    created: str
+    cases: list[CaseResults]
+    provenance: dict[str, Any] = field(default_factory=dict)

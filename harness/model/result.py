@@ -1,0 +1,172 @@
+"""What a run leaves behind: the answer, what the judge and the references say of it, and what it cost."""
+
+from __future__ import annotations
+
+from enum import StrEnum
+from typing import Any
+
+import numpy as np
+from pydantic import BaseModel, ConfigDict, Field
+
+from harness.model.assembly import Assembly, FloatArray
+from harness.model.method import Answer, Finding, Status
+
+
+class Verdict(StrEnum):
+    """How a value stands to what is known. It says nothing about how the run ended: that is the status."""
+
+    AGREES = "agrees"
+    OUTSIDE_TOLERANCE = "outside_tolerance"
+    VIOLATES_BOUND = "violates_bound"
+    NO_REFERENCE = "no_reference"
+
+
+class Judgement(BaseModel):
+    """What an independent check of an answer found.
+
+    Attributes:
+        residuals: each residual by name, relative and dimensionless; see `harness.engine.judge`.
+        tolerance: the largest residual that was acceptable.
+        accepted: whether every residual is within the tolerance; None where there was nothing to judge.
+        sentence: what was judged, and what failed if anything did.
+    """
+
+    model_config = ConfigDict(extra="forbid")
+    residuals: dict[str, float] = Field(default_factory=dict)
+    tolerance: float = 0.0
+    accepted: bool | None = None
+    sentence: str = ""
+
+
+class Comparison(BaseModel):
+    """One result held against one reference."""
+
+    model_config = ConfigDict(extra="forbid")
+    reference: str
+    quantity: str
+    value: float | list[float] | str | None
+    expected: float | list[float] | str
+    tolerance: float
+    gate: bool
+    verdict: Verdict
+    sentence: str
+
+
+class Result(BaseModel):
+    """One run of one method on one wall: a row of the report.
+
+    Field names are a promise to scripts (`drystone run --json`); docs/json.md describes them.
+    """
+
+    model_config = ConfigDict(extra="forbid")
+    case: str
+    method: str
+    family: str
+    key: str = ""
+    status: Status
+    finding: Finding
+    sentence: str
+    multiplier: float | None = None
+    bracket: tuple[float, float] | None = None
+    bracket_meaning: str = ""
+    verdict: Verdict = Verdict.NO_REFERENCE
+    comparisons: list[Comparison] = Field(default_factory=list)
+    judge: Judgement = Field(default_factory=Judgement)
+    cpu_seconds: float | None = None
+    wall_seconds: float | None = None
+    peak_memory_bytes: int | None = None
+    blocks: int
+    interfaces: int
+    iterations: int = 0
+    unknowns: int | None = None
+    settings: dict[str, Any] = Field(default_factory=dict)
+    limits: dict[str, float] = Field(default_factory=dict)
+    versions: dict[str, str] = Field(default_factory=dict)
+    machine: dict[str, Any] = Field(default_factory=dict)
+    started: str = ""
+    flow: str = "non-associated"
+    forces_multiplier: float | None = None
+    path: dict[str, list[float]] = Field(default_factory=dict)
+    details: dict[str, Any] = Field(default_factory=dict)
+    forces: list[tuple[float, float, float]] | None = None
+    mechanism: list[tuple[float, float, float]] | None = None
+    states: list[str] | None = None
+
+    def summary(self) -> dict[str, Any]:
+        """The result as JSON values, without fields per block or interface and without the path."""
+        return self.model_dump(mode="json", exclude={"forces", "mechanism", "states", "path"})
+
+
+def normalised_mechanism(assembly: Assembly, mechanism: FloatArray) -> FloatArray:
+    """A mechanism (n, 3) scaled so that the fastest vertex of the wall has speed 1; unchanged if nothing moves."""
+    fastest = max(
+        float(np.sqrt((vertex_velocities(polygon, centroid, motion) ** 2).sum(axis=1).max()))
+        for polygon, centroid, motion in zip(assembly.polygons, assembly.centroid, mechanism, strict=True)
+    )
+    return mechanism / fastest if fastest > 0.0 else mechanism
+
+
+def vertex_velocities(points: FloatArray, centroid: FloatArray, motion: FloatArray) -> FloatArray:
+    """Velocities (k, 2) of points (k, 2) of a block with centroid (2,) and motion (ux, uy, omega)."""
+    arm = points - centroid
+    return np.asarray(motion[:2] + motion[2] * np.stack([-arm[:, 1], arm[:, 0]], axis=1))
+
+
+def relative_velocities(assembly: Assembly, mechanism: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """Opening (m, 2) at the two ends and slip (m,) of every interface, from the velocities of b and a at the points."""
+
+    def velocity(block: Any, point: FloatArray) -> FloatArray:
+        arm = point - assembly.centroid[block]
+        omega = mechanism[block, 2:3]
+        return np.asarray(mechanism[block, :2] + omega * np.stack([-arm[:, 1], arm[:, 0]], axis=1))
+
+    jump1 = velocity(assembly.block_b, assembly.end1) - velocity(assembly.block_a, assembly.end1)
+    jump2 = velocity(assembly.block_b, assembly.end2) - velocity(assembly.block_a, assembly.end2)
+    opening = np.stack([(jump1 * assembly.normal).sum(axis=1), (jump2 * assembly.normal).sum(axis=1)], axis=1)
+    return opening, np.asarray((0.5 * (jump1 + jump2) * assembly.tangent).sum(axis=1))
+
+
+def contact_states(assembly: Assembly, mechanism: FloatArray | None) -> list[str] | None:
+    """ "stick", "slip", "rock" (one end opens) or "open" (both do) for every interface, from a normalised mechanism.
+
+    Relative velocities below a hundred-thousandth of the fastest vertex count as none.
+    """
+    if mechanism is None:
+        return None
+    opening, slip = relative_velocities(assembly, normalised_mechanism(assembly, mechanism))
+    small = 1e-5
+    opens = opening > small
+    state = np.where(abs(slip) > small, "slip", "stick")
+    state = np.where(opens.any(axis=1), "rock", state)
+    state = np.where(opens.all(axis=1), "open", state)
+    return [str(item) for item in state]
+
+
+def result_of(answer: Answer, assembly: Assembly, *, case: str, method: str, family: str) -> Result:
+    """The result an answer makes before it is judged, compared and measured."""
+    mechanism = (
+        None if answer.mechanism is None else normalised_mechanism(assembly, np.asarray(answer.mechanism, float))
+    )
+    unknowns = answer.details.get("unknowns")
+    return Result(
+        case=case,
+        method=method,
+        family=family,
+        status=answer.status,
+        finding=answer.finding,
+        sentence=answer.sentence,
+        multiplier=answer.multiplier,
+        bracket=answer.bracket,
+        bracket_meaning=answer.bracket_meaning,
+        blocks=assembly.n_free,
+        interfaces=assembly.n_interfaces,
+        iterations=int(answer.iterations),
+        unknowns=int(unknowns) if unknowns is not None else None,
+        flow=answer.flow,
+        forces_multiplier=answer.multiplier if answer.forces_multiplier is None else answer.forces_multiplier,
+        path=answer.path,
+        details=answer.details,
+        forces=None if answer.forces is None else np.asarray(answer.forces, float).tolist(),
+        mechanism=None if mechanism is None else mechanism.tolist(),
+        states=contact_states(assembly, mechanism),
+    )
