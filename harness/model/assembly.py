@@ -94,7 +94,7 @@ class Assembly:
     @cached_property
     def tangent(self) -> FloatArray:
         """(m, 2) unit tangents, from end 1 to end 2."""
-        return (self.end2 - self.end1) / self.length[:, None]
+        return np.asarray((self.end2 - self.end1) / self.length[:, None])
 
     @cached_property
     def force_scale(self) -> float:

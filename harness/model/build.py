@@ -150,7 +150,7 @@ def _weight(block: Block, wall: Wall) -> float:
             f'block "{block.id}"',
         )
     area = polygon_area(np.array(block.polygon, dtype=float))
-    return unit_weight * area * (block.thickness if block.thickness is not None else wall.thickness)
+    return float(unit_weight) * area * (block.thickness if block.thickness is not None else wall.thickness)
 
 
 def _faces(
@@ -209,7 +209,7 @@ def _normals(
     trusted: bool,
     size: float,
 ) -> FloatArray:
-    """Unit normals from a into b. Found contacts run counter-clockwise round a; given ones are tested at the midpoint."""
+    """Unit normals from a into b: found contacts run counter-clockwise round a, given ones are tested at midpoint."""
     tangent = face2 - face1
     tangent = tangent / np.linalg.norm(tangent, axis=1)[:, None]
     outward = np.stack([tangent[:, 1], -tangent[:, 0]], axis=1)
@@ -285,7 +285,7 @@ def _set_in(
         depth[number] = inset.length if inset.length is not None else (inset.fraction or 0.0) * length[number]
         if depth[number] >= 0.5 * length[number]:
             raise InputError(
-                f"contact points set in by {depth[number]:.6g} from both ends leave nothing of its length {length[number]:.6g}",
+                f"contact points set in by {depth[number]:.6g} at both ends leave nothing of its {length[number]:.6g}",
                 "Give an inset below half of the shortest interface",
                 f"interface between {' and '.join(interface.between)}",
             )
@@ -367,9 +367,7 @@ def _warnings(assembly: Assembly, corners: IntArray, size: float) -> tuple[str, 
     if len(corners):
         shown = ", ".join(f"{assembly.block_ids[a]}/{assembly.block_ids[b]}" for a, b in corners[:5])
         more = f" and {len(corners) - 5} more" if len(corners) > 5 else ""
-        sentences.append(
-            f"{len(corners)} pair(s) of blocks touch only at a corner and do not support each other there: {shown}{more}"
-        )
+        sentences.append(f"{len(corners)} pair(s) of blocks touch only at a corner, which is no support: {shown}{more}")
     short = np.flatnonzero(assembly.length < 1e-3 * size)
     if len(short):
         p = short[int(np.argmin(assembly.length[short]))]

@@ -42,7 +42,7 @@ def counter_clockwise(polygon: FloatArray) -> FloatArray:
 
 
 def centroid(polygon: FloatArray) -> FloatArray:
-    """Centroid (2,) of the area of a counter-clockwise polygon (k, 2) [length]; moments taken about its first vertex."""
+    """Centroid (2,) of a counter-clockwise polygon (k, 2) [length], computed about its first vertex."""
     shifted = polygon - polygon[0]
     x, y = shifted[:, 0], shifted[:, 1]
     x1, y1 = np.roll(x, -1), np.roll(y, -1)
