@@ -1,0 +1,187 @@
+"""The main path: planned runs are made or found, judged, held against references and theory, and kept."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Sequence
+from concurrent.futures import FIRST_COMPLETED, Future, ThreadPoolExecutor, wait
+from datetime import UTC, datetime
+from typing import Any
+
+from harness.engine.isolate import run_isolated
+from harness.engine.judge import judge
+from harness.engine.plan import Run
+from harness.engine.provenance import machine, versions
+from harness.engine.store import Store
+from harness.engine.verdict import compare, overall, theory_gates
+from harness.model.case import Case, CaseFile
+from harness.model.comparison import CaseResults, ComparisonRun
+from harness.model.reading import parse_wall, validate
+from harness.model.result import Result
+
+Told = Callable[[Run, Result, bool], None]
+"""Called after every run with the run, its result and whether it came from the store."""
+
+
+def judged(run: Run, result: Result, tolerance: float) -> Result:
+    """A result with the judge's word and its comparisons. Both are made anew from what is stored."""
+    result = result.model_copy(update={"judge": judge(run.case.assembly, result, tolerance)})
+    comparisons = [compare(reference, result) for reference in run.references]
+    return result.model_copy(update={"comparisons": comparisons, "verdict": overall(comparisons)})
+
+
+def execute(
+    runs: Sequence[Run], store: Store | None, jobs: int, *, fresh: bool = False, told: Told | None = None
+) -> list[Result]:
+    """Results of runs, in their order. Each is stored as soon as it is there.
+
+    Args:
+        runs: what to run.
+        store: where results are looked for and kept; None: nowhere.
+        jobs: number of child processes at a time.
+        fresh: run what is in the store as well.
+        told: called after each run.
+    """
+    results: dict[int, Result] = {}
+    waiting: list[int] = []
+    for number, run in enumerate(runs):
+        found = None if store is None or fresh else store.get(run.key)
+        if found is None:
+            waiting.append(number)
+            continue
+        results[number] = judged(run, found[0].model_copy(update={"case": run.case.id}), found[1])
+        if told:
+            told(run, results[number], True)
+    with ThreadPoolExecutor(max_workers=max(1, jobs)) as pool:
+        pending = {pool.submit(run_isolated, runs[number].task(), runs[number].case.id): number for number in waiting}
+        try:
+            for future in _as_done(pending):
+                number = pending[future]
+                measured = future.result()
+                run = runs[number]
+                kept = measured.result.model_copy(update={"key": run.key})
+                if store is not None:
+                    store.put(run.key, kept, measured.tolerance)
+                results[number] = judged(run, kept, measured.tolerance)
+                if told:
+                    told(run, results[number], False)
+        except BaseException:
+            pool.shutdown(wait=False, cancel_futures=True)
+            raise
+    return [results[number] for number in range(len(runs))]
+
+
+def _as_done(pending: dict[Future[Any], int]) -> Iterator[Future[Any]]:
+    left = set(pending)
+    while left:
+        done, left = wait(left, return_when=FIRST_COMPLETED)
+        yield from sorted(done, key=lambda future: pending[future])
+
+
+def gather(cases: Sequence[Case], runs: Sequence[Run], results: Sequence[Result]) -> list[CaseResults]:
+    """Results by case. A run with settings of a reference adds its comparisons to the method's row."""
+    gathered = []
+    for case in cases:
+        rows: dict[str, Result] = {}
+        for run, result in zip(runs, results, strict=True):
+            if run.case is not case:
+                continue
+            row = rows.get(run.method)
+            if row is None:
+                rows[run.method] = result
+                continue
+            named = [
+                comparison.model_copy(update={"sentence": f"{comparison.sentence} (with {_settings_text(run)})"})
+                for comparison in result.comparisons
+            ]
+            comparisons = [*row.comparisons, *named]
+            rows[run.method] = row.model_copy(update={"comparisons": comparisons, "verdict": overall(comparisons)})
+        found = CaseResults(case, list(rows.values()))
+        gathered.append(CaseResults(case, found.results, theory_gates(found)))
+    return gathered
+
+
+def _settings_text(run: Run) -> str:
+    return ", ".join(f"{name} = {value}" for name, value in sorted(run.settings.items()))
+
+
+def comparison_run(
+    title: str, command: str, cases: Sequence[Case], runs: Sequence[Run], results: Sequence[Result]
+) -> ComparisonRun:
+    """What the report is made of."""
+    return ComparisonRun(
+        title=title,
+        command=command,
+        created=datetime.now(UTC).isoformat(timespec="seconds"),
+        cases=gather(cases, runs, results),
+        provenance={"versions": versions(), "machine": machine()},
+    )
+
+
+def remember(store: Store, compared: ComparisonRun, runs: Sequence[Run]) -> None:
+    """Keep in the store what a comparison consisted of, so that `drystone report` can build its report again."""
+    cases = {
+        run.case.id: {
+            "file": run.case.file.model_dump(mode="json"),
+            "wall": run.case.wall.model_dump(mode="json", by_alias=True, exclude_defaults=True) | {"format": "wall/1"},
+            "origin": run.case.origin,
+        }
+        for run in runs
+    }
+    store.remember(
+        compared.created,
+        {
+            "title": compared.title,
+            "command": compared.command,
+            "created": compared.created,
+            "provenance": compared.provenance,
+            "cases": cases,
+            "runs": [
+                {
+                    "case": run.case.id,
+                    "method": run.method,
+                    "settings": run.settings,
+                    "key": run.key,
+                    "references": [reference.model_dump(mode="json") for reference in run.references],
+                }
+                for run in runs
+            ],
+        },
+    )
+
+
+def recall(store: Store) -> ComparisonRun | None:
+    """The comparison made last, rebuilt from the store without running anything; None if there is none.
+
+    Results are judged again; a run that is no longer in the store is left out.
+    """
+    from harness.engine.plan import Limits
+    from harness.model.case import Reference
+
+    content = store.last_comparison()
+    if content is None:
+        return None
+    cases = {
+        name: Case(
+            validate(CaseFile, kept["file"], str(store.path)),
+            parse_wall(kept["wall"], kept["origin"]),
+            kept["origin"],
+        )
+        for name, kept in content["cases"].items()
+    }
+    runs: list[Run] = []
+    results: list[Result] = []
+    for kept in content["runs"]:
+        found = store.get(kept["key"])
+        if found is None:
+            continue
+        references = tuple(Reference.model_validate(item) for item in kept["references"])
+        run = Run(cases[kept["case"]], kept["method"], kept["settings"], Limits(), references)
+        runs.append(run)
+        results.append(judged(run, found[0].model_copy(update={"case": run.case.id}), found[1]))
+    return ComparisonRun(
+        title=content["title"],
+        command=content["command"],
+        created=content["created"],
+        cases=gather(list(cases.values()), runs, results),
+        provenance=content["provenance"],
+    )

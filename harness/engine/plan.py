@@ -1,0 +1,156 @@
+"""Which runs a comparison needs: every case with every method, and the settings that references ask for."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+from functools import cached_property
+from pathlib import Path
+from typing import Any
+
+from harness.engine.provenance import code_version
+from harness.engine.store import run_key
+from harness.engine.worker import Task
+from harness.model.case import Case, Reference, case_folders, case_of_wall, read_case, shipped_cases
+from harness.model.errors import InputError
+from harness.model.method import method_names
+from harness.model.reading import wall_json
+
+DEFAULT_METHODS = ("fe", "la", "la-associated", "de")
+"""What a comparison runs besides the methods a gated reference of the case asks for."""
+
+
+@dataclass(frozen=True)
+class Limits:
+    """What one run may use: wall-clock time [s] and resident memory [bytes]."""
+
+    seconds: float = 120.0
+    memory_bytes: int = 4 * 2**30
+
+    def as_dict(self) -> dict[str, float]:
+        """The limits as JSON values."""
+        return {"seconds": self.seconds, "memory_bytes": float(self.memory_bytes)}
+
+
+@dataclass(frozen=True)
+class Run:
+    """One run to be made or found in the store. `references` are those it is held against."""
+
+    case: Case
+    method: str
+    settings: dict[str, Any]
+    limits: Limits
+    references: tuple[Reference, ...] = field(default=())
+
+    @cached_property
+    def key(self) -> str:
+        """The content hash under which its result is stored."""
+        return run_key(
+            wall_json(self.case.built.wall),
+            self.method,
+            self.settings,
+            self.limits.as_dict(),
+            code_version(self.method),
+        )
+
+    def task(self) -> Task:
+        """What the child process is given."""
+        return Task(self.method, self.case.assembly, self.settings, self.limits.seconds, self.limits.memory_bytes)
+
+
+def plan_case(case: Case, methods: Sequence[str] | None, limits: Limits, tier: str = "quick") -> list[Run]:
+    """The runs of one case: each method with its default settings first, then those references ask settings for.
+
+    Args:
+        case: the case.
+        methods: names given by the user, or None for the case's own choice.
+        limits: of each run.
+        tier: "quick" leaves out references of the full tier.
+    """
+    references = [item for item in case.file.references if tier == "full" or item.tier == "quick"]
+    if methods is None:
+        asked = {method for item in references if item.gate for method in item.applies_to}
+        base = case.file.methods if case.file.methods is not None else DEFAULT_METHODS
+        installed = method_names()
+        methods = [*base, *sorted(name for name in asked if name not in base and name in installed)]
+    runs: list[Run] = []
+    for method in methods:
+        mine = [item for item in references if method in item.applies_to]
+        plain = tuple(item for item in mine if not item.settings)
+        runs.append(Run(case, method, {}, limits, plain))
+        for item in mine:
+            if item.settings and item.gate:
+                runs.append(Run(case, method, dict(item.settings), limits, (item,)))
+    return runs
+
+
+def gated_runs(case: Case, limits: Limits, tier: str) -> list[Run]:
+    """The runs that the gated references of a case need, and no others."""
+    needed: dict[tuple[str, str], Run] = {}
+    for item in case.file.references:
+        if not item.gate or (item.tier == "full" and tier != "full"):
+            continue
+        for method in item.applies_to:
+            place = (method, repr(sorted(item.settings.items())))
+            earlier = needed.get(place)
+            references = (*earlier.references, item) if earlier else (item,)
+            needed[place] = Run(case, method, dict(item.settings), limits, references)
+    return list(needed.values())
+
+
+def check_methods(names: Sequence[str]) -> None:
+    """Refuse a method that is not installed.
+
+    Raises:
+        InputError: naming it and those there are.
+    """
+    known = method_names()
+    for name in names:
+        if name not in known:
+            raise InputError(f'no method is called "{name}"', f"There are: {', '.join(known)}", "--methods")
+
+
+def find_cases(words: Sequence[str], suite: str | None, folders: Sequence[Path]) -> list[Case]:
+    """The cases a user names: ids, wall files, case folders, or a whole suite.
+
+    Args:
+        words: ids of cases or paths; with none and no suite, suite "small" is meant.
+        suite: name of a suite, "all" for every case.
+        folders: further folders of cases besides those shipped.
+
+    Raises:
+        InputError: an unknown id or suite, or a file that cannot be read.
+    """
+    library = case_folders([shipped_cases(), *folders])
+    if words and suite:
+        raise InputError("cases and a suite are given", "Give one or the other", "compare")
+    if words:
+        return [_find_case(word, library) for word in words]
+    cases = [read_case(folder) for folder in library.values()]
+    own = {path.resolve() for path in folders}
+    wanted = suite or ("" if folders else "small")
+    chosen = [
+        case
+        for case in cases
+        if wanted == "all"
+        or wanted in case.file.suites
+        or (not wanted and Path(case.origin).parent.parent.resolve() in own)
+    ]
+    if not chosen:
+        suites = sorted({name for case in cases for name in case.file.suites})
+        raise InputError(f'no case is in a suite "{wanted}"', f"Suites: all, {', '.join(suites)}", "--suite")
+    return chosen
+
+
+def _find_case(word: str, library: dict[str, Path]) -> Case:
+    if word in library:
+        return read_case(library[word])
+    path = Path(word)
+    if path.is_dir():
+        return read_case(path)
+    if path.is_file() or path.suffix == ".json":
+        return case_of_wall(path)
+    raise InputError(
+        f'no case is called "{word}", and there is no such file',
+        "`drystone list cases` shows the cases; a wall of your own is named by its file, WALL.json",
+    )

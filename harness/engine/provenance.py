@@ -1,0 +1,112 @@
+"""Facts about a run, taken when it is made: versions, commit, machine; and the hash that stands for the code."""
+
+from __future__ import annotations
+
+import functools
+import hashlib
+import importlib.util
+import os
+import platform
+import subprocess
+from importlib.metadata import PackageNotFoundError, entry_points, version
+from pathlib import Path
+from typing import Any
+
+import psutil
+
+from harness.model.method import GROUP
+
+PACKAGES = (
+    "drystone",
+    "numpy",
+    "scipy",
+    "cvxpy",
+    "osqp",
+    "highspy",
+    "casadi",
+    "numba",
+    "pymunk",
+    "shapely",
+    "pydantic",
+)
+
+
+@functools.cache
+def versions() -> dict[str, str]:
+    """Versions of Python, of the packages that compute, and the commit where the code is a checkout."""
+    found = {"python": platform.python_version()}
+    for package in PACKAGES:
+        try:
+            found[package] = version(package)
+        except PackageNotFoundError:
+            continue
+    commit = _commit()
+    if commit:
+        found["commit"] = commit
+    return found
+
+
+def _commit() -> str:
+    folder = Path(__file__).resolve().parents[2]
+    if not (folder / ".git").exists():
+        return ""
+    try:
+        head = _git(folder, "rev-parse", "--short=12", "HEAD")
+        dirty = _git(folder, "status", "--porcelain", "--untracked-files=no")
+    except (OSError, subprocess.SubprocessError):
+        return ""
+    return head + ("-modified" if dirty else "")
+
+
+def _git(folder: Path, *words: str) -> str:
+    done = subprocess.run(["git", "-C", str(folder), *words], capture_output=True, text=True, timeout=10, check=True)
+    return done.stdout.strip()
+
+
+@functools.cache
+def machine() -> dict[str, Any]:
+    """Processor, cores, memory and system; nothing that names the machine or its owner."""
+    processor = platform.processor() or platform.machine()
+    try:
+        for line in Path("/proc/cpuinfo").read_text(encoding="utf-8").splitlines():
+            if line.startswith("model name"):
+                processor = line.split(":", 1)[1].strip()
+                break
+    except OSError:
+        pass
+    return {
+        "processor": processor,
+        "cores": os.cpu_count() or 1,
+        "memory_bytes": int(psutil.virtual_memory().total),
+        "system": f"{platform.system()} {platform.release()}",
+    }
+
+
+@functools.cache
+def code_version(method: str) -> str:
+    """Hash over the sources a method's answer depends on: its own package and the model, and the packages beneath.
+
+    Raises:
+        KeyError: no installed method has this name.
+    """
+    point = next((point for point in entry_points(group=GROUP) if point.name == method), None)
+    if point is None:
+        raise KeyError(method)
+    digest = hashlib.sha256()
+    for package in sorted({point.module.split(".")[0], "harness.model"}):
+        for path in _sources(package):
+            digest.update(path.name.encode())
+            digest.update(path.read_bytes())
+    for name, number in sorted(versions().items()):
+        if name not in ("commit", "drystone"):
+            digest.update(f"{name}={number}".encode())
+    return digest.hexdigest()[:16]
+
+
+def _sources(package: str) -> list[Path]:
+    spec = importlib.util.find_spec(package)
+    if spec is None:
+        return []
+    if spec.submodule_search_locations:
+        return sorted(path for root in spec.submodule_search_locations for path in Path(root).rglob("*.py"))
+    return [Path(spec.origin)] if spec.origin else []

@@ -1,0 +1,100 @@
+"""The same wall seen otherwise: mirrored, moved, turned, scaled, re-ordered. Its multiplier must not change."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import replace
+
+import numpy as np
+
+from harness.model.assembly import Assembly, FloatArray
+
+
+def _mapped(assembly: Assembly, matrix: FloatArray, shift: FloatArray, length: float, flip: bool) -> Assembly:
+    """The wall under x -> length * matrix x + shift; `flip` where the matrix reverses orientation."""
+
+    def place(points: FloatArray) -> FloatArray:
+        return np.asarray(length * points @ matrix.T + shift)
+
+    def load(values: FloatArray) -> FloatArray:
+        sign = -1.0 if flip else 1.0
+        return np.column_stack([values[:, :2] @ matrix.T, sign * length * values[:, 2]])
+
+    return replace(
+        assembly,
+        polygons=tuple(place(polygon)[::-1] if flip else place(polygon) for polygon in assembly.polygons),
+        centroid=place(assembly.centroid),
+        end1=place(assembly.end1),
+        end2=place(assembly.end2),
+        face1=place(assembly.face1),
+        face2=place(assembly.face2),
+        normal=assembly.normal @ matrix.T,
+        dead=load(assembly.dead),
+        live=load(assembly.live),
+    )
+
+
+def mirrored(assembly: Assembly) -> Assembly:
+    """Left becomes right."""
+    return _mapped(assembly, np.diag([-1.0, 1.0]), np.zeros(2), 1.0, True)
+
+
+def translated(assembly: Assembly) -> Assembly:
+    """Moved by some block sizes."""
+    return _mapped(assembly, np.eye(2), assembly.length_scale * np.array([7.3, -4.1]), 1.0, False)
+
+
+def rotated(assembly: Assembly) -> Assembly:
+    """The whole problem, loads included, turned by 0.7 rad."""
+    c, s = np.cos(0.7), np.sin(0.7)
+    return _mapped(assembly, np.array([[c, -s], [s, c]]), np.zeros(2), 1.0, False)
+
+
+def scaled(assembly: Assembly) -> Assembly:
+    """A thousand times as large, as if drawn in millimetres."""
+    return _mapped(assembly, np.eye(2), np.zeros(2), 1000.0, False)
+
+
+def heavier(assembly: Assembly) -> Assembly:
+    """All loads 250 times as great."""
+    return replace(assembly, weight=250.0 * assembly.weight, dead=250.0 * assembly.dead, live=250.0 * assembly.live)
+
+
+def renumbered(assembly: Assembly, seed: int = 1) -> Assembly:
+    """Blocks and interfaces in another order, and the two sides of every second interface exchanged."""
+    rng = np.random.default_rng(seed)
+    blocks = rng.permutation(assembly.n_blocks)
+    place = np.argsort(blocks)
+    joints = rng.permutation(assembly.n_interfaces)
+    swap = np.arange(assembly.n_interfaces) % 2 == 1
+    a, b = place[assembly.block_a[joints]], place[assembly.block_b[joints]]
+    return replace(
+        assembly,
+        block_ids=tuple(assembly.block_ids[k] for k in blocks),
+        polygons=tuple(assembly.polygons[k] for k in blocks),
+        centroid=assembly.centroid[blocks],
+        weight=assembly.weight[blocks],
+        fixed=assembly.fixed[blocks],
+        dead=assembly.dead[blocks],
+        live=assembly.live[blocks],
+        block_a=np.where(swap, b, a),
+        block_b=np.where(swap, a, b),
+        end1=assembly.end1[joints],
+        end2=assembly.end2[joints],
+        face1=assembly.face1[joints],
+        face2=assembly.face2[joints],
+        normal=np.where(swap[:, None], -1.0, 1.0) * assembly.normal[joints],
+        friction=assembly.friction[joints],
+        joint=tuple(assembly.joint[k] for k in joints),
+    )
+
+
+VIEWS: dict[str, Callable[[Assembly], Assembly]] = {
+    "mirrored": mirrored,
+    "translated": translated,
+    "rotated": rotated,
+    "scaled": scaled,
+    "heavier": heavier,
+    "renumbered": renumbered,
+}
+"""Every view, by name."""

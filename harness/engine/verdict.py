@@ -1,0 +1,159 @@
+"""Results held against references and against theory."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+
+from harness.model.case import Reference, ReferenceType
+from harness.model.comparison import CaseResults, Gate
+from harness.model.method import Finding, Status
+from harness.model.result import Comparison, Result, Verdict
+
+BOUND_TOLERANCE = 1e-6
+"""Relative tolerance of bounds between methods: solver accuracy of the associated maximum, with a margin."""
+
+
+def compare(reference: Reference, result: Result) -> Comparison:
+    """How a result stands to one reference. A run without a value, or rejected by the judge, does not agree."""
+    value = _value(reference, result)
+    verdict, sentence = _verdict(reference, result, value)
+    return Comparison(
+        reference=reference.id,
+        quantity=reference.quantity,
+        value=value,
+        expected=list(reference.value) if isinstance(reference.value, tuple) else reference.value,
+        tolerance=reference.tolerance,
+        gate=reference.gate,
+        verdict=verdict,
+        sentence=sentence,
+    )
+
+
+def _value(reference: Reference, result: Result) -> float | list[float] | str | None:
+    if reference.quantity == "multiplier":
+        if reference.relation in ("inside", "contains") and result.bracket is not None:
+            return list(result.bracket)
+        return result.multiplier
+    if reference.quantity == "finding":
+        return str(result.finding)
+    if reference.quantity in ("blocks", "interfaces", "unknowns"):
+        count = getattr(result, reference.quantity)
+        return None if count is None else float(count)
+    detail = result.details.get(reference.quantity.removeprefix("details."))
+    return detail if isinstance(detail, int | float | str) else None
+
+
+def _verdict(reference: Reference, result: Result, value: float | list[float] | str | None) -> tuple[Verdict, str]:
+    violated = Verdict.VIOLATES_BOUND if reference.type is ReferenceType.BOUND else Verdict.OUTSIDE_TOLERANCE
+    if result.status is not Status.OK:
+        return Verdict.OUTSIDE_TOLERANCE, f"no value: {result.status}. {result.sentence}"
+    if value is None:
+        return Verdict.OUTSIDE_TOLERANCE, f"no value: {result.finding}. {result.sentence}"
+    if reference.quantity in ("multiplier", "finding") and result.judge.accepted is False:
+        return Verdict.OUTSIDE_TOLERANCE, f"the judge rejects the answer: {result.judge.sentence}"
+    expected = reference.value
+    if isinstance(value, str) or isinstance(expected, str):
+        return (
+            (Verdict.AGREES, f"{value}, as required")
+            if value == expected
+            else (violated, f"{value} instead of {expected}")
+        )
+    ends = value if isinstance(value, list) else [value, value]
+    slack = reference.tolerance
+    if isinstance(expected, tuple):
+        holds = ends[0] >= expected[0] - slack and ends[1] <= expected[1] + slack
+    elif reference.relation == "contains":
+        holds = ends[0] - slack <= expected <= ends[1] + slack
+    elif reference.relation == "at_most":
+        holds = ends[1] <= expected + slack
+    elif reference.relation == "at_least":
+        holds = ends[0] >= expected - slack
+    else:
+        holds = abs(ends[0] - expected) <= slack
+    if isinstance(expected, tuple):
+        difference = f"{_text(value)} in [{expected[0]:.7g}, {expected[1]:.7g}]"
+    elif isinstance(value, float | int):
+        difference = f"{value:.9g} - {expected:.9g} = {value - expected:+.2g}"
+    else:
+        difference = f"{_text(value)} for {expected:.9g}"
+    return (Verdict.AGREES if holds else violated), f"{difference}, tolerance {slack:.2g}"
+
+
+def _text(value: float | list[float]) -> str:
+    return f"[{value[0]:.7g}, {value[1]:.7g}]" if isinstance(value, list) else f"{value:.9g}"
+
+
+def overall(comparisons: Iterable[Comparison]) -> Verdict:
+    """The worst verdict of several, NO_REFERENCE if there are none."""
+    order = [Verdict.NO_REFERENCE, Verdict.AGREES, Verdict.OUTSIDE_TOLERANCE, Verdict.VIOLATES_BOUND]
+    return max((comparison.verdict for comparison in comparisons), key=order.index, default=Verdict.NO_REFERENCE)
+
+
+def theory_gates(results: CaseResults) -> list[Gate]:
+    """The statements of limit analysis that tie the methods' answers on one case together.
+
+    Sources: bounds of associated limit analysis hold for every state in equilibrium within yield (Drucker 1954;
+    Livesley 1978 for masonry); a finite-element plateau is a collapse state (Baggio and Trovalusci 1995, section 2).
+    """
+    usable = {
+        result.method: result
+        for result in results.results
+        if result.status is Status.OK and result.judge.accepted is not False
+    }
+    gates: list[Gate] = []
+
+    def below(name: str, statement: str, low: str, high: str) -> None:
+        if low not in usable or high not in usable:
+            return
+        lower, upper = usable[low], usable[high]
+        value = lower.bracket[0] if lower.family == "de" and lower.bracket is not None else lower.multiplier
+        if value is None or upper.multiplier is None:
+            return
+        slack = BOUND_TOLERANCE * max(1.0, abs(upper.multiplier))
+        gates.append(
+            Gate(
+                name=name,
+                statement=statement,
+                passed=value <= upper.multiplier + slack,
+                sentence=f"{low} {value:.9g}, {high} {upper.multiplier:.9g}",
+            )
+        )
+
+    for method in sorted(usable):
+        if method.startswith("la-associated"):
+            continue
+        if usable[method].family == "de":
+            below(
+                "de-held-below-associated",
+                "a held state is in equilibrium within yield, so it lies below the associated maximum",
+                method,
+                "la-associated",
+            )
+        else:
+            below(
+                f"{method}-below-associated",
+                "every collapse state lies below the associated maximum",
+                method,
+                "la-associated",
+            )
+        if usable[method].family != "de" and method != "la":
+            below(
+                f"la-below-{method}",
+                "the least collapse state known lies below every other collapse state",
+                "la",
+                method,
+            )
+    no_equilibrium = usable.get("la-associated") or usable.get("la")
+    if no_equilibrium is not None and no_equilibrium.finding is Finding.FALLS:
+        for method, result in usable.items():
+            if result.finding is Finding.FALLS:
+                continue
+            gates.append(
+                Gate(
+                    name=f"{method}-falls-without-equilibrium",
+                    statement="where no equilibrium exists under dead load no method may find one",
+                    passed=False,
+                    sentence=f"limit analysis finds no equilibrium, {method} says {result.finding}",
+                )
+            )
+    return gates

@@ -1,0 +1,167 @@
+"""What happens inside the child process of one run: limits, the method, its answer written to a file.
+
+This module is preloaded in the fork server, so it imports what every method needs and nothing that starts threads.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import ctypes
+import json
+import math
+import os
+import resource
+import signal
+import sys
+import time
+import traceback
+from dataclasses import dataclass, fields
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import scipy.sparse.linalg  # noqa: F401  (preloaded for the methods)
+from pydantic import ValidationError
+
+from harness.model.assembly import Assembly
+from harness.model.method import Answer, Finding, Status, load_method
+
+
+@dataclass(frozen=True)
+class Task:
+    """One run: a method on an assembly.
+
+    Attributes:
+        method: its name.
+        assembly: the wall.
+        settings: those that differ from the method's defaults.
+        seconds: wall-clock limit [s].
+        memory_bytes: limit of resident memory [bytes].
+    """
+
+    method: str
+    assembly: Assembly
+    settings: dict[str, Any]
+    seconds: float
+    memory_bytes: int
+
+
+def run_task(task: Task, folder: str) -> None:
+    """Run a task in this process and leave `answer.json` in the folder. Called in a fresh child process only."""
+    os.setsid()
+    _die_with_parent()
+    _send_output_to(Path(folder) / "output.txt")
+    resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
+    _limit_address_space(task.memory_bytes)
+    before = time.process_time()
+    started = time.perf_counter()
+    settings: dict[str, Any] = {}
+    family, tolerance = "", 0.0
+    try:
+        method = load_method(task.method)
+        family, tolerance = method.family, method.tolerance
+        chosen = method.Settings.model_validate(task.settings)
+        settings = chosen.model_dump(mode="json")
+        before = _cpu_seconds()
+        started = time.perf_counter()
+        answer = _checked(method.solve(task.assembly, chosen), task.assembly)
+    except ValidationError as error:
+        fault = error.errors()[0]
+        place = ".".join(str(part) for part in fault["loc"])
+        answer = _failure(Status.REFUSED, f"The setting {place} is refused: {fault['msg']}.")
+    except MemoryError:
+        answer = _failure(Status.OUT_OF_MEMORY, "The memory limit was reached.")
+    except Exception as error:
+        traceback.print_exc()
+        answer = _failure(Status.CRASHED, f"The method raised {type(error).__name__}: {error}")
+    record = {
+        "answer": _plain(answer),
+        "family": family,
+        "tolerance": tolerance,
+        "settings": settings,
+        "cpu_seconds": _cpu_seconds() - before,
+        "wall_seconds": time.perf_counter() - started,
+        "peak_memory_bytes": resource.getrusage(resource.RUSAGE_SELF).ru_maxrss * 1024,
+    }
+    part = Path(folder) / "answer.part"
+    part.write_text(json.dumps(record, allow_nan=False), encoding="utf-8")
+    part.replace(Path(folder) / "answer.json")
+    sys.stdout.flush()
+    sys.stderr.flush()
+    os._exit(0)
+
+
+def _cpu_seconds() -> float:
+    return sum(
+        usage.ru_utime + usage.ru_stime
+        for usage in (resource.getrusage(resource.RUSAGE_SELF), resource.getrusage(resource.RUSAGE_CHILDREN))
+    )
+
+
+def _die_with_parent() -> None:
+    """Ask the kernel to end this process when the fork server ends (Linux; elsewhere the wall limit must do)."""
+    with contextlib.suppress(OSError, AttributeError):
+        ctypes.CDLL(None).prctl(1, int(signal.SIGKILL))
+
+
+def _send_output_to(path: Path) -> None:
+    sink = os.open(path, os.O_WRONLY | os.O_CREAT | os.O_APPEND, 0o600)
+    os.dup2(sink, 1)
+    os.dup2(sink, 2)
+    os.close(sink)
+
+
+def _limit_address_space(memory_bytes: int) -> None:
+    """Let an allocation beyond the limit fail inside the process; the parent watches resident memory besides."""
+    try:
+        pages = int(Path("/proc/self/statm").read_text(encoding="ascii").split()[0])
+        limit = pages * resource.getpagesize() + memory_bytes
+        resource.setrlimit(resource.RLIMIT_AS, (limit, limit))
+    except (OSError, ValueError):
+        return
+
+
+def _failure(status: Status, sentence: str) -> Answer:
+    return Answer(status=status, finding=Finding.NONE, sentence=sentence)
+
+
+def _checked(answer: Answer, assembly: Assembly) -> Answer:
+    """The answer, or a refusal of it if shapes or numbers cannot be right."""
+    if not isinstance(answer, Answer):
+        return _failure(Status.CRASHED, f"The method returned {type(answer).__name__} instead of an Answer.")
+    for name, shape in (("forces", (assembly.n_interfaces, 3)), ("mechanism", (assembly.n_blocks, 3))):
+        array = getattr(answer, name)
+        if array is None:
+            continue
+        array = np.asarray(array, dtype=float)
+        if array.shape != shape:
+            return _failure(Status.CRASHED, f"The method's {name} have shape {array.shape} instead of {shape}.")
+        if not np.isfinite(array).all():
+            return _failure(Status.CRASHED, f"The method's {name} are not finite.")
+    numbers = [answer.multiplier, answer.forces_multiplier, *(answer.bracket or ())]
+    if any(number is not None and not math.isfinite(number) for number in numbers):
+        return _failure(Status.CRASHED, "The method's multiplier is not finite.")
+    if (answer.finding is Finding.COLLAPSES) and answer.status is Status.OK and answer.multiplier is None:
+        return _failure(Status.CRASHED, "The method reports a collapse without a multiplier.")
+    return answer
+
+
+def _plain(answer: Answer) -> dict[str, Any]:
+    return {item.name: _plain_value(getattr(answer, item.name)) for item in fields(answer)}
+
+
+def _plain_value(value: Any) -> Any:
+    """JSON values: arrays as lists, numpy scalars as numbers, numbers that are not finite as None."""
+    if isinstance(value, np.ndarray):
+        return _plain_value(value.tolist())
+    if isinstance(value, np.generic):
+        return _plain_value(value.item())
+    if isinstance(value, dict):
+        return {str(key): _plain_value(item) for key, item in value.items()}
+    if isinstance(value, list | tuple):
+        return [_plain_value(item) for item in value]
+    if isinstance(value, float) and not math.isfinite(value):
+        return None
+    if value is None or isinstance(value, bool | int | float | str):
+        return value
+    return str(value)
