@@ -1,0 +1,156 @@
+"""From the brackets of several insertion orders to one answer that claims no more than they show."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+
+from harness.model.assembly import Assembly
+from harness.model.method import Answer, Finding, Status
+from methods.de.bracket import Bracket, Search, held_forces, load_unit, mechanism_at
+from methods.de.courses import courses, insertion_orders
+from methods.de.engine import Engine
+from methods.de.settings import HoldSettings
+
+BRACKET_MEANING = (
+    "[lowest multiplier held, highest multiplier moving] over the body orders: every order was held at or above the "
+    "lower end and moved at or below the upper end"
+)
+
+LOOSE = 0.02
+"""Widest bracket of one order, as a part of the multiplier, that still counts as converged."""
+
+
+def solve_by_holds(assembly: Assembly, settings: HoldSettings, make_engine: Callable[..., Engine]) -> Answer:
+    """Bracket the collapse multiplier in every insertion order and put the findings together.
+
+    Args:
+        assembly: the wall.
+        settings: settings of the holds.
+        make_engine: from (blocks, interfaces) in insertion order to an engine that holds the wall.
+    """
+    if assembly.n_free == 0:
+        return Answer(Status.OK, Finding.STANDS, "every block is fixed: nothing can move")
+    unit = load_unit(assembly)
+    orders = insertion_orders(assembly, courses(assembly), settings.orders, settings.seed)
+    brackets: list[Bracket] = []
+    for name, blocks, joints in orders:
+        engine = make_engine(blocks, joints)
+        brackets.append(Search(engine, settings, unit, name).run(assembly.has_live_load))
+    details = describe(assembly, brackets)
+    answer = _conclude(assembly, settings, brackets, unit)
+    answer.iterations = sum(b.steps for b in brackets)
+    answer.details = {**details, **answer.details}
+    best = reporting(brackets)
+    if best is not None:
+        _, blocks, joints = next(order for order in orders if order[0] == best.order)
+        engine = make_engine(blocks, joints)
+        answer.forces, residual = held_forces(engine, settings, best)
+        answer.forces_multiplier = best.held
+        answer.details["residual_of_forces"] = residual
+        answer.path = {"multiplier": [t[0] for t in best.trials], "residual": [t[1] for t in best.trials]}
+        if answer.finding is Finding.COLLAPSES:
+            answer.mechanism, answer.flow = mechanism_at(engine, settings, best), "approximate"
+        answer.iterations += engine.steps
+    return answer
+
+
+def reporting(brackets: list[Bracket]) -> Bracket | None:
+    """The order that is reported: the median of those that have a bracket, else the one held highest, else None."""
+    full = sorted((b for b in brackets if b.middle is not None), key=lambda b: (b.middle, b.order))
+    if full:
+        return full[(len(full) - 1) // 2]
+    held = [b for b in brackets if b.held is not None]
+    return max(held, key=lambda b: b.held or 0.0) if held else None
+
+
+def describe(assembly: Assembly, brackets: list[Bracket]) -> dict[str, Any]:
+    """What every order found, as JSON values."""
+    middles = [b.middle for b in brackets if b.middle is not None]
+    spread = (max(middles) - min(middles)) / float(np.mean(middles)) if middles and np.mean(middles) > 0 else None
+    return {
+        "orders": [
+            {
+                "order": b.order,
+                "held": b.held,
+                "moving": b.moving,
+                "undecided": b.undecided,
+                "holds": b.holds,
+                "time_steps": b.steps,
+                "work_exhausted": b.exhausted,
+            }
+            for b in brackets
+        ],
+        "spread": spread,
+        "undecided": sum(len(b.undecided) for b in brackets),
+        "reporting_order": best.order if (best := reporting(brackets)) else None,
+        "contact_updates": sum(b.steps for b in brackets) * assembly.n_interfaces,
+    }
+
+
+def _conclude(assembly: Assembly, settings: HoldSettings, brackets: list[Bracket], unit: float) -> Answer:
+    """Status, finding and sentence; without forces and mechanism."""
+    fallen = [b for b in brackets if b.held is None]
+    if fallen:
+        return _at_zero(assembly, brackets, fallen)
+    if not assembly.has_live_load:
+        return Answer(Status.OK, Finding.STANDS, f"the dead load is held in all {len(brackets)} body orders")
+    if all(b.capped for b in brackets):
+        cap = settings.load_cap * unit
+        sentence = (
+            f"held up to the cap: the live load was raised to multiplier {cap:.6g}, {settings.load_cap:g} times the "
+            f"dead load, and held in all {len(brackets)} body orders; larger loads were not tried"
+        )
+        return Answer(Status.OK, Finding.UNBOUNDED, sentence, details={"cap": cap})
+    return _collapse(brackets)
+
+
+def _at_zero(assembly: Assembly, brackets: list[Bracket], fallen: list[Bracket]) -> Answer:
+    """Some order is not held under the dead load alone."""
+    moved = [b for b in fallen if b.moving is not None]
+    if len(moved) == len(brackets):
+        sentence = f"falls under its dead load: it moved in all {len(brackets)} body orders at multiplier 0"
+        answer = Answer(Status.OK, Finding.FALLS, sentence)
+        answer.mechanism, answer.flow = moved[0].velocity, "approximate"
+        return answer
+    sentence = (
+        f"whether the dead load is held is not decided: of {len(brackets)} body orders {len(brackets) - len(fallen)} "
+        f"held it, {len(moved)} moved and {len(fallen) - len(moved)} could not be told"
+    )
+    return Answer(Status.NOT_CONVERGED, Finding.NONE, sentence)
+
+
+def _collapse(brackets: list[Bracket]) -> Answer:
+    """Every order holds the dead load, and not all of them the load cap."""
+    best = reporting(brackets)
+    complete = [b for b in brackets if b.middle is not None]
+    if best is None or best.middle is None or not complete:
+        held = min(b.held or 0.0 for b in brackets)
+        sentence = f"no body order came to a state that moves: held up to multiplier {held:.6g}, then undecided"
+        return Answer(Status.NOT_CONVERGED, Finding.NONE, sentence)
+    low = min(b.held for b in brackets if b.held is not None)
+    high = max(b.moving for b in complete if b.moving is not None)
+    undecided = sum(len(b.undecided) for b in brackets)
+    sentence = (
+        f"collapses between {low:.6g} (held) and {high:.6g} (moving) over {len(brackets)} body orders; the multiplier "
+        f"{best.middle:.6g} is the middle of the median order's bracket [{best.held:.6g}, {best.moving:.6g}], not an "
+        "exact value"
+    )
+    if undecided:
+        sentence += f"; {undecided} holds could not be told and are not counted as held"
+    status = Status.OK
+    widest = max(b.width or 0.0 for b in complete)
+    if len(complete) < len(brackets) or widest > LOOSE:
+        status = Status.NOT_CONVERGED
+        sentence += f"; not converged: {len(brackets) - len(complete)} orders without a moving state, widest bracket "
+        sentence += f"{100 * widest:.2g} %"
+    return Answer(
+        status,
+        Finding.COLLAPSES,
+        sentence,
+        multiplier=best.middle,
+        bracket=(low, high),
+        bracket_meaning=BRACKET_MEANING,
+    )

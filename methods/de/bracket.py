@@ -1,0 +1,177 @@
+"""Search of the multiplier of one insertion order: load steps up to a state that is not held, then bisection."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from harness.model.assembly import Assembly, FloatArray
+from methods.de.engine import Engine
+from methods.de.hold import Hold, State, hold, settle
+from methods.de.settings import HoldSettings
+
+PATIENCE = 4.0
+"""How much longer the last undecided hold below a moving one is followed, once, before it is left undecided."""
+
+
+@dataclass(eq=False)
+class Bracket:
+    """What one insertion order found.
+
+    Attributes:
+        order: name of the insertion order.
+        held: highest multiplier held, or None if the wall is not held at zero.
+        moving: lowest multiplier at which it moved, or None.
+        undecided: multipliers of holds that could not be told, none of them called held.
+        state: contact state of the engine at `held`.
+        velocity: (n, 3) velocity field at `moving`.
+        holds: number of holds.
+        steps: time steps made.
+        capped: whether the load cap was held.
+        exhausted: whether the work ran out.
+        trials: (multiplier, residual) of every hold in order.
+    """
+
+    order: str
+    held: float | None = None
+    moving: float | None = None
+    undecided: list[float] = field(default_factory=list)
+    state: FloatArray | None = None
+    velocity: FloatArray | None = None
+    holds: int = 0
+    steps: int = 0
+    capped: bool = False
+    exhausted: bool = False
+    trials: list[tuple[float, float]] = field(default_factory=list)
+
+    @property
+    def middle(self) -> float | None:
+        """Middle of [held, moving]."""
+        if self.held is None or self.moving is None:
+            return None
+        return (self.held + self.moving) / 2.0
+
+    @property
+    def width(self) -> float | None:
+        """(moving - held) / moving."""
+        if self.held is None or self.moving is None or self.moving <= 0.0:
+            return None
+        return (self.moving - self.held) / self.moving
+
+
+def load_unit(assembly: Assembly) -> float:
+    """Multiplier at which the live load is as large as the dead load (sums of force and moment / size over blocks)."""
+    live = assembly.live[assembly.free]
+    size = np.hypot(live[:, 0], live[:, 1]) + np.abs(live[:, 2]) / assembly.length_scale
+    total = float(size.sum())
+    return assembly.force_scale / total if total > 0.0 else 1.0
+
+
+class Search:
+    """The bracket of one insertion order, step by step.
+
+    Args:
+        engine: the wall in that order.
+        settings: steps and tolerances.
+        unit: multiplier at which the live load equals the dead load, see `load_unit`.
+        order: name of the order.
+    """
+
+    def __init__(self, engine: Engine, settings: HoldSettings, unit: float, order: str) -> None:
+        self.engine = engine
+        self.settings = settings
+        self.unit = unit
+        self.found = Bracket(order)
+
+    def run(self, ask_multiplier: bool = True) -> Bracket:
+        """Hold at zero, then, if asked, climb and bisect."""
+        if self._try(0.0).state is State.HELD and ask_multiplier:
+            self._climb()
+            if not self.found.capped:
+                self._bisect()
+        self.found.steps = self.engine.steps
+        return self.found
+
+    def _spent(self) -> bool:
+        self.found.exhausted = self.engine.steps * self.engine.interfaces >= self.settings.work
+        return self.found.exhausted
+
+    def _try(self, multiplier: float, patience: float = 1.0) -> Hold:
+        """Hold at this multiplier from the highest held state, and note what came of it."""
+        found = self.found
+        if found.state is not None:
+            self.engine.restore(found.state)
+        self.engine.load(multiplier)
+        end = hold(self.engine, self.settings, patience)
+        found.holds += 1
+        found.trials.append((multiplier, end.residual))
+        if end.state is State.HELD:
+            found.held, found.state = multiplier, self.engine.save()
+        elif end.state is State.MOVING and (found.moving is None or multiplier < found.moving):
+            found.moving, found.velocity = multiplier, end.velocity
+        elif end.state is State.UNDECIDED:
+            found.undecided.append(multiplier)
+        return end
+
+    def _climb(self) -> None:
+        """Load steps until a state is not held, or the cap is."""
+        cap = self.settings.load_cap * self.unit
+        multiplier = 0.0
+        while not self._spent():
+            step = max(self.settings.load_step * self.unit, self.settings.load_growth * multiplier)
+            multiplier = min(multiplier + step, cap)
+            if self._try(multiplier).state is not State.HELD:
+                return
+            if multiplier >= cap:
+                self.found.capped = True
+                return
+
+    def _bisect(self) -> None:
+        """Narrow [held, lowest not held] to the accuracy; then settle an undecided hold in between, if any."""
+        found = self.found
+        top = [m for m in (found.moving, *found.undecided) if m is not None]
+        if not top or found.held is None:
+            return
+        high = min(top)
+        while high - found.held > self.settings.accuracy * high and not self._spent():
+            middle = (found.held + high) / 2.0
+            if self._try(middle).state is not State.HELD:
+                high = middle
+        if found.moving is None or high < found.moving:
+            self._raise_upper_end(high)
+
+    def _raise_upper_end(self, high: float) -> None:
+        """The lowest state not held was undecided: find a state above it that moves."""
+        found = self.found
+        step = max(2.0 * self.settings.accuracy * high, 1e-12)
+        if self._try(high, PATIENCE).state is not State.UNDECIDED:
+            return
+        multiplier = high
+        while not self._spent():
+            multiplier += step
+            step *= 2.0
+            if found.moving is not None and multiplier >= found.moving:
+                return
+            if multiplier > self.settings.load_cap * self.unit or self._try(multiplier).state is State.MOVING:
+                return
+
+
+def held_forces(engine: Engine, settings: HoldSettings, found: Bracket) -> tuple[FloatArray, float]:
+    """Contact forces (m, 3) at the highest held state, followed until it no longer settles, and its residual."""
+    assert found.held is not None
+    assert found.state is not None
+    engine.restore(found.state)
+    engine.load(found.held)
+    engine.advance(2 * max(10, round(engine.relaxation / 3.0)))
+    residual = settle(engine, settings)
+    return engine.contact_forces(), residual
+
+
+def mechanism_at(engine: Engine, settings: HoldSettings, found: Bracket, excess: float = 1.02) -> FloatArray:
+    """Velocity field (n, 3) at `excess` times the middle of the bracket, from the highest held state."""
+    assert found.middle is not None
+    assert found.state is not None
+    engine.restore(found.state)
+    engine.load(excess * found.middle)
+    return hold(engine, settings).velocity

@@ -1,0 +1,67 @@
+"""Courses counted from the supports, the masses chosen from them, and the insertion orders of bodies and interfaces."""
+
+from __future__ import annotations
+
+import numpy as np
+import scipy.sparse as sp
+from scipy.sparse.csgraph import dijkstra
+
+from harness.model.assembly import Assembly, FloatArray, IntArray, polygon_area
+
+MAX_LOG_RANGE = 14.0
+"""Largest logarithm of the ratio of the heaviest to the lightest mass that `mass_decay` may produce."""
+
+
+def courses(assembly: Assembly) -> IntArray:
+    """(n,) number of interfaces between each block and the nearest fixed block; 0 on fixed blocks.
+
+    A block that no chain of interfaces joins to a fixed block gets one more than the largest number found.
+    """
+    n = assembly.n_blocks
+    ones = np.ones(assembly.n_interfaces)
+    graph = sp.csr_matrix((ones, (assembly.block_a, assembly.block_b)), shape=(n, n))
+    fixed = np.flatnonzero(assembly.fixed)
+    if len(fixed) == 0 or assembly.n_interfaces == 0:
+        return np.ones(n, dtype=np.int64)
+    distance = dijkstra(graph, directed=False, indices=fixed, unweighted=True, min_only=True)
+    reached = np.isfinite(distance)
+    distance[~reached] = distance[reached].max() + 1
+    return distance.astype(np.int64)
+
+
+def masses(assembly: Assembly, course: IntArray, decay: float) -> FloatArray:
+    """(n,) masses area_i / mean area x exp(-decay (course_i - 1)), the decay limited for very tall walls."""
+    area = np.array([polygon_area(polygon) for polygon in assembly.polygons])
+    tallest = int(course[assembly.free].max(initial=1))
+    decay = min(decay, MAX_LOG_RANGE / tallest)
+    scaled: FloatArray = area / area[assembly.free].mean() * np.exp(-decay * (course - 1.0))
+    return scaled
+
+
+def damping(course: IntArray) -> float:
+    """Part of the velocity kept by a time step: 1 - 0.2 / courses, between 0.95 and 0.9975."""
+    return float(np.clip(1.0 - 0.2 / max(int(course.max(initial=1)), 1), 0.95, 0.9975))
+
+
+def insertion_orders(
+    assembly: Assembly, course: IntArray, count: int, seed: int
+) -> list[tuple[str, IntArray, IntArray]]:
+    """`count` orders: a name, the free blocks in order, the interfaces in order.
+
+    The first goes up the courses, the second down them, the third along the wall; the others are random. The contact
+    solver visits contacts in an order that follows from it, and so picks among the admissible states of the wall.
+    """
+    x, y = assembly.centroid.T
+    free = assembly.free
+    middle = (assembly.end1 + assembly.end2) / 2.0
+    up = free[np.lexsort((x[free], y[free], course[free]))]
+    along = free[np.lexsort((y[free], x[free]))]
+    depth = np.maximum(course[assembly.block_a], course[assembly.block_b])
+    joints_up = np.lexsort((middle[:, 0], middle[:, 1], depth))
+    joints_along = np.lexsort((middle[:, 1], middle[:, 0]))
+    orders = [("up", up, joints_up), ("down", up[::-1], joints_up[::-1]), ("along", along, joints_along)]
+    for k in range(3, count):
+        generator = np.random.default_rng([seed, k])
+        blocks = generator.permutation(free)
+        orders.append((f"random {k - 2}", blocks, generator.permutation(assembly.n_interfaces)))
+    return orders[:count]

@@ -1,0 +1,99 @@
+"""One damped hold: keep the load, let the wall settle, and judge whether it is held, moves, or cannot be told."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from enum import StrEnum
+
+import numpy as np
+
+from harness.model.assembly import FloatArray
+from methods.de.engine import Engine
+from methods.de.settings import HoldSettings
+
+RUNAWAY = 1e4
+"""Out-of-balance acceleration, as a part of gravity, that no hold comes back from (masses are scaled: hence large)."""
+
+STEADY = 0.003
+"""Largest relative change of the velocity field from one check to the next that counts as steady."""
+
+STEADY_CHECKS = 4
+"""Checks in a row that must find a steady velocity field, or a residual small enough to hold (two of them)."""
+
+
+class State(StrEnum):
+    """What a hold showed."""
+
+    HELD = "held"
+    MOVING = "moving"
+    UNDECIDED = "undecided"
+
+
+@dataclass(frozen=True, eq=False)
+class Hold:
+    """The end of a hold.
+
+    Attributes:
+        state: held, moving or undecided.
+        residual: largest out-of-balance acceleration at the end, as a part of gravity.
+        steps: time steps made.
+        velocity: (n, 3) velocity field at the end, scaled as `Engine.velocity`.
+    """
+
+    state: State
+    residual: float
+    steps: int
+    velocity: FloatArray
+
+
+def hold(engine: Engine, settings: HoldSettings, patience: float = 1.0) -> Hold:
+    """Let the engine settle under its present load.
+
+    Held: the residual stays below `held_residual` at two checks in a row. Moving: the velocity field is steady over
+    four checks above `moving_residual`; at the end of the hold an unsteady motion that never slowed down counts too.
+    Undecided: anything else when `hold_steps` relaxation times are over.
+
+    Args:
+        engine: the wall with its load.
+        settings: tolerances.
+        patience: factor on `hold_steps`.
+    """
+    check = max(10, round(engine.relaxation / 3.0))
+    limit = int(patience * settings.hold_steps * engine.relaxation)
+    start = engine.steps
+    velocity = engine.velocity()
+    residuals: list[float] = []
+    low = steady = 0
+    while engine.steps - start < limit:
+        engine.advance(check)
+        before, velocity = velocity, engine.velocity()
+        residual = float(np.abs(velocity).max(initial=0.0))
+        residuals.append(residual)
+        low = low + 1 if residual < settings.held_residual else 0
+        if low == 2:
+            return Hold(State.HELD, residual, engine.steps - start, velocity)
+        change = float(np.abs(velocity - before).max(initial=0.0))
+        still = residual > settings.moving_residual and change <= STEADY * residual
+        steady = steady + 1 if still else 0
+        if steady == STEADY_CHECKS or residual > RUNAWAY or not np.isfinite(residual):
+            return Hold(State.MOVING, residual, engine.steps - start, velocity)
+    half = np.array(residuals[len(residuals) // 2 :])
+    quarter = max(len(half) // 2, 1)
+    lasting = half.min() > 500.0 * settings.moving_residual and half[quarter:].max() >= 0.9 * half[:quarter].max()
+    state = State.MOVING if lasting else State.UNDECIDED
+    return Hold(state, residuals[-1], engine.steps - start, velocity)
+
+
+def settle(engine: Engine, settings: HoldSettings) -> float:
+    """Follow a held state until its residual is below `force_residual` or no longer falls; its last residual."""
+    check = max(10, round(engine.relaxation / 3.0))
+    best = residual = float(np.abs(engine.velocity()).max(initial=0.0))
+    stale = 0
+    for _ in range(3 * settings.hold_steps):
+        if residual < settings.force_residual or stale == 6:
+            break
+        engine.advance(check)
+        residual = float(np.abs(engine.velocity()).max(initial=0.0))
+        stale = 0 if residual < 0.9 * best else stale + 1
+        best = min(best, residual)
+    return residual

@@ -1,0 +1,43 @@
+"""Settings of the damped-hold methods, with the reasons for their defaults."""
+
+from __future__ import annotations
+
+from pydantic import Field
+
+from harness.model.method import Settings
+
+
+class HoldSettings(Settings):
+    """How a damped hold is run and judged, and how the collapse multiplier is bracketed.
+
+    Attributes:
+        orders: how many insertion orders of bodies and interfaces are tried; their spread is part of the answer.
+        accuracy: the bracket [held, moving] of an order is narrowed to this fraction of the multiplier.
+        load_step: largest first load step, as a part of the dead load: the live load grows by at most this share
+            of the dead load at a time, or by `load_growth` of itself if that is more. Large steps lock head joints.
+        load_growth: relative growth of the multiplier a load step may have.
+        load_cap: live load, as a multiple of the dead load, at which the search for a collapse is given up.
+        iterations: sweeps of the contact solver in a time step.
+        mass_decay: logarithmic decay of the masses from one course to the next. Masses do not enter equilibrium, so
+            they are chosen for convergence: light blocks on heavy ones. 0 gives the masses of the blocks.
+        held_residual: a state is held when the largest acceleration left over is below this part of gravity.
+        moving_residual: a state moves when a steady velocity field keeps an acceleration above this part of gravity.
+        force_residual: the highest held state is followed until its residual is below this, for its contact forces.
+        hold_steps: most time steps of one hold, in relaxation times 1 / (1 - damping).
+        work: most contact updates (time steps x interfaces) spent on one order.
+        seed: seed of the random orders.
+    """
+
+    orders: int = Field(default=3, ge=1, le=64)
+    accuracy: float = Field(default=5e-4, gt=0.0, le=0.1)
+    load_step: float = Field(default=0.02, gt=0.0, le=1.0)
+    load_growth: float = Field(default=0.04, ge=0.0, le=1.0)
+    load_cap: float = Field(default=100.0, gt=0.0)
+    iterations: int = Field(default=20, ge=1, le=1000)
+    mass_decay: float = Field(default=0.4, ge=0.0, le=3.0)
+    held_residual: float = Field(default=1e-6, gt=0.0, lt=1.0)
+    moving_residual: float = Field(default=2e-5, gt=0.0, lt=1.0)
+    force_residual: float = Field(default=1e-10, gt=0.0, lt=1.0)
+    hold_steps: int = Field(default=40, ge=1)
+    work: int = Field(default=200_000_000, ge=1)
+    seed: int = Field(default=0, ge=0)

@@ -1,0 +1,110 @@
+"""Contact strips: for every interface a pair of thin quadrilaterals, one on each block, that touch only each other.
+
+A rigid-body engine finds contacts between whole polygons: it then decides by itself which corners touch, cannot give
+two interfaces of one block different friction cheaply, and wants convex shapes. A pair of strips per interface turns
+the wall's own list of interfaces into the engine's: the strip of block a has its face exactly between the two contact
+points, so inset points, several interfaces between the same two blocks, friction by interface and non-convex blocks
+all need nothing further. The pairs are kept apart by a colour that no neighbouring pair shares.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from shapely import STRtree, box
+
+from harness.model.assembly import Assembly, FloatArray, IntArray
+
+MAX_COLOURS = 32
+"""Bits of a collision category in Chipmunk."""
+
+ROUNDING = 1e-3
+"""Radius around each strip, in unit lengths. The strips' faces are set back by it: the contact plane stays exact."""
+
+OVERLAP = 1e-8
+"""Overlap of the rounded faces, in unit lengths: far above rounding noise, far below anything that shows in forces."""
+
+DEPTH = 0.1
+"""Depth of a strip as a part of its length."""
+
+OVERHANG = 0.1
+"""How much the strip of block b is longer than that of block a at each end, as a part of the length.
+
+Faces of the same length would put two equal points into the engine's closest-point search (a - b at both ends),
+whose normal is then decided by rounding noise.
+"""
+
+
+@dataclass(frozen=True, eq=False)
+class Strips:
+    """The strips of all interfaces, in unit lengths.
+
+    Attributes:
+        on_a: (m, 4, 2) vertices of the strips of blocks a.
+        on_b: (m, 4, 2) vertices of the strips of blocks b.
+        colour: (m,) collision colours, 0 to 31.
+    """
+
+    on_a: FloatArray
+    on_b: FloatArray
+    colour: IntArray
+
+
+def build_strips(assembly: Assembly, unit: float) -> Strips:
+    """The pair of strips of every interface.
+
+    Args:
+        assembly: the wall.
+        unit: the length that becomes 1 [length].
+
+    Raises:
+        ValueError: an interface has no length, or more than 32 interfaces crowd one place.
+    """
+    length = assembly.length / unit
+    for p in np.flatnonzero(~(length > 0.0)):
+        a, b = assembly.block_a[p], assembly.block_b[p]
+        raise ValueError(
+            f"interface {p} between {assembly.block_ids[a]} and {assembly.block_ids[b]} has no length between its "
+            "contact points; distinct elements need two points a distance apart"
+        )
+    back = ROUNDING - OVERLAP / 2.0
+    end1, end2 = assembly.end1 / unit, assembly.end2 / unit
+    along = assembly.tangent * length[:, None]
+    inward = assembly.normal * length[:, None]
+
+    def strip(side: float, overhang: float) -> FloatArray:
+        face1 = end1 - overhang * along + side * back * assembly.normal
+        face2 = end2 + overhang * along + side * back * assembly.normal
+        tail = side * DEPTH * inward
+        return np.stack([face1, face2, face2 + tail - 2 * DEPTH * along, face1 + tail + 2 * DEPTH * along], axis=1)
+
+    on_a, on_b = strip(-1.0, 0.0), strip(1.0, OVERHANG)
+    return Strips(on_a, on_b, colour_strips(np.concatenate([on_a, on_b], axis=1), margin=3.0 * ROUNDING))
+
+
+def colour_strips(vertices: FloatArray, margin: float) -> IntArray:
+    """Colours (m,) such that pairs of strips whose boxes overlap have different ones (greedy, in order).
+
+    Args:
+        vertices: (m, k, 2) all vertices of each pair.
+        margin: how far the boxes are widened.
+
+    Raises:
+        ValueError: more than 32 colours would be needed.
+    """
+    low, high = vertices.min(axis=1) - margin, vertices.max(axis=1) + margin
+    boxes = [box(*lo, *hi) for lo, hi in zip(low, high, strict=True)]
+    colour = np.full(len(boxes), -1, dtype=np.int64)
+    if not boxes:
+        return colour
+    first, second = STRtree(boxes).query(boxes)
+    neighbours: list[list[int]] = [[] for _ in boxes]
+    for i, j in zip(first, second, strict=True):
+        neighbours[i].append(int(j))
+    for i, near in enumerate(neighbours):
+        taken = {int(colour[j]) for j in near}
+        colour[i] = next(c for c in range(len(boxes) + 1) if c not in taken)
+    if colour.max() >= MAX_COLOURS:
+        raise ValueError(f"{colour.max() + 1} interfaces crowd one place; distinct elements can part {MAX_COLOURS}")
+    return colour
