@@ -27,7 +27,8 @@ from harness.model.result import Result, result_of
 LOOK_SECONDS = 0.05
 """How often memory and time of a run are looked at."""
 
-ONE_THREAD = dict.fromkeys(("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "NUMEXPR_NUM_THREADS", "NUMBA_NUM_THREADS"), "1")
+ONE_THREAD = {f"{library}_NUM_THREADS": "1" for library in ("OMP", "OPENBLAS", "MKL", "NUMEXPR", "NUMBA")}
+"""Environment of every run: one thread, so that CPU time means the same for all methods."""
 
 
 @dataclass(frozen=True)

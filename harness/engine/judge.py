@@ -23,7 +23,7 @@ from harness.model.result import Judgement, Result, normalised_mechanism, relati
 
 
 def block_sums(assembly: Assembly, forces: FloatArray) -> FloatArray:
-    """(n, 3) sums (fx, fy, moment about the centroid) of the contact forces (m, 3) on every block [force, force*length].
+    """(n, 3) sums (fx, fy, moment about the centroid) of the contact forces (m, 3) on every block.
 
     The two normal forces act at the contact points; the shear acts half at each, along the line that joins them.
     """
@@ -39,7 +39,7 @@ def block_sums(assembly: Assembly, forces: FloatArray) -> FloatArray:
 
 
 def equilibrium_residual(assembly: Assembly, forces: FloatArray, multiplier: float) -> float:
-    """Largest out-of-balance force, or moment / typical block size, of a free block, relative to the total dead load."""
+    """Largest out-of-balance force, or moment / block size, of a free block, relative to the total dead load."""
     balance = block_sums(assembly, forces) + assembly.dead + multiplier * assembly.live
     balance[:, 2] /= assembly.length_scale
     return float(abs(balance[assembly.free]).max(initial=0.0)) / assembly.force_scale

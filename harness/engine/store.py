@@ -62,7 +62,8 @@ class Store:
         """Store a result, in place of any under the same key."""
         with self._connection:
             self._connection.execute(
-                "INSERT OR REPLACE INTO run (key, case_id, method, started, tolerance, result) VALUES (?, ?, ?, ?, ?, ?)",
+                "INSERT OR REPLACE INTO run (key, case_id, method, started, tolerance, result) "
+                "VALUES (?, ?, ?, ?, ?, ?)",
                 (key, result.case, result.method, result.started, tolerance, result.model_dump_json()),
             )
 

@@ -89,7 +89,7 @@ class Assembly:
     @cached_property
     def length(self) -> FloatArray:
         """(m,) distance between the two contact points of each interface [length]."""
-        return np.linalg.norm(self.end2 - self.end1, axis=1)
+        return np.asarray(np.linalg.norm(self.end2 - self.end1, axis=1))
 
     @cached_property
     def tangent(self) -> FloatArray:

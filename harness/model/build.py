@@ -244,7 +244,7 @@ def _normals(
             f"interfaces[{number}] between {' and '.join(interfaces[number].between)}",
         )
     sign = np.where(unclear, np.sign(across), np.sign(votes))
-    return outward * sign[:, None]
+    return np.asarray(outward * sign[:, None])
 
 
 def _inclination(start: FloatArray, end: FloatArray) -> str:

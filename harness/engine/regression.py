@@ -1,0 +1,50 @@
+"""The gate: which references and statements of theory do not hold, one line each."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+from harness.engine.plan import Run
+from harness.model.comparison import ComparisonRun
+from harness.model.result import Result, Verdict
+
+
+def violations(compared: ComparisonRun) -> list[str]:
+    """Sentences about gated references and theory gates that do not hold."""
+    found = []
+    for case in compared.cases:
+        for result in case.results:
+            for comparison in result.comparisons:
+                if comparison.gate and comparison.verdict is not Verdict.AGREES:
+                    found.append(f"{case.case.id}, {result.method}: {comparison.reference}: {comparison.sentence}")
+        for gate in case.gates:
+            if gate.passed is False:
+                found.append(f"{case.case.id}: {gate.name}: {gate.statement}, but {gate.sentence}")
+    return found
+
+
+def lines(runs: Sequence[Run], results: Sequence[Result]) -> list[dict[str, Any]]:
+    """One row a gated reference: case, quantity, method, value, reference, tolerance, source, verdict, sentence."""
+    rows = []
+    for run, result in zip(runs, results, strict=True):
+        for reference, comparison in zip(run.references, result.comparisons, strict=True):
+            rows.append(
+                {
+                    "case": run.case.id,
+                    "reference": reference.id,
+                    "quantity": reference.quantity,
+                    "method": run.method,
+                    "settings": run.settings,
+                    "value": comparison.value,
+                    "relation": reference.relation,
+                    "expected": comparison.expected,
+                    "tolerance": reference.tolerance,
+                    "type": str(reference.type),
+                    "source": reference.source,
+                    "requirement": reference.requirement,
+                    "verdict": str(comparison.verdict),
+                    "sentence": comparison.sentence,
+                }
+            )
+    return rows

@@ -1,0 +1,260 @@
+"""What people see in a terminal: progress, tables and sentences; and the JSON of a comparison."""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from rich.console import Console
+from rich.markup import escape
+from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeElapsedColumn
+from rich.table import Table
+
+from harness.engine.compare import Told
+from harness.engine.judge import worst_residual
+from harness.engine.plan import Run
+from harness.engine.regression import violations
+from harness.model.assembly import Assembly
+from harness.model.case import Case
+from harness.model.comparison import ComparisonRun
+from harness.model.errors import InputError
+from harness.model.method import Answer, Finding, Status
+from harness.model.result import Judgement, Result
+
+MARKS = {
+    "agrees": "✓ agrees",
+    "outside_tolerance": "✗ outside tolerance",
+    "violates_bound": "✗ violates bound",
+    "no_reference": "· no reference",
+}
+
+
+@contextmanager
+def progress(total: int, *, quiet: bool = False) -> Iterator[Told]:
+    """Something to call after each run: a bar on a terminal, plain lines on standard error otherwise."""
+    console = Console(stderr=True)
+    if quiet or not console.is_terminal:
+
+        def tell(run: Run, result: Result, stored: bool) -> None:
+            if not quiet:
+                how = "stored" if stored else f"{result.cpu_seconds or 0.0:.2f} s"
+                print(f"{run.case.id} {run.method}: {_value(result)} ({how})", file=sys.stderr, flush=True)
+
+        yield tell
+        return
+    columns = (
+        TextColumn("{task.description}"),
+        BarColumn(),
+        MofNCompleteColumn(),
+        TimeElapsedColumn(),
+    )
+    with Progress(*columns, console=console, transient=True) as bar:
+        task = bar.add_task("running", total=total)
+
+        def advance(run: Run, result: Result, stored: bool) -> None:
+            bar.update(task, advance=1, description=escape(f"{run.case.id} {run.method}"))
+
+        yield advance
+
+
+def _value(result: Result) -> str:
+    if result.status is not Status.OK:
+        return str(result.status).replace("_", " ")
+    if result.finding is not Finding.COLLAPSES:
+        return str(result.finding)
+    if result.family == "de" and result.bracket is not None:
+        return f"[{result.bracket[0]:.5f}, {result.bracket[1]:.5f}]"
+    return "-" if result.multiplier is None else f"{result.multiplier:.7f}"
+
+
+def _expected(result: Result) -> str:
+    shown = []
+    for comparison in result.comparisons:
+        if comparison.quantity not in ("multiplier", "finding"):
+            continue
+        expected = comparison.expected
+        if isinstance(expected, list):
+            shown.append(f"[{expected[0]:.5g}, {expected[1]:.5g}]")
+        else:
+            shown.append(expected if isinstance(expected, str) else f"{expected:.7g}")
+    return ", ".join(dict.fromkeys(shown))
+
+
+def _residual(result: Result) -> str:
+    worst = worst_residual(result.judge)
+    if worst is None:
+        return "-"
+    return f"{worst:.1e}" + ("" if result.judge.accepted else " ✗")
+
+
+def print_comparison(compared: ComparisonRun, report: Path) -> None:
+    """The table of a comparison, what does not hold, and where the report is."""
+    console = Console()
+    if not console.is_terminal:
+        console = Console(width=140)
+    table = Table(title=f"Drystone: {escape(compared.title)}", title_justify="left", caption_justify="left")
+    for name in ("case", "method", "multiplier", "reference", "verdict", "judge residual", "CPU s"):
+        right = name in ("multiplier", "judge residual", "CPU s")
+        table.add_column(name, justify="right" if right else "left", no_wrap=name in ("multiplier", "method"))
+    for case in compared.cases:
+        for number, result in enumerate(case.results):
+            table.add_row(
+                escape(case.case.id) if number == 0 else "",
+                result.method,
+                _value(result),
+                _expected(result),
+                MARKS[str(result.verdict)],
+                _residual(result),
+                "-" if result.cpu_seconds is None else f"{result.cpu_seconds:.2f}",
+                end_section=number == len(case.results) - 1,
+            )
+    console.print(table)
+    for case in compared.cases:
+        for result in case.results:
+            if result.status is not Status.OK:
+                console.print(f"{escape(case.case.id)}, {result.method}: {escape(result.sentence)}", highlight=False)
+    broken = violations(compared)
+    gated = sum(item.gate for case in compared.cases for result in case.results for item in result.comparisons)
+    gates = sum(len(case.gates) for case in compared.cases)
+    if broken:
+        console.print(f"{len(broken)} of {gated} gated references and {gates} theory gates do not hold:")
+        for sentence in broken:
+            console.print(f"  ✗ {escape(sentence)}", highlight=False)
+    else:
+        console.print(f"All {gated} gated references and {gates} theory gates hold.")
+    print(f"Report: {report}")
+
+
+def comparison_json(compared: ComparisonRun, report: Path) -> dict[str, Any]:
+    """A comparison as JSON values."""
+    broken = violations(compared)
+    return {
+        "title": compared.title,
+        "created": compared.created,
+        "command": compared.command,
+        "report": str(report),
+        "passed": not broken,
+        "violations": broken,
+        "cases": [
+            {
+                "id": case.case.id,
+                "results": [result.summary() for result in case.results],
+                "gates": [gate.model_dump(mode="json") for gate in case.gates],
+            }
+            for case in compared.cases
+        ],
+        "provenance": compared.provenance,
+    }
+
+
+def print_result(result: Result, case: Case) -> None:
+    """One result, for a person."""
+    console = Console()
+    rows = Table.grid(padding=(0, 2))
+    rows.add_row("wall", f"{case.file.title} ({result.blocks} free blocks, {result.interfaces} interfaces)")
+    rows.add_row("method", result.method)
+    rows.add_row("finding", f"{_value(result)}" if result.finding is Finding.COLLAPSES else str(result.finding))
+    rows.add_row("", escape(result.sentence))
+    if result.bracket is not None:
+        rows.add_row("bracket", f"[{result.bracket[0]:.7g}, {result.bracket[1]:.7g}] {escape(result.bracket_meaning)}")
+    rows.add_row("status", str(result.status))
+    rows.add_row("judge", escape(result.judge.sentence))
+    for name, value in result.judge.residuals.items():
+        rows.add_row("", f"{name} {value:.2e}")
+    for comparison in result.comparisons:
+        rows.add_row("reference", f"{MARKS[str(comparison.verdict)]}: {comparison.reference}: {comparison.sentence}")
+    if result.cpu_seconds is not None:
+        memory = (result.peak_memory_bytes or 0) / 2**20
+        rows.add_row("cost", f"{result.cpu_seconds:.3f} s of CPU, {memory:.0f} MiB")
+    console.print(rows, highlight=False)
+
+
+def print_judgement(judgement: Judgement) -> None:
+    """What the judge says, for a person."""
+    print(judgement.sentence)
+    for name, value in judgement.residuals.items():
+        print(f"  {name:16s} {value:.3e}")
+    print("accepted" if judgement.accepted else "not accepted")
+
+
+def print_check(lines: list[dict[str, Any]]) -> None:
+    """One line a reference, and a count."""
+    for line in lines:
+        mark = MARKS[line["verdict"]]
+        where = line["method"] + (f" {line['settings']}" if line["settings"] else "")
+        print(f"{mark}  {line['case']}  {line['quantity']}  {where}: {line['sentence']}  [{line['source']}]")
+    bad = sum(line["verdict"] != "agrees" for line in lines)
+    print(f"{len(lines) - bad} of {len(lines)} gated references hold.")
+
+
+def print_rows(rows: list[dict[str, Any]]) -> None:
+    """Rows with equal names as a table."""
+    console = Console()
+    if not console.is_terminal:
+        console = Console(width=160)
+    table = Table(box=None, pad_edge=False)
+    if rows:
+        for name in rows[0]:
+            table.add_column(name)
+    for row in rows:
+        table.add_row(*[escape(_cell(value)) for value in row.values()])
+    console.print(table, highlight=False)
+
+
+def _cell(value: Any) -> str:
+    if isinstance(value, list):
+        return ", ".join(str(item) for item in value)
+    if isinstance(value, dict):
+        return ", ".join(f"{name}={item}" for name, item in value.items())
+    return str(value)
+
+
+def foreign_answer(data: Any, assembly: Assembly, source: str) -> Answer:
+    """An answer from JSON data of any origin, as `drystone judge` takes it.
+
+    Raises:
+        InputError: a field that is missing or of the wrong shape.
+    """
+    if not isinstance(data, dict):
+        raise InputError("a result is a JSON object", 'Give "multiplier", "forces" and "mechanism"', source=source)
+
+    def table(name: str, rows: int, columns: str) -> np.ndarray | None:
+        if data.get(name) is None:
+            return None
+        try:
+            array = np.array(data[name], dtype=float)
+        except (TypeError, ValueError):
+            array = np.empty(0)
+        if array.shape != (rows, 3):
+            raise InputError(
+                f"it is not a list of {rows} triples of numbers",
+                f"Give {columns} in the order of `drystone expand`",
+                name,
+                source,
+            )
+        return array
+
+    finding = data.get("finding", "collapses")
+    if finding not in [str(item) for item in Finding]:
+        raise InputError(f"{finding!r} is no finding", f"One of: {', '.join(Finding)}", "finding", source)
+    multiplier = data.get("multiplier")
+    if finding == Finding.COLLAPSES and not isinstance(multiplier, int | float):
+        raise InputError("it is missing or no number", "Give the collapse multiplier", "multiplier", source)
+    flow = data.get("flow", "non-associated")
+    if flow not in ("non-associated", "associated", "approximate"):
+        raise InputError(f"{flow!r} is no flow rule", "non-associated, associated or approximate", "flow", source)
+    at = data.get("forces_multiplier")
+    return Answer(
+        status=Status.OK,
+        finding=Finding(finding),
+        sentence="An answer from a file.",
+        multiplier=float(multiplier) if isinstance(multiplier, int | float) else None,
+        forces=table("forces", assembly.n_interfaces, "n1, n2, s of every interface"),
+        forces_multiplier=float(at) if isinstance(at, int | float) else None,
+        mechanism=table("mechanism", assembly.n_blocks, "ux, uy, omega of every block"),
+        flow=flow,
+    )
