@@ -1,0 +1,15 @@
+"""One typed door to numba: functions marked `@compiled` run as cached machine code, without fast-math reordering."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any, TypeVar, cast
+
+import numba
+
+AnyFunction = TypeVar("AnyFunction", bound=Callable[..., Any])
+
+
+def compiled(function: AnyFunction) -> AnyFunction:
+    """Compile a function of arrays on its first call and keep the code on disk."""
+    return cast(AnyFunction, numba.njit(cache=True)(function))

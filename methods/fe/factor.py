@@ -1,0 +1,171 @@
+"""Solves with a tangent that changes by one rank-one term at a time.
+
+Small walls keep the dense inverse and correct it by Sherman-Morrison (1950). Larger ones keep a sparse LU of an
+earlier tangent and the product form of the changes since then: with K_{j+1} = K_j + a_j b_j', y_j = K_j^-1 a_j,
+
+    K_k^-1 x = K_0^-1 x - sum_j y_j alpha_j,   alpha_j = (b_j' K_0^-1 x - sum_{i<j} (b_j' y_i) alpha_i) / (1 + b_j' y_j)
+"""
+
+from __future__ import annotations
+
+from typing import Protocol
+
+import numpy as np
+import scipy.linalg as sla
+from scipy.sparse.linalg import SuperLU, splu
+
+from harness.model.assembly import FloatArray, IntArray
+from methods.fe.compiled import compiled
+from methods.fe.wall_model import WallModel
+
+DENSE_LIMIT = 260
+"""Unknowns up to which the dense inverse is faster than the sparse product form."""
+
+
+class SingularTangent(ArithmeticError):
+    """The tangent has no usable inverse in these states."""
+
+
+class Factor(Protocol):
+    """What the continuation needs of a factorised tangent."""
+
+    count: int
+    capacity: int
+
+    def refactor(self, state: IntArray, shift: float = 0.0) -> None:
+        """Factorise the tangent in these states afresh, with `shift` times the inertia added."""
+
+    def solve(self, right: FloatArray) -> FloatArray:
+        """K^-1 right (N,)."""
+
+    def solve_sparse(self, index: IntArray, value: FloatArray) -> FloatArray:
+        """K^-1 times the vector with `value` (6,) at `index` (6,)."""
+
+    def update(self, y: FloatArray, index: IntArray, b: FloatArray, denominator: float) -> None:
+        """Turn K into K + a b' where y = K^-1 a and denominator = 1 + b'y."""
+
+
+def make_factor(model: WallModel) -> Factor:
+    """The form that suits the size of the wall."""
+    return DenseFactor(model) if model.n_unknowns <= DENSE_LIMIT else SparseFactor(model)
+
+
+class DenseFactor:
+    """The inverse itself."""
+
+    def __init__(self, model: WallModel) -> None:
+        self.model = model
+        self.capacity = 64
+        self.count = 0
+        self.factorisations = 0
+        self.inverse = np.empty((0, 0))
+
+    def refactor(self, state: IntArray, shift: float = 0.0) -> None:
+        """Invert afresh. Raises SingularTangent."""
+        self.count = 0
+        self.factorisations += 1
+        matrix = self.model.tangent(state, shift).toarray()
+        lu, pivots, info = sla.lapack.dgetrf(matrix, overwrite_a=True)
+        if info == 0:
+            self.inverse, info = sla.lapack.dgetri(lu, pivots, overwrite_lu=True)
+        if info != 0 or not np.isfinite(self.inverse).all():
+            raise SingularTangent("the tangent is singular in these states")
+
+    def solve(self, right: FloatArray) -> FloatArray:
+        """K^-1 right (N,)."""
+        out: FloatArray = self.inverse @ right
+        return out
+
+    def solve_sparse(self, index: IntArray, value: FloatArray) -> FloatArray:
+        """K^-1 times the vector with `value` (6,) at `index` (6,)."""
+        out: FloatArray = self.inverse[:, index] @ value
+        return out
+
+    def update(self, y: FloatArray, index: IntArray, b: FloatArray, denominator: float) -> None:
+        """Sherman-Morrison."""
+        self.inverse -= np.outer(y / denominator, b @ self.inverse[index])
+        self.count += 1
+
+
+class SparseFactor:
+    """A sparse LU and the product form of the changes since."""
+
+    def __init__(self, model: WallModel) -> None:
+        self.model = model
+        self.capacity = 64
+        self.count = 0
+        self.factorisations = 0
+        n = model.n_unknowns
+        self._lu: SuperLU | None = None
+        self._y = np.empty((self.capacity, n))
+        self._coupling = np.zeros((self.capacity, self.capacity))
+        self._denominator = np.empty(self.capacity)
+        self._index = np.empty((self.capacity, 6), dtype=np.int64)
+        self._b = np.empty((self.capacity, 6))
+        self._right = np.zeros(n)
+
+    def refactor(self, state: IntArray, shift: float = 0.0) -> None:
+        """Factorise afresh. Raises SingularTangent."""
+        self.count = 0
+        self.factorisations += 1
+        try:
+            self._lu = splu(
+                self.model.tangent(state, shift),
+                permc_spec="NATURAL",
+                diag_pivot_thresh=1e-3,
+                options={"SymmetricMode": True},
+            )
+        except RuntimeError as error:
+            raise SingularTangent(str(error)) from error
+
+    def solve(self, right: FloatArray) -> FloatArray:
+        """K^-1 right (N,). Raises SingularTangent when the result is not finite."""
+        assert self._lu is not None
+        x: FloatArray = self._lu.solve(right)
+        k = self.count
+        if k:
+            alpha = np.empty(k)
+            _product_form(x, self._coupling, self._denominator, self._index, self._b, alpha)
+            x -= alpha @ self._y[:k]
+        if not np.isfinite(x[-1]):
+            raise SingularTangent("the tangent is singular in these states")
+        return x
+
+    def solve_sparse(self, index: IntArray, value: FloatArray) -> FloatArray:
+        """K^-1 times the vector with `value` (6,) at `index` (6,)."""
+        np.add.at(self._right, index, value)
+        out = self.solve(self._right)
+        self._right[index] = 0.0
+        return out
+
+    def update(self, y: FloatArray, index: IntArray, b: FloatArray, denominator: float) -> None:
+        """Append one term to the product form."""
+        k = self.count
+        self._y[k] = y
+        self._index[k] = index
+        self._b[k] = b
+        self._denominator[k] = denominator
+        _couple(self._y, index, b, k, self._coupling)
+        self.count = k + 1
+
+
+@compiled
+def _product_form(
+    x: FloatArray, coupling: FloatArray, denominator: FloatArray, index: IntArray, b: FloatArray, alpha: FloatArray
+) -> None:
+    for j in range(len(alpha)):
+        total = 0.0
+        for i in range(6):
+            total += b[j, i] * x[index[j, i]]
+        for i in range(j):
+            total -= coupling[j, i] * alpha[i]
+        alpha[j] = total / denominator[j]
+
+
+@compiled
+def _couple(y: FloatArray, index: IntArray, b: FloatArray, k: int, coupling: FloatArray) -> None:
+    for i in range(k):
+        total = 0.0
+        for j in range(6):
+            total += b[j] * y[i, index[j]]
+        coupling[k, i] = total

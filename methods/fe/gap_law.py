@@ -1,0 +1,129 @@
+"""The law of one gap point: a no-tension normal spring and a Coulomb-limited tangential spring.
+
+With the opening g, the slip s and the trial shear tau = kt s + h, where h = T0 - kt s0 holds the friction history:
+
+    open   g > 0                N = T = 0
+    stick  |tau| <= mu N        N = -kn g,  T = tau
+    slip   sign(tau) tau > mu N N = -kn g,  T = sign(tau) mu N
+
+T is the shear as an internal force, positive with s; the contact force of the project's convention is -T.
+Every change between neighbouring states is a rank-one change of the tangent, because the law is continuous:
+K_new - K_old = a b' where b is the gradient of the kink function that is crossed (Katzenelson, 1965).
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from harness.model.assembly import FloatArray, IntArray
+from methods.fe.compiled import compiled
+
+OPEN, STICK, SLIP_PLUS, SLIP_MINUS = 0, 1, 2, 3
+
+
+@compiled
+def classify(
+    opening: FloatArray, trial: FloatArray, kn: FloatArray, mu: FloatArray, state: IntArray, virgin: bool
+) -> None:
+    """States of the gap points from openings and trial shears, all (P,), into `state`; `virgin` lets g = 0 stick."""
+    for p in range(len(opening)):
+        if opening[p] > 0.0 or (opening[p] == 0.0 and not virgin):
+            state[p] = OPEN
+            continue
+        limit = -mu[p] * kn[p] * opening[p]
+        if mu[p] > 0.0 and abs(trial[p]) <= limit:
+            state[p] = STICK
+        else:
+            state[p] = SLIP_PLUS if trial[p] >= 0.0 else SLIP_MINUS
+
+
+@compiled
+def gap_forces(
+    opening: FloatArray,
+    trial: FloatArray,
+    kn: FloatArray,
+    mu: FloatArray,
+    state: IntArray,
+    normal: FloatArray,
+    shear: FloatArray,
+) -> None:
+    """Compression N and internal shear T of points held in the given states, all (P,), into `normal` and `shear`."""
+    for p in range(len(opening)):
+        if state[p] == OPEN:
+            normal[p] = 0.0
+            shear[p] = 0.0
+            continue
+        normal[p] = -kn[p] * opening[p]
+        if state[p] == STICK:
+            shear[p] = trial[p]
+        elif state[p] == SLIP_PLUS:
+            shear[p] = mu[p] * normal[p]
+        else:
+            shear[p] = -mu[p] * normal[p]
+
+
+@compiled
+def tangent_coefficients(kn: float, kt: float, mu: float, state: int) -> tuple[float, float, float]:
+    """(dFn/dg, dT/ds, dT/dg) of one point in its state, Fn = -N being the internal normal force."""
+    if state == OPEN:
+        return 0.0, 0.0, 0.0
+    if state == STICK:
+        return kn, kt, 0.0
+    if state == SLIP_PLUS:
+        return kn, 0.0, -mu * kn
+    return kn, 0.0, mu * kn
+
+
+@compiled
+def flip_vectors(
+    row_n: FloatArray,
+    row_t: FloatArray,
+    kn: float,
+    kt: float,
+    mu: float,
+    old: int,
+    new: int,
+    a: FloatArray,
+    b: FloatArray,
+) -> None:
+    """The rank-one change a b' of one point's tangent between neighbouring states, all vectors (6,), into a and b."""
+    slip = old if new == OPEN or new == STICK else new
+    sign = 1.0 if slip == SLIP_PLUS else -1.0
+    if old == OPEN or new == OPEN:
+        direction = 1.0 if old == OPEN else -1.0
+        for j in range(6):
+            a[j] = direction * (row_n[j] - sign * mu * row_t[j])
+            b[j] = kn * row_n[j]
+    else:
+        direction = -1.0 if old == STICK else 1.0
+        for j in range(6):
+            a[j] = direction * row_t[j]
+            b[j] = kt * row_t[j] + sign * mu * kn * row_n[j]
+
+
+def neighbour_states(state: int) -> tuple[int, ...]:
+    """The states a point can reach across one kink; a point passes through slip before it opens."""
+    if state in (OPEN, STICK):
+        return (SLIP_PLUS, SLIP_MINUS)
+    return (OPEN, STICK)
+
+
+def equivalent_end_forces(
+    position: FloatArray, interface: IntArray, normal: FloatArray, shear: FloatArray, n_interfaces: int
+) -> FloatArray:
+    """The forces (n1, n2, s) on the two ends of every interface that are statically equivalent to the gap forces.
+
+    Args:
+        position: (P,) in [0, 1] from end 1.
+        interface: (P,) index of the interface of each point.
+        normal, shear: (P,) compression N and internal shear T [force].
+        n_interfaces: m.
+
+    Returns:
+        (m, 3): n1 = sum N (1 - xi), n2 = sum N xi, s = -sum T.
+    """
+    ends = np.empty((n_interfaces, 3))
+    ends[:, 0] = np.bincount(interface, normal * (1.0 - position), n_interfaces)
+    ends[:, 1] = np.bincount(interface, normal * position, n_interfaces)
+    ends[:, 2] = -np.bincount(interface, shear, n_interfaces)
+    return ends

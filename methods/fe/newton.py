@@ -1,0 +1,131 @@
+"""Equilibrium at a given multiplier: Newton, then pseudo-transient steps when Newton cycles.
+
+The law is piecewise linear, so Newton ends exactly when the states it lands in are those it started from. From the
+virgin state it may cycle; a repeated set of states is recognised and handed to implicit pseudo-transient steps
+(u' inertia = out-of-balance force, with the step grown as the motion settles).
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from harness.model.assembly import FloatArray, IntArray
+from methods.fe.factor import Factor, SingularTangent
+from methods.fe.wall_model import WallModel
+
+
+@dataclass(frozen=True)
+class Equilibrium:
+    """A state of equilibrium, or the best that was reached.
+
+    Attributes:
+        found: whether equilibrium holds.
+        u: (N,) displacements; state: (P,) states; residual: largest out-of-balance force, relative to the loads.
+        rate: (N,) displacement of the last pseudo-transient step when nothing was found, else zeros.
+        iterations: linear solves.
+    """
+
+    found: bool
+    u: FloatArray
+    state: IntArray
+    residual: float
+    rate: FloatArray
+    iterations: int
+
+
+def newton(
+    model: WallModel, factor: Factor, u: FloatArray, multiplier: float, history: FloatArray, limit: int = 40
+) -> Equilibrium:
+    """Full Newton steps until the states repeat: found when they are those of the step itself, else a cycle."""
+    virgin = not np.any(u)
+    state = model.states(u, history, virgin)
+    seen: set[bytes] = set()
+    scale = load_scale(model, multiplier)
+    iterations = 0
+    while iterations < limit and state.tobytes() not in seen:
+        seen.add(state.tobytes())
+        try:
+            factor.refactor(state)
+            step = factor.solve(model.residual(u, multiplier, history, state))
+        except SingularTangent:
+            break
+        if not np.isfinite(step).all() or np.abs(step).max() > 1e9 * scale:
+            break
+        u = u + step
+        iterations += 1
+        landed = model.states(u, history)
+        if np.array_equal(landed, state) or _only_ties(model, u, history, state, landed, scale):
+            residual = np.abs(model.residual(u, multiplier, history, state)).max() / scale
+            return Equilibrium(bool(residual < 1e-8), u, state, float(residual), np.zeros_like(u), iterations)
+        state = landed
+    return Equilibrium(False, u, state, np.inf, np.zeros_like(u), iterations)
+
+
+def _only_ties(
+    model: WallModel, u: FloatArray, history: FloatArray, state: IntArray, landed: IntArray, scale: float
+) -> bool:
+    """Whether the two sets of states give the same forces at u: points that sit on their kink."""
+    ours = model.forces(u, history, state)
+    theirs = model.forces(u, history, landed)
+    return max(np.abs(ours[0] - theirs[0]).max(), np.abs(ours[1] - theirs[1]).max()) < 1e-12 * scale
+
+
+def load_scale(model: WallModel, multiplier: float) -> float:
+    """Size of the loads (dimensionless force)."""
+    total = np.abs(model.dead).max() + abs(multiplier) * np.abs(model.live).max()
+    return float(total) or 1.0
+
+
+def pseudo_transient(
+    model: WallModel, factor: Factor, u: FloatArray, multiplier: float, history: FloatArray, limit: int = 400
+) -> Equilibrium:
+    """Implicit steps sigma M (u - u_n) = loads - F(u), with sigma lowered as they converge, then plain Newton.
+
+    A wall without equilibrium keeps moving: the last step is then its velocity field.
+    """
+    scale = load_scale(model, multiplier)
+    sigma, steps, iterations = 1.0, 0, 0
+    rate = np.zeros_like(u)
+    state = model.states(u, history, not np.any(u))
+    while steps < limit and sigma > 1e-12:
+        trial, previous = u.copy(), state
+        converged = False
+        for inner in range(12):
+            right = model.residual(trial, multiplier, history, previous) - sigma * model.inertia * (trial - u)
+            try:
+                factor.refactor(previous, sigma)
+                trial = trial + factor.solve(right)
+            except SingularTangent:
+                break
+            iterations += 1
+            landed = model.states(trial, history)
+            if np.array_equal(landed, previous) or _only_ties(model, trial, history, previous, landed, scale):
+                converged = bool(np.isfinite(trial).all())
+                break
+            previous = landed
+        if not converged:
+            sigma *= 5.0
+            if sigma > 1e8:
+                break
+            steps += 1
+            continue
+        rate, u, state = trial - u, trial, previous
+        steps += 1
+        if np.abs(sigma * model.inertia * rate).max() < 1e-3 * scale or steps % 10 == 0:
+            final = newton(model, factor, u, multiplier, history, 12)
+            if final.found:
+                return final
+        if np.abs(u).max() > 1e8 * scale * len(u):
+            break
+        sigma *= 0.25 if inner <= 3 else 0.7
+    return Equilibrium(False, u, state, np.inf, rate, iterations)
+
+
+def equilibrium(model: WallModel, factor: Factor, u: FloatArray, multiplier: float, history: FloatArray) -> Equilibrium:
+    """Newton, then pseudo-transient steps from where Newton started."""
+    answer = newton(model, factor, u, multiplier, history)
+    if answer.found:
+        return answer
+    return pseudo_transient(model, factor, u, multiplier, history)
