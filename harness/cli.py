@@ -139,6 +139,8 @@ def run(
 
 
 def _settings(method: str, pairs: tuple[str, ...]) -> dict[str, Any]:
+    if not pairs:
+        return {}
     values: dict[str, Any] = {}
     known = load_method(method).Settings.model_fields
     for pair in pairs:

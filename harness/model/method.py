@@ -10,6 +10,7 @@ from typing import Any, ClassVar, Protocol
 from pydantic import BaseModel, ConfigDict
 
 from harness.model.assembly import Assembly, FloatArray
+from harness.model.errors import InputError
 
 
 class Status(StrEnum):
@@ -115,9 +116,17 @@ def load_method(name: str) -> Method:
 
     Raises:
         KeyError: no installed method has this name; the message lists those there are.
+        InputError: its package is there but cannot be loaded.
     """
     for point in entry_points(group=GROUP):
         if point.name == name:
-            method: Method = point.load()()
+            try:
+                method: Method = point.load()()
+            except Exception as error:
+                raise InputError(
+                    f"it cannot be loaded ({type(error).__name__}: {error})",
+                    "Install what it needs, or uninstall the package that brings it",
+                    f"method {name}",
+                ) from error
             return method
     raise KeyError(f"no method is called {name!r}; there are: {', '.join(method_names())}")

@@ -1,0 +1,49 @@
+# Every target sets the project up first; nothing but Python 3.11 (or newer) and make is needed.
+PYTHON ?= python3
+VENV := .venv
+BIN := $(VENV)/bin
+READY := $(VENV)/.ready
+RUN := OMP_NUM_THREADS=1 OPENBLAS_NUM_THREADS=1 $(BIN)
+
+.PHONY: compare test check bench lint full schema lock clean
+
+compare: $(READY)  ## run the main job: three methods on suite "small", judged, with a report
+	$(RUN)/drystone compare --suite small
+
+test: $(READY)  ## pass the tests
+	$(RUN)/python -m pytest -m "not slow"
+
+full: $(READY)  ## every test and every reference, the slow ones too
+	$(RUN)/python -m pytest
+	$(RUN)/drystone check --tier full
+
+check: $(READY)  ## the reference regression, quick tier
+	$(RUN)/drystone check
+
+bench: $(READY)  ## measured values and CPU seconds of every method, beside the figures to beat
+	$(RUN)/python -m methods.la.bench
+	$(RUN)/python -m methods.fe.bench
+	$(RUN)/python -m methods.de.bench
+
+lint: $(READY)  ## style, types and the layer contract
+	$(BIN)/ruff check .
+	$(BIN)/ruff format --check .
+	$(BIN)/mypy
+	$(BIN)/lint-imports --no-cache
+
+schema: $(READY)  ## write the JSON Schema of the wall format again
+	$(BIN)/drystone schema > docs/wall-1.schema.json
+
+lock: $(READY)  ## resolve the dependencies anew (versions and hashes only)
+	$(BIN)/python -m pip install --quiet uv
+	$(BIN)/uv pip compile --quiet --universal --python-version 3.11 --generate-hashes --extra dev --extra mujoco \
+	  --no-emit-index-url --no-emit-find-links --no-annotate --no-header --upgrade pyproject.toml -o requirements.lock
+
+$(READY): requirements.lock pyproject.toml
+	$(PYTHON) -m venv $(VENV)
+	$(BIN)/python -m pip install --quiet --disable-pip-version-check --require-hashes -r requirements.lock
+	$(BIN)/python -m pip install --quiet --disable-pip-version-check --no-deps --no-build-isolation -e .
+	touch $(READY)
+
+clean:
+	rm -rf $(VENV) out

@@ -1,0 +1,71 @@
+"""A method that misbehaves on order, so that the engine's promises can be tested with real child processes."""
+
+from __future__ import annotations
+
+import os
+import sys
+import time
+from typing import ClassVar, Literal
+
+import numpy as np
+
+from harness.model.assembly import Assembly
+from harness.model.method import Answer, Finding, Settings, Status
+
+
+class DummySettings(Settings):
+    """What it shall do."""
+
+    does: Literal[
+        "answer", "nan", "nan_forces", "bad_shape", "raise", "abort", "exit", "hang", "spawn", "eat", "print"
+    ] = "answer"
+
+
+class Dummy:
+    """Answers "stands" with no forces, or fails in the way it is told to."""
+
+    name: ClassVar[str] = "dummy"
+    family: ClassVar[str] = "dummy"
+    title: ClassVar[str] = "misbehaves on order (tests of the engine)"
+    tolerance: ClassVar[float] = 1e-9
+    Settings: ClassVar[type[Settings]] = DummySettings
+
+    def solve(self, assembly: Assembly, settings: DummySettings) -> Answer:
+        """Do what the settings say."""
+        match settings.does:
+            case "raise":
+                raise RuntimeError("as ordered")
+            case "abort":
+                print("about to abort", flush=True)
+                os.abort()
+            case "exit":
+                os._exit(3)
+            case "hang":
+                while True:
+                    time.sleep(0.1)
+            case "spawn":
+                if os.fork() == 0:
+                    time.sleep(3600)
+                time.sleep(3600)
+            case "eat":
+                hoard = []
+                while True:
+                    hoard.append(np.ones(2**21))
+            case "print":
+                print("noise on standard output")
+                print("noise on standard error", file=sys.stderr)
+        return self._answer(assembly, settings)
+
+    def _answer(self, assembly: Assembly, settings: DummySettings) -> Answer:
+        answer = Answer(Status.OK, Finding.COLLAPSES, "An answer made up for a test.", multiplier=1.0)
+        answer.forces = np.zeros((assembly.n_interfaces, 3))
+        answer.mechanism = np.zeros((assembly.n_blocks, 3))
+        answer.mechanism[assembly.free, 0] = 1.0
+        match settings.does:
+            case "nan":
+                answer.multiplier = float("nan")
+            case "nan_forces":
+                answer.forces[0, 0] = float("nan")
+            case "bad_shape":
+                answer.forces = np.zeros((1, 2))
+        return answer
