@@ -1,0 +1,193 @@
+"""The store loses nothing; verdicts and theory gates say what holds."""
+
+from __future__ import annotations
+
+import os
+import signal
+import sqlite3
+import subprocess
+import sys
+import time
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from harness.engine.compare import comparison_run, execute, recall, remember
+from harness.engine.plan import Limits, Run, plan_case
+from harness.engine.regression import violations
+from harness.engine.store import Store, open_store
+from harness.engine.verdict import compare, theory_gates
+from harness.model.case import Reference
+from harness.model.comparison import CaseResults
+from harness.model.errors import InputError
+from harness.model.method import Finding, Status
+from harness.model.result import Judgement, Result, Verdict
+from tests.walls import case, stack
+
+
+def reference(**changes: Any) -> Reference:
+    data: dict[str, Any] = {
+        "id": "r",
+        "type": "exact",
+        "value": 0.5,
+        "tolerance": 1e-9,
+        "applies_to": ["la"],
+        "gate": True,
+        "source": "a test",
+        "requirement": "It is a half.",
+    }
+    return Reference.model_validate(data | changes)
+
+
+def result(method: str = "la", multiplier: float | None = 0.5, **changes: Any) -> Result:
+    data: dict[str, Any] = {
+        "case": "made-up",
+        "method": method,
+        "family": method.split("-")[0],
+        "status": Status.OK,
+        "finding": Finding.COLLAPSES,
+        "sentence": "",
+        "multiplier": multiplier,
+        "blocks": 1,
+        "interfaces": 1,
+        "judge": Judgement(accepted=True),
+    }
+    return Result.model_validate(data | changes)
+
+
+@pytest.mark.parametrize(
+    ("changes", "multiplier", "verdict"),
+    [
+        ({}, 0.5 + 1e-10, Verdict.AGREES),
+        ({}, 0.5 + 1e-8, Verdict.OUTSIDE_TOLERANCE),
+        ({"relation": "at_most"}, 0.4, Verdict.AGREES),
+        ({"relation": "at_most", "type": "bound"}, 0.6, Verdict.VIOLATES_BOUND),
+        ({"relation": "at_least"}, 0.4, Verdict.OUTSIDE_TOLERANCE),
+        ({"relation": "inside", "value": [0.4, 0.6]}, 0.55, Verdict.AGREES),
+        ({"relation": "inside", "value": [0.4, 0.6]}, 0.65, Verdict.OUTSIDE_TOLERANCE),
+    ],
+)
+def test_verdict_of_a_multiplier(changes: dict[str, Any], multiplier: float, verdict: Verdict):
+    assert compare(reference(**changes), result(multiplier=multiplier)).verdict is verdict
+
+
+def test_bracket_is_what_an_interval_is_compared_with():
+    inside = reference(relation="inside", value=[0.4, 0.5455], applies_to=["de"])
+    assert compare(inside, result("de", 0.5, bracket=(0.45, 0.54))).verdict is Verdict.AGREES
+    assert compare(inside, result("de", 0.5, bracket=(0.45, 0.56))).verdict is Verdict.OUTSIDE_TOLERANCE
+    contains = reference(relation="contains", value=0.5)
+    assert compare(contains, result("de", 0.5, bracket=(0.45, 0.54))).verdict is Verdict.AGREES
+
+
+def test_run_that_failed_or_was_rejected_never_agrees():
+    failed = result(multiplier=None, status=Status.TIMEOUT, finding=Finding.NONE, sentence="It was stopped.")
+    assert compare(reference(), failed).verdict is Verdict.OUTSIDE_TOLERANCE
+    rejected = result(judge=Judgement(accepted=False, sentence="No equilibrium."))
+    said = compare(reference(), rejected)
+    assert said.verdict is Verdict.OUTSIDE_TOLERANCE
+    assert "No equilibrium." in said.sentence
+
+
+def test_findings_are_compared_as_words():
+    stands = reference(quantity="finding", value="stands", tolerance=0.0)
+    assert compare(stands, result(multiplier=None, finding=Finding.STANDS)).verdict is Verdict.AGREES
+    assert compare(stands, result(multiplier=None, finding=Finding.FALLS)).verdict is Verdict.OUTSIDE_TOLERANCE
+
+
+def gates(*results: Result) -> dict[str, bool | None]:
+    return {gate.name: gate.passed for gate in theory_gates(CaseResults(case(stack(1)), list(results)))}
+
+
+def test_theory_gates_hold_and_break():
+    associated = result("la-associated", 0.6)
+    good = gates(associated, result("la", 0.5), result("fe", 0.55), result("de", 0.57, bracket=(0.56, 0.58)))
+    assert all(good.values())
+    assert set(good) == {
+        "la-below-associated",
+        "fe-below-associated",
+        "la-below-fe",
+        "de-held-below-associated",
+    }
+    assert gates(associated, result("fe", 0.61))["fe-below-associated"] is False
+    assert gates(result("la", 0.56), result("fe", 0.55))["la-below-fe"] is False
+    assert gates(associated, result("de", 0.62, bracket=(0.61, 0.63)))["de-held-below-associated"] is False
+    rejected = result("fe", 0.9, judge=Judgement(accepted=False))
+    assert "fe-below-associated" not in gates(associated, rejected)
+
+
+def test_no_method_may_hold_a_wall_that_has_no_equilibrium():
+    falls = result("la-associated", None, finding=Finding.FALLS)
+    assert gates(falls, result("de", None, finding=Finding.STANDS)) == {"de-falls-without-equilibrium": False}
+
+
+def dummy_run(does: str, **limits: float) -> Run:
+    return Run(case(stack(1)), "dummy", {"does": does}, Limits(**{"seconds": 30.0} | limits))
+
+
+def test_second_run_comes_from_the_store_and_fresh_runs_again(tmp_path: Path):
+    told: list[bool] = []
+    runs = [dummy_run("answer"), dummy_run("raise")]
+    with open_store(tmp_path / "s.sqlite") as store:
+        for fresh in (False, False, True):
+            execute(runs, store, 2, fresh=fresh, told=lambda run, result, stored: told.append(stored))
+    assert told == [False, False, True, True, False, False]
+
+
+def test_key_depends_on_wall_method_settings_and_limits():
+    runs = [dummy_run("answer"), dummy_run("raise"), dummy_run("answer", seconds=31.0)]
+    runs.append(Run(case(stack(2)), "dummy", {"does": "answer"}, Limits(seconds=30.0)))
+    runs.append(Run(case(stack(1)), "fe", {}, Limits(seconds=30.0)))
+    assert len({run.key for run in runs}) == len(runs)
+    assert dummy_run("answer").key == runs[0].key
+
+
+def test_report_of_the_last_comparison_is_rebuilt_from_the_store_alone(tmp_path: Path):
+    made = case(stack(1), references=[reference(applies_to=["dummy"], value=2.0)])
+    runs = plan_case(made, ["dummy"], Limits(seconds=30.0))
+    with open_store(tmp_path / "s.sqlite") as store:
+        results = execute(runs, store, 1)
+        compared = comparison_run("a title", "a command", [made], runs, results)
+        remember(store, compared, runs)
+        again = recall(store)
+    assert again is not None
+    assert again.title == "a title"
+    assert [row.model_dump() for row in again.cases[0].results] == [row.model_dump() for row in results]
+    assert violations(again) == violations(compared)
+    assert len(violations(again)) == 1
+
+
+def test_foreign_files_are_refused_and_left_alone(tmp_path: Path):
+    path = tmp_path / "notes.txt"
+    path.write_text("not a database, but long enough to be read as a header of one" * 20)
+    before = path.read_bytes()
+    with pytest.raises(InputError, match="not a result store"):
+        Store(path)
+    assert path.read_bytes() == before
+    later = tmp_path / "later.sqlite"
+    connection = sqlite3.connect(later)
+    connection.execute("PRAGMA user_version = 99")
+    connection.close()
+    with pytest.raises(InputError, match="version 99"):
+        Store(later)
+
+
+def test_killing_the_process_loses_no_finished_run(tmp_path: Path):
+    program = f"""
+from pathlib import Path
+from tests.engine.test_store_and_verdict import dummy_run
+from harness.engine.compare import execute
+from harness.engine.store import open_store
+with open_store(Path({str(tmp_path / "s.sqlite")!r})) as store:
+    execute([dummy_run("answer"), dummy_run("hang")], store, 1, told=lambda *_: print("done", flush=True))
+"""
+    child = subprocess.Popen([sys.executable, "-c", program], stdout=subprocess.PIPE, text=True)
+    assert child.stdout is not None
+    assert child.stdout.readline() == "done\n"
+    time.sleep(0.3)
+    os.kill(child.pid, signal.SIGKILL)
+    child.wait()
+    child.stdout.close()
+    with open_store(tmp_path / "s.sqlite") as store:
+        assert store.get(dummy_run("answer").key) is not None
+        assert store.get(dummy_run("hang").key) is None
