@@ -1,0 +1,88 @@
+"""How far two methods agree on one wall: multiplier, velocity fields, interface states, blocks that move."""
+
+from __future__ import annotations
+
+import itertools
+from dataclasses import dataclass
+
+import numpy as np
+
+from harness.model.assembly import Assembly, FloatArray, polygon_area
+from harness.model.comparison import CaseResults
+from harness.model.method import Finding, Status
+from harness.model.result import Result
+from reports import shapes, words
+
+
+@dataclass(frozen=True)
+class Agreement:
+    """Two methods on one wall.
+
+    Attributes:
+        first, second: names of the methods.
+        difference: multiplier of the second over that of the first, less one.
+        cosine: of the two velocity fields, 1 where they are the same motion.
+        same_state: share of interfaces in the same state.
+        only_first, only_second: ids of blocks that move in one and not in the other.
+    """
+
+    first: str
+    second: str
+    difference: float | None
+    cosine: float | None
+    same_state: float | None
+    only_first: list[str]
+    only_second: list[str]
+
+
+def velocity_cosine(assembly: Assembly, first: FloatArray, second: FloatArray) -> float | None:
+    """Cosine of two velocity fields (n, 3) in the inner product of areas: integral of v1.v2 over the blocks.
+
+    A block contributes A (v1.v2) + J omega1 omega2, with the polar moment J of its area about the centroid.
+    """
+    area = np.array([polygon_area(polygon) for polygon in assembly.polygons])
+    polar = np.array([_polar_moment(p, c) for p, c in zip(assembly.polygons, assembly.centroid, strict=True)])
+    measure = np.column_stack([area, area, polar])[assembly.free]
+    u, v = np.asarray(first, float)[assembly.free], np.asarray(second, float)[assembly.free]
+    norm = float((measure * u * u).sum()) * float((measure * v * v).sum())
+    if norm <= 0.0:
+        return None
+    return float((measure * u * v).sum() / np.sqrt(norm))
+
+
+def _polar_moment(polygon: FloatArray, centroid: FloatArray) -> float:
+    x, y = (polygon - centroid).T
+    x1, y1 = np.roll(x, -1), np.roll(y, -1)
+    cross = x * y1 - x1 * y
+    return float(abs((cross * (x * x + x * x1 + x1 * x1 + y * y + y * y1 + y1 * y1)).sum()) / 12.0)
+
+
+def agreement(assembly: Assembly, first: Result, second: Result) -> Agreement:
+    """How far two results agree; None where one of them lacks what is compared."""
+    difference = None
+    if first.multiplier and second.multiplier is not None:
+        difference = second.multiplier / first.multiplier - 1.0
+    cosine, same = None, None
+    only_first: list[str] = []
+    only_second: list[str] = []
+    if first.mechanism is not None and second.mechanism is not None:
+        u, v = np.asarray(first.mechanism, float), np.asarray(second.mechanism, float)
+        cosine = velocity_cosine(assembly, u, v)
+        moves, moves_too = shapes.moving(assembly, u), shapes.moving(assembly, v)
+        only_first = [assembly.block_ids[i] for i in np.flatnonzero(moves & ~moves_too)]
+        only_second = [assembly.block_ids[i] for i in np.flatnonzero(moves_too & ~moves)]
+    if first.states and second.states and "approximate" not in (first.flow, second.flow):
+        same = float(np.mean([a == b for a, b in zip(first.states, second.states, strict=True)]))
+    return Agreement(first.method, second.method, difference, cosine, same, only_first, only_second)
+
+
+def agreements(item: CaseResults) -> list[Agreement]:
+    """All pairs of the families' main methods and the associated maximum that found a collapse."""
+    usable = [
+        result
+        for result in sorted(item.results, key=lambda result: words.order(result.method, result.family))
+        if result.status is Status.OK
+        and result.finding is Finding.COLLAPSES
+        and (result.method == result.family or result.method == "la-associated")
+    ]
+    return [agreement(item.case.assembly, first, second) for first, second in itertools.combinations(usable, 2)]

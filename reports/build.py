@@ -1,0 +1,157 @@
+"""The report: one self-contained HTML file that works offline, with a folder of data beside it."""
+
+from __future__ import annotations
+
+import json
+import os
+import tempfile
+from importlib.resources import files
+from pathlib import Path
+from typing import Any
+
+from jinja2 import Environment, PackageLoader, StrictUndefined
+from markupsafe import Markup
+
+from harness.model.comparison import CaseResults, ComparisonRun
+from reports import agreement, numbers, paper, tables, words
+from reports.curves import curves
+from reports.drawing import case_data, force_unit, result_data, wall_svg, weight_of_drawing
+from reports.export import export
+from reports.limits import KNOWN_LIMITS
+from reports.sections import CaseSection, case_section, case_svg_sizes
+from reports.studies import studies
+
+DRAWING_BUDGET = 3_000_000
+"""Bytes the fields of mechanisms and forces may take in the page, so that it stays below 5 MB."""
+
+
+def write_report(run: ComparisonRun, path: Path) -> None:
+    """Write the report of a comparison, and `<stem>-data/` beside it. Either the whole file is there or the old one.
+
+    Args:
+        run: the comparison.
+        path: the HTML file.
+    """
+    path.parent.mkdir(parents=True, exist_ok=True)
+    text = render(run, data_folder=f"{path.stem}-data")
+    export(run, path.with_name(f"{path.stem}-data"))
+    handle, name = tempfile.mkstemp(dir=path.parent, prefix=f".{path.stem}-", suffix=".html")
+    try:
+        with os.fdopen(handle, "w", encoding="utf-8") as stream:
+            stream.write(text)
+        os.chmod(name, 0o644)
+        os.replace(name, path)
+    except BaseException:
+        Path(name).unlink(missing_ok=True)
+        raise
+
+
+def render(run: ComparisonRun, *, data_folder: str) -> str:
+    """The report as text.
+
+    Args:
+        run: the comparison.
+        data_folder: name of the folder with the data, for the text.
+    """
+    rows = tables.run_rows(run)
+    template = _environment().get_template("report.html.j2")
+    return template.render(
+        run=run,
+        findings=tables.findings(run),
+        columns=tables.columns(run),
+        matrix=_matrix(rows, tables.columns(run)),
+        rows=[row for case_rows in rows for row in case_rows],
+        failures=[row for case_rows in rows for row in case_rows if row.failed or row.judged == "rejected"],
+        references=tables.reference_rows(run),
+        purposes=words.PURPOSE,
+        gates=[(number, item.case.id, gate) for number, item in enumerate(run.cases) for gate in item.gates],
+        paper=paper.paper_comparison(run),
+        errata=[(number, item.case) for number, item in enumerate(run.cases) if item.case.file.errata],
+        sections=_sections(run, rows),
+        studies=studies(run),
+        limits=KNOWN_LIMITS,
+        provenance=_provenance(run),
+        origins=_origins(rows),
+        data_folder=data_folder,
+        data=Markup(script_json(_data(run))),
+        style=Markup(_static("report.css")),
+        scripts=[Markup(_static(name)) for name in ("table.js", "draw.js")],
+        numbers=numbers,
+    )
+
+
+def _environment() -> Environment:
+    return Environment(
+        loader=PackageLoader("reports"),
+        autoescape=True,
+        undefined=StrictUndefined,
+        trim_blocks=True,
+        lstrip_blocks=True,
+    )
+
+
+def _static(name: str) -> str:
+    return files("reports").joinpath("static", name).read_text(encoding="utf-8")
+
+
+def script_json(data: Any) -> str:
+    """JSON that may stand inside a script element: nothing in it can end the element or start a comment."""
+    text = json.dumps(data, separators=(",", ":"), ensure_ascii=False, allow_nan=False)
+    for sign, code in (("<", "\\u003c"), (">", "\\u003e"), ("&", "\\u0026"), ("\u2028", "\\u2028"), ("\u2029", "\\u2029")):
+        text = text.replace(sign, code)
+    return text
+
+
+def _matrix(
+    rows: list[list[tables.RunRow]], columns: list[tables.Column]
+) -> list[tuple[tables.RunRow, list[tables.RunRow | None]]]:
+    """Rows of the overview: one a case, with the run of every method or None."""
+    return [
+        (case_rows[0], [next((row for row in case_rows if row.method == column.method), None) for column in columns])
+        for case_rows in rows
+        if case_rows
+    ]
+
+
+def _sections(run: ComparisonRun, rows: list[list[tables.RunRow]]) -> list[CaseSection]:
+    return [
+        case_section(number, item, rows[number], agreement.agreements(item), curves(item), wall_svg(item.case))
+        for number, item in enumerate(run.cases)
+    ]
+
+
+def _data(run: ComparisonRun) -> list[dict[str, Any]]:
+    """What the page draws from: per case its geometry and the fields of its results, within the budget."""
+    fields = case_svg_sizes(run, DRAWING_BUDGET, weight_of_drawing)
+    return [_case_data(item, fields[number]) for number, item in enumerate(run.cases)]
+
+
+def _case_data(item: CaseResults, fields: str) -> dict[str, Any]:
+    unit = force_unit(item.results)
+    return case_data(item.case) | {
+        "unit": unit,
+        "results": [
+            {"method": result.method} | result_data(item.case, result, unit, fields=fields) for result in item.results
+        ],
+    }
+
+
+def _origins(rows: list[list[tables.RunRow]]) -> list[tuple[str, str, int]]:
+    """Machine and versions the runs were made with, and how many runs each; more than one where rows were reused."""
+    counted: dict[tuple[str, str], int] = {}
+    for row in (row for case_rows in rows for row in case_rows):
+        counted[row.machine, row.versions] = counted.get((row.machine, row.versions), 0) + 1
+    return [(machine, versions, number) for (machine, versions), number in counted.items()]
+
+
+def _provenance(run: ComparisonRun) -> list[tuple[str, str]]:
+    """Facts of the comparison as a whole, flattened to names and texts; studies are shown elsewhere."""
+    flat: list[tuple[str, str]] = []
+    for name, value in run.provenance.items():
+        if name == "studies":
+            continue
+        if isinstance(value, dict):
+            flat.append((name.replace("_", " "), ", ".join(f"{key} {item}" for key, item in value.items())))
+        else:
+            flat.append((name.replace("_", " "), str(value)))
+    return flat

@@ -1,0 +1,223 @@
+"""Line charts as inline SVG, drawn once here: axes with round ticks, series told apart by dash and marker as well."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, field
+
+from markupsafe import Markup
+
+from reports import numbers
+
+WIDTH, HEIGHT = 560, 330
+LEFT, RIGHT, BOTTOM, TOP = 62, 14, 46, 14
+ROW, PER_ROW = 18, 3
+MARKERS = ("M-3.5 0a3.5 3.5 0 1 0 7 0a3.5 3.5 0 1 0-7 0z", "M-3.2-3.2h6.4v6.4h-6.4z", "M0-4.2L4 3H-4z", "M0-4.6L4.6 0L0 4.6L-4.6 0z")
+DASHES = ("", "7 3", "2 3", "9 3 2 3")
+COLOURS = 6
+MOST_POINTS = 300
+
+
+@dataclass(frozen=True)
+class Series:
+    """One line of a chart.
+
+    Attributes:
+        name: for the legend.
+        x, y: its points.
+        low, high: ends of a bar at every point, or nothing.
+        line: whether the points are joined.
+        marks: whether every point carries a marker.
+        step: whether the line is a staircase (values hold until the next point).
+    """
+
+    name: str
+    x: list[float]
+    y: list[float]
+    low: list[float] = field(default_factory=list)
+    high: list[float] = field(default_factory=list)
+    line: bool = True
+    marks: bool = True
+    step: bool = False
+
+
+@dataclass(frozen=True)
+class Chart:
+    """A chart: what is on its axes and its series."""
+
+    title: str
+    x_label: str
+    y_label: str
+    series: list[Series]
+    log_x: bool = False
+    log_y: bool = False
+    zero_y: bool = False
+    levels: list[tuple[str, float]] = field(default_factory=list)
+
+
+def ticks(low: float, high: float, wanted: int = 5) -> list[float]:
+    """Round numbers within an interval, about so many."""
+    if not high > low:
+        return [low]
+    raw = (high - low) / wanted
+    scale = 10.0 ** math.floor(math.log10(raw))
+    step = next(step * scale for step in (1.0, 2.0, 2.5, 5.0, 10.0) if step * scale >= raw * (1 - 1e-12))
+    first, last = math.ceil(low / step - 1e-9), math.floor(high / step + 1e-9)
+    return [k * step for k in range(first, last + 1)]
+
+
+def log_ticks(low: float, high: float) -> list[float]:
+    """Powers of ten within an interval; with 2 and 5 between them where it spans less than two decades."""
+    decades = range(math.floor(math.log10(low)), math.ceil(math.log10(high)) + 1)
+    heads = (1.0,) if math.log10(high / low) > 2.0 else (1.0, 2.0, 5.0)
+    found = [head * 10.0**k for k in decades for head in heads]
+    return [value for value in found if low * (1 - 1e-9) <= value <= high * (1 + 1e-9)]
+
+
+class Axis:
+    """One axis: limits, ticks, and the place of a value."""
+
+    def __init__(self, values: list[float], start: float, end: float, *, log: bool, zero: bool = False) -> None:
+        values = [value for value in values if math.isfinite(value) and (value > 0.0 or not log)]
+        low, high = (min(values), max(values)) if values else (1.0, 10.0)
+        self.log, self.start, self.end = log, start, end
+        if log:
+            low, high = low / 1.25, high * 1.25
+        else:
+            low = min(low, 0.0) if zero else low
+            room = 0.06 * (high - low) or 0.05 * abs(high) or 0.5
+            low, high = (low if zero and low == 0.0 else low - room), high + room
+        self.low, self.high = low, high
+        self.ticks = log_ticks(low, high) if log else ticks(low, high)
+
+    def place(self, value: float) -> float | None:
+        """Where a value is drawn, or None if it has no place on this axis."""
+        if not math.isfinite(value) or (self.log and value <= 0.0):
+            return None
+        if self.log:
+            share = math.log(value / self.low) / math.log(self.high / self.low)
+        else:
+            share = (value - self.low) / (self.high - self.low)
+        return self.start + share * (self.end - self.start)
+
+    def text(self, value: float) -> str:
+        """A tick's label."""
+        if self.log and not 1e-2 <= value < 1e4:
+            return numbers.power(value)
+        return numbers.plain(float(f"{value:.4g}"), 4) if value == 0.0 else _short(value)
+
+
+def _short(value: float) -> str:
+    return f"{value:.4g}".replace("-", "−") if 1e-3 <= abs(value) < 1e5 else numbers.power(value, 2)
+
+
+def thin(x: list[float], y: list[float], most: int = MOST_POINTS) -> tuple[list[float], list[float]]:
+    """A path with at most about so many points; in every stretch the first, lowest and highest are kept."""
+    if len(x) <= most:
+        return x, y
+    size = math.ceil(3 * len(x) / most)
+    kept: list[int] = []
+    for start in range(0, len(x), size):
+        stretch = range(start, min(start + size, len(x)))
+        kept.extend(sorted({start, min(stretch, key=y.__getitem__), max(stretch, key=y.__getitem__)}))
+    if kept[-1] != len(x) - 1:
+        kept.append(len(x) - 1)
+    return [x[k] for k in kept], [y[k] for k in kept]
+
+
+def svg(chart: Chart) -> Markup:
+    """The chart as an inline SVG element."""
+    rows = math.ceil(len(chart.series) / PER_ROW) if len(chart.series) > 1 else 0
+    top = TOP + rows * ROW
+    height = HEIGHT + rows * ROW
+    xs = [value for series in chart.series for value in series.x]
+    ys = [value for series in chart.series for value in [*series.y, *series.low, *series.high]]
+    ys += [value for _, value in chart.levels]
+    across = Axis(xs, LEFT, WIDTH - RIGHT, log=chart.log_x)
+    up = Axis(ys, height - BOTTOM, top, log=chart.log_y, zero=chart.zero_y)
+    parts = [
+        Markup('<svg class="chart" viewBox="0 0 {} {}" role="img" aria-label="{}">').format(WIDTH, height, chart.title),
+        _axes(chart, across, up, height, top),
+    ]
+    for name, value in chart.levels:
+        y = up.place(value)
+        if y is not None:
+            parts.append(
+                Markup('<path class="level" d="M{} {:.1f}H{}"/><text class="note" x="{}" y="{:.1f}">{}</text>').format(
+                    LEFT, y, WIDTH - RIGHT, LEFT + 6, y - 4, name
+                )
+            )
+    for number, series in enumerate(chart.series):
+        parts.append(_series(series, number, across, up))
+        if rows:
+            parts.append(_legend(series, number))
+    parts.append(Markup("</svg>"))
+    return Markup("").join(parts)
+
+
+def _axes(chart: Chart, across: Axis, up: Axis, height: float, top: float) -> Markup:
+    grid, base = "", height - BOTTOM
+    texts = Markup("")
+    for value in across.ticks:
+        x = across.place(value)
+        if x is not None:
+            grid += f"M{x:.1f} {top}V{base}"
+            texts += Markup('<text x="{:.1f}" y="{}" class="mid">{}</text>').format(x, base + 16, across.text(value))
+    for value in up.ticks:
+        y = up.place(value)
+        if y is not None:
+            grid += f"M{LEFT} {y:.1f}H{WIDTH - RIGHT}"
+            texts += Markup('<text x="{}" y="{:.1f}" class="end">{}</text>').format(LEFT - 7, y + 4, up.text(value))
+    texts += Markup('<text x="{:.0f}" y="{}" class="mid axis">{}</text>').format(
+        (LEFT + WIDTH - RIGHT) / 2, height - 8, chart.x_label
+    )
+    middle = (top + base) / 2
+    texts += Markup('<text transform="translate(14 {:.0f}) rotate(-90)" class="mid axis">{}</text>').format(
+        middle, chart.y_label
+    )
+    frame = f"M{LEFT} {top}V{base}H{WIDTH - RIGHT}"
+    return Markup('<path class="grid" d="{}"/><path class="frame" d="{}"/>').format(grid, frame) + texts
+
+
+def _series(series: Series, number: int, across: Axis, up: Axis) -> Markup:
+    x_values, y_values = thin(series.x, series.y) if not series.low else (series.x, series.y)
+    places = [
+        (across.place(x), up.place(y), x, y) for x, y in zip(x_values, y_values, strict=True)
+    ]
+    points = [(px, py, x, y) for px, py, x, y in places if px is not None and py is not None]
+    drawn = Markup("")
+    style = f"s{number % COLOURS}"
+    if series.line and len(points) > 1:
+        path = f"M{points[0][0]:.1f} {points[0][1]:.1f}"
+        for px, py, _, _ in points[1:]:
+            path += f"H{px:.1f}V{py:.1f}" if series.step else f"L{px:.1f} {py:.1f}"
+        drawn += Markup('<path class="line {}" stroke-dasharray="{}" d="{}"/>').format(
+            style, DASHES[number % len(DASHES)], path
+        )
+    for x, low, high in zip(series.x, series.low, series.high, strict=False):
+        px, p_low, p_high = across.place(x), up.place(low), up.place(high)
+        if px is not None and p_low is not None and p_high is not None:
+            drawn += Markup('<path class="bar {}" d="M{:.1f} {:.1f}V{:.1f}"/>').format(style, px, p_low, p_high)
+    if series.marks or len(points) == 1:
+        for px, py, x, y in points:
+            drawn += Markup('<path class="mark {}" transform="translate({:.1f} {:.1f})" d="{}"><title>{}</title></path>').format(
+                style, px, py, MARKERS[number % len(MARKERS)], f"{series.name}: {x:.6g}, {y:.6g}"
+            )
+    return drawn
+
+
+def _legend(series: Series, number: int) -> Markup:
+    width = (WIDTH - LEFT - RIGHT) / PER_ROW
+    x = LEFT + (number % PER_ROW) * width
+    y = TOP + (number // PER_ROW) * ROW - 2
+    style = f"s{number % COLOURS}"
+    sample = Markup("")
+    if series.line:
+        sample = Markup('<path class="line {}" stroke-dasharray="{}" d="M{:.0f} {}h26"/>').format(
+            style, DASHES[number % len(DASHES)], x, y
+        )
+    if series.marks:
+        sample += Markup('<path class="mark {}" transform="translate({:.0f} {})" d="{}"/>').format(
+            style, x + 13, y, MARKERS[number % len(MARKERS)]
+        )
+    return sample + Markup('<text x="{:.0f}" y="{}">{}</text>').format(x + 32, y + 4, series.name)

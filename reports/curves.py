@@ -1,0 +1,139 @@
+"""Curves of one case: load against displacement (FE), holds of the distinct elements, the least known over the search."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+from markupsafe import Markup
+
+from harness.model.comparison import CaseResults
+from harness.model.result import Result
+from reports import charts, numbers, words
+
+TIMES = ("cpu_seconds", "seconds", "search_seconds", "time")
+"""Columns of a path that tell when a value was found [s]."""
+LENGTHS = ("live_displacement", "displacement")
+
+
+def curves(item: CaseResults) -> list[tuple[str, Markup]]:
+    """Captions and charts of a case, as far as its results recorded a path."""
+    found: list[tuple[str, Markup]] = []
+    ordered = sorted(item.results, key=lambda result: words.order(result.method, result.family))
+    for result in ordered:
+        loads = result.path.get("multiplier", [])
+        if len(loads) < 2:
+            continue
+        for name in LENGTHS:
+            if name in result.path:
+                found.append(_load_displacement(item, result, result.path[name], loads))
+                break
+        else:
+            if "residual" in result.path:
+                found.append(_holds(result))
+    history = _history(ordered)
+    if history:
+        found.append(history)
+    return found
+
+
+def _load_displacement(item: CaseResults, result: Result, moved: list[float], loads: list[float]) -> tuple[str, Markup]:
+    levels = []
+    associated = item.of("la-associated")
+    if associated is not None and associated.multiplier is not None:
+        levels.append((f"associated maximum {numbers.multiplier(associated.multiplier)}", associated.multiplier))
+    for name in ("peak", "plateau"):
+        value = result.details.get(name)
+        if isinstance(value, float) and not any(abs(value - level) < 1e-3 * abs(value) for _, level in levels):
+            levels.append((f"{name} {numbers.multiplier(value)}", value))
+    shown = _until_plateau(moved, loads)
+    chart = charts.Chart(
+        title=f"Multiplier against live displacement, {result.method}",
+        x_label=f"displacement of the live load [{item.case.wall.units.length}]",
+        y_label="multiplier",
+        series=[charts.Series(result.method, moved[:shown], loads[:shown], marks=False)],
+        zero_y=True,
+        levels=levels,
+    )
+    caption = f"{result.method}: the multiplier along the path, against the displacement the live load works on"
+    if shown < len(loads):
+        caption += "; the plateau goes on beyond the right edge"
+    return f"{caption}.", charts.svg(chart)
+
+
+def _until_plateau(moved: list[float], loads: list[float]) -> int:
+    """How many points to draw: a plateau followed to a huge displacement would squeeze the rest into the axis."""
+    if not loads:
+        return 0
+    top = max(abs(value) for value in loads)
+    rising = [k for k in range(1, len(loads)) if abs(loads[k] - loads[k - 1]) > 1e-4 * top]
+    if not rising:
+        return len(loads)
+    limit = 3.0 * abs(moved[rising[-1]]) or math.inf
+    return max(rising[-1] + 1, sum(abs(value) <= limit for value in moved))
+
+
+def _holds(result: Result) -> tuple[str, Markup]:
+    loads, residuals = result.path["multiplier"], result.path["residual"]
+    reporting = _reporting_order(result.details)
+    held, moving = reporting.get("held"), reporting.get("moving")
+    groups: dict[str, tuple[list[float], list[float]]] = {"held": ([], []), "moving": ([], []), "undecided": ([], [])}
+    for number, (load, _) in enumerate(zip(loads, residuals, strict=False), start=1):
+        if held is not None and load <= held:
+            name = "held"
+        elif moving is not None and load >= moving:
+            name = "moving"
+        else:
+            name = "undecided"
+        groups[name][0].append(float(number))
+        groups[name][1].append(load)
+    chart = charts.Chart(
+        title=f"Holds of {result.method}: which multipliers were held and which moved",
+        x_label="hold number",
+        y_label="multiplier",
+        series=[charts.Series(name, x, y, line=False) for name, (x, y) in groups.items() if x],
+    )
+    orders = result.details.get("orders")
+    count = f" ({numbers.count(len(orders), 'body order')} tried)" if isinstance(orders, list) else ""
+    return (
+        f"{result.method}: the holds of the reported body order, which close in on the bracket from both sides{count}.",
+        charts.svg(chart),
+    )
+
+
+def _reporting_order(details: dict[str, Any]) -> dict[str, Any]:
+    orders = details.get("orders")
+    if not isinstance(orders, list):
+        return {}
+    name = details.get("reporting_order")
+    return next((order for order in orders if isinstance(order, dict) and order.get("order") == name), {})
+
+
+def _history(results: list[Result]) -> tuple[str, Markup] | None:
+    """The least value known over search time, of every method that recorded when it found what."""
+    series = []
+    for result in results:
+        column = next((name for name in TIMES if name in result.path), None)
+        values = result.path.get("least_known") or result.path.get("multiplier") or []
+        if column is None or not values or len(values) != len(result.path[column]):
+            continue
+        least, seen = [], math.inf
+        for value in values:
+            seen = min(seen, value)
+            least.append(seen)
+        series.append(charts.Series(result.method, result.path[column], least, step=True, marks=len(least) <= 40))
+    if not series:
+        return None
+    levels = [
+        (f"associated maximum {numbers.multiplier(result.multiplier)}", result.multiplier)
+        for result in results
+        if result.method == "la-associated" and result.multiplier is not None
+    ]
+    chart = charts.Chart(
+        title="Least known multiplier over search time",
+        x_label="CPU time of the search [s]",
+        y_label="least known multiplier",
+        series=series,
+        levels=levels,
+    )
+    return "The least collapse state known, over the time of the search.", charts.svg(chart)

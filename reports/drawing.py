@@ -1,0 +1,229 @@
+"""Walls as inline SVG, and the compact numbers from which the page draws mechanisms and contact forces.
+
+Drawing units: the longer side of a wall is 4000 units, y points down, all coordinates are integers. The wall itself
+is drawn here, so that the page shows it without any script; mechanisms and forces are drawn by static/draw.js.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import numpy as np
+from markupsafe import Markup, escape
+
+from harness.model.assembly import Assembly, FloatArray
+from harness.model.case import Case
+from harness.model.result import Result
+from reports import numbers, shapes
+from reports.words import STATE_LETTER
+
+SIZE = 4000
+MARGIN = 560
+MOTION_STEPS = 10_000
+FORCE_STEPS = 10_000
+LABELLED_BLOCKS = 160
+DOTTED_INTERFACES = 240
+
+
+class Frame:
+    """The change from the wall's lengths to drawing units."""
+
+    def __init__(self, assembly: Assembly) -> None:
+        self.extent = shapes.extent(assembly)
+        self.scale = SIZE / self.extent.longest
+
+    def place(self, point: FloatArray) -> tuple[int, int]:
+        """A point in drawing units."""
+        return (
+            round((float(point[0]) - self.extent.left) * self.scale),
+            round((self.extent.top - float(point[1])) * self.scale),
+        )
+
+    @property
+    def view_box(self) -> str:
+        """The part of the plane to show: the wall and room round it for loads and motion."""
+        width, height = self.extent.width * self.scale, self.extent.height * self.scale
+        return f"{-MARGIN} {-MARGIN} {width + 2 * MARGIN:.0f} {height + 2 * MARGIN:.0f}"
+
+    @property
+    def aspect(self) -> float:
+        """Width over height of the view."""
+        width, height = self.extent.width * self.scale, self.extent.height * self.scale
+        return float((width + 2 * MARGIN) / (height + 2 * MARGIN))
+
+
+def path_of(frame: Frame, polygon: FloatArray) -> str:
+    """A polygon as SVG path data, relative after the first vertex."""
+    points = [frame.place(vertex) for vertex in polygon]
+    text = f"M{points[0][0]} {points[0][1]}"
+    for (x0, y0), (x1, y1) in zip(points, points[1:], strict=False):
+        if (x0, y0) != (x1, y1):
+            text += f"l{x1 - x0} {y1 - y0}"
+    return text + "z"
+
+
+def block_labels(assembly: Assembly) -> list[str]:
+    """What stands in each block: its id where all ids are short, its number otherwise."""
+    if all(len(name) <= 5 for name in assembly.block_ids):
+        return list(assembly.block_ids)
+    return [str(number) for number in range(1, assembly.n_blocks + 1)]
+
+
+def wall_svg(case: Case) -> Markup:
+    """The wall as an inline SVG element: blocks with numbers, interfaces, contact points, loads."""
+    assembly = case.assembly
+    frame = Frame(assembly)
+    parts = [
+        Markup('<svg class="wall" viewBox="{}" role="img" aria-label="{}">').format(
+            frame.view_box,
+            f"The wall {case.id}: {numbers.count(assembly.n_free, 'free block')}, "
+            f"{numbers.count(assembly.n_interfaces, 'interface')}, with its loads",
+        )
+    ]
+    for still, name in ((True, "held"), (False, "stone")):
+        data = "".join(
+            path_of(frame, polygon)
+            for polygon, fixed in zip(assembly.polygons, assembly.fixed, strict=True)
+            if bool(fixed) is still
+        )
+        parts.append(Markup('<path class="{}" d="{}"/>').format(name, data))
+    parts.append(_joints(frame, assembly))
+    parts.append(_labels(frame, assembly))
+    parts.append(_arrows(frame, assembly, shapes.extra_dead_load(assembly), "dead"))
+    parts.append(_arrows(frame, assembly, assembly.live, "live"))
+    parts.append(Markup("</svg>"))
+    return Markup("").join(parts)
+
+
+def _joints(frame: Frame, assembly: Assembly) -> Markup:
+    lines, dots = "", ""
+    for start, end in zip(assembly.end1, assembly.end2, strict=True):
+        (x0, y0), (x1, y1) = frame.place(start), frame.place(end)
+        lines += f"M{x0} {y0}l{x1 - x0} {y1 - y0}"
+        dots += f"M{x0} {y0}h0M{x1} {y1}h0"
+    drawn = Markup('<path class="joint" d="{}"/>').format(lines)
+    if assembly.n_interfaces <= DOTTED_INTERFACES:
+        drawn += Markup('<path class="contact" d="{}"/>').format(dots)
+    return drawn
+
+
+def _labels(frame: Frame, assembly: Assembly) -> Markup:
+    if assembly.n_blocks > LABELLED_BLOCKS:
+        return Markup("")
+    drawn = Markup("")
+    for label, name, polygon, centroid in zip(
+        block_labels(assembly), assembly.block_ids, assembly.polygons, assembly.centroid, strict=True
+    ):
+        box = (polygon.max(axis=0) - polygon.min(axis=0)) * frame.scale
+        size = min(170.0, 0.5 * float(box[1]), 1.4 * float(box[0]) / max(len(label), 1))
+        if size < 36.0:
+            continue
+        x, y = frame.place(centroid)
+        drawn += Markup('<text x="{}" y="{}" font-size="{:.0f}">{}<title>{}</title></text>').format(
+            x, round(y + 0.35 * size), size, label, f"block {name}"
+        )
+    return drawn
+
+
+def _arrows(frame: Frame, assembly: Assembly, load: FloatArray, kind: str) -> Markup:
+    arrows = shapes.load_arrows(assembly, load)
+    if not arrows:
+        return Markup("")
+    largest = max(float(np.linalg.norm(arrow.force)) for arrow in arrows)
+    longest = min(420.0, max(160.0, 0.8 * assembly.length_scale * frame.scale))
+    shafts, heads = "", ""
+    for arrow in arrows:
+        size = float(np.linalg.norm(arrow.force))
+        way = np.array([arrow.force[0], -arrow.force[1]]) / size
+        length = longest * (0.35 + 0.65 * math.sqrt(size / largest))
+        head = min(90.0, 0.4 * length)
+        tail = np.array(frame.place(arrow.point))
+        tip = tail + length * way
+        neck, side = tip - head * way, 0.4 * head * np.array([-way[1], way[0]])
+        shafts += f"M{tail[0]:.0f} {tail[1]:.0f}L{neck[0]:.0f} {neck[1]:.0f}"
+        heads += "M{:.0f} {:.0f}L{:.0f} {:.0f}L{:.0f} {:.0f}z".format(*tip, *(neck + side), *(neck - side))
+    return Markup('<path class="{} shaft" d="{}"/><path class="{} head" d="{}"/>').format(kind, shafts, kind, heads)
+
+
+def case_data(case: Case) -> dict[str, Any]:
+    """Geometry of a wall for the page's script: polygons, centroids, interfaces, units."""
+    assembly = case.assembly
+    frame = Frame(assembly)
+    return {
+        "box": frame.view_box,
+        "ids": list(assembly.block_ids),
+        "path": [path_of(frame, polygon) for polygon in assembly.polygons],
+        "c": [x for centroid in assembly.centroid for x in frame.place(centroid)],
+        "fixed": "".join("1" if fixed else "0" for fixed in assembly.fixed),
+        "a": assembly.block_a.tolist(),
+        "b": assembly.block_b.tolist(),
+        "e": [
+            x
+            for start, end in zip(assembly.end1, assembly.end2, strict=True)
+            for x in (*frame.place(start), *frame.place(end))
+        ],
+        "n": [round(1000 * float(x)) for normal in assembly.normal for x in (normal[0], -normal[1])],
+        "mu": _run_lengths([round(float(x), 6) for x in assembly.friction]),
+        "joint": _run_lengths(list(assembly.joint)),
+        "force": case.wall.units.force,
+        "block": round(assembly.length_scale * frame.scale),
+    }
+
+
+def _run_lengths(values: list[Any]) -> list[Any]:
+    """One value if all are equal, else all of them."""
+    return values[:1] if len(set(values)) <= 1 else values
+
+
+def result_data(case: Case, result: Result, force_unit: float, *, fields: str = "all") -> dict[str, Any]:
+    """Fields of one result for the page's script.
+
+    Args:
+        case: the case.
+        result: one of its results.
+        force_unit: the force that is written as FORCE_STEPS [force]; one for all methods of a case.
+        fields: "all", "mechanism" (no forces) or "none".
+    """
+    data: dict[str, Any] = {}
+    assembly = case.assembly
+    if fields != "none" and result.mechanism is not None and len(result.mechanism) == assembly.n_blocks:
+        frame = Frame(assembly)
+        mechanism = np.asarray(result.mechanism, dtype=float)
+        scale = shapes.amplitude(assembly, mechanism)
+        # Displacement in drawing units and rotation in 1/10000 rad, at the amplitude the slider starts from.
+        shift = np.rint(mechanism[:, :2] * scale * frame.scale * [1.0, -1.0] * 10.0).astype(int)
+        turn = np.rint(-mechanism[:, 2] * scale * 1e4).astype(int)
+        data["m"] = np.column_stack([shift, turn]).ravel().tolist()
+        data["speed"] = 1.0 / (10.0 * scale * frame.scale)
+        data["spin"] = 1.0 / (1e4 * scale)
+        if result.states is not None:
+            data["s"] = "".join(STATE_LETTER.get(state, "k") for state in result.states)
+    if fields == "all" and result.forces is not None and len(result.forces) == assembly.n_interfaces:
+        steps = np.rint(np.asarray(result.forces, dtype=float) / force_unit * FORCE_STEPS).astype(int)
+        data["f"] = steps.ravel().tolist()
+    return data
+
+
+def force_unit(results: list[Result]) -> float:
+    """The largest contact force of any result of a case [force], or 1."""
+    largest = 0.0
+    for result in results:
+        if result.forces:
+            largest = max(largest, float(abs(np.asarray(result.forces, dtype=float)).max()))
+    return largest or 1.0
+
+
+def weight_of_drawing(case: Case, result: Result) -> int:
+    """About how many bytes the fields of a result take in the page."""
+    size = 0
+    if result.mechanism is not None:
+        size += 13 * len(result.mechanism)
+    if result.forces is not None:
+        size += 14 * len(result.forces)
+    return size
+
+
+def escaped(text: object) -> str:
+    """Text made safe for HTML and SVG."""
+    return str(escape(str(text)))

@@ -1,0 +1,193 @@
+"""The data folder beside the report: every number with all of its digits, as CSV, Parquet and JSON."""
+
+from __future__ import annotations
+
+import csv
+import io
+import json
+import os
+import re
+from pathlib import Path
+from typing import Any
+
+import pyarrow as pa
+import pyarrow.parquet as pq
+
+from harness.model.comparison import ComparisonRun
+from harness.model.result import Result
+from reports.tables import reference_of, worst_residual
+
+RESULT_COLUMNS: dict[str, pa.DataType] = {
+    "case": pa.string(),
+    "method": pa.string(),
+    "family": pa.string(),
+    "status": pa.string(),
+    "finding": pa.string(),
+    "sentence": pa.string(),
+    "multiplier": pa.float64(),
+    "bracket_low": pa.float64(),
+    "bracket_high": pa.float64(),
+    "bracket_meaning": pa.string(),
+    "verdict": pa.string(),
+    "judge_accepted": pa.bool_(),
+    "judge_tolerance": pa.float64(),
+    "judge_worst_residual": pa.float64(),
+    "judge_worst_residual_name": pa.string(),
+    "judge_sentence": pa.string(),
+    "cpu_seconds": pa.float64(),
+    "wall_seconds": pa.float64(),
+    "peak_memory_bytes": pa.int64(),
+    "blocks": pa.int64(),
+    "interfaces": pa.int64(),
+    "iterations": pa.int64(),
+    "unknowns": pa.int64(),
+    "flow": pa.string(),
+    "started": pa.string(),
+    "key": pa.string(),
+    "settings": pa.string(),
+    "limits": pa.string(),
+    "versions": pa.string(),
+    "machine": pa.string(),
+}
+"""Columns of results.csv and results.parquet; times in seconds, memory in bytes, residuals relative."""
+
+COMPARISON_COLUMNS = (
+    "case",
+    "method",
+    "reference",
+    "type",
+    "quantity",
+    "relation",
+    "value",
+    "expected",
+    "tolerance",
+    "gate",
+    "verdict",
+    "sentence",
+    "requirement",
+    "source",
+)
+
+
+def export(run: ComparisonRun, folder: Path) -> None:
+    """Write the data of a comparison. Files of an earlier export that are no longer made are removed.
+
+    Args:
+        run: the comparison.
+        folder: `<stem>-data`; only files named in its own index.json are ever removed from it.
+    """
+    folder.mkdir(parents=True, exist_ok=True)
+    rows = [_result_row(result) for item in run.cases for result in item.results]
+    contents: dict[str, bytes] = {
+        "results.csv": _csv(tuple(RESULT_COLUMNS), rows),
+        "results.parquet": _parquet(rows),
+        "comparisons.csv": _csv(COMPARISON_COLUMNS, _comparison_rows(run)),
+    }
+    for item in run.cases:
+        for result in item.results:
+            name = f"{_safe(item.case.id)}/{_safe(result.method)}.json"
+            contents[name] = _json(
+                result.model_dump(mode="json")
+                | {
+                    "block_ids": list(item.case.assembly.block_ids),
+                    "units": item.case.wall.units.model_dump(mode="json"),
+                }
+            )
+    earlier = _index(folder)
+    contents["index.json"] = _json({"files": sorted(contents)})
+    for name, content in contents.items():
+        _write(folder / name, content)
+    for name in earlier - set(contents):
+        (folder / name).unlink(missing_ok=True)
+
+
+def _safe(name: str) -> str:
+    """A name that is one plain file name, whatever a third party called its method."""
+    return re.sub(r"[^A-Za-z0-9._-]", "-", name).lstrip(".") or "unnamed"
+
+
+def _index(folder: Path) -> set[str]:
+    """Names an earlier export wrote, those that lead out of the folder left out."""
+    try:
+        names = json.loads((folder / "index.json").read_text(encoding="utf-8"))["files"]
+    except (OSError, ValueError, KeyError, TypeError):
+        return set()
+    plain = re.compile(r"[A-Za-z0-9_-][A-Za-z0-9._-]*(/[A-Za-z0-9_-][A-Za-z0-9._-]*)?")
+    return {name for name in names if isinstance(name, str) and plain.fullmatch(name)}
+
+
+def _write(path: Path, content: bytes) -> None:
+    path.parent.mkdir(parents=True, exist_ok=True)
+    part = path.with_name(f".{path.name}.part")
+    part.write_bytes(content)
+    os.replace(part, path)
+
+
+def _json(data: Any) -> bytes:
+    return (json.dumps(data, indent=1, ensure_ascii=False, default=str) + "\n").encode()
+
+
+def _result_row(result: Result) -> dict[str, Any]:
+    worst = worst_residual(result)
+    row = result.model_dump(mode="json", include=set(RESULT_COLUMNS))
+    return row | {
+        "bracket_low": result.bracket[0] if result.bracket else None,
+        "bracket_high": result.bracket[1] if result.bracket else None,
+        "judge_accepted": result.judge.accepted,
+        "judge_tolerance": result.judge.tolerance,
+        "judge_worst_residual": worst[1] if worst else None,
+        "judge_worst_residual_name": worst[0] if worst else None,
+        "judge_sentence": result.judge.sentence,
+        "settings": _compact(result.settings),
+        "limits": _compact(result.limits),
+        "versions": _compact(result.versions),
+        "machine": _compact(result.machine),
+    }
+
+
+def _compact(values: dict[str, Any]) -> str:
+    return json.dumps(values, sort_keys=True, ensure_ascii=False, default=str)
+
+
+def _comparison_rows(run: ComparisonRun) -> list[dict[str, Any]]:
+    rows = []
+    for item in run.cases:
+        for result in item.results:
+            for comparison in result.comparisons:
+                reference = reference_of(item.case, comparison.reference)
+                rows.append(
+                    {"case": result.case, "method": result.method}
+                    | comparison.model_dump(mode="json")
+                    | {
+                        "type": str(reference.type) if reference else None,
+                        "relation": reference.relation if reference else None,
+                        "requirement": reference.requirement if reference else None,
+                        "source": reference.source if reference else None,
+                    }
+                )
+    return rows
+
+
+def _csv(names: tuple[str, ...], rows: list[dict[str, Any]]) -> bytes:
+    """CSV with texts quoted and numbers not, so that a reader does not turn an id of digits into a number."""
+    stream = io.StringIO()
+    writer = csv.writer(stream, quoting=csv.QUOTE_NONNUMERIC, lineterminator="\n")
+    writer.writerow(names)
+    for row in rows:
+        writer.writerow([_field(row.get(name)) for name in names])
+    return stream.getvalue().encode()
+
+
+def _field(value: Any) -> Any:
+    if value is None:
+        return ""
+    if isinstance(value, bool):
+        return "true" if value else "false"
+    return json.dumps(value) if isinstance(value, list | dict) else value
+
+
+def _parquet(rows: list[dict[str, Any]]) -> bytes:
+    schema = pa.schema(list(RESULT_COLUMNS.items()))
+    sink = io.BytesIO()
+    pq.write_table(pa.Table.from_pylist(rows, schema=schema), sink)
+    return sink.getvalue()

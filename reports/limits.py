@@ -1,0 +1,50 @@
+"""What each method is known not to do, in prose, for the report."""
+
+from __future__ import annotations
+
+KNOWN_LIMITS: list[tuple[str, list[str]]] = [
+    (
+        "All methods",
+        [
+            "Blocks are rigid and infinitely strong, joints have no tensile strength, and friction is Coulomb's with "
+            "one coefficient. Crushing, wear and cohesion are outside of the model.",
+            "Displacements are small: a multiplier belongs to the wall as drawn. Second-order effects that lower it "
+            "as the wall leans are seen only where a method says that it follows them.",
+            "The wall is plane. Forces across its thickness, and what happens at its ends out of plane, are left out.",
+        ],
+    ),
+    (
+        "Finite elements with gap springs (fe)",
+        [
+            "The plateau is a collapse state, but which one depends on the history of friction; the spread over "
+            "histories is reported and is the uncertainty of the number.",
+            "Springs are numerical: the plateau does not depend on their stiffness at a fixed ratio of tangential to "
+            "normal stiffness, and little on the ratio. Deformable joints tend to reach states above the least one.",
+            "Cost grows faster than the number of blocks. Large walls are followed under one friction history only.",
+        ],
+    ),
+    (
+        "Limit analysis (la and its kin)",
+        [
+            "With friction the problem has many local minima. What is reported is the least collapse state known: a "
+            "true collapse state, checked as such, which a longer search may undercut. It is never called the minimum "
+            "unless a proved lower bound meets it.",
+            "The associated maximum is a bound from above for every method; it lets blocks rise as they slide and "
+            "may rest on self-stress that a real wall need not have.",
+            "The paper's own programme (la-paper) stops at local optima and becomes unreliable beyond about 50 "
+            "blocks, as the paper says of it.",
+            "A sequence of programmes with the friction of the last step (la-tresca) stalls above the least value.",
+        ],
+    ),
+    (
+        "Distinct elements (de)",
+        [
+            "The answer is a bracket between a load that was held and a load that moved, and a spread over the orders "
+            "in which blocks were entered. The number printed as multiplier is the middle and not exact.",
+            "Rigid contacts leave contact forces undetermined where several solutions exist; the engine takes one of "
+            "them. On the single block with two frictions that alone spans the whole range of limit analysis.",
+            "Damping removes inertia: what is found is quasi-static. Walls of many courses need many steps, and holds "
+            "that could not be told are counted as undecided, never as held.",
+        ],
+    ),
+]

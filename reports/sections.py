@@ -1,0 +1,158 @@
+"""One section of the report for every case: the wall, its results side by side, agreement, references, errata."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+from markupsafe import Markup
+
+from harness.model.case import Case
+from harness.model.comparison import CaseResults, ComparisonRun
+from harness.model.result import Result
+from reports import numbers, words
+from reports.agreement import Agreement
+from reports.drawing import Frame
+from reports.tables import RunRow
+
+
+@dataclass(frozen=True)
+class Panel:
+    """One method's drawings.
+
+    Attributes:
+        row: the run.
+        number: its index among the case's results.
+        mechanism, forces: whether there is something to draw.
+        flow: what the mechanism is, for the caption.
+        states: how many interfaces are in each state, in words.
+    """
+
+    row: RunRow
+    number: int
+    mechanism: bool
+    forces: bool
+    flow: str
+    states: str
+
+
+@dataclass(frozen=True)
+class CaseSection:
+    """Everything the section of a case prints."""
+
+    number: int
+    case: Case
+    wall: Markup
+    view_box: str
+    aspect: float
+    facts: list[tuple[str, str]]
+    warnings: tuple[str, ...]
+    rows: list[RunRow]
+    panels: list[Panel]
+    without_drawing: list[RunRow]
+    agreements: list[Agreement]
+    curves: list[tuple[str, Markup]]
+    gates: int
+
+
+FLOW = {
+    "non-associated": "mechanism without dilatancy",
+    "associated": "mechanism with dilatant (associated) slip",
+    "approximate": "measured velocity field",
+}
+
+
+def case_section(
+    number: int,
+    item: CaseResults,
+    rows: list[RunRow],
+    agreements: list[Agreement],
+    curves: list[tuple[str, Markup]],
+    wall: Markup,
+) -> CaseSection:
+    """The section of one case."""
+    frame = Frame(item.case.assembly)
+    panels, without = [], []
+    for row in rows:
+        index = int(row.anchor.rsplit("-", 1)[1])
+        result = item.results[index]
+        if result.mechanism is None and result.forces is None:
+            without.append(row)
+            continue
+        panels.append(
+            Panel(
+                row=row,
+                number=index,
+                mechanism=result.mechanism is not None,
+                forces=result.forces is not None,
+                flow=FLOW.get(result.flow, result.flow),
+                states=_states(result),
+            )
+        )
+    return CaseSection(
+        number=number,
+        case=item.case,
+        wall=wall,
+        view_box=frame.view_box,
+        aspect=frame.aspect,
+        facts=_facts(item.case),
+        warnings=item.case.built.warnings,
+        rows=rows,
+        panels=panels,
+        without_drawing=without,
+        agreements=agreements,
+        curves=curves,
+        gates=len(item.gates),
+    )
+
+
+def _states(result: Result) -> str:
+    if not result.states:
+        return ""
+    counts = {state: result.states.count(state) for state in ("slip", "rock", "open", "stick")}
+    return ", ".join(f"{count} {state}" for state, count in counts.items() if count)
+
+
+def _facts(case: Case) -> list[tuple[str, str]]:
+    assembly, units = case.assembly, case.wall.units
+    frictions = sorted({round(float(mu), 9) for mu in assembly.friction})
+    friction = (
+        ", ".join(numbers.plain(mu, 4) for mu in frictions)
+        if len(frictions) <= 4
+        else f"{numbers.plain(frictions[0], 4)} to {numbers.plain(frictions[-1], 4)}"
+    )
+    weight = float(assembly.weight[assembly.free].sum())
+    live = np.abs(assembly.live[assembly.free, :2]).sum(axis=0)
+    ways = [name for name, size in zip(("horizontal", "vertical"), live, strict=True) if size > 0.0]
+    extent = Frame(assembly).extent
+    facts = [
+        ("Blocks", f"{assembly.n_free} free, {int(assembly.fixed.sum())} fixed"),
+        ("Interfaces", str(assembly.n_interfaces)),
+        ("Friction tan φ", friction),
+        ("Size", f"{numbers.plain(extent.width, 4)} × {numbers.plain(extent.height, 4)} {units.length}"),
+        ("Weight of free blocks", f"{numbers.plain(weight, 4)} {units.force}"),
+        ("Live load", " and ".join(ways) if ways else "none: the question is whether it stands"),
+    ]
+    return facts
+
+
+def case_svg_sizes(
+    run: ComparisonRun, budget: int, weigh: Callable[[Case, Result], int]
+) -> list[str]:
+    """Which fields of each case the page draws: "all", "mechanism" or "none", the largest cases cut first."""
+    sizes = [sum(weigh(item.case, result) for result in item.results) for item in run.cases]
+    fields = ["all"] * len(sizes)
+    total = sum(sizes)
+    for level, saved in (("mechanism", 0.6), ("none", 0.4)):
+        for number in sorted(range(len(sizes)), key=lambda k: -sizes[k]):
+            if total <= budget:
+                return fields
+            fields[number] = level
+            total -= int(saved * sizes[number])
+    return fields
+
+
+def method_family(row: RunRow) -> str:
+    """The family's name of a run."""
+    return words.family_of(row.method, row.family)

@@ -1,0 +1,82 @@
+"""The words and glyphs of the report: one place, so that tables, drawings and figures say the same thing."""
+
+from __future__ import annotations
+
+from harness.model.case import ReferenceType
+from harness.model.method import Finding, Status
+from harness.model.result import Verdict
+
+VERDICT: dict[Verdict, tuple[str, str]] = {
+    Verdict.AGREES: ("✓", "agrees"),
+    Verdict.OUTSIDE_TOLERANCE: ("≠", "outside tolerance"),
+    Verdict.VIOLATES_BOUND: ("▲", "violates a bound"),
+    Verdict.NO_REFERENCE: ("·", "no reference"),
+}
+
+STATUS: dict[Status, tuple[str, str]] = {
+    Status.OK: ("", "ok"),
+    Status.NOT_CONVERGED: ("~", "not converged"),
+    Status.REFUSED: ("⊘", "refused"),
+    Status.TIMEOUT: ("⧗", "timeout"),
+    Status.OUT_OF_MEMORY: ("▣", "out of memory"),
+    Status.CRASHED: ("✗", "crashed"),
+}
+
+FINDING: dict[Finding, str] = {
+    Finding.COLLAPSES: "collapses",
+    Finding.STANDS: "stands",
+    Finding.FALLS: "falls under its dead load",
+    Finding.UNBOUNDED: "no collapse: unbounded",
+    Finding.NONE: "nothing found",
+}
+
+FAMILY: dict[str, str] = {"fe": "Finite elements", "la": "Limit analysis", "de": "Distinct elements"}
+
+NUMBER_IS: dict[str, str] = {
+    "fe": "plateau of the traced path",
+    "fe-newton": "last converged load step",
+    "fe-qp": "plateau, by convex steps",
+    "la": "least known collapse state",
+    "la-associated": "associated maximum",
+    "la-associated-cvxpy": "associated maximum, in cvxpy",
+    "la-paper": "local optimum of the paper's programme",
+    "la-tresca": "fixed point of Tresca steps",
+    "la-from-fe": "least known, started from FE",
+    "de": "between held and moving",
+}
+
+STATE_LETTER: dict[str, str] = {"stick": "k", "slip": "s", "rock": "r", "open": "o"}
+
+PURPOSE: dict[str, tuple[str, tuple[ReferenceType, ...], str]] = {
+    "Verification": (
+        "Verification: does each method solve its own equations?",
+        (ReferenceType.EXACT, ReferenceType.BOUND),
+        "Closed forms and proved bounds. A value outside its tolerance here is a fault of the programme.",
+    ),
+    "Benchmark": (
+        "Benchmark: do others compute the same?",
+        (ReferenceType.PUBLISHED,),
+        "Values computed by others. A difference asks for an explanation; the fault may be on either side.",
+    ),
+    "Validation": (
+        "Validation: does the model describe the wall?",
+        (ReferenceType.MEASURED,),
+        "Values found by experiments. They judge the model of rigid blocks in dry contact, not the programme.",
+    ),
+    "Regression": (
+        "Regression: our own earlier values",
+        (ReferenceType.REGRESSION,),
+        "Values of an earlier release of this programme. They prove nothing; they show that something moved.",
+    ),
+}
+
+
+def family_of(method: str, family: str) -> str:
+    """The family's name for a heading, whatever word a third party's method uses."""
+    return FAMILY.get(family, family or method)
+
+
+def order(method: str, family: str) -> tuple[int, int, str]:
+    """Sort key of methods: the paper's order FE, LA, DE, a family's main method first."""
+    families = ["fe", "la", "de"]
+    return (families.index(family) if family in families else len(families), 0 if method == family else 1, method)
