@@ -1,0 +1,177 @@
+"""The command as a user meets it: exit codes, one JSON document, clear errors, nothing written on bad input."""
+
+from __future__ import annotations
+
+import json
+import subprocess
+import sys
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from tests.walls import running_bond, stack, wall_data
+
+PROMISED = [
+    "status",
+    "sentence",
+    "multiplier",
+    "bracket",
+    "verdict",
+    "judge",
+    "cpu_seconds",
+    "wall_seconds",
+    "peak_memory_bytes",
+    "blocks",
+    "interfaces",
+    "settings",
+    "versions",
+]
+
+
+def drystone(*words: str, cwd: Path) -> subprocess.CompletedProcess[str]:
+    program = "from harness.cli import main; main()"
+    return subprocess.run(
+        [sys.executable, "-c", program, *words], cwd=cwd, capture_output=True, text=True, timeout=300, check=False
+    )
+
+
+@pytest.fixture
+def wall(tmp_path: Path) -> Path:
+    path = tmp_path / "stack.json"
+    path.write_text(json.dumps(wall_data(stack(3), 0.25)))
+    return path
+
+
+def test_run_prints_one_json_document_with_the_promised_names(wall: Path):
+    done = drystone("run", "la", wall.name, "--json", cwd=wall.parent)
+    assert done.returncode == 0, done.stderr
+    row = json.loads(done.stdout)
+    assert set(PROMISED) <= set(row)
+    assert row["multiplier"] == pytest.approx(0.25, abs=1e-9)
+    assert row["judge"]["accepted"] is True
+    assert "equilibrium" in row["judge"]["residuals"]
+    assert "forces" not in row
+    full = json.loads(drystone("run", "la", wall.name, "--json", "--fields", cwd=wall.parent).stdout)
+    assert len(full["forces"]) == full["interfaces"] == 3
+    assert len(full["mechanism"]) == 4
+
+
+def test_answer_of_a_run_is_accepted_by_judge_and_a_spoiled_one_is_not(wall: Path):
+    answer = json.loads(drystone("run", "la", wall.name, "--json", "--fields", cwd=wall.parent).stdout)
+    path = wall.parent / "answer.json"
+    path.write_text(json.dumps(answer))
+    good = drystone("judge", wall.name, path.name, "--json", cwd=wall.parent)
+    assert good.returncode == 0, good.stdout
+    assert json.loads(good.stdout)["accepted"] is True
+    answer["multiplier"] = answer["forces_multiplier"] = 0.3
+    path.write_text(json.dumps(answer))
+    bad = drystone("judge", wall.name, path.name, cwd=wall.parent)
+    assert bad.returncode == 1
+    assert "equilibrium" in bad.stdout
+
+
+def test_compare_leaves_report_and_store_and_reuses_what_is_there(wall: Path):
+    words = ("compare", wall.name, "--methods", "fe,la,la-associated,de", "--json")
+    first = drystone(*words, cwd=wall.parent)
+    assert first.returncode == 0, first.stderr
+    document = json.loads(first.stdout)
+    assert document["passed"] is True
+    rows = {row["method"]: row for row in document["cases"][0]["results"]}
+    assert rows["fe"]["multiplier"] == pytest.approx(0.25, abs=1e-8)
+    assert rows["de"]["bracket"][0] <= 0.25 * 1.01
+    page = (wall.parent / "out" / "report.html").read_text()
+    assert "stack" in page
+    second = json.loads(drystone(*words, cwd=wall.parent).stdout)
+    assert [row["started"] for row in second["cases"][0]["results"]] == [
+        row["started"] for row in document["cases"][0]["results"]
+    ]
+    (wall.parent / "out" / "report.html").unlink()
+    again = drystone("report", cwd=wall.parent)
+    assert again.returncode == 0, again.stderr
+    assert (wall.parent / "out" / "report.html").is_file()
+
+
+def test_expanded_wall_gives_the_same_answer(tmp_path: Path):
+    path = tmp_path / "bond.json"
+    path.write_text(json.dumps(wall_data(running_bond(3, 2))))
+    expanded = drystone("expand", path.name, "-o", "explicit.json", cwd=tmp_path)
+    assert expanded.returncode == 0, expanded.stderr
+    values = [
+        json.loads(drystone("run", "la", name, "--json", cwd=tmp_path).stdout)["multiplier"]
+        for name in ("bond.json", "explicit.json")
+    ]
+    assert values[0] == values[1]
+
+
+def test_lists_are_json_on_demand(tmp_path: Path):
+    cases = json.loads(drystone("list", "cases", "--json", cwd=tmp_path).stdout)
+    assert {"single-block", "wall-21"} <= {row["id"] for row in cases}
+    methods = json.loads(drystone("list", "methods", "--json", cwd=tmp_path).stdout)
+    assert {"fe", "la", "de"} <= {row["name"] for row in methods}
+    suites = json.loads(drystone("list", "suites", "--json", cwd=tmp_path).stdout)
+    assert "paper" in {row["name"] for row in suites}
+
+
+def spoiled(**changes: Any) -> str:
+    return json.dumps(wall_data(stack(2)) | changes)
+
+
+@pytest.mark.parametrize(
+    ("text", "words"),
+    [
+        ("{", ["wall.json", "line 1"]),
+        (spoiled(format="wall/2"), ["wall.json", "wall/2", "wall/1"]),
+        (spoiled(friktion=1), ["friktion"]),
+        (spoiled(friction=-1), ["friction", "-1"]),
+        (spoiled(unit_weight=None), ['block "1"', "weight"]),
+        (spoiled(loads={"live": {"points": [{"block": "9", "at": [0, 0], "force": [1, 0]}]}}), ['"9"']),
+    ],
+)
+@pytest.mark.parametrize("command", [("run", "la"), ("compare",), ("expand",)])
+def test_bad_walls_exit_with_2_one_message_and_nothing_written(
+    command: tuple[str, ...], text: str, words: list[str], tmp_path: Path
+):
+    path = tmp_path / "wall.json"
+    path.write_text(text)
+    done = drystone(*command, path.name, cwd=tmp_path)
+    assert done.returncode == 2
+    assert "Traceback" not in done.stderr
+    assert done.stdout == ""
+    for word in words:
+        assert word in done.stderr
+    assert sorted(item.name for item in tmp_path.iterdir()) == ["wall.json"]
+
+
+@pytest.mark.parametrize(
+    "words",
+    [
+        ("run", "magic", "wall-21"),
+        ("run", "la", "no-such-case"),
+        ("run", "la", "absent.json"),
+        ("run", "la", "wall-21", "--set", "speed=9"),
+        ("compare", "--suite", "no-such-suite"),
+        ("compare", "wall-21", "--suite", "paper"),
+        ("compare", "--methods", "magic"),
+        ("compare", "--cases", "no-such-folder"),
+        ("report",),
+        ("judge", "absent.json", "absent.json"),
+        ("list", "everything"),
+    ],
+)
+def test_bad_words_exit_with_2_and_no_traceback(words: tuple[str, ...], tmp_path: Path):
+    done = drystone(*words, cwd=tmp_path)
+    assert done.returncode == 2
+    assert "Traceback" not in done.stderr
+    assert done.stderr.strip()
+    assert not list(tmp_path.iterdir())
+
+
+def test_wall_that_cannot_stand_is_a_result_and_no_crash(tmp_path: Path):
+    path = tmp_path / "overhang.json"
+    path.write_text(json.dumps(wall_data(stack(2) | {"offsets": [0.0, 0.2]})))
+    done = drystone("compare", path.name, "--methods", "fe,la,la-associated,de", "--json", cwd=tmp_path)
+    rows = json.loads(done.stdout)["cases"][0]["results"]
+    assert {row["finding"] for row in rows} == {"falls"}
+    assert all(row["multiplier"] is None for row in rows)
+    assert done.returncode == 0
