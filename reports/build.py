@@ -13,7 +13,7 @@ from jinja2 import Environment, PackageLoader, StrictUndefined
 from markupsafe import Markup
 
 from harness.model.comparison import CaseResults, ComparisonRun
-from reports import agreement, numbers, paper, tables, words
+from reports import agreement, numbers, paper, shapes, tables, words
 from reports.curves import curves
 from reports.drawing import case_data, force_unit, result_data, wall_svg, weight_of_drawing
 from reports.export import export
@@ -97,7 +97,13 @@ def _static(name: str) -> str:
 def script_json(data: Any) -> str:
     """JSON that may stand inside a script element: nothing in it can end the element or start a comment."""
     text = json.dumps(data, separators=(",", ":"), ensure_ascii=False, allow_nan=False)
-    for sign, code in (("<", "\\u003c"), (">", "\\u003e"), ("&", "\\u0026"), ("\u2028", "\\u2028"), ("\u2029", "\\u2029")):
+    for sign, code in (
+        ("<", "\\u003c"),
+        (">", "\\u003e"),
+        ("&", "\\u0026"),
+        ("\u2028", "\\u2028"),
+        ("\u2029", "\\u2029"),
+    ):
         text = text.replace(sign, code)
     return text
 
@@ -114,10 +120,14 @@ def _matrix(
 
 
 def _sections(run: ComparisonRun, rows: list[list[tables.RunRow]]) -> list[CaseSection]:
-    return [
-        case_section(number, item, rows[number], agreement.agreements(item), curves(item), wall_svg(item.case))
-        for number, item in enumerate(run.cases)
-    ]
+    sections = []
+    for number, item in enumerate(run.cases):
+        if shapes.problem(item.case):
+            sections.append(case_section(number, item, rows[number], [], [], Markup("")))
+            continue
+        pairs = agreement.agreements(item)
+        sections.append(case_section(number, item, rows[number], pairs, curves(item), wall_svg(item.case)))
+    return sections
 
 
 def _data(run: ComparisonRun) -> list[dict[str, Any]]:
@@ -127,6 +137,8 @@ def _data(run: ComparisonRun) -> list[dict[str, Any]]:
 
 
 def _case_data(item: CaseResults, fields: str) -> dict[str, Any]:
+    if shapes.problem(item.case):
+        return {"results": []}
     unit = force_unit(item.results)
     return case_data(item.case) | {
         "unit": unit,

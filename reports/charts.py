@@ -12,7 +12,12 @@ from reports import numbers
 WIDTH, HEIGHT = 560, 330
 LEFT, RIGHT, BOTTOM, TOP = 62, 14, 46, 14
 ROW, PER_ROW = 18, 3
-MARKERS = ("M-3.5 0a3.5 3.5 0 1 0 7 0a3.5 3.5 0 1 0-7 0z", "M-3.2-3.2h6.4v6.4h-6.4z", "M0-4.2L4 3H-4z", "M0-4.6L4.6 0L0 4.6L-4.6 0z")
+MARKERS = (
+    "M-3.5 0a3.5 3.5 0 1 0 7 0a3.5 3.5 0 1 0-7 0z",
+    "M-3.2-3.2h6.4v6.4h-6.4z",
+    "M0-4.2L4 3H-4z",
+    "M0-4.6L4.6 0L0 4.6L-4.6 0z",
+)
 DASHES = ("", "7 3", "2 3", "9 3 2 3")
 COLOURS = 6
 MOST_POINTS = 300
@@ -181,9 +186,7 @@ def _axes(chart: Chart, across: Axis, up: Axis, height: float, top: float) -> Ma
 
 def _series(series: Series, number: int, across: Axis, up: Axis) -> Markup:
     x_values, y_values = thin(series.x, series.y) if not series.low else (series.x, series.y)
-    places = [
-        (across.place(x), up.place(y), x, y) for x, y in zip(x_values, y_values, strict=True)
-    ]
+    places = [(across.place(x), up.place(y), x, y) for x, y in zip(x_values, y_values, strict=True)]
     points = [(px, py, x, y) for px, py, x, y in places if px is not None and py is not None]
     drawn = Markup("")
     style = f"s{number % COLOURS}"
@@ -195,14 +198,14 @@ def _series(series: Series, number: int, across: Axis, up: Axis) -> Markup:
             style, DASHES[number % len(DASHES)], path
         )
     for x, low, high in zip(series.x, series.low, series.high, strict=False):
-        px, p_low, p_high = across.place(x), up.place(low), up.place(high)
-        if px is not None and p_low is not None and p_high is not None:
-            drawn += Markup('<path class="bar {}" d="M{:.1f} {:.1f}V{:.1f}"/>').format(style, px, p_low, p_high)
+        place, bottom, top = across.place(x), up.place(low), up.place(high)
+        if place is not None and bottom is not None and top is not None:
+            drawn += Markup('<path class="bar {}" d="M{:.1f} {:.1f}V{:.1f}"/>').format(style, place, bottom, top)
     if series.marks or len(points) == 1:
         for px, py, x, y in points:
-            drawn += Markup('<path class="mark {}" transform="translate({:.1f} {:.1f})" d="{}"><title>{}</title></path>').format(
-                style, px, py, MARKERS[number % len(MARKERS)], f"{series.name}: {x:.6g}, {y:.6g}"
-            )
+            drawn += Markup(
+                '<path class="mark {}" transform="translate({:.1f} {:.1f})" d="{}"><title>{}</title></path>'
+            ).format(style, px, py, MARKERS[number % len(MARKERS)], f"{series.name}: {x:.6g}, {y:.6g}")
     return drawn
 
 

@@ -1,4 +1,4 @@
-"""Curves of one case: load against displacement (FE), holds of the distinct elements, the least known over the search."""
+"""Curves of one case: load against displacement (FE), holds (DE), the least value known over the search (LA)."""
 
 from __future__ import annotations
 

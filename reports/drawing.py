@@ -6,11 +6,12 @@ is drawn here, so that the page shows it without any script; mechanisms and forc
 
 from __future__ import annotations
 
+import itertools
 import math
 from typing import Any
 
 import numpy as np
-from markupsafe import Markup, escape
+from markupsafe import Markup
 
 from harness.model.assembly import Assembly, FloatArray
 from harness.model.case import Case
@@ -20,7 +21,6 @@ from reports.words import STATE_LETTER
 
 SIZE = 4000
 MARGIN = 560
-MOTION_STEPS = 10_000
 FORCE_STEPS = 10_000
 LABELLED_BLOCKS = 160
 DOTTED_INTERFACES = 240
@@ -57,7 +57,7 @@ def path_of(frame: Frame, polygon: FloatArray) -> str:
     """A polygon as SVG path data, relative after the first vertex."""
     points = [frame.place(vertex) for vertex in polygon]
     text = f"M{points[0][0]} {points[0][1]}"
-    for (x0, y0), (x1, y1) in zip(points, points[1:], strict=False):
+    for (x0, y0), (x1, y1) in itertools.pairwise(points):
         if (x0, y0) != (x1, y1):
             text += f"l{x1 - x0} {y1 - y0}"
     return text + "z"
@@ -112,16 +112,16 @@ def _labels(frame: Frame, assembly: Assembly) -> Markup:
     if assembly.n_blocks > LABELLED_BLOCKS:
         return Markup("")
     drawn = Markup("")
-    for label, name, polygon, centroid in zip(
-        block_labels(assembly), assembly.block_ids, assembly.polygons, assembly.centroid, strict=True
+    for label, name, polygon, centroid, fixed in zip(
+        block_labels(assembly), assembly.block_ids, assembly.polygons, assembly.centroid, assembly.fixed, strict=True
     ):
         box = (polygon.max(axis=0) - polygon.min(axis=0)) * frame.scale
-        size = min(170.0, 0.5 * float(box[1]), 1.4 * float(box[0]) / max(len(label), 1))
+        size = min(170.0, 0.38 * float(box[1]), 1.4 * float(box[0]) / max(len(label), 1))
         if size < 36.0:
             continue
         x, y = frame.place(centroid)
         drawn += Markup('<text x="{}" y="{}" font-size="{:.0f}">{}<title>{}</title></text>').format(
-            x, round(y + 0.35 * size), size, label, f"block {name}"
+            x, round(y + (0.35 if fixed else -0.22) * size), size, label, f"block {name}"
         )
     return drawn
 
@@ -222,8 +222,3 @@ def weight_of_drawing(case: Case, result: Result) -> int:
     if result.forces is not None:
         size += 14 * len(result.forces)
     return size
-
-
-def escaped(text: object) -> str:
-    """Text made safe for HTML and SVG."""
-    return str(escape(str(text)))

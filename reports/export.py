@@ -15,6 +15,7 @@ import pyarrow.parquet as pq
 
 from harness.model.comparison import ComparisonRun
 from harness.model.result import Result
+from reports import shapes
 from reports.tables import reference_of, worst_residual
 
 RESULT_COLUMNS: dict[str, pa.DataType] = {
@@ -89,7 +90,7 @@ def export(run: ComparisonRun, folder: Path) -> None:
             contents[name] = _json(
                 result.model_dump(mode="json")
                 | {
-                    "block_ids": list(item.case.assembly.block_ids),
+                    "block_ids": [] if shapes.problem(item.case) else list(item.case.assembly.block_ids),
                     "units": item.case.wall.units.model_dump(mode="json"),
                 }
             )

@@ -21,6 +21,13 @@ def plain(value: float, digits: int = 5) -> str:
     return text.replace("-", "−")
 
 
+def given(value: float, digits: int = 6) -> str:
+    """A number as a source gives it: at most so many digits, no zeros added."""
+    if value != 0.0 and not 1e-4 <= abs(value) < 1e6:
+        return power(value, 3)
+    return f"{value:.{digits}g}".replace("-", "−")
+
+
 def power(value: float, digits: int = 1) -> str:
     """A number as mantissa times a power of ten, e.g. 3×10⁻¹⁶."""
     if value == 0.0:

@@ -71,7 +71,9 @@ def paper_comparison(run: ComparisonRun) -> Paper | None:
     times = {row.method: row.cpu.sort for row in cost if row.cpu.sort}
     ratio = ""
     if len(times) == 3 and times["fe"]:
-        ratio = " : ".join(numbers.plain((times[method] or 0.0) / times["fe"] * 20.0, 2) for method in ("fe", "la", "de"))
+        ratio = " : ".join(
+            numbers.plain((times[method] or 0.0) / times["fe"] * 20.0, 2) for method in ("fe", "la", "de")
+        )
     return Paper(
         block=[] if block is None else _block(*block),
         cost=cost,

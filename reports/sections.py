@@ -11,7 +11,7 @@ from markupsafe import Markup
 from harness.model.case import Case
 from harness.model.comparison import CaseResults, ComparisonRun
 from harness.model.result import Result
-from reports import numbers, words
+from reports import numbers, shapes
 from reports.agreement import Agreement
 from reports.drawing import Frame
 from reports.tables import RunRow
@@ -53,7 +53,7 @@ class CaseSection:
     without_drawing: list[RunRow]
     agreements: list[Agreement]
     curves: list[tuple[str, Markup]]
-    gates: int
+    problem: str = ""
 
 
 FLOW = {
@@ -72,6 +72,9 @@ def case_section(
     wall: Markup,
 ) -> CaseSection:
     """The section of one case."""
+    problem = shapes.problem(item.case)
+    if problem:
+        return CaseSection(number, item.case, wall, "", 1.0, [], (), rows, [], rows, [], [], problem)
     frame = Frame(item.case.assembly)
     panels, without = [], []
     for row in rows:
@@ -103,7 +106,6 @@ def case_section(
         without_drawing=without,
         agreements=agreements,
         curves=curves,
-        gates=len(item.gates),
     )
 
 
@@ -118,9 +120,9 @@ def _facts(case: Case) -> list[tuple[str, str]]:
     assembly, units = case.assembly, case.wall.units
     frictions = sorted({round(float(mu), 9) for mu in assembly.friction})
     friction = (
-        ", ".join(numbers.plain(mu, 4) for mu in frictions)
+        ", ".join(numbers.given(mu, 4) for mu in frictions)
         if len(frictions) <= 4
-        else f"{numbers.plain(frictions[0], 4)} to {numbers.plain(frictions[-1], 4)}"
+        else f"{numbers.given(frictions[0], 4)} to {numbers.given(frictions[-1], 4)}"
     )
     weight = float(assembly.weight[assembly.free].sum())
     live = np.abs(assembly.live[assembly.free, :2]).sum(axis=0)
@@ -130,16 +132,14 @@ def _facts(case: Case) -> list[tuple[str, str]]:
         ("Blocks", f"{assembly.n_free} free, {int(assembly.fixed.sum())} fixed"),
         ("Interfaces", str(assembly.n_interfaces)),
         ("Friction tan φ", friction),
-        ("Size", f"{numbers.plain(extent.width, 4)} × {numbers.plain(extent.height, 4)} {units.length}"),
-        ("Weight of free blocks", f"{numbers.plain(weight, 4)} {units.force}"),
+        ("Size", f"{numbers.given(extent.width, 4)} × {numbers.given(extent.height, 4)} {units.length}"),
+        ("Weight of free blocks", f"{numbers.given(weight, 4)} {units.force}"),
         ("Live load", " and ".join(ways) if ways else "none: the question is whether it stands"),
     ]
     return facts
 
 
-def case_svg_sizes(
-    run: ComparisonRun, budget: int, weigh: Callable[[Case, Result], int]
-) -> list[str]:
+def case_svg_sizes(run: ComparisonRun, budget: int, weigh: Callable[[Case, Result], int]) -> list[str]:
     """Which fields of each case the page draws: "all", "mechanism" or "none", the largest cases cut first."""
     sizes = [sum(weigh(item.case, result) for result in item.results) for item in run.cases]
     fields = ["all"] * len(sizes)
@@ -151,8 +151,3 @@ def case_svg_sizes(
             fields[number] = level
             total -= int(saved * sizes[number])
     return fields
-
-
-def method_family(row: RunRow) -> str:
-    """The family's name of a run."""
-    return words.family_of(row.method, row.family)

@@ -7,7 +7,18 @@ from dataclasses import dataclass
 import numpy as np
 
 from harness.model.assembly import Assembly, FloatArray, IntArray
+from harness.model.case import Case
+from harness.model.errors import InputError
 from harness.model.result import vertex_velocities
+
+
+def problem(case: Case) -> str:
+    """Why the wall of a case cannot be built, or nothing if it can."""
+    try:
+        _ = case.built
+    except InputError as error:
+        return str(error)
+    return ""
 
 
 @dataclass(frozen=True)

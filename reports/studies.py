@@ -7,6 +7,7 @@ A comparison may bring further studies in `provenance["studies"]`, a list of obj
 from __future__ import annotations
 
 import hashlib
+import itertools
 import math
 from collections import defaultdict
 from dataclasses import dataclass
@@ -18,7 +19,7 @@ from markupsafe import Markup
 from harness.model.comparison import CaseResults, ComparisonRun
 from harness.model.method import Status
 from harness.model.result import Result, Verdict
-from reports import charts, numbers, words
+from reports import charts, numbers, shapes, words
 
 
 @dataclass(frozen=True)
@@ -49,9 +50,7 @@ def solved(result: Result) -> bool:
 
 
 def _methods(run: ComparisonRun) -> list[str]:
-    found = {
-        result.method: words.order(result.method, result.family) for item in run.cases for result in item.results
-    }
+    found = {result.method: words.order(result.method, result.family) for item in run.cases for result in item.results}
     return sorted(found, key=lambda method: found[method])
 
 
@@ -164,6 +163,8 @@ def friction_families(run: ComparisonRun) -> list[Study]:
     """Cases on the same wall with another friction each, as one plot a wall."""
     families: dict[str, list[tuple[float, CaseResults]]] = defaultdict(list)
     for item in run.cases:
+        if shapes.problem(item.case):
+            continue
         frictions = {round(float(mu), 9) for mu in item.case.assembly.friction}
         if len(frictions) == 1:
             families[_geometry_key(item)].append((frictions.pop(), item))
@@ -198,8 +199,7 @@ def friction_families(run: ComparisonRun) -> list[Study]:
         found.append(
             Study(
                 f"Multiplier against friction: {title} and its kin",
-                f"The same wall with {len(members)} values of friction, all methods in one plot. "
-                + _changes(members),
+                f"The same wall with {len(members)} values of friction, all methods in one plot. " + _changes(members),
                 "A bar is a bracket. Where a line bends, another mechanism takes over; where the lines part, the "
                 "answer depends on the flow rule or on the path, and only the least one is safe.",
                 charts.svg(chart),
@@ -216,9 +216,7 @@ def _changes(members: list[tuple[float, CaseResults]]) -> str:
         if result is not None and result.states and solved(result):
             seen.append((friction, "".join(words.STATE_LETTER.get(state, "k") for state in result.states)))
     changes = [
-        f"{numbers.plain(a[0], 3)} and {numbers.plain(b[0], 3)}"
-        for a, b in zip(seen, seen[1:], strict=False)
-        if a[1] != b[1]
+        f"{numbers.plain(a[0], 3)} and {numbers.plain(b[0], 3)}" for a, b in itertools.pairwise(seen) if a[1] != b[1]
     ]
     return f"The mechanism changes between {', '.join(changes)}." if changes else ""
 

@@ -93,9 +93,9 @@ def expected_text(comparison: Comparison, relation: str) -> str:
     if isinstance(expected, str):
         return expected
     if isinstance(expected, list):
-        return f"in [{numbers.plain(expected[0])}, {numbers.plain(expected[1])}]"
+        return f"in [{numbers.given(expected[0])}, {numbers.given(expected[1])}]"
     sign = {"at_most": "≤ ", "at_least": "≥ ", "contains": "∋ "}.get(relation, "")
-    return sign + numbers.plain(expected)
+    return sign + numbers.given(expected)
 
 
 def _reference_cell(case: Case, result: Result) -> Cell:
@@ -140,9 +140,7 @@ def run_row(case_number: int, result_number: int, item: CaseResults) -> RunRow:
         family=result.family,
         number_is=words.NUMBER_IS.get(result.method, words.family_of(result.method, result.family).lower()),
         failed=failed,
-        trouble=failed
-        or accepted is False
-        or result.verdict in (Verdict.OUTSIDE_TOLERANCE, Verdict.VIOLATES_BOUND),
+        trouble=failed or accepted is False or result.verdict in (Verdict.OUTSIDE_TOLERANCE, Verdict.VIOLATES_BOUND),
         multiplier=_multiplier_cell(result),
         bracket=Cell(
             numbers.interval(result.bracket),

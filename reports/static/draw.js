@@ -105,8 +105,8 @@
         (normal * wall.n[2 * p] / 1000 + s * t[0]) / force,
         (normal * wall.n[2 * p + 1] / 1000 + s * t[1]) / force,
       ];
-      const half = 0.42 * wall.block;
-      const width = Math.max(7, (0.2 * wall.block * force) / largest);
+      const half = 0.36 * wall.block;
+      const width = Math.max(7, (0.16 * wall.block * force) / largest);
       const limit = at(wall.mu, p) * normal;
       const full = limit > 0 && Math.abs(s) >= 0.999 * limit;
       const group = make("g", { class: full ? "full" : "partly", "data-joint": p }, bars);

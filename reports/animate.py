@@ -1,0 +1,75 @@
+"""A collapse as a moving picture: the mechanism of a result grows from rest. GIF, animated PNG or WebP by pillow."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from matplotlib.backends.backend_agg import FigureCanvasAgg
+from PIL import Image
+
+from harness.model.case import Case
+from harness.model.errors import InputError
+from harness.model.result import Result
+from reports import figures, numbers, shapes, words
+
+FORMATS = (".gif", ".png", ".apng", ".webp")
+FRAMES = 28
+FRAME_MILLISECONDS = 60
+PAUSE_MILLISECONDS = 900
+DOTS_PER_INCH = 160
+GREATEST = 2.0
+"""Last displacement, as a multiple of the one the report draws."""
+
+
+def animate(case: Case, result: Result, path: Path) -> None:
+    """Draw the collapse of a result as an animation.
+
+    Args:
+        case: the case.
+        result: a result with a mechanism.
+        path: the file; its ending .gif, .png or .apng, or .webp says the format.
+
+    Raises:
+        InputError: another ending, or a result without a mechanism.
+    """
+    suffix = path.suffix.lower()
+    if suffix not in FORMATS:
+        raise InputError(f'no animation is written as "{path.suffix}"', f"Use {', '.join(FORMATS)}", source=str(path))
+    if result.mechanism is None:
+        raise InputError(
+            f"{result.method} left no mechanism to animate ({words.STATUS[result.status][1]}: {result.sentence})",
+            "Choose a method that ended with a collapse state",
+            source=case.id,
+        )
+    path.parent.mkdir(parents=True, exist_ok=True)
+    images = frames(case, result)
+    durations = [FRAME_MILLISECONDS] * len(images)
+    durations[0] = durations[-1] = PAUSE_MILLISECONDS
+    if suffix == ".gif":
+        images = [image.quantize(colors=64, dither=Image.Dither.NONE) for image in images]
+    name = {".gif": "GIF", ".webp": "WEBP"}.get(suffix, "PNG")
+    options = {"lossless": True} if name == "WEBP" else {}
+    images[0].save(path, format=name, save_all=True, append_images=images[1:], duration=durations, loop=0, **options)
+
+
+def frames(case: Case, result: Result) -> list[Image.Image]:
+    """The pictures of an animation, from rest to the greatest displacement, ever faster as a collapse is."""
+    assembly = case.assembly
+    mechanism = np.asarray(result.mechanism, dtype=float)
+    scale = shapes.amplitude(assembly, mechanism)
+    images = []
+    for time in np.linspace(0.0, 1.0, FRAMES):
+        with figures.style():
+            page, axes = figures.blank(assembly, 1, 1)
+            value = "" if result.multiplier is None else f" at {numbers.multiplier(result.multiplier)}"
+            axes[0][0].set_title(f"{case.id}, {result.method}{value}", pad=3, color=figures.INK)
+            figures.draw_mechanism(
+                axes[0][0], assembly, mechanism, result.states if time > 0.0 else None, GREATEST * scale * time**2
+            )
+            page.set_dpi(DOTS_PER_INCH)
+            canvas: Any = FigureCanvasAgg(page)
+            canvas.draw()
+            images.append(Image.fromarray(np.asarray(canvas.buffer_rgba())).convert("RGB"))
+    return images
