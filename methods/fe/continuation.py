@@ -18,13 +18,19 @@ import numpy as np
 
 from harness.model.assembly import FloatArray, IntArray
 from methods.fe.factor import Factor, SingularTangent
-from methods.fe.gap_law import OPEN, SLIP_MINUS, SLIP_PLUS, STICK, flip_vectors
-from methods.fe.kinks import next_kink
+from methods.fe.gap_law import OPEN, SLIP_PLUS, STICK, flip_vectors
+from methods.fe.kinks import advance, live_rate, next_kink
 from methods.fe.newton import load_scale
 from methods.fe.wall_model import WallModel, point_strains
 
-ILL = 1e-7
-"""|1 + b'y| below which the tangent counts as nearly singular: the piece is followed, then factorised afresh."""
+ILL = 1e-6
+"""|1 + b'y| below which the tangent is nearly singular: the piece is followed, then factorised afresh."""
+SINGULAR = 1e-11
+"""|1 + b'y| below which the tangent is singular: the multiplier rests while the wall moves along y."""
+DRIFT = 1e-9
+"""Out-of-balance force (share of the load scale) above which the tangent is factorised afresh."""
+LOOK = 8
+"""Changes of state between two looks at the out-of-balance force."""
 TIE = 1e-12
 """How far a kink may be overrun by the choice among near ties (share of the load scale)."""
 ELASTIC = 1e-8
@@ -70,7 +76,7 @@ class Tracer:
     Attributes:
         u, multiplier, state: where the path is; history: (P,) frozen-in shears h.
         direction: (N,) du/dlambda of the present piece; sign: whether lambda grows (+1), falls (-1) or rests (0).
-        flip: (a, b, index) of the last change of state, with which the tangent turned singular at a plateau.
+        a, b, index: the change of state, with which the tangent turned singular at a plateau.
     """
 
     def __init__(
@@ -83,15 +89,15 @@ class Tracer:
         self.history = history
         self.state = state.copy()
         self.sign = 1.0
-        self.ill = False
+        self.resting = False
+        self.fragile = False
         self.scale = load_scale(model, multiplier)
         self.last_point, self.last_old = -1, OPEN
         self.worst_residual = 0.0
         p = model.n_points
         self.opening, self.trial = np.empty(p), np.empty(p)
         self.opening_rate, self.trial_rate = np.empty(p), np.empty(p)
-        self._a, self._b = np.empty(6), np.empty(6)
-        self.a, self.b, self.index = self._a, self._b, model.unknown[0]
+        self.a, self.b, self.index = np.zeros(6), np.zeros(6), model.unknown[0]
         self.n_open = int(np.count_nonzero(state == OPEN))
         self.n_slip = int(np.count_nonzero(state >= SLIP_PLUS))
         self._refresh()
@@ -106,7 +112,7 @@ class Tracer:
             self.u += correction
         self._measure_gaps()
         self.direction = self.factor.solve(self.model.live)
-        self.ill = False
+        self.resting = self.fragile = False
 
     def _measure_gaps(self) -> None:
         model = self.model
@@ -123,7 +129,7 @@ class Tracer:
 
     def along(self) -> FloatArray:
         """(N,) the velocity along the present piece: the null vector where the tangent is singular."""
-        return self.direction if self.ill else self.sign * self.direction
+        return self.direction if self.resting else self.sign * self.direction
 
     def is_mechanism(self) -> bool:
         """Whether no force changes along the present piece (rates as last measured)."""
@@ -147,7 +153,7 @@ class Tracer:
             turn: share of the peak by which the path may fall before it is reported as turned down.
 
         Returns:
-            Why the stretch ended. At PLATEAU the tracer holds the singular piece and the flip that led to it.
+            Why the stretch ended. At PLATEAU the tracer holds the singular piece and `along` is the mechanism.
         """
         try:
             while record.events < max_events:
@@ -162,23 +168,26 @@ class Tracer:
         """Follow one straight piece and change the state at its end."""
         model = self.model
         velocity = self.along()
-        self._rates(velocity)
-        fastest = max(np.abs(self.opening_rate).max(), np.abs(self.trial_rate).max())
-        least = fastest * (1e-8 if self.ill else 1e-11)
         step, point, new = next_kink(
+            model.unknown,
+            model.rows,
+            model.interface,
+            model.position,
+            velocity,
             self.opening,
             self.trial,
             self.opening_rate,
             self.trial_rate,
             model.kn,
+            model.kt,
             model.mu,
             self.state,
             TIE * self.scale,
-            least,
+            1e-8 if self.resting else 1e-11,
             self.last_point,
             self.last_old,
         )
-        speed = 0.0 if self.ill else self.sign
+        speed = 0.0 if self.resting else self.sign
         if speed > 0.0 and self.multiplier + step >= target and target < np.inf:
             self._advance(velocity, target - self.multiplier)
             self.multiplier = target
@@ -187,13 +196,11 @@ class Tracer:
         if point < 0:
             if self.is_mechanism():
                 return PathEnd.PLATEAU
-            if self.ill:
+            if self.resting:
                 return PathEnd.BREAKDOWN
             return PathEnd.UNBOUNDED if speed > 0.0 else PathEnd.RUNS_DOWN
         self._advance(velocity, step)
         self.multiplier += speed * step
-        if self.state[point] == OPEN:
-            new = SLIP_PLUS if self.trial[point] >= 0.0 else SLIP_MINUS
         record.events += 1
         self._note(record, note)
         if self.multiplier < record.peak - turn * max(abs(record.peak), 1e-3):
@@ -202,9 +209,7 @@ class Tracer:
         return None
 
     def _advance(self, velocity: FloatArray, step: float) -> None:
-        self.u += step * velocity
-        self.opening += step * self.opening_rate
-        self.trial += step * self.trial_rate
+        advance(self.u, self.opening, self.trial, velocity, self.opening_rate, self.trial_rate, step)
 
     def _note(self, record: PathRecord, note: int) -> None:
         if self.multiplier > record.peak:
@@ -212,7 +217,7 @@ class Tracer:
         elif record.first_limit is None and self.multiplier < record.peak * (1.0 - 1e-9):
             record.first_limit = record.peak
         if record.events % note == 0:
-            record.add(self.multiplier, float(self.model.live @ self.u), self.n_slip, self.n_open)
+            record.add(self.multiplier, live_rate(self.model.live, self.u), self.n_slip, self.n_open)
 
     def _flip(self, point: int, new: int) -> None:
         """Change one state, and turn the direction onto the next piece."""
@@ -222,38 +227,87 @@ class Tracer:
         x = model.position[point]
         rows = model.rows[k]
         row_n = (1.0 - x) * rows[0] + x * rows[1]
-        flip_vectors(row_n, rows[2], model.kn[point], model.kt[point], model.mu[point], old, new, self._a, self._b)
-        index, a, b = model.unknown[k], self._a.copy(), self._b.copy()
+        a, b = np.empty(6), np.empty(6)
+        flip_vectors(row_n, rows[2], model.kn[point], model.kt[point], model.mu[point], old, new, a, b)
+        index = model.unknown[k]
         crossing = float(b @ self.along()[index])
         self.state[point] = new
         self.n_open += (new == OPEN) - (old == OPEN)
         self.n_slip += (new >= SLIP_PLUS) - (old >= SLIP_PLUS)
         self.last_point, self.last_old = point, old
-        if self.ill:
-            self._refresh()
-            self.sign = 1.0 if float(b @ self.direction[index]) * crossing > 0.0 else -1.0
+        if self.resting or self.fragile:
+            self._leave_held(index, a, b, crossing)
             return
         y = self.factor.solve_sparse(index, a)
-        denominator = 1.0 + float(b @ y[index])
-        self.a, self.b, self.index = a, b, index
+        along = float(b @ y[index])
+        denominator = 1.0 + along
         if abs(denominator) < ILL:
-            self.ill = True
-            size = np.abs(y).max()
-            along = float(b @ y[index])
-            self.direction = y * (np.sign(crossing) * np.sign(along) / size)
-            self._nudge_ill(y, denominator, crossing)
-            return
+            y, along = self._refine(point, old, index, a, b)
+            denominator = 1.0 + along
+            self.a, self.b, self.index = a, b, index
+            if abs(denominator) < ILL and self._rests(y, along, crossing, abs(denominator)):
+                return
         self.direction -= y * (float(b @ self.direction[index]) / denominator)
         self.sign *= 1.0 if denominator > 0.0 else -1.0
-        if self.factor.count >= self.factor.capacity - 1:
+        self.fragile = abs(denominator) < ILL
+        if self.fragile:
+            return
+        if self.factor.count >= self.factor.capacity - 1 or self._drifted():
             self._refresh()
         else:
             self.factor.update(y, index, b, denominator)
 
-    def _nudge_ill(self, y: FloatArray, denominator: float, crossing: float) -> None:
-        """Keep a nearly singular piece honest: when it is no mechanism it is followed with its own small lambda rate."""
-        self._rates(self.direction)
-        if self.is_mechanism():
-            return
+    def _refine(self, point: int, old: int, index: IntArray, a: FloatArray, b: FloatArray) -> tuple[FloatArray, float]:
+        """y = K^-1 a and b'y again, from a fresh factor of the tangent before the change, and the direction with it."""
+        new = int(self.state[point])
+        self.state[point] = old
+        self.factor.refactor(self.state)
+        self.state[point] = new
+        self.direction = self.factor.solve(self.model.live)
+        y = self.factor.solve_sparse(index, a)
+        return y, float(b @ y[index])
+
+    def _drifted(self) -> bool:
+        """Whether the out-of-balance force has grown enough to factorise afresh (looked at every few changes)."""
+        if self.factor.count % LOOK:
+            return False
+        residual = self.model.residual(self.u, self.multiplier, self.history, self.state)
+        return float(np.abs(residual).max()) > DRIFT * self.scale
+
+    def _orient(self, index: IntArray, b: FloatArray, crossing: float) -> None:
+        """Give the direction the sign that moves the kink function just crossed on into the new cell."""
+        self.sign = 1.0 if float(b @ self.direction[index]) * crossing > 0.0 else -1.0
+
+    def _rests(self, y: FloatArray, along: float, crossing: float, denominator: float) -> bool:
+        """Turn onto the null vector y when the new tangent is singular: the multiplier rests while the wall moves."""
+        velocity = y * (np.sign(crossing) * np.sign(along) / np.abs(y).max())
+        self._rates(velocity)
+        if denominator > SINGULAR and not self.is_mechanism():
+            return False
+        self.resting = True
+        self.direction = velocity
+        return True
+
+    def _leave_held(self, index: IntArray, a: FloatArray, b: FloatArray, crossing: float) -> None:
+        """Turn onto the next piece from a singular or fragile one, whose change (a1, b1) the factor does not hold yet.
+
+        K + a1 b1' + a b' is singular when the matrix S = [[1 + b1'y1, b1'y], [b'y1, 1 + b'y]] is; with S c = 0 its
+        null vector is c1 y1 + c2 y, and K + a b' is its regular neighbour.
+        """
+        first = self.factor.solve_sparse(self.index, self.a)
+        y = self.factor.solve_sparse(index, a)
+        held, reach = 1.0 + float(self.b @ first[self.index]), float(self.b @ y[self.index])
+        back, denominator = float(b @ first[index]), 1.0 + float(b @ y[index])
+        determinant = abs(held * denominator - reach * back)
+        bound = 1.0 + abs(reach * back)
+        if determinant < 1e-8 * bound and abs(denominator) > ILL and abs(back) > ILL:
+            null = first * (denominator / back) - y
+            velocity = null * (np.sign(crossing) / np.abs(null).max())
+            self._rates(velocity)
+            if determinant < SINGULAR * bound or self.is_mechanism():
+                self.direction = velocity
+                self.resting, self.fragile = True, False
+                self.factor.update(y, index, b, denominator)
+                return
         self._refresh()
-        self.sign = 1.0 if float(self.b @ self.direction[self.index]) * crossing > 0.0 else -1.0
+        self._orient(index, b, crossing)

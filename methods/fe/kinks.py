@@ -1,4 +1,4 @@
-"""The search for the next kink along a straight piece of the path, and the record of gaps along it.
+"""The search for the next kink along a straight piece of the path.
 
 Inside a cell of states these functions stay positive:
     open: g (closes into slip);  slip: N (opens), sign tau - mu N (sticks);  stick: mu N -+ tau (slips).
@@ -16,78 +16,137 @@ from methods.fe.gap_law import OPEN, SLIP_MINUS, SLIP_PLUS, STICK
 
 
 @compiled
+def kink_functions(
+    opening: float, trial: float, opening_rate: float, trial_rate: float, kn: float, mu: float, state: int
+) -> tuple[float, float, float, float]:
+    """Values and rates (value 0, rate 0, value 1, rate 1) of the two kink functions of one point; rate 1 for none."""
+    if state == OPEN:
+        return kn * opening, kn * opening_rate, 1.0, 1.0
+    normal, normal_rate = -kn * opening, -kn * opening_rate
+    if state == STICK:
+        return (
+            mu * normal - trial,
+            mu * normal_rate - trial_rate,
+            mu * normal + trial,
+            mu * normal_rate + trial_rate,
+        )
+    if mu == 0.0:
+        return normal, normal_rate, 1.0, 1.0
+    if state == SLIP_PLUS:
+        return normal, normal_rate, trial - mu * normal, trial_rate - mu * normal_rate
+    return normal, normal_rate, -trial - mu * normal, -trial_rate - mu * normal_rate
+
+
+@compiled
+def target_state(state: int, which: int, trial: float) -> int:
+    """The state behind kink function `which`; a point that closes slips the way its trial shear pulls."""
+    if state == OPEN:
+        return SLIP_PLUS if trial >= 0.0 else SLIP_MINUS
+    if state == STICK:
+        return SLIP_PLUS if which == 0 else SLIP_MINUS
+    return OPEN if which == 0 else STICK
+
+
+@compiled
 def next_kink(
+    unknown: IntArray,
+    rows: FloatArray,
+    interface: IntArray,
+    position: FloatArray,
+    velocity: FloatArray,
     opening: FloatArray,
     trial: FloatArray,
     opening_rate: FloatArray,
     trial_rate: FloatArray,
     kn: FloatArray,
+    kt: FloatArray,
     mu: FloatArray,
     state: IntArray,
     tolerance: float,
-    least_rate: float,
+    noise: float,
     barred_point: int,
     barred_state: int,
 ) -> tuple[float, int, int]:
-    """First kink along a direction.
+    """Measure the gap rates along a velocity, and find the first kink on the way.
 
     Args:
-        opening, trial: (P,) g and tau now; opening_rate, trial_rate: (P,) along the direction.
-        kn, mu: (P,) of the points; state: (P,) states.
+        unknown, rows, interface, position: the kinematics, as in `WallModel`; velocity: (N,).
+        opening, trial: (P,) g and tau now; opening_rate, trial_rate: (P,) receive their rates.
+        kn, kt, mu: (P,) of the points; state: (P,) states.
         tolerance: how far (dimensionless force) a kink may be overrun by the choice among near ties.
-        least_rate: rates of kink functions below this count as zero.
+        noise: rates of kink functions below this share of the fastest gap rate count as zero.
         barred_point, barred_state: the change just made the other way round, which is not taken back at once.
 
     Returns:
         (step, point, new state); step is infinite and point -1 when no kink follows.
     """
+    count = len(state)
+    fastest = 0.0
+    previous = -1
+    e0 = e1 = e2 = 0.0
+    for p in range(count):
+        k = interface[p]
+        if k != previous:
+            e0 = e1 = e2 = 0.0
+            for j in range(6):
+                value = velocity[unknown[k, j]]
+                e0 += rows[k, 0, j] * value
+                e1 += rows[k, 1, j] * value
+                e2 += rows[k, 2, j] * value
+            previous = k
+        rate = (1.0 - position[p]) * e0 + position[p] * e1
+        opening_rate[p] = rate
+        trial_rate[p] = kt[p] * e2
+        fastest = max(fastest, abs(rate), abs(trial_rate[p]))
+    least = noise * fastest
     best = np.inf
-    for p in range(len(state)):
-        for which in range(2):
-            value, rate, new = kink_function(opening, trial, opening_rate, trial_rate, kn, mu, state, p, which)
-            if rate < -least_rate and not (p == barred_point and new == barred_state):
-                limit = (max(value, 0.0) + tolerance) / -rate
-                if limit < best:
-                    best = limit
-    step, point, target, fastest = np.inf, -1, 0, 0.0
+    for p in range(count):
+        v0, r0, v1, r1 = kink_functions(opening[p], trial[p], opening_rate[p], trial_rate[p], kn[p], mu[p], state[p])
+        if r0 < -least and max(v0, 0.0) + tolerance < -r0 * best:
+            if p != barred_point or target_state(state[p], 0, trial[p]) != barred_state:
+                best = (max(v0, 0.0) + tolerance) / -r0
+        if r1 < -least and max(v1, 0.0) + tolerance < -r1 * best:
+            if p != barred_point or target_state(state[p], 1, trial[p]) != barred_state:
+                best = (max(v1, 0.0) + tolerance) / -r1
+    step, point, target, speed = np.inf, -1, 0, 0.0
     if best == np.inf:
         return step, point, target
-    for p in range(len(state)):
-        for which in range(2):
-            value, rate, new = kink_function(opening, trial, opening_rate, trial_rate, kn, mu, state, p, which)
-            if rate < -least_rate and not (p == barred_point and new == barred_state):
-                at = max(value, 0.0) / -rate
-                if at <= best and -rate > fastest:
-                    step, point, target, fastest = at, p, new, -rate
+    for p in range(count):
+        v0, r0, v1, r1 = kink_functions(opening[p], trial[p], opening_rate[p], trial_rate[p], kn[p], mu[p], state[p])
+        if r0 < -least and -r0 > speed and max(v0, 0.0) <= -r0 * best:
+            at = max(v0, 0.0) / -r0
+            new = target_state(state[p], 0, trial[p] + at * trial_rate[p])
+            if p != barred_point or new != barred_state:
+                step, point, target, speed = at, p, new, -r0
+        if r1 < -least and -r1 > speed and max(v1, 0.0) <= -r1 * best:
+            new = target_state(state[p], 1, trial[p])
+            if p != barred_point or new != barred_state:
+                step, point, target, speed = max(v1, 0.0) / -r1, p, new, -r1
     return step, point, target
 
 
 @compiled
-def kink_function(
+def advance(
+    u: FloatArray,
     opening: FloatArray,
     trial: FloatArray,
+    velocity: FloatArray,
     opening_rate: FloatArray,
     trial_rate: FloatArray,
-    kn: FloatArray,
-    mu: FloatArray,
-    state: IntArray,
-    p: int,
-    which: int,
-) -> tuple[float, float, int]:
-    """Value, rate and target state of kink function number `which` (0 or 1) of point p; rate 1 where there is none."""
-    here = state[p]
-    if here == OPEN:
-        if which == 1:
-            return 1.0, 1.0, OPEN
-        return kn[p] * opening[p], kn[p] * opening_rate[p], SLIP_PLUS if trial[p] >= 0.0 else SLIP_MINUS
-    normal, normal_rate = -kn[p] * opening[p], -kn[p] * opening_rate[p]
-    if here == STICK:
-        sign = 1.0 if which == 0 else -1.0
-        value = mu[p] * normal - sign * trial[p]
-        return value, mu[p] * normal_rate - sign * trial_rate[p], SLIP_PLUS if which == 0 else SLIP_MINUS
-    if which == 0:
-        return normal, normal_rate, OPEN
-    if mu[p] == 0.0:
-        return 1.0, 1.0, STICK
-    sign = 1.0 if here == SLIP_PLUS else -1.0
-    return sign * trial[p] - mu[p] * normal, sign * trial_rate[p] - mu[p] * normal_rate, STICK
+    step: float,
+) -> None:
+    """Move displacements (N,) and gaps (P,) along their rates."""
+    for i in range(len(u)):
+        u[i] += step * velocity[i]
+    for p in range(len(opening)):
+        opening[p] += step * opening_rate[p]
+        trial[p] += step * trial_rate[p]
+
+
+@compiled
+def live_rate(load: FloatArray, u: FloatArray) -> float:
+    """Inner product (N,), spelt out so that small walls do not pay for a library call."""
+    total = 0.0
+    for i in range(len(u)):
+        total += load[i] * u[i]
+    return total

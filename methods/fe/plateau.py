@@ -1,8 +1,8 @@
 """The finish: forces and mechanism of the plateau, and their check as an exact collapse state.
 
-In the last cell the tangent K_s = K + a b' is singular with null vector y = K^-1 a. The state on the plateau solves
-K_s du = r + dlambda live; because b'y = -1 this needs solves with the regular neighbour K only:
-    dlambda = -b'K^-1 r / b'K^-1 live,   du = K^-1 r + dlambda K^-1 live - beta y.
+In the last cell the tangent K is singular with null vector v. The fastest displacement k of v is held and the
+multiplier takes its place among the unknowns: K with column k replaced by -live is regular, and solves both for the
+state on the plateau (residual on the right) and for the mechanism (minus column k of K on the right, v_k = 1).
 """
 
 from __future__ import annotations
@@ -10,9 +10,12 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
+import scipy.sparse as sp
+from scipy.sparse.linalg import splu
 
 from harness.model.assembly import Assembly, FloatArray
 from methods.fe.continuation import Tracer
+from methods.fe.factor import SingularTangent
 from methods.fe.gap_law import equivalent_end_forces
 
 
@@ -39,25 +42,40 @@ class CollapseState:
 
 
 def finish(tracer: Tracer) -> CollapseState:
-    """The collapse state of a tracer that has come to a plateau."""
-    model, factor = tracer.model, tracer.factor
+    """The collapse state of a tracer that has come to a plateau. Raises SingularTangent when it is not unique."""
+    model = tracer.model
     u, multiplier = tracer.u, tracer.multiplier
-    index, a, b = tracer.index, tracer.a, tracer.b
-    y = factor.solve_sparse(index, a)
-    drive = factor.solve(model.live)
-    for _ in range(3):
+    velocity = tracer.along()
+    fastest = int(np.argmax(np.abs(velocity)))
+    tangent = model.tangent(tracer.state)
+    column = tangent[:, [fastest]].toarray().ravel()
+    try:
+        factor = splu(_with_column(tangent, fastest, -model.live))
+    except RuntimeError as error:
+        raise SingularTangent("the plateau is not unique: more than one mechanism moves at once") from error
+    for _ in range(4):
         answer = factor.solve(model.residual(u, multiplier, tracer.history, tracer.state))
-        change = -float(b @ answer[index]) / float(b @ drive[index])
-        u = u + answer + change * drive
-        multiplier += change
-    mechanism = tracer.along()
-    power = float(model.live @ mechanism)
-    mechanism = mechanism / (power or 1.0)
+        multiplier += answer[fastest]
+        answer[fastest] = 0.0
+        u = u + answer
+    mechanism = factor.solve(-column)
+    mechanism[fastest] = 1.0
+    mechanism *= np.sign(velocity[fastest])
+    mechanism /= abs(float(model.live @ mechanism)) or 1.0
     normal, shear = model.forces(u, tracer.history, tracer.state)
     assembly = model.assembly
     forces = model.force * equivalent_end_forces(model.position, model.interface, normal, shear, assembly.n_interfaces)
     field = model.block_displacements(mechanism)
     return check(assembly, multiplier, forces, field)
+
+
+def _with_column(matrix: sp.csc_matrix, k: int, column: FloatArray) -> sp.csc_matrix:
+    """The matrix with its column k replaced."""
+    filled = np.flatnonzero(column)
+    single = sp.csc_matrix((column[filled], (filled, np.full(len(filled), k))), shape=matrix.shape)
+    keep = np.ones(matrix.shape[1])
+    keep[k] = 0.0
+    return (matrix @ sp.diags(keep) + single).tocsc()
 
 
 def check(assembly: Assembly, multiplier: float, forces: FloatArray, mechanism: FloatArray) -> CollapseState:
@@ -77,8 +95,6 @@ def check(assembly: Assembly, multiplier: float, forces: FloatArray, mechanism: 
     total = forces[:, 0] + forces[:, 1]
     slack = assembly.friction * total - np.abs(forces[:, 2])
     power = float(live @ velocity)
-    dissipated = float(np.sum(forces * rates))
-    work = (-dissipated - float(dead @ velocity)) / power if power else np.inf
     residuals = {
         "equilibrium": float(np.abs(balance).max()) / scale,
         "yield": max(0.0, -float(forces[:, :2].min()), -float(slack.min())) / scale,
