@@ -1,0 +1,1 @@
+"""Limit analysis: collapse states as pairs of contact forces and a mechanism, without any stiffness."""

@@ -1,0 +1,93 @@
+"""Approximate collapse states made exact to rounding: forces on their active set, mechanisms on their contacts.
+
+Forces: y_k is set to zero where it is tight, and equilibrium restored by the smallest change relative to the other
+slacks. Mechanisms: strains are removed from all contacts that do not move, by the smallest change of velocities.
+Both are one factorisation of the matrix of the interior point with repeated refinement.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from harness.model.assembly import BoolArray, FloatArray
+from methods.la.flexibility import flexibility
+from methods.la.newton_matrix import NewtonMatrix
+from methods.la.problem import Problem
+
+RIGID = 1e40
+"""Weight of a slack that may not change."""
+
+
+def close_tight(problem: Problem, tight: BoolArray) -> BoolArray:
+    """Tight slacks (m, 4) with those that follow: no normal force means no shear, both shear limits mean no force."""
+    closed = tight.copy()
+    closed[problem.rigid_in_shear, 2:] = True
+    both = closed[:, 2] & closed[:, 3] & ~problem.rigid_in_shear
+    closed[both] = True
+    closed[closed[:, 0] & closed[:, 1]] = True
+    return closed
+
+
+def snap(problem: Problem, forces: FloatArray, tight: BoolArray) -> FloatArray:
+    """Forces (m, 3) with the tight slacks exactly zero and no slack negative."""
+    normal = np.where(tight[:, :2], 0.0, np.maximum(forces[:, :2], 0.0))
+    strength = problem.friction * normal.sum(axis=1)
+    shear = np.clip(forces[:, 2], -strength, strength)
+    shear = np.where(tight[:, 2], -strength, np.where(tight[:, 3], strength, shear))
+    return np.column_stack([normal, shear])
+
+
+def exact_forces(
+    problem: Problem, newton: NewtonMatrix, forces: FloatArray, multiplier: float, tight: BoolArray, rounds: int = 6
+) -> tuple[FloatArray, float]:
+    """Forces (m, 3) and multiplier in equilibrium to rounding with the tight slacks (m, 4) zero, near the given ones.
+
+    Raises:
+        RuntimeError: the equilibrium matrix is singular to rounding.
+    """
+    tight = close_tight(problem, tight)
+    best: tuple[float, FloatArray, float] | None = None
+    for _ in range(2):
+        current = snap(problem, forces, tight)
+        slack = problem.slacks(current)
+        floor = 1e-9 * max(float(slack.max(initial=0.0)), 1e-9)
+        weight = np.where(tight, RIGID, 1.0 / np.maximum(slack, floor) ** 2)
+        compliance = flexibility(problem.friction, weight, True)
+        factor = newton.factorise(compliance, 0.0, 1e-13)
+        by_live = factor.solve(problem.live)
+        stiffness = float(problem.live @ by_live)
+        for _ in range(rounds):
+            residual = problem.imbalance(current, multiplier)
+            size = float(abs(residual).max())
+            if best is None or size < best[0]:
+                best = (size, current, multiplier)
+            velocity = factor.solve(residual)
+            change = -float(problem.live @ velocity) / stiffness if stiffness > 0.0 else 0.0
+            velocity = velocity + change * by_live
+            shift = -np.einsum("pij,pj->pi", compliance, problem.strains(velocity))
+            current, multiplier = snap(problem, current + shift, tight), multiplier + change
+        forces = current
+    assert best is not None
+    return best[1], best[2]
+
+
+def exact_mechanism(
+    problem: Problem, newton: NewtonMatrix, velocities: FloatArray, moving: BoolArray, associated: bool
+) -> FloatArray:
+    """Velocities (3n,) whose strains vanish to rounding wherever no contact (m, 4) moves, near the given ones.
+
+    Raises:
+        RuntimeError: the kinematic matrix is singular to rounding.
+    """
+    still = np.column_stack([~moving[:, 0], ~moving[:, 1], ~(moving[:, 2] | moving[:, 3])]).astype(float)
+    transform = np.tile(np.eye(3), (problem.n_interfaces, 1, 1))
+    if associated:
+        sense = np.where(moving[:, 2], 1.0, np.where(moving[:, 3], -1.0, 0.0)) * problem.friction
+        transform[:, 0, 2] = transform[:, 1, 2] = -sense
+    stiff = np.einsum("pki,pk,pkj->pij", transform, still, transform)
+    factor = newton.factorise(stiff * 1e10, 0.0, 0.0, shift=1.0)
+    for _ in range(8):
+        strain = np.einsum("pij,pj->pi", stiff, problem.strains(velocities))
+        velocities = velocities - factor.solve(1e10 * np.asarray(problem.statics @ strain.ravel()))
+    work = float(problem.live @ velocities)
+    return velocities * (problem.live_work / work) if work > 0.0 else velocities

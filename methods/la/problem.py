@@ -1,0 +1,136 @@
+"""The limit-analysis problem of an assembly in dimensionless form, with its yield domain and flow rules.
+
+Per interface the forces r = (n1, n2, s) give the yield slacks y = S r = (n1, n2, mu N + s, mu N - s) >= 0 with
+N = n1 + n2. The mechanism u has the strains C u = E g with rates g = (open1, open2, slip+, slip-) >= 0, where
+E = S' for associated flow and E without the dilatant terms for sliding without dilatancy. At collapse y o g = 0.
+Source: Baggio and Trovalusci (1995), equations 1 to 7.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+import scipy.sparse as sp
+
+from harness.model.assembly import Assembly, BoolArray, FloatArray
+
+
+@dataclass(frozen=True, eq=False)
+class Problem:
+    """An assembly scaled so that mean block weight, typical block size and total live load are of order one.
+
+    n = number of free blocks, m = number of interfaces.
+
+    Attributes:
+        assembly: where it comes from.
+        kinematic: (3m, 3n) scaled matrix C, strains from velocities (ux, uy, omega * unit_length).
+        dead, live: (3n,) scaled loads.
+        friction: (m,) friction coefficients.
+        unit_force: mean dead load of a free block [force].
+        unit_length: typical size of a block [length].
+        unit_multiplier: multiplier per scaled multiplier.
+    """
+
+    assembly: Assembly
+    kinematic: sp.csr_matrix
+    dead: FloatArray
+    live: FloatArray
+    friction: FloatArray
+    unit_force: float
+    unit_length: float
+    unit_multiplier: float
+
+    @property
+    def n_interfaces(self) -> int:
+        """Number of interfaces m."""
+        return len(self.friction)
+
+    @property
+    def n_velocities(self) -> int:
+        """Number of velocity components, three a free block."""
+        return len(self.dead)
+
+    @cached_property
+    def statics(self) -> sp.csr_matrix:
+        """(3n, 3m) transposed kinematic matrix C'."""
+        return self.kinematic.T.tocsr()
+
+    @cached_property
+    def live_work(self) -> float:
+        """Live work every mechanism is scaled to: the number of free blocks, so that velocities are of order one."""
+        return self.n_velocities / 3.0
+
+    @cached_property
+    def rigid_in_shear(self) -> BoolArray:
+        """(m,) interfaces without friction, whose shear is zero and whose slip is free."""
+        return np.asarray(self.friction == 0.0)
+
+    def slacks(self, forces: FloatArray) -> FloatArray:
+        """(m, 4) yield slacks y of forces (m, 3)."""
+        strength = self.friction * (forces[:, 0] + forces[:, 1])
+        return np.column_stack([forces[:, 0], forces[:, 1], strength + forces[:, 2], strength - forces[:, 2]])
+
+    def strains_of_rates(self, rates: FloatArray, associated: bool) -> FloatArray:
+        """(m, 3) strains E g of rates g (m, 4)."""
+        dilation = self.friction * (rates[:, 2] + rates[:, 3]) if associated else np.zeros(len(rates))
+        return np.column_stack([rates[:, 0] + dilation, rates[:, 1] + dilation, rates[:, 2] - rates[:, 3]])
+
+    def strains(self, velocities: FloatArray) -> FloatArray:
+        """(m, 3) strains C u of velocities (3n,)."""
+        return np.asarray(self.kinematic @ velocities).reshape(-1, 3)
+
+    def rates_of_velocities(self, velocities: FloatArray, associated: bool) -> FloatArray:
+        """(m, 4) smallest rates g with C u = E g; openings come out negative where blocks pass through each other."""
+        strain = self.strains(velocities)
+        slip = strain[:, 2]
+        dilation = self.friction * abs(slip) if associated else 0.0
+        return np.column_stack(
+            [strain[:, 0] - dilation, strain[:, 1] - dilation, np.maximum(slip, 0.0), np.maximum(-slip, 0.0)]
+        )
+
+    def imbalance(self, forces: FloatArray, multiplier: float) -> FloatArray:
+        """(3n,) out-of-balance loads C' r + dead + multiplier * live."""
+        return np.asarray(self.statics @ forces.ravel()) + self.dead + multiplier * self.live
+
+    def to_forces(self, forces: FloatArray) -> FloatArray:
+        """(m, 3) contact forces [force] of scaled ones."""
+        return forces * self.unit_force
+
+    def to_mechanism(self, velocities: FloatArray) -> FloatArray:
+        """(n_blocks, 3) velocities (ux, uy, omega) of all blocks, scaled to a largest component of one."""
+        motion = np.zeros((self.assembly.n_blocks, 3))
+        moving = velocities.reshape(-1, 3).copy()
+        moving[:, 2] /= self.unit_length
+        largest = abs(moving).max(initial=0.0)
+        motion[self.assembly.free] = moving / (largest or 1.0)
+        return motion
+
+    def from_mechanism(self, mechanism: FloatArray) -> FloatArray:
+        """(3n,) scaled velocities of block velocities (n_blocks, 3)."""
+        moving = mechanism[self.assembly.free].copy()
+        moving[:, 2] *= self.unit_length
+        return np.asarray(moving.ravel())
+
+
+def make_problem(assembly: Assembly) -> Problem:
+    """The scaled limit-analysis problem of an assembly."""
+    unit_force = assembly.force_scale / max(assembly.n_free, 1)
+    unit_length = assembly.length_scale or 1.0
+    column = np.tile([1.0, 1.0, 1.0 / unit_length], assembly.n_free)
+    dead, live = assembly.free_loads()
+    dead = dead * column / unit_force
+    live = live * column / unit_force
+    size = float(abs(live.reshape(-1, 3)).sum())
+    unit_multiplier = assembly.n_free / size if size > 0.0 else 1.0
+    return Problem(
+        assembly=assembly,
+        kinematic=(assembly.kinematic_matrix @ sp.diags(column)).tocsr(),
+        dead=dead,
+        live=live * unit_multiplier,
+        friction=np.asarray(assembly.friction, dtype=float),
+        unit_force=unit_force,
+        unit_length=unit_length,
+        unit_multiplier=unit_multiplier,
+    )

@@ -1,0 +1,227 @@
+"""The two linear programmes of the search, kept in HiGHS so that a change of the active set starts from the last basis.
+
+Static: least (or greatest) multiplier under equilibrium and yield with some slacks held at zero. Kinematic: the
+mechanism of least cost among those that move only in given contacts; its vertices are extreme mechanisms.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import highspy
+import numpy as np
+import scipy.sparse as sp
+
+from harness.model.assembly import BoolArray, FloatArray
+from methods.la.problem import Problem
+
+INFINITY = highspy.kHighsInf
+
+
+@dataclass(frozen=True)
+class StaticSolution:
+    """Forces (m, 3) and multiplier, both scaled, and the simplex or interior iterations spent."""
+
+    forces: FloatArray
+    multiplier: float
+    iterations: int
+
+
+@dataclass(frozen=True)
+class KinematicSolution:
+    """Velocities (3n,) and rates (m, 4), scaled to the live work of the problem."""
+
+    velocities: FloatArray
+    rates: FloatArray
+
+
+class Programme:
+    """A linear programme held in HiGHS: columns with bounds, rows with bounds, one matrix."""
+
+    def __init__(
+        self,
+        matrix: sp.csc_matrix,
+        cost: FloatArray,
+        column: tuple[FloatArray, FloatArray],
+        row: tuple[FloatArray, FloatArray],
+    ) -> None:
+        self.highs: Any = highspy.Highs()
+        for option, value in (
+            ("output_flag", False),
+            ("threads", 1),
+            ("random_seed", 0),
+            ("primal_feasibility_tolerance", 1e-9),
+            ("dual_feasibility_tolerance", 1e-9),
+        ):
+            self.highs.setOptionValue(option, value)
+        programme = highspy.HighsLp()
+        programme.num_row_, programme.num_col_ = matrix.shape
+        programme.col_cost_ = cost
+        programme.col_lower_, programme.col_upper_ = column
+        programme.row_lower_, programme.row_upper_ = row
+        programme.a_matrix_.format_ = highspy.MatrixFormat.kColwise
+        programme.a_matrix_.start_ = matrix.indptr
+        programme.a_matrix_.index_ = matrix.indices
+        programme.a_matrix_.value_ = matrix.data
+        self.highs.passModel(programme)
+        self.n_columns = matrix.shape[1]
+
+    def set_columns(self, first: int, lower: FloatArray, upper: FloatArray) -> None:
+        """New bounds of consecutive columns from `first`."""
+        index = np.arange(first, first + len(lower), dtype=np.int32)
+        self.highs.changeColsBounds(len(index), index, lower, upper)
+
+    def set_rows(self, first: int, lower: FloatArray, upper: FloatArray) -> None:
+        """New bounds of consecutive rows from `first`."""
+        index = np.arange(first, first + len(lower), dtype=np.int32)
+        self.highs.changeRowsBounds(len(index), index, lower, upper)
+
+    def set_costs(self, first: int, cost: FloatArray) -> None:
+        """New costs of consecutive columns from `first`."""
+        index = np.arange(first, first + len(cost), dtype=np.int32)
+        self.highs.changeColsCost(len(index), index, cost)
+
+    def run(self) -> tuple[str, FloatArray, FloatArray]:
+        """("optimal" | "infeasible" | "unbounded" | "unknown", column values, row duals)."""
+        self.highs.run()
+        status = self.highs.getModelStatus()
+        if status == highspy.HighsModelStatus.kUnboundedOrInfeasible:
+            self.highs.setOptionValue("presolve", "off")
+            self.highs.run()
+            self.highs.setOptionValue("presolve", "choose")
+            status = self.highs.getModelStatus()
+        names = {
+            highspy.HighsModelStatus.kOptimal: "optimal",
+            highspy.HighsModelStatus.kInfeasible: "infeasible",
+            highspy.HighsModelStatus.kUnbounded: "unbounded",
+        }
+        solution = self.highs.getSolution()
+        return names.get(status, "unknown"), np.array(solution.col_value), np.array(solution.row_dual)
+
+    def iterations(self) -> int:
+        """Iterations of the last run."""
+        info = self.highs.getInfo()
+        return int(max(info.simplex_iteration_count, 0) + max(info.ipm_iteration_count, 0))
+
+
+class StaticProgramme:
+    """min lambda >= 0, or max lambda, s.t. C' r + f0 + lambda fL = 0, S r >= 0, (S r)_k = 0 for tight k.
+
+    Columns are (n1, n2, y3) an interface and lambda, with s = y3 - mu (n1 + n2) and y4 = 2 mu (n1 + n2) - y3.
+    """
+
+    def __init__(self, problem: Problem, solver: str = "simplex") -> None:
+        self.problem = problem
+        m, mu = problem.n_interfaces, problem.friction
+        base = 3 * np.arange(m)
+        shear_rows = np.concatenate([base + 2, base + 2, base + 2])
+        columns = np.concatenate([base, base + 1, base + 2])
+        normals = sp.diags(np.tile([1.0, 1.0, 0.0], m))
+        shear = sp.coo_matrix((np.concatenate([-mu, -mu, np.ones(m)]), (shear_rows, columns)), shape=(3 * m, 3 * m))
+        forces = (normals + shear).tocsr()
+        equilibrium = sp.hstack([problem.statics @ forces, sp.csr_matrix(problem.live[:, None])])
+        backward = sp.coo_matrix(
+            (np.concatenate([2 * mu, 2 * mu, -np.ones(m)]), (np.tile(np.arange(m), 3), columns)), shape=(m, 3 * m + 1)
+        )
+        self._forces = forces
+        self._free = (np.zeros(3 * m), np.full(3 * m, INFINITY))
+        cost = np.zeros(3 * m + 1)
+        self._programme = Programme(
+            sp.vstack([equilibrium, backward]).tocsc(),
+            cost,
+            (np.append(self._free[0], -INFINITY), np.append(self._free[1], INFINITY)),
+            (np.append(-problem.dead, np.zeros(m)), np.append(-problem.dead, np.full(m, INFINITY))),
+        )
+        self._programme.highs.setOptionValue("solver", solver)
+
+    def solve(self, tight: BoolArray | None = None, greatest: bool = False) -> StaticSolution | str:
+        """The solution, or "infeasible", "unbounded", "unknown".
+
+        Args:
+            tight: (m, 4) slacks held at zero.
+            greatest: maximise the multiplier instead of minimising it.
+        """
+        m = self.problem.n_interfaces
+        tight = np.zeros((m, 4), dtype=bool) if tight is None else tight
+        upper = np.where(tight[:, :3].ravel(), 0.0, INFINITY)
+        self._programme.set_columns(0, self._free[0], upper)
+        self._programme.set_rows(self.problem.n_velocities, np.zeros(m), np.where(tight[:, 3], 0.0, INFINITY))
+        self._programme.set_columns(3 * m, np.array([-INFINITY if greatest else 0.0]), np.array([INFINITY]))
+        self._programme.set_costs(3 * m, np.array([-1.0 if greatest else 1.0]))
+        status, value, _ = self._programme.run()
+        if status != "optimal":
+            return status
+        forces = np.asarray(self._forces @ np.maximum(value[:-1], 0.0)).reshape(-1, 3)
+        return StaticSolution(forces, float(value[-1]), self._programme.iterations())
+
+    def stands_at(self, multiplier: float) -> StaticSolution | FloatArray:
+        """Forces in equilibrium within yield at a multiplier, or the velocities (3n,) that prove there are none.
+
+        The proof is a Farkas ray: a dilatant mechanism on which the loads do positive work.
+
+        Raises:
+            RuntimeError: the solver gives neither.
+        """
+        m = self.problem.n_interfaces
+        programme = self._programme
+        self._programme.set_columns(0, *self._free)
+        programme.set_rows(self.problem.n_velocities, np.zeros(m), np.full(m, INFINITY))
+        programme.set_columns(3 * m, np.array([multiplier]), np.array([multiplier]))
+        programme.set_costs(3 * m, np.array([0.0]))
+        programme.highs.setOptionValue("presolve", "off")
+        programme.highs.setOptionValue("solver", "simplex")
+        try:
+            status, value, _ = programme.run()
+            if status == "optimal":
+                forces = np.asarray(self._forces @ np.maximum(value[:-1], 0.0)).reshape(-1, 3)
+                return StaticSolution(forces, multiplier, programme.iterations())
+            ray = programme.highs.getDualRay()
+            direction = np.array(ray[2])[: self.problem.n_velocities] if ray[1] else np.zeros(0)
+        finally:
+            programme.highs.setOptionValue("presolve", "choose")
+            programme.set_columns(3 * m, np.array([-INFINITY]), np.array([INFINITY]))
+        if status != "infeasible" or len(direction) == 0:
+            raise RuntimeError(f"the linear programme at multiplier {multiplier:g} ended as {status}")
+        load = self.problem.dead + multiplier * self.problem.live
+        return direction * float(np.sign(load @ direction))
+
+
+class KinematicProgramme:
+    """min c.g s.t. C u = E g, fL.u = live work, g >= 0, g_k = 0 outside the allowed contacts."""
+
+    def __init__(self, problem: Problem, associated: bool = False) -> None:
+        self.problem = problem
+        m, n = problem.n_interfaces, problem.n_velocities
+        base, pair = 3 * np.arange(m), 4 * np.arange(m)
+        rows = [base, base + 1, base + 2, base + 2]
+        columns = [pair, pair + 1, pair + 2, pair + 3]
+        values = [np.ones(m), np.ones(m), np.ones(m), -np.ones(m)]
+        if associated:
+            for end in (0, 1):
+                for slip in (2, 3):
+                    rows.append(base + end)
+                    columns.append(pair + slip)
+                    values.append(problem.friction)
+        flow = sp.coo_matrix(
+            (np.concatenate(values), (np.concatenate(rows), np.concatenate(columns))), shape=(3 * m, 4 * m)
+        )
+        live = sp.hstack([sp.csr_matrix(problem.live[None, :]), sp.csr_matrix((1, 4 * m))])
+        right = np.append(np.zeros(3 * m), problem.live_work)
+        self._n = n
+        self._programme = Programme(
+            sp.vstack([sp.hstack([problem.kinematic, -flow]), live]).tocsc(),
+            np.zeros(n + 4 * m),
+            (np.append(np.full(n, -INFINITY), np.zeros(4 * m)), np.full(n + 4 * m, INFINITY)),
+            (right, right),
+        )
+
+    def solve(self, allowed: BoolArray, cost: FloatArray) -> KinematicSolution | None:
+        """The mechanism of least cost (m, 4) in the allowed contacts (m, 4), or None if there is none."""
+        upper = np.where(allowed.ravel(), INFINITY, 0.0)
+        self._programme.set_columns(self._n, np.zeros(len(upper)), upper)
+        self._programme.set_costs(self._n, cost.ravel())
+        status, value, _ = self._programme.run()
+        if status != "optimal":
+            return None
+        return KinematicSolution(value[: self._n], value[self._n :].reshape(-1, 4))

@@ -1,0 +1,112 @@
+"""The search for low collapse states: exact programme on a mechanism, ray descent, seeded restarts.
+
+Without loss of generality the mechanism is an extreme ray of {g >= 0, C u = E g}. For a mechanism that moves in the
+contacts J the best multiplier is the linear programme lambda(J) = min lambda s.t. equilibrium, S r >= 0, y_J = 0.
+Ray descent: at its solution draw another extreme mechanism among the contacts with y = 0, solve its programme, keep
+it if lower. Every draw comes from a seeded generator, and effort is counted in programmes, never in seconds.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from harness.model.assembly import BoolArray, FloatArray
+from methods.la.interior_point import PathResult, PathSettings, Point, follow_path, start_point
+from methods.la.newton_matrix import NewtonMatrix
+from methods.la.problem import Problem
+from methods.la.programmes import KinematicProgramme, StaticProgramme
+from methods.la.state import CollapseState, moving_contacts, tight_contacts
+
+LOWER = 1e-10
+"""A multiplier is lower if it is lower by this much (scaled)."""
+
+
+@dataclass(frozen=True)
+class Effort:
+    """Limits of a search, in counts.
+
+    Attributes:
+        failures: draws without a lower value after which a descent ends.
+        draws: draws of a descent at most.
+    """
+
+    failures: int = 12
+    draws: int = 200
+
+
+class Search:
+    """Everything that a wall's search shares: programmes, known mechanisms, counters."""
+
+    def __init__(self, problem: Problem, newton: NewtonMatrix, seed: int = 0) -> None:
+        self.problem, self.newton = problem, newton
+        self.static = StaticProgramme(problem)
+        self.kinematic = KinematicProgramme(problem)
+        self.generator = np.random.default_rng(seed)
+        self.known: dict[bytes, CollapseState | None] = {}
+        self.newton_steps = 0
+        self.programmes = 0
+
+    def state_of(self, velocities: FloatArray, rates: FloatArray) -> CollapseState | None:
+        """The best collapse state of a mechanism, or None if no forces fit it."""
+        moving = moving_contacts(rates)
+        key = np.packbits(moving).tobytes()
+        if key not in self.known:
+            self.programmes += 1
+            solution = self.static.solve(moving)
+            self.known[key] = (
+                None
+                if isinstance(solution, str)
+                else CollapseState(solution.forces, solution.multiplier, velocities, moving)
+            )
+        return self.known[key]
+
+    def nearest_mechanism(self, forces: FloatArray, rates: FloatArray | None = None) -> CollapseState | None:
+        """The collapse state of the extreme mechanism that does least work y.g on the slacks of given forces."""
+        slack = np.maximum(self.problem.slacks(forces), 0.0)
+        for allowed in self._allowed(slack, rates):
+            self.programmes += 1
+            mechanism = self.kinematic.solve(allowed, slack)
+            if mechanism is not None:
+                state = self.state_of(mechanism.velocities, mechanism.rates)
+                if state is not None:
+                    return state
+        return None
+
+    def _allowed(self, slack: FloatArray, rates: FloatArray | None) -> list[BoolArray]:
+        everywhere = np.ones(slack.shape, dtype=bool)
+        if rates is None:
+            return [slack <= 1e-6, everywhere]
+        return [rates >= slack, slack <= 1e-3, everywhere]
+
+    def follow(self, start: Point, settings: PathSettings) -> PathResult:
+        """Interior point from a start; counts its steps."""
+        result = follow_path(self.problem, self.newton, start, settings)
+        self.newton_steps += result.iterations
+        return result
+
+    def interior(self, spread: float = 0.0, settings: PathSettings | None = None) -> CollapseState | None:
+        """The exact state nearest to where the interior point leads, from the centred or a random start."""
+        settings = settings or PathSettings(gap=1e-7, residual=1e-6)
+        result = self.follow(start_point(self.problem, spread, self.generator), settings)
+        if result.gap > 1e-2:
+            return None
+        return self.nearest_mechanism(result.point.forces, result.point.rates)
+
+    def descend(self, state: CollapseState, effort: Effort) -> CollapseState:
+        """Ray descent from a state."""
+        failures = 0
+        for _ in range(effort.draws):
+            if failures >= effort.failures:
+                break
+            tight = tight_contacts(self.problem, state.forces)
+            cost = self.generator.exponential(size=tight.shape) ** 2
+            self.programmes += 1
+            mechanism = self.kinematic.solve(tight, cost)
+            other = None if mechanism is None else self.state_of(mechanism.velocities, mechanism.rates)
+            if other is not None and other.multiplier < state.multiplier - LOWER:
+                state, failures = other, 0
+            else:
+                failures += 1
+        return state

@@ -1,0 +1,73 @@
+"""A collapse state and the method's own check of it, before the judge sees it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from harness.model.assembly import BoolArray, FloatArray
+from methods.la.exact import exact_forces, exact_mechanism
+from methods.la.newton_matrix import NewtonMatrix
+from methods.la.problem import Problem
+
+MOVING = 1e-9
+"""Rates below this, relative to the largest, are rounding."""
+TIGHT = 1e-8
+"""Slacks below this, in mean block weights, are rounding."""
+
+
+@dataclass(frozen=True, eq=False)
+class CollapseState:
+    """Scaled forces (m, 3), multiplier, velocities (3n,) and the contacts that move (m, 4)."""
+
+    forces: FloatArray
+    multiplier: float
+    velocities: FloatArray
+    moving: BoolArray
+    associated: bool = False
+
+
+def residuals(problem: Problem, state: CollapseState) -> dict[str, float]:
+    """Relative residuals of a collapse state: equilibrium, yield, interpenetration, complementarity.
+
+    Equilibrium and yield are relative to the total dead load, interpenetration to the fastest velocity component,
+    complementarity (the work of the slacks on the rates) to the live work.
+    """
+    blocks = max(problem.n_velocities / 3.0, 1.0)
+    slack = problem.slacks(state.forces)
+    rates = problem.rates_of_velocities(state.velocities, state.associated)
+    speed = float(abs(state.velocities).max(initial=0.0)) or 1.0
+    work = float(problem.live @ state.velocities)
+    return {
+        "equilibrium": float(abs(problem.imbalance(state.forces, state.multiplier)).max(initial=0.0)) / blocks,
+        "yield": max(0.0, -float(slack.min(initial=0.0))) / blocks,
+        "interpenetration": max(0.0, -float(rates.min(initial=0.0))) / speed,
+        "complementarity": float(abs(slack * rates).sum()) / work if work > 0.0 else float("inf"),
+    }
+
+
+def moving_contacts(rates: FloatArray) -> BoolArray:
+    """(m, 4) rates that are more than rounding."""
+    return rates > MOVING * float(rates.max(initial=0.0))
+
+
+def tight_contacts(problem: Problem, forces: FloatArray) -> BoolArray:
+    """(m, 4) slacks that are no more than rounding."""
+    return problem.slacks(forces) <= TIGHT
+
+
+def polished(problem: Problem, newton: NewtonMatrix, state: CollapseState) -> CollapseState:
+    """The same collapse state with forces and mechanism exact to rounding, where that lowers its residuals."""
+    best, merit = state, max(residuals(problem, state).values())
+    for tight in (tight_contacts(problem, state.forces) | state.moving, state.moving):
+        try:
+            forces, multiplier = exact_forces(problem, newton, state.forces, state.multiplier, tight)
+            velocities = exact_mechanism(problem, newton, state.velocities, state.moving, state.associated)
+        except RuntimeError:
+            continue
+        candidate = CollapseState(forces, multiplier, velocities, state.moving, state.associated)
+        size = max(residuals(problem, candidate).values())
+        if size < merit:
+            best, merit = candidate, size
+        if merit < 1e-13:
+            break
+    return best
