@@ -68,7 +68,7 @@ def _by_highs(problem: Problem, newton: NewtonMatrix) -> AssociatedResult:
 def with_mechanism(
     problem: Problem, newton: NewtonMatrix, forces: FloatArray, multiplier: float, iterations: int
 ) -> AssociatedResult:
-    """The result that belongs to optimal forces: a dilatant mechanism in their tight contacts, polished and compared."""
+    """The result of optimal forces: a dilatant mechanism in their tight contacts, polished and compared."""
     slack = np.maximum(problem.slacks(forces), 0.0)
     programme = KinematicProgramme(problem, associated=True)
     mechanism = programme.solve(tight_contacts(problem, forces), np.ones_like(slack))

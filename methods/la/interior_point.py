@@ -221,7 +221,7 @@ def _step_lengths(
     step: _Step,
     point: Point,
     change: Point,
-    active: FloatArray,
+    active: BoolArray,
     settings: PathSettings,
     fraction: float,
 ) -> tuple[float, float]:

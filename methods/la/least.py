@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -9,14 +10,41 @@ import numpy as np
 from harness.model.method import Answer
 from methods.la.answers import collapse_answer, not_converged, unbounded_answer
 from methods.la.associated import AssociatedResult, solve_associated
+from methods.la.continuation import POOL, climb, descend_from
 from methods.la.newton_matrix import NewtonMatrix
 from methods.la.problem import Problem
 from methods.la.search import Effort, Search
 from methods.la.settings import SearchSettings
 from methods.la.state import CollapseState, polished
 
-STARTS = {"quick": 0, "normal": 3, "deep": 40}
-FAILURES = {"quick": 8, "normal": 20, "deep": 60}
+
+@dataclass(frozen=True)
+class Plan:
+    """How much is tried: random starts, failures that end a descent, friction ladder, descents a rung."""
+
+    starts: int
+    failures: int
+    ladder: tuple[float, ...]
+    descents: int
+
+
+LADDER = (0.55, 0.65, 0.75, 0.85, 0.925)
+FINE_LADDER = (1.3, 1.15, 1.0, 0.9, 0.8, 0.7, 0.6, 0.5, 0.55, 0.6, 0.65, 0.7, 0.75, 0.8, 0.85, 0.9, 0.95)
+
+
+def plan_of(settings: SearchSettings, n_free: int) -> Plan:
+    """The plan for a wall of n_free blocks; normal effort shrinks with size so that the time grows slowly."""
+    plan = {
+        "quick": Plan(0, 8, (), 1),
+        "normal": Plan(3, 12, LADDER, 3) if n_free <= 60 else Plan(1, 12, LADDER[::2] if n_free <= 160 else (), 2),
+        "deep": Plan(20, 40, FINE_LADDER, 8),
+    }[settings.effort]
+    return Plan(
+        plan.starts if settings.starts is None else settings.starts,
+        plan.failures if settings.failures is None else settings.failures,
+        plan.ladder if settings.ladder is None else settings.ladder,
+        plan.descents,
+    )
 
 
 def least_known(problem: Problem, settings: SearchSettings, tolerance: float) -> Answer:
@@ -29,16 +57,16 @@ def least_known(problem: Problem, settings: SearchSettings, tolerance: float) ->
     """
     newton = NewtonMatrix(problem)
     associated = solve_associated(problem, newton)
-    search = Search(problem, newton, settings.seed)
-    starts = STARTS[settings.effort] if settings.starts is None else settings.starts
-    effort = Effort(failures=settings.failures or FAILURES[settings.effort])
-    found: list[CollapseState] = []
-    for state in _starting_states(search, associated, starts):
-        found.append(search.descend(state, effort))
-    if not found:
+    plan = plan_of(settings, problem.n_velocities // 3)
+    effort = Effort(failures=plan.failures)
+    below = climb(problem, newton, settings.seed, plan.ladder, effort, plan.descents) if plan.ladder else None
+    search = Search(problem, newton, settings.seed, below)
+    found = [search.descend(state, effort) for state in _starting_states(search, associated, plan.starts)]
+    climbed = descend_from(search.adopt(below, POOL), search, effort, plan.descents) if below is not None else []
+    if not found and not climbed:
         return _nothing_found(search, associated)
-    best = polished(problem, newton, min(found, key=lambda state: state.multiplier))
-    return _answer(problem, search, best, found, associated, tolerance)
+    best = polished(problem, newton, min(found + climbed, key=lambda state: state.multiplier))
+    return _answer(problem, search, best, (found, climbed), associated, tolerance)
 
 
 def _starting_states(search: Search, associated: AssociatedResult, starts: int) -> list[CollapseState]:
@@ -64,18 +92,19 @@ def _answer(
     problem: Problem,
     search: Search,
     best: CollapseState,
-    found: list[CollapseState],
+    states: tuple[list[CollapseState], list[CollapseState]],
     associated: AssociatedResult,
     tolerance: float,
 ) -> Answer:
     unit = problem.unit_multiplier
-    values = [state.multiplier * unit for state in found]
+    values, climbed = ([state.multiplier * unit for state in group] for group in states)
     agreeing = sum(value <= best.multiplier * unit * (1.0 + 1e-7) + 1e-12 for value in values)
     details: dict[str, Any] = {
         "starts": len(values),
         "starts_agree": agreeing == len(values),
         "starts_at_least_known": agreeing,
         "start_values": values,
+        "continuation_values": climbed,
         "newton_steps": search.newton_steps,
         "programmes": search.programmes,
         "unknowns": 7 * problem.n_interfaces + problem.n_velocities + 1,

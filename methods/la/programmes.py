@@ -128,7 +128,7 @@ class StaticProgramme:
         self._free = (np.zeros(3 * m), np.full(3 * m, INFINITY))
         cost = np.zeros(3 * m + 1)
         self._programme = Programme(
-            sp.vstack([equilibrium, backward]).tocsc(),
+            sp.csc_matrix(sp.vstack([equilibrium, backward])),
             cost,
             (np.append(self._free[0], -INFINITY), np.append(self._free[1], INFINITY)),
             (np.append(-problem.dead, np.zeros(m)), np.append(-problem.dead, np.full(m, INFINITY))),
@@ -210,7 +210,7 @@ class KinematicProgramme:
         right = np.append(np.zeros(3 * m), problem.live_work)
         self._n = n
         self._programme = Programme(
-            sp.vstack([sp.hstack([problem.kinematic, -flow]), live]).tocsc(),
+            sp.csc_matrix(sp.vstack([sp.hstack([problem.kinematic, -flow]), live])),
             np.zeros(n + 4 * m),
             (np.append(np.full(n, -INFINITY), np.zeros(4 * m)), np.full(n + 4 * m, INFINITY)),
             (right, right),

@@ -39,18 +39,31 @@ class Effort:
 class Search:
     """Everything that a wall's search shares: programmes, known mechanisms, counters."""
 
-    def __init__(self, problem: Problem, newton: NewtonMatrix, seed: int = 0) -> None:
+    def __init__(self, problem: Problem, newton: NewtonMatrix, seed: int = 0, parent: Search | None = None) -> None:
         self.problem, self.newton = problem, newton
         self.static = StaticProgramme(problem)
-        self.kinematic = KinematicProgramme(problem)
-        self.generator = np.random.default_rng(seed)
+        self.kinematic: KinematicProgramme = KinematicProgramme(problem) if parent is None else parent.kinematic
+        self.generator: np.random.Generator = np.random.default_rng(seed) if parent is None else parent.generator
         self.known: dict[bytes, CollapseState | None] = {}
         self.newton_steps = 0
         self.programmes = 0
+        if parent is not None:
+            self.newton_steps, self.programmes = parent.newton_steps, parent.programmes
+
+    def adopt(self, other: Search, most: int) -> list[CollapseState]:
+        """The states here of the mechanisms that were lowest in another search, whose friction may differ.
+
+        Zero-dilatancy mechanisms do not depend on friction, so each needs one static programme only.
+        """
+        theirs = sorted((state for state in other.known.values() if state is not None), key=lambda s: s.multiplier)
+        states = [self._best_of(state.velocities, state.moving) for state in theirs[:most]]
+        return [state for state in states if state is not None]
 
     def state_of(self, velocities: FloatArray, rates: FloatArray) -> CollapseState | None:
         """The best collapse state of a mechanism, or None if no forces fit it."""
-        moving = moving_contacts(rates)
+        return self._best_of(velocities, moving_contacts(rates))
+
+    def _best_of(self, velocities: FloatArray, moving: BoolArray) -> CollapseState | None:
         key = np.packbits(moving).tobytes()
         if key not in self.known:
             self.programmes += 1

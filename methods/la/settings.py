@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
-from typing import Literal
+from typing import Annotated, Literal
 
 from pydantic import Field
 
 from harness.model.method import Settings
+
+PositiveFactor = Annotated[float, Field(gt=0.0)]
 
 
 class AssociatedSettings(Settings):
@@ -34,9 +36,10 @@ class SearchSettings(Settings):
 
     Attributes:
         seed: of all random draws.
-        effort: "quick" one start; "normal" a few starts and, above `continuation_from`, continuation in friction;
-            "deep" many of each.
+        effort: "quick" one start; "normal" a few starts and continuation in friction, less of both on large walls;
+            "deep" many of each whatever the size.
         starts: random interior starts; None as `effort` says.
+        ladder: factors on friction for the continuation, in order; None as `effort` says, empty for none.
         failures: draws without success that end a ray descent; None as `effort` says.
         rational_interfaces: interfaces up to which the result is confirmed in fractions.
     """
@@ -44,5 +47,6 @@ class SearchSettings(Settings):
     seed: int = Field(default=0, ge=0)
     effort: Literal["quick", "normal", "deep"] = "normal"
     starts: int | None = Field(default=None, ge=0)
+    ladder: tuple[PositiveFactor, ...] | None = None
     failures: int | None = Field(default=None, ge=1)
     rational_interfaces: int = Field(default=100, ge=0)

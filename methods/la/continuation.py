@@ -1,0 +1,55 @@
+"""Continuation in friction: mechanisms found at lower friction are carried up a ladder to the friction of the wall.
+
+The mechanisms of zero-dilatancy flow do not depend on friction, only the forces that fit them do. At high friction
+the low collapse states have small basins; at lower friction the same mechanisms are found at once.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+from methods.la.newton_matrix import NewtonMatrix
+from methods.la.problem import Problem
+from methods.la.search import Effort, Search
+from methods.la.state import CollapseState
+
+POOL = 24
+"""Mechanisms carried from one rung to the next."""
+
+
+def climb(
+    problem: Problem, newton: NewtonMatrix, seed: int, ladder: tuple[float, ...], effort: Effort, descents: int
+) -> Search:
+    """The search at the last rung of the ladder below the wall's own friction, with all it knows.
+
+    Args:
+        problem: the scaled wall.
+        newton: its Newton matrix, which does not depend on friction.
+        seed: of the random draws.
+        ladder: factors on all friction coefficients, in order.
+        effort: of each ray descent.
+        descents: lowest states a rung descends from.
+    """
+    search: Search | None = None
+    for factor in ladder:
+        rung = Search(replace(problem, friction=problem.friction * factor), newton, seed, search)
+        states = [rung.interior()]
+        if search is not None:
+            states += rung.adopt(search, POOL)
+        descend_from([state for state in states if state is not None], rung, effort, descents)
+        search = rung
+    assert search is not None
+    return search
+
+
+def descend_from(states: list[CollapseState], search: Search, effort: Effort, most: int) -> list[CollapseState]:
+    """Where ray descent leads from the lowest of the states that differ in multiplier."""
+    reached: list[CollapseState] = []
+    seen: set[int] = set()
+    for state in sorted(states, key=lambda s: s.multiplier):
+        place = round(state.multiplier * 1e9)
+        if place in seen or len(reached) >= most:
+            continue
+        seen.add(place)
+        reached.append(search.descend(state, effort))
+    return reached
