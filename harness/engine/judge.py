@@ -49,7 +49,7 @@ def yield_violation(assembly: Assembly, forces: FloatArray) -> float:
     """Largest tension, or excess of shear over friction, relative to the total dead load."""
     normal = forces[:, :2]
     excess = abs(forces[:, 2]) - assembly.friction * normal.sum(axis=1)
-    worst = max(float((-normal).max(initial=0.0)), float(excess.max(initial=0.0)), 0.0)
+    worst = max(0.0, float((-normal).max(initial=0.0)), float(excess.max(initial=0.0)))
     return worst / assembly.force_scale
 
 
@@ -88,7 +88,7 @@ def collapse_residuals(
     residuals = {
         "equilibrium": equilibrium_residual(assembly, forces, multiplier),
         "yield": yield_violation(assembly, forces),
-        "interpenetration": max(float((-opening).max(initial=0.0)), 0.0),
+        "interpenetration": max(0.0, float((-opening).max(initial=0.0))),
         "dilatancy": float(np.minimum(abs(normal) / mean_weight, np.maximum(opening, 0.0)).max(initial=0.0)),
         "sliding": float(
             max(
@@ -122,7 +122,7 @@ def judge(assembly: Assembly, result: Result, tolerance: float) -> Judgement:
     forces = None if result.forces is None else np.asarray(result.forces, dtype=float).reshape(-1, 3)
     mechanism = None if result.mechanism is None else np.asarray(result.mechanism, dtype=float).reshape(-1, 3)
     if result.finding is Finding.FALLS:
-        return _judge_fall(assembly, mechanism, tolerance)
+        return _judge_fall(assembly, mechanism, result.flow, tolerance)
     at = result.forces_multiplier
     if result.finding is Finding.STANDS or at is None:
         at = 0.0
@@ -150,18 +150,21 @@ def judge(assembly: Assembly, result: Result, tolerance: float) -> Judgement:
     return _decide(residuals, tolerance, what)
 
 
-def _judge_fall(assembly: Assembly, mechanism: FloatArray | None, tolerance: float) -> Judgement:
+def _judge_fall(assembly: Assembly, mechanism: FloatArray | None, flow: str, tolerance: float) -> Judgement:
     if mechanism is None:
         return Judgement(tolerance=tolerance, accepted=None, sentence="It gives no mechanism of the fall to check.")
     mechanism = normalised_mechanism(assembly, mechanism)
     opening, slip = relative_velocities(assembly, mechanism)
     dilatant = opening - (assembly.friction * abs(slip))[:, None]
     gain = power(assembly.dead, mechanism) / assembly.force_scale
-    residuals = {"interpenetration": max(float((-opening).max(initial=0.0)), 0.0), "dead_work": gain}
+    residuals = {"interpenetration": max(0.0, float((-opening).max(initial=0.0))), "dead_work": gain}
     proved = float((-dilatant).max(initial=0.0)) <= tolerance and gain > 0.0
-    accepted = residuals["interpenetration"] <= tolerance and gain > 0.0
+    measured = flow == "approximate"
+    accepted = gain > 0.0 and (measured or residuals["interpenetration"] <= tolerance)
     if proved:
         sentence = "The mechanism gains dead work with dilatant flow: no equilibrium exists, which proves the fall."
+    elif accepted and measured:
+        sentence = "The measured motion gains dead work; its flow is not judged."
     elif accepted:
         sentence = "The mechanism gains dead work without interpenetration; an equilibrium may exist all the same."
     else:
