@@ -7,7 +7,9 @@ import os
 import shlex
 import sys
 from collections.abc import Callable
+from datetime import UTC, datetime
 from functools import wraps
+from importlib.metadata import version
 from pathlib import Path
 from typing import Any
 
@@ -15,6 +17,7 @@ import click
 
 from harness import terminal
 from harness.engine import compare as comparing
+from harness.engine import baseline as recording
 from harness.engine import regression
 from harness.engine.judge import judge as judge_result
 from harness.engine.plan import Limits, Run, check_methods, find_cases, gated_runs, plan_case
@@ -277,6 +280,51 @@ def check(
     else:
         terminal.print_check(lines)
     sys.exit(0 if all(line["verdict"] == "agrees" for line in lines) else 1)
+
+
+@main.command()
+@click.argument("action", type=click.Choice(["show", "update"]), default="show")
+@click.argument("cases", nargs=-1)
+@click.option("--suite", help="A suite of cases.  [default: all cases]")
+@click.option("--reason", default="", help="Why the recorded values change; an update needs it.")
+@click.option("--file", "path", type=click.Path(path_type=Path), help="The baseline.  [default: the one shipped]")
+@_jobs_option
+@_store_option
+@_json_flag
+@_cases_option
+@_catching
+def baseline(
+    action: str,
+    cases: tuple[str, ...],
+    suite: str | None,
+    reason: str,
+    path: Path | None,
+    jobs: int,
+    store: Path,
+    as_json: bool,
+    folders: tuple[Path, ...],
+) -> None:
+    """Show how today's values stand to the recorded ones (exit code 1 if one is worse), or record them."""
+    if action == "update" and not reason.strip():
+        raise InputError("an update of the baseline needs a reason", 'Give --reason "..."', "baseline")
+    chosen = find_cases(cases, suite if cases or suite else "all", folders)
+    recorded_in = path or shipped_cases() / "baseline.json"
+    recorded = recording.read_baseline(recorded_in)
+    runs = [planned for case in chosen for planned in plan_case(case, None, Limits())]
+    with open_store(store) as opened, terminal.progress(len(runs), quiet=as_json) as told:
+        results = comparing.execute(runs, opened, jobs, told=told)
+    rows = recording.compare_with(recorded, runs, results)
+    if as_json:
+        _json({"action": action, "rows": rows})
+    else:
+        terminal.print_changes(rows)
+    if action == "update":
+        entry = recording.Entry(
+            date=datetime.now(UTC).date().isoformat(), release=version("drystone"), reason=reason.strip()
+        )
+        recording.write_baseline(recorded_in, recording.updated(recorded, runs, results, entry))
+    elif any(row["change"] == "worse" for row in rows):
+        sys.exit(1)
 
 
 @main.command(name="list")

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import sys
+from collections import Counter
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
@@ -189,6 +190,15 @@ def print_check(lines: list[dict[str, Any]]) -> None:
         print(f"{mark}  {line['case']}  {line['quantity']}  {where}: {line['sentence']}  [{line['source']}]")
     bad = sum(line["verdict"] != "agrees" for line in lines)
     print(f"{len(lines) - bad} of {len(lines)} gated references hold.")
+
+
+def print_changes(rows: list[dict[str, Any]]) -> None:
+    """What changed against the baseline, and a count of what did not."""
+    for row in rows:
+        if row["change"] != "same":
+            print(f"{row['change']:6s} {row['case']}  {row['method']}: {row['figures']}")
+    counts = Counter(row["change"] for row in rows)
+    print(", ".join(f"{counts[kind]} {kind}" for kind in ("same", "better", "worse", "new") if counts[kind]))
 
 
 def print_rows(rows: list[dict[str, Any]]) -> None:

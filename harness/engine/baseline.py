@@ -1,0 +1,134 @@
+"""Our own values of an earlier release, and whether today's are better, the same or worse.
+
+A lower collapse state of a method that seeks the least one is better; a higher one is worse. For a method that measures
+with a bracket the two brackets must meet. For every other method any change beyond rounding is worse until it is
+recorded with a reason.
+"""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Sequence
+from enum import StrEnum
+from pathlib import Path
+from typing import Any
+
+from pydantic import BaseModel, ConfigDict, Field
+
+from harness.engine.plan import Run
+from harness.model.method import Status
+from harness.model.reading import read_json, validate
+from harness.model.result import Result
+
+SEEKS_LEAST = ("la", "la-from-fe", "la-paper", "la-tresca")
+ROUNDING = 1e-8
+"""Relative change of a multiplier that counts as none: what differs between processors and library builds."""
+
+
+class Change(StrEnum):
+    """How a value stands to the baseline."""
+
+    SAME = "same"
+    BETTER = "better"
+    WORSE = "worse"
+    NEW = "new"
+
+
+class Value(BaseModel):
+    """What one method found on one case."""
+
+    model_config = ConfigDict(extra="forbid")
+    status: Status
+    finding: str
+    multiplier: float | None = None
+    bracket: tuple[float, float] | None = None
+
+
+class Entry(BaseModel):
+    """One update of the baseline: when, by which release, why."""
+
+    model_config = ConfigDict(extra="forbid")
+    date: str
+    release: str
+    reason: str
+
+
+class Baseline(BaseModel):
+    """The recorded values, by case and method, and the history of their updates."""
+
+    model_config = ConfigDict(extra="forbid")
+    history: list[Entry] = Field(default_factory=list)
+    values: dict[str, dict[str, Value]] = Field(default_factory=dict)
+
+
+def read_baseline(path: Path) -> Baseline:
+    """The baseline of a file; an empty one if there is none.
+
+    Raises:
+        InputError: a file that is no baseline.
+    """
+    return validate(Baseline, read_json(path), str(path)) if path.exists() else Baseline()
+
+
+def write_baseline(path: Path, baseline: Baseline) -> None:
+    """Write the baseline, sorted, in place of the file."""
+    data = baseline.model_dump(mode="json", exclude_none=True)
+    data["values"] = {case: dict(sorted(rows.items())) for case, rows in sorted(data["values"].items())}
+    part = path.with_suffix(".part")
+    part.write_text(json.dumps(data, indent=1, allow_nan=False) + "\n", encoding="utf-8")
+    part.replace(path)
+
+
+def value_of(result: Result) -> Value:
+    """What of a result the baseline keeps. An answer the judge rejects counts as not converged."""
+    status = Status.NOT_CONVERGED if result.judge.accepted is False else result.status
+    return Value(status=status, finding=str(result.finding), multiplier=result.multiplier, bracket=result.bracket)
+
+
+def change(method: str, old: Value | None, new: Value) -> tuple[Change, str]:
+    """How a value stands to the recorded one, with the figures."""
+    if old is None:
+        return Change.NEW, _text(new)
+    if new.status is not old.status or new.finding != old.finding:
+        better = old.status is not Status.OK and new.status is Status.OK
+        return (Change.BETTER if better else Change.WORSE), f"{_text(old)} -> {_text(new)}"
+    if new.bracket is not None and old.bracket is not None:
+        meets = new.bracket[0] <= old.bracket[1] and old.bracket[0] <= new.bracket[1]
+        return (Change.SAME if meets else Change.WORSE), f"{_text(old)} -> {_text(new)}"
+    if new.multiplier is None or old.multiplier is None:
+        same = new.multiplier == old.multiplier
+        return (Change.SAME if same else Change.WORSE), f"{_text(old)} -> {_text(new)}"
+    difference = new.multiplier - old.multiplier
+    if abs(difference) <= ROUNDING * max(1.0, abs(old.multiplier)):
+        return Change.SAME, _text(new)
+    better = method in SEEKS_LEAST and difference < 0.0
+    return (Change.BETTER if better else Change.WORSE), f"{_text(old)} -> {_text(new)} ({difference:+.2g})"
+
+
+def _text(value: Value) -> str:
+    if value.status is not Status.OK:
+        return str(value.status).replace("_", " ")
+    if value.bracket is not None:
+        return f"[{value.bracket[0]:.7g}, {value.bracket[1]:.7g}]"
+    return value.finding if value.multiplier is None else f"{value.multiplier:.10g}"
+
+
+def compare_with(baseline: Baseline, runs: Sequence[Run], results: Sequence[Result]) -> list[dict[str, Any]]:
+    """One row a run with default settings: case, method, change, figures."""
+    rows = []
+    for run, result in zip(runs, results, strict=True):
+        if run.settings:
+            continue
+        old = baseline.values.get(run.case.id, {}).get(run.method)
+        kind, figures = change(run.method, old, value_of(result))
+        rows.append({"case": run.case.id, "method": run.method, "change": str(kind), "figures": figures})
+    return rows
+
+
+def updated(baseline: Baseline, runs: Sequence[Run], results: Sequence[Result], entry: Entry) -> Baseline:
+    """The baseline with the values of these results, and the reason on record."""
+    values = {case: dict(rows) for case, rows in baseline.values.items()}
+    for run, result in zip(runs, results, strict=True):
+        if not run.settings:
+            values.setdefault(run.case.id, {})[run.method] = value_of(result)
+    return Baseline(history=[*baseline.history, entry], values=values)

@@ -1,0 +1,54 @@
+"""The baseline tells better from worse, and is changed only with a reason."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from harness.engine.baseline import Baseline, Change, Entry, Value, change, read_baseline, write_baseline
+from harness.model.errors import InputError
+from harness.model.method import Status
+
+
+def value(multiplier: float | None = None, **more) -> Value:
+    return Value(status=more.pop("status", Status.OK), finding="collapses", multiplier=multiplier, **more)
+
+
+@pytest.mark.parametrize(
+    ("method", "old", "new", "expected"),
+    [
+        ("la", 0.5, 0.49, Change.BETTER),
+        ("la", 0.5, 0.51, Change.WORSE),
+        ("la", 0.5, 0.5 + 1e-10, Change.SAME),
+        ("fe", 0.5, 0.49, Change.WORSE),
+        ("la-associated", 0.5, 0.51, Change.WORSE),
+    ],
+)
+def test_lower_is_better_only_for_methods_that_seek_the_least(method, old, new, expected):
+    assert change(method, value(old), value(new))[0] is expected
+
+
+def test_brackets_must_meet():
+    one, two, three = value(bracket=(0.4, 0.5)), value(bracket=(0.45, 0.55)), value(bracket=(0.51, 0.6))
+    assert change("de", one, two)[0] is Change.SAME
+    assert change("de", one, three)[0] is Change.WORSE
+
+
+def test_answer_where_there_was_none_is_better_and_the_reverse_is_worse():
+    failed = value(status=Status.TIMEOUT)
+    assert change("fe", failed, value(0.5))[0] is Change.BETTER
+    assert change("fe", value(0.5), failed)[0] is Change.WORSE
+    assert change("fe", None, value(0.5))[0] is Change.NEW
+
+
+def test_file_keeps_values_and_history(tmp_path: Path):
+    entry = Entry(date="2026-01-01", release="0.1", reason="a test")
+    kept = Baseline(history=[entry], values={"b": {"la": value(0.5)}, "a": {"de": value(bracket=(0.1, 0.2))}})
+    path = tmp_path / "baseline.json"
+    write_baseline(path, kept)
+    assert read_baseline(path) == kept
+    assert read_baseline(tmp_path / "absent.json") == Baseline()
+    path.write_text('{"values": 3}')
+    with pytest.raises(InputError, match="values"):
+        read_baseline(path)
