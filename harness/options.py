@@ -1,0 +1,84 @@
+"""What the commands share: their options, their exit codes, and how an input error is told."""
+
+from __future__ import annotations
+
+import json
+import os
+import sys
+from collections.abc import Callable
+from functools import wraps
+from pathlib import Path
+from typing import Any
+
+import click
+
+from harness.engine.plan import Limits
+from harness.model.case import Case
+from harness.model.errors import InputError
+
+STORE = Path("out/drystone.sqlite")
+REPORT = Path("out/report.html")
+
+INPUT_ERROR = 2
+
+
+def catching(command: Callable[..., Any]) -> Callable[..., Any]:
+    """Turn an input error into one clear line on standard error and exit code 2."""
+
+    @wraps(command)
+    def wrapped(*args: Any, **kwargs: Any) -> Any:
+        try:
+            return command(*args, **kwargs)
+        except InputError as error:
+            click.echo(f"drystone: {error}", err=True)
+            sys.exit(INPUT_ERROR)
+        except BrokenPipeError:
+            os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+            sys.exit(0)
+        except OSError as error:
+            where = f"{error.filename}: " if error.filename else ""
+            click.echo(f"drystone: {where}{error.strerror or error}", err=True)
+            sys.exit(INPUT_ERROR)
+
+    return wrapped
+
+
+def print_json(value: Any) -> None:
+    """One JSON document on standard output."""
+    click.echo(json.dumps(value, indent=1, ensure_ascii=False, allow_nan=False))
+
+
+json_flag = click.option("--json", "as_json", is_flag=True, help="One JSON document on standard output.")
+store_option = click.option("--store", type=click.Path(path_type=Path), default=STORE, show_default=True)
+cases_option = click.option(
+    "--cases",
+    "folders",
+    multiple=True,
+    type=click.Path(path_type=Path),
+    help="A further folder of case folders; may be repeated.",
+)
+jobs_option = click.option(
+    "--jobs",
+    type=click.IntRange(1),
+    default=os.cpu_count() or 1,
+    show_default="number of cores",
+    help="Runs at a time.",
+)
+seconds_option = click.option(
+    "--seconds", type=click.FloatRange(min=0.0, min_open=True), default=Limits().seconds, show_default=True,
+    help="Wall-clock limit of one run.",
+)  # fmt: skip
+memory_option = click.option(
+    "--memory", type=click.IntRange(16), default=Limits().memory_bytes // 2**20, show_default=True,
+    help="Memory limit of one run [MiB].",
+)  # fmt: skip
+report_option = click.option(
+    "--report", type=click.Path(path_type=Path), default=REPORT, show_default=True, help="Where the report is written."
+)
+fresh_flag = click.option("--fresh", is_flag=True, help="Run again what is in the store.")
+
+
+def warn(case: Case) -> None:
+    """Tell what a person should hear about a wall, on standard error."""
+    for sentence in case.built.warnings:
+        click.echo(f"drystone: {case.id}: {sentence}", err=True)

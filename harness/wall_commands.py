@@ -1,0 +1,186 @@
+"""Commands about walls and answers that run no comparison: list, expand, judge, schema, show, figure, animate."""
+
+from __future__ import annotations
+
+import sys
+from pathlib import Path
+from typing import Any
+
+import click
+
+from harness import terminal
+from harness.engine import compare as comparing
+from harness.engine.judge import judge as judge_result
+from harness.engine.plan import Limits, Run, check_methods, find_cases
+from harness.engine.store import open_store
+from harness.model.case import Case, case_folders, read_case, shipped_cases
+from harness.model.errors import InputError
+from harness.model.method import Finding, Status, load_method, method_names
+from harness.model.reading import read_json, read_wall, wall_json
+from harness.model.result import Result, result_of
+from harness.model.wall import Wall
+from harness.options import cases_option, catching, json_flag, print_json, store_option, warn
+
+
+@click.command(name="list")
+@click.argument("what", type=click.Choice(["cases", "methods", "suites"]))
+@json_flag
+@cases_option
+@catching
+def list_(what: str, as_json: bool, folders: tuple[Path, ...]) -> None:
+    """List the cases, the methods or the suites there are."""
+    if what == "methods":
+        rows: list[dict[str, Any]] = []
+        for name in method_names():
+            method = load_method(name)
+            rows.append(
+                {
+                    "name": name,
+                    "family": method.family,
+                    "title": method.title,
+                    "settings": method.Settings().model_dump(mode="json"),
+                }
+            )
+    else:
+        cases = [read_case(folder) for folder in case_folders([shipped_cases(), *folders]).values()]
+        if what == "cases":
+            rows = [
+                {
+                    "id": case.id,
+                    "title": case.file.title,
+                    "kind": case.file.kind,
+                    "suites": case.file.suites,
+                    "references": len(case.file.references),
+                }
+                for case in cases
+            ]
+        else:
+            names = sorted({suite for case in cases for suite in case.file.suites})
+            rows = [
+                {"name": suite, "cases": [case.id for case in cases if suite in case.file.suites]} for suite in names
+            ]
+            rows.append({"name": "all", "cases": [case.id for case in cases]})
+    if as_json:
+        print_json(rows)
+    else:
+        terminal.print_rows(rows)
+
+
+@click.command()
+@click.argument("wall", type=click.Path(path_type=Path))
+@click.option("-o", "--output", type=click.Path(path_type=Path), help="A file instead of standard output.")
+@catching
+def expand(wall: Path, output: Path | None) -> None:
+    """Print WALL.json in explicit form: every block with its weight, every interface with its friction."""
+    built = read_wall(wall)
+    for sentence in built.warnings:
+        click.echo(f"drystone: {sentence}", err=True)
+    text = wall_json(built.wall)
+    if output is None:
+        click.echo(text, nl=False)
+    else:
+        output.write_text(text, encoding="utf-8")
+
+
+@click.command()
+@click.argument("wall", type=click.Path(path_type=Path))
+@click.argument("result", type=click.Path(path_type=Path))
+@click.option("--tolerance", type=click.FloatRange(min=0.0, min_open=True), default=1e-9, show_default=True)
+@json_flag
+@catching
+def judge(wall: Path, result: Path, tolerance: float, as_json: bool) -> None:
+    """Judge RESULT.json, an answer for WALL.json that came from anywhere.
+
+    RESULT.json holds "multiplier", "forces" (n1, n2, s of every interface in the order of `drystone expand`) and,
+    for a collapse, "mechanism" (ux, uy, omega of every block) and "flow".
+    """
+    built = read_wall(wall)
+    answer = terminal.foreign_answer(read_json(result), built.assembly, str(result))
+    judged = result_of(answer, built.assembly, case=wall.stem, method="foreign", family="foreign")
+    judgement = judge_result(built.assembly, judged, tolerance)
+    if as_json:
+        print_json(
+            judgement.model_dump(mode="json") | {"multiplier": judged.multiplier, "finding": str(judged.finding)}
+        )
+    else:
+        terminal.print_judgement(judgement)
+    sys.exit(0 if judgement.accepted else 1)
+
+
+@click.command()
+@catching
+def schema() -> None:
+    """Print the JSON Schema of the wall format."""
+    print_json(Wall.model_json_schema(by_alias=True))
+
+
+@click.command()
+@click.argument("case")
+@click.option("-o", "--output", type=click.Path(path_type=Path), default=Path("wall.svg"), show_default=True)
+@cases_option
+@catching
+def show(case: str, output: Path, folders: tuple[Path, ...]) -> None:
+    """Draw CASE (an id or a WALL.json) to a file (.svg, .pdf, .png), before anything is run."""
+    from reports.figures import show_wall
+
+    (found,) = find_cases([case], None, folders)
+    warn(found)
+    show_wall(found.built, output)
+    click.echo(str(output))
+
+
+@click.command()
+@click.argument("case")
+@click.option("--method", "methods", multiple=True, default=("la",), show_default=True, help="May be repeated.")
+@click.option(
+    "--kind", type=click.Choice(["mechanism", "forces", "thrust", "comparison"]), default="mechanism", show_default=True
+)
+@click.option("--format", "suffix", type=click.Choice(["pdf", "svg", "png"]), default="pdf", show_default=True)
+@click.option("-o", "--output", type=click.Path(path_type=Path), help="File to write.  [default: CASE-KIND.FORMAT]")
+@store_option
+@cases_option
+@catching
+def figure(
+    case: str,
+    methods: tuple[str, ...],
+    kind: str,
+    suffix: str,
+    output: Path | None,
+    store: Path,
+    folders: tuple[Path, ...],
+) -> None:
+    """Draw the answers of methods on CASE as a figure for a paper."""
+    from reports.figures import figure as draw
+
+    found, results = _answers(case, methods, store, folders)
+    path = output or Path(f"{found.id}-{kind}.{suffix}")
+    draw(found, results, kind, path)
+    click.echo(str(path))
+
+
+@click.command()
+@click.argument("case")
+@click.option("--method", default="la", show_default=True)
+@click.option("-o", "--output", type=click.Path(path_type=Path), help="A .gif, .png or .webp.  [default: CASE.gif]")
+@store_option
+@cases_option
+@catching
+def animate(case: str, method: str, output: Path | None, store: Path, folders: tuple[Path, ...]) -> None:
+    """Animate the mechanism a method finds on CASE."""
+    from reports.animate import animate as draw
+
+    found, results = _answers(case, (method,), store, folders)
+    path = output or Path(f"{found.id}.gif")
+    draw(found, results[0], path)
+    click.echo(str(path))
+
+
+def _answers(case: str, methods: tuple[str, ...], store: Path, folders: tuple[Path, ...]) -> tuple[Case, list[Result]]:
+    check_methods(methods)
+    (found,) = find_cases([case], None, folders)
+    with open_store(store) as opened, terminal.progress(len(methods), quiet=True) as told:
+        results = comparing.execute([Run(found, name, {}, Limits()) for name in methods], opened, 1, told=told)
+    for result in results:
+        if result.status is not Status.OK or result.finding in (Finding.NONE,):
+            raise InputError(f"{result.method} has no answer to draw: {result.sentence}", element=found.id)
+    return found, results
