@@ -35,15 +35,22 @@ class Agreement:
     only_second: list[str]
 
 
-def velocity_cosine(assembly: Assembly, first: FloatArray, second: FloatArray) -> float | None:
-    """Cosine of two velocity fields (n, 3) in the inner product of areas: integral of v1.v2 over the blocks.
+def measure_of(assembly: Assembly) -> FloatArray:
+    """(n, 3) weights of (ux, uy, omega) in the inner product of areas; zero on fixed blocks.
 
-    A block contributes A (v1.v2) + J omega1 omega2, with the polar moment J of its area about the centroid.
+    The integral of v1.v2 over a block is A (u1.u2) + J omega1 omega2, with the polar moment J about its centroid.
     """
-    area = np.array([polygon_area(polygon) for polygon in assembly.polygons])
-    polar = np.array([_polar_moment(p, c) for p, c in zip(assembly.polygons, assembly.centroid, strict=True)])
-    measure = np.column_stack([area, area, polar])[assembly.free]
-    u, v = np.asarray(first, float)[assembly.free], np.asarray(second, float)[assembly.free]
+    measure = np.zeros((assembly.n_blocks, 3))
+    for block in assembly.free:
+        polygon = assembly.polygons[block]
+        measure[block, :2] = polygon_area(polygon)
+        measure[block, 2] = _polar_moment(polygon, assembly.centroid[block])
+    return measure
+
+
+def velocity_cosine(measure: FloatArray, first: FloatArray, second: FloatArray) -> float | None:
+    """Cosine of two velocity fields (n, 3) in the inner product of `measure_of`; None if one of them is at rest."""
+    u, v = np.asarray(first, float), np.asarray(second, float)
     norm = float((measure * u * u).sum()) * float((measure * v * v).sum())
     if norm <= 0.0:
         return None
@@ -57,8 +64,9 @@ def _polar_moment(polygon: FloatArray, centroid: FloatArray) -> float:
     return float(abs((cross * (x * x + x * x1 + x1 * x1 + y * y + y * y1 + y1 * y1)).sum()) / 12.0)
 
 
-def agreement(assembly: Assembly, first: Result, second: Result) -> Agreement:
+def agreement(assembly: Assembly, first: Result, second: Result, measure: FloatArray | None = None) -> Agreement:
     """How far two results agree; None where one of them lacks what is compared."""
+    measure = measure_of(assembly) if measure is None else measure
     difference = None
     if first.multiplier and second.multiplier is not None:
         difference = second.multiplier / first.multiplier - 1.0
@@ -67,7 +75,7 @@ def agreement(assembly: Assembly, first: Result, second: Result) -> Agreement:
     only_second: list[str] = []
     if first.mechanism is not None and second.mechanism is not None:
         u, v = np.asarray(first.mechanism, float), np.asarray(second.mechanism, float)
-        cosine = velocity_cosine(assembly, u, v)
+        cosine = velocity_cosine(measure, u, v)
         moves, moves_too = shapes.moving(assembly, u), shapes.moving(assembly, v)
         only_first = [assembly.block_ids[i] for i in np.flatnonzero(moves & ~moves_too)]
         only_second = [assembly.block_ids[i] for i in np.flatnonzero(moves_too & ~moves)]
@@ -85,4 +93,8 @@ def agreements(item: CaseResults) -> list[Agreement]:
         and result.finding is Finding.COLLAPSES
         and (result.method == result.family or result.method == "la-associated")
     ]
-    return [agreement(item.case.assembly, first, second) for first, second in itertools.combinations(usable, 2)]
+    if len(usable) < 2:
+        return []
+    assembly = item.case.assembly
+    measure = measure_of(assembly)
+    return [agreement(assembly, first, second, measure) for first, second in itertools.combinations(usable, 2)]

@@ -219,7 +219,9 @@ def draw_forces(ax: Axes, assembly: Assembly, forces: FloatArray, *, thrust: boo
 
     The width of a line is proportional to the force; a force at the limit of friction is circled.
     """
-    ax.add_collection(PolyCollection(list(assembly.polygons), facecolor="none", edgecolor=GREY, linewidth=0.4))
+    for still, hatch in ((False, None), (True, "/////")):
+        polygons = [p for p, fixed in zip(assembly.polygons, assembly.fixed, strict=True) if bool(fixed) is still]
+        ax.add_collection(PolyCollection(polygons, facecolor="none", edgecolor=GREY, linewidth=0.4, hatch=hatch))
     found = shapes.thrusts(assembly, forces, smallest=2e-3)
     if not len(found.size):
         return
@@ -230,10 +232,11 @@ def draw_forces(ax: Axes, assembly: Assembly, forces: FloatArray, *, thrust: boo
     full = (limit > 0.0) & (shear >= 0.999 * limit)
     if thrust:
         lines = []
+        places = shapes.junctions(assembly, found)
         for k, p in enumerate(found.interface):
             a, b = assembly.block_a[p], assembly.block_b[p]
-            start = found.point[k] - half[k] if assembly.fixed[a] else assembly.centroid[a]
-            end = found.point[k] + half[k] if assembly.fixed[b] else assembly.centroid[b]
+            start = found.point[k] - half[k] if assembly.fixed[a] else places[a]
+            end = found.point[k] + half[k] if assembly.fixed[b] else places[b]
             lines.append(np.array([start, found.point[k], end]))
         ax.add_collection(LineCollection(lines, colors=BLUE, linewidths=widths, capstyle="round", joinstyle="round"))
         return

@@ -27,8 +27,8 @@ KNOWN_LIMITS: list[tuple[str, list[str]]] = [
         "Limit analysis (la and its kin)",
         [
             "With friction the problem has many local minima. What is reported is the least collapse state known: a "
-            "true collapse state, checked as such, which a longer search may undercut. It is never called the minimum "
-            "unless a proved lower bound meets it.",
+            "true collapse state, checked as such, which a longer search may undercut. It is called "
+            "the least there is only where a proved lower bound meets it.",
             "The associated maximum is a bound from above for every method; it lets blocks rise as they slide and "
             "may rest on self-stress that a real wall need not have.",
             "The paper's own programme (la-paper) stops at local optima and becomes unreliable beyond about 50 "

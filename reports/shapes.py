@@ -86,6 +86,22 @@ def thrusts(assembly: Assembly, forces: FloatArray, smallest: float = 1e-9) -> T
     return Thrusts(kept, point, vector[kept], size[kept])
 
 
+def junctions(assembly: Assembly, found: Thrusts) -> FloatArray:
+    """Points (n, 2) where the thrust lines of a block meet: its centroid, or on the straight line between two forces.
+
+    A block with exactly two contact forces passes the thrust straight from one centre of pressure to the other.
+    """
+    places = assembly.centroid.copy()
+    touching: list[list[int]] = [[] for _ in range(assembly.n_blocks)]
+    for k, p in enumerate(found.interface):
+        touching[assembly.block_a[p]].append(k)
+        touching[assembly.block_b[p]].append(k)
+    for block, forces in enumerate(touching):
+        if len(forces) == 2:
+            places[block] = found.point[forces].mean(axis=0)
+    return places
+
+
 def amplitude(assembly: Assembly, mechanism: FloatArray) -> float:
     """Displacement of the fastest vertex that shows a normalised mechanism well [length].
 
@@ -108,14 +124,12 @@ def displaced(assembly: Assembly, mechanism: FloatArray, scale: float) -> list[F
 
 def moving(assembly: Assembly, mechanism: FloatArray, smallest: float = 1e-3) -> np.ndarray:
     """(n,) whether any vertex of a block moves faster than `smallest` of the fastest vertex of the wall."""
-    speed = np.array(
-        [
-            float(np.linalg.norm(vertex_velocities(polygon, centroid, motion), axis=1).max())
-            for polygon, centroid, motion in zip(
-                assembly.polygons, assembly.centroid, np.asarray(mechanism, dtype=float), strict=True
-            )
-        ]
-    )
+    block = np.repeat(np.arange(assembly.n_blocks), [len(polygon) for polygon in assembly.polygons])
+    motion = np.asarray(mechanism, dtype=float)[block]
+    arm = np.concatenate(assembly.polygons) - assembly.centroid[block]
+    speeds = np.hypot(motion[:, 0] - motion[:, 2] * arm[:, 1], motion[:, 1] + motion[:, 2] * arm[:, 0])
+    speed = np.zeros(assembly.n_blocks)
+    np.maximum.at(speed, block, speeds)
     return np.asarray(speed > smallest * max(float(speed.max(initial=0.0)), 1e-300))
 
 

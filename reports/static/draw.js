@@ -92,14 +92,31 @@
     for (let p = 0; p < wall.a.length; p++) {
       largest = Math.max(largest, Math.hypot(result.f[3 * p] + result.f[3 * p + 1], result.f[3 * p + 2]));
     }
+    const pressure = (p) => {
+      const share = result.f[3 * p + 1] / (result.f[3 * p] + result.f[3 * p + 1]);
+      const [[x0, y0], [x1, y1]] = [end(wall, p, 0), end(wall, p, 1)];
+      return [x0 + share * (x1 - x0), y0 + share * (y1 - y0)];
+    };
+    const carries = (p) => {
+      const normal = result.f[3 * p] + result.f[3 * p + 1];
+      return normal > 0 && Math.hypot(normal, result.f[3 * p + 2]) >= 0.002 * largest;
+    };
+    const touching = wall.ids.map(() => []);
+    for (let p = 0; p < wall.a.length; p++) {
+      if (carries(p)) [wall.a[p], wall.b[p]].forEach((block) => touching[block].push(p));
+    }
+    /* A block with exactly two forces passes the thrust straight on; else the lines meet at its centroid. */
+    const junction = (block) => {
+      if (touching[block].length !== 2) return centre(wall, block);
+      const [[x0, y0], [x1, y1]] = touching[block].map(pressure);
+      return [(x0 + x1) / 2, (y0 + y1) / 2];
+    };
     for (let p = 0; p < wall.a.length; p++) {
       const [n1, n2, s] = [result.f[3 * p], result.f[3 * p + 1], result.f[3 * p + 2]];
       const normal = n1 + n2;
       const force = Math.hypot(normal, s);
-      if (normal <= 0 || force < 0.002 * largest) continue;
-      const [[x0, y0], [x1, y1]] = [end(wall, p, 0), end(wall, p, 1)];
-      const share = n2 / normal;
-      const [x, y] = [x0 + share * (x1 - x0), y0 + share * (y1 - y0)];
+      if (!carries(p)) continue;
+      const [x, y] = pressure(p);
       const t = tangent(wall, p);
       const way = [
         (normal * wall.n[2 * p] / 1000 + s * t[0]) / force,
@@ -115,7 +132,7 @@
         "stroke-width": width,
       }, group);
       if (full) make("circle", { cx: x, cy: y, r: Math.max(16, 0.5 * width + 9) }, group);
-      const leg = (block, sign) => (wall.fixed[block] === "1" ? [x + sign * half * way[0], y + sign * half * way[1]] : centre(wall, block));
+      const leg = (block, sign) => (wall.fixed[block] === "1" ? [x + sign * half * way[0], y + sign * half * way[1]] : junction(block));
       const [from, to] = [leg(wall.a[p], -1), leg(wall.b[p], 1)];
       make("path", {
         d: `M${from[0]} ${from[1]}L${x} ${y}L${to[0]} ${to[1]}`,
@@ -153,6 +170,7 @@
   window.addEventListener("beforeprint", () => figures.forEach(draw));
 
   for (const section of document.querySelectorAll("section.case")) {
+    section.querySelectorAll(".tools").forEach((tools) => { tools.hidden = false; });
     const slider = section.querySelector("input[type=range]");
     if (slider) {
       const output = section.querySelector("output");

@@ -1,0 +1,89 @@
+"""The data folder: all digits, typed columns, nothing of an earlier report left, nothing of the user's removed."""
+
+from __future__ import annotations
+
+import csv
+import json
+from pathlib import Path
+
+import pyarrow.parquet as pq
+import pytest
+
+from harness.model.comparison import CaseResults, ComparisonRun
+from reports.export import export
+from tests.reports import samples
+
+
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    path = tmp_path_factory.mktemp("data") / "report-data"
+    export(samples.typical(), path)
+    return path
+
+
+def test_csv_keeps_all_digits_and_failed_runs(folder: Path):
+    with (folder / "results.csv").open(encoding="utf-8", newline="") as stream:
+        rows = list(csv.DictReader(stream))
+    assert len(rows) == 12
+    finite = next(row for row in rows if row["case"] == "wall-21" and row["method"] == "fe")
+    assert float(finite["multiplier"]) == 0.5652173913043478
+    stopped = next(row for row in rows if row["status"] == "timeout")
+    assert stopped["multiplier"] == ""
+    assert stopped["sentence"] == "The wall limit of 60 s was reached."
+
+
+def test_csv_quotes_texts_so_that_no_reader_makes_numbers_of_them(tmp_path: Path):
+    case = samples.bond("000000")
+    export(ComparisonRun("", "", "", [CaseResults(case, [samples.solved(case, "la", 0.5)])]), tmp_path)
+    assert (tmp_path / "results.csv").read_text(encoding="utf-8").splitlines()[1].startswith('"000000","la"')
+
+
+def test_parquet_has_typed_columns(folder: Path):
+    table = pq.read_table(folder / "results.parquet")
+    assert table.num_rows == 12
+    assert str(table.schema.field("multiplier").type) == "double"
+    assert table.column("multiplier").null_count == 2, "the failed runs have none"
+
+
+def test_comparisons_name_type_and_source(folder: Path):
+    with (folder / "comparisons.csv").open(encoding="utf-8", newline="") as stream:
+        rows = list(csv.DictReader(stream))
+    assert {row["type"] for row in rows} == {"exact", "bound", "published", "measured", "regression"}
+    assert next(row for row in rows if row["reference"] == "closed")["source"] == "source of closed"
+
+
+def test_fields_of_every_run_are_exported(folder: Path):
+    data = json.loads((folder / "wall-21" / "la.json").read_text(encoding="utf-8"))
+    case = samples.bond()
+    assert len(data["mechanism"]) == case.assembly.n_blocks == len(data["block_ids"])
+    assert data["forces"] == samples.pressing(case.assembly).tolist()
+    assert data["units"] == {"length": "m", "force": "kN"}
+
+
+def test_stale_files_go_and_foreign_files_stay(tmp_path: Path):
+    run = samples.typical()
+    export(run, tmp_path)
+    (tmp_path / "mine.txt").write_text("mine", encoding="utf-8")
+    (tmp_path / "wall-21" / "notes.json").write_text("{}", encoding="utf-8")
+    export(ComparisonRun("", "", "", run.cases[:1]), tmp_path)
+    assert not (tmp_path / "wall-21" / "la.json").exists()
+    assert (tmp_path / "wall-21" / "notes.json").exists()
+    assert (tmp_path / "mine.txt").exists()
+    assert (tmp_path / "single-block" / "la.json").exists()
+
+
+def test_index_cannot_lead_out_of_the_folder(tmp_path: Path):
+    outside = tmp_path / "precious.txt"
+    outside.write_text("keep", encoding="utf-8")
+    folder = tmp_path / "data"
+    folder.mkdir()
+    names = ["../precious.txt", str(outside), "a/../../precious.txt"]
+    (folder / "index.json").write_text(json.dumps({"files": names}), encoding="utf-8")
+    export(ComparisonRun("", "", "", []), folder)
+    assert outside.exists()
+
+
+def test_method_names_are_made_into_file_names(tmp_path: Path):
+    case = samples.bond()
+    export(ComparisonRun("", "", "", [CaseResults(case, [samples.solved(case, "../../evil", 0.5)])]), tmp_path / "d")
+    assert [path.name for path in tmp_path.iterdir()] == ["d"]

@@ -1,0 +1,213 @@
+"""Numbers, charts, drawings and studies of the report."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+
+from harness.model.comparison import CaseResults, ComparisonRun
+from harness.model.method import Status
+from harness.model.result import Verdict
+from reports import agreement, charts, curves, drawing, numbers, paper, shapes, studies, tables
+from tests.reports import samples
+
+
+@pytest.mark.parametrize(
+    ("value", "text"),
+    [
+        (0.47619047619047616, "0.47619"),
+        (-0.5, "−0.50000"),
+        (11.305555, "11.306"),
+        (0.0, "0"),
+        (3.2e-16, "3.20×10⁻¹⁶"),
+        (1e7, "1.00×10⁷"),
+        (math.nan, "not finite"),
+    ],
+)
+def test_plain_numbers_have_sensible_digits(value: float, text: str):
+    assert numbers.plain(value) == text
+
+
+@pytest.mark.parametrize(
+    ("value", "text"),
+    [(6.7e-5, "67 µs"), (0.057, "57 ms"), (0.9996, "1 s"), (12.34, "12.3 s"), (600.0, "10 min"), (7300.0, "2.03 h")],
+)
+def test_times_have_units(value: float, text: str):
+    assert numbers.seconds(value) == text
+
+
+def test_percentages_never_show_a_negative_zero():
+    assert numbers.percent(-1e-9) == "0.00 %"
+    assert numbers.percent(-0.1333) == "−13.33 %"
+
+
+@pytest.mark.parametrize(("low", "high"), [(0.0, 1.0), (-3.0, 17.0), (1e-9, 2e-9), (0.564, 0.566), (0.0, 1e6)])
+def test_ticks_are_round_and_inside(low: float, high: float):
+    found = charts.ticks(low, high)
+    assert 2 <= len(found) <= 8
+    assert all(low - 1e-12 <= value <= high * (1 + 1e-12) for value in found)
+
+
+def test_log_axis_leaves_out_what_has_no_logarithm():
+    chart = charts.Chart(
+        "t", "x", "y", [charts.Series("a", [0.0, 1.0, 10.0], [1.0, -2.0, 5.0])], log_x=True, log_y=True
+    )
+    assert str(charts.svg(chart)).count('class="mark s0"') == 1
+
+
+def test_thinned_path_keeps_its_ends_and_its_peak():
+    x = [float(k) for k in range(5000)]
+    y = [math.sin(k / 700.0) for k in range(5000)]
+    y[1234] = 9.0
+    thin_x, thin_y = charts.thin(x, y)
+    assert len(thin_x) <= 302
+    assert (thin_x[0], thin_x[-1]) == (0.0, 4999.0)
+    assert max(thin_y) == 9.0
+
+
+def test_chart_labels_are_escaped():
+    chart = charts.Chart(samples.SCRIPT, samples.SCRIPT, "y", [charts.Series(samples.CLOSING, [1.0], [2.0])])
+    assert "<script" not in str(charts.svg(chart))
+    assert "<img" not in str(charts.svg(chart))
+
+
+def test_cosine_is_one_for_the_same_motion_at_any_scale():
+    assembly = samples.bond().assembly
+    motion = samples.sliding(assembly, 0.7)
+    measure = agreement.measure_of(assembly)
+    assert agreement.velocity_cosine(measure, motion, 3.0 * motion) == pytest.approx(1.0, abs=1e-12)
+    assert agreement.velocity_cosine(measure, motion, -motion) == pytest.approx(-1.0, abs=1e-12)
+    assert agreement.velocity_cosine(measure, motion, 0.0 * motion) is None
+
+
+def test_cosine_equals_the_integral_over_the_blocks():
+    # One rectangle b x h turning about its centroid against a translation plus the same turn: closed form.
+    assembly = samples.block().assembly
+    turn, both = np.zeros((3, 3)), np.zeros((3, 3))
+    turn[2] = (0.0, 0.0, 1.0)
+    both[2] = (1.0, 0.0, 1.0)
+    area, polar = 0.5, 1.0 * 0.5 * (1.0**2 + 0.5**2) / 12.0
+    expected = polar / math.sqrt(polar * (area + polar))
+    assert agreement.velocity_cosine(agreement.measure_of(assembly), turn, both) == pytest.approx(expected, rel=1e-12)
+
+
+def test_agreement_names_blocks_that_move_in_one_method_only():
+    case = samples.bond(courses=4)
+    first, second = samples.solved(case, "fe", 0.5), samples.solved(case, "la", 0.4)
+    assert second.mechanism is not None
+    second.mechanism = [
+        (0.0, 0.0, 0.0) if name == "4.1" else row
+        for name, row in zip(case.assembly.block_ids, second.mechanism, strict=True)
+    ]
+    found = agreement.agreement(case.assembly, first, second)
+    assert found.only_first == ["4.1"]
+    assert found.only_second == []
+    assert found.difference == pytest.approx(-0.2)
+
+
+def test_thrust_stands_at_the_centre_of_pressure():
+    assembly = samples.block().assembly
+    forces = np.array([[1.0, 3.0, 0.0], [0.0, 0.0, 0.0]])
+    found = shapes.thrusts(assembly, forces)
+    p = 0
+    assert found.interface.tolist() == [p]
+    assert found.point[0] == pytest.approx(0.25 * assembly.end1[p] + 0.75 * assembly.end2[p])
+    assert found.size[0] == pytest.approx(4.0)
+
+
+def test_load_arrow_lies_on_the_line_of_action():
+    assembly = samples.block().assembly
+    load = np.zeros((3, 3))
+    point, force = np.array([0.9, 0.1]), np.array([2.0, -3.0])
+    arm = point - assembly.centroid[2]
+    load[2] = (*force, arm[0] * force[1] - arm[1] * force[0])
+    (arrow,) = shapes.load_arrows(assembly, load)
+    off = arrow.point - point
+    assert off[0] * force[1] - off[1] * force[0] == pytest.approx(0.0, abs=1e-12)
+
+
+def test_drawn_motion_is_the_mechanism():
+    case = samples.bond()
+    result = samples.solved(case, "la", 0.5, turn=0.4)
+    data = drawing.result_data(case, result, 1.0)
+    assert result.mechanism is not None
+    got = np.array(data["m"], dtype=float).reshape(-1, 3)
+    velocity = np.column_stack([got[:, :2] * [1.0, -1.0] * data["speed"], -got[:, 2] * data["spin"]])
+    # A tenth of a drawing unit of 4000, and 1e-4 rad, over the amplitude of about 500 units or 0.25 rad.
+    assert velocity == pytest.approx(np.array(result.mechanism), abs=1e-3)
+
+
+def test_drawn_forces_are_the_forces():
+    case = samples.bond()
+    result = samples.solved(case, "la", 0.5)
+    unit = drawing.force_unit([result])
+    got = np.array(drawing.result_data(case, result, unit)["f"], dtype=float).reshape(-1, 3) * unit / 1e4
+    assert got == pytest.approx(np.array(result.forces), abs=unit * 0.51e-4)
+
+
+def test_profile_does_not_count_an_unsolved_case_as_won():
+    case = samples.bond()
+    quick_but_wrong = samples.solved(case, "la", 0.9, cpu=0.001)
+    quick_but_wrong.verdict = Verdict.OUTSIDE_TOLERANCE
+    slow = samples.solved(case, "fe", 0.5, cpu=1.0)
+    stopped = samples.failed(case, "de", Status.TIMEOUT, "")
+    stopped.cpu_seconds = 1e-6
+    nobody = CaseResults(case, [samples.failed(case, "fe", Status.CRASHED, "")])
+    run = ComparisonRun("", "", "", [CaseResults(case, [quick_but_wrong, slow, stopped]), nobody])
+    assert studies.profile(run, ["fe", "la", "de"]) == {"fe": [1.0], "la": [], "de": []}
+
+
+def test_slope_of_a_power_law_is_found():
+    x = [10.0, 20.0, 50.0, 100.0]
+    assert studies._slope(x, [3.0 * value**1.7 for value in x]) == pytest.approx(1.7)
+    assert studies._slope([10.0, 11.0, 12.0], [1.0, 2.0, 3.0]) is None, "no slope over less than a factor of 3"
+
+
+def test_walls_that_differ_in_friction_make_a_study():
+    cases = [samples.bond(f"wall-{k}", friction=friction) for k, friction in enumerate((0.75, 0.4, 0.65))]
+    run = ComparisonRun(
+        "",
+        "",
+        "",
+        [CaseResults(case, [samples.solved(case, "la", 0.5, turn=0.1 * (k == 1))]) for k, case in enumerate(cases)],
+    )
+    (study,) = studies.friction_families(run)
+    assert "3 values of friction" in study.sentence
+    assert "0.400 and 0.650" in study.sentence, "the mechanism of the one with friction 0.4 is another"
+
+
+def test_given_study_is_drawn():
+    line = {
+        "name": "de",
+        "x": [0.0, 0.03, 0.08],
+        "y": [0.56, 0.49, 0.4],
+        "low": [0.55, 0.45, 0.3],
+        "high": [0.57, 0.5, 0.5],
+    }
+    given = {"title": "Imperfections", "sentence": "It falls.", "read": "Down.", "x_label": "eps", "series": [line]}
+    (study,) = studies.studies(ComparisonRun("", "", "", [], {"studies": [given]}))
+    assert study.title == "Imperfections"
+    assert str(study.drawing).count('class="bar') == 3
+
+
+def test_ratios_need_no_method_that_is_missing():
+    case = samples.bond()
+    found = paper.paper_comparison(ComparisonRun("", "", "", [CaseResults(case, [samples.solved(case, "la", 0.5)])]))
+    assert found is not None
+    assert found.ratio_ours == ""
+    assert paper.paper_comparison(ComparisonRun("", "", "", [])) is None
+
+
+def test_least_known_history_never_rises():
+    case = samples.bond()
+    path = {"cpu_seconds": [0.1, 0.2, 0.3], "multiplier": [0.5, 0.6, 0.4]}
+    ((caption, chart),) = curves.curves(CaseResults(case, [samples.solved(case, "la", 0.4, path=path)]))
+    assert "least collapse state known" in caption
+    assert "la: 0.2, 0.5" in str(chart)
+
+
+def test_worst_residual_leaves_out_what_ought_to_be_large():
+    result = samples.solved(samples.bond(), "la", 0.5)
+    assert tables.worst_residual(result) == ("equilibrium", 3e-16)

@@ -1,0 +1,210 @@
+"""The HTML file: complete, self-contained, and safe against whatever stands in a user's files."""
+
+from __future__ import annotations
+
+import json
+import re
+from html.parser import HTMLParser
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from harness.model.comparison import CaseResults, ComparisonRun
+from harness.model.method import Status
+from reports import build
+from tests.reports import samples
+
+
+class Page(HTMLParser):
+    """Elements, attributes and texts of a page."""
+
+    def __init__(self, text: str) -> None:
+        super().__init__()
+        self.elements: list[tuple[str, dict[str, str | None]]] = []
+        self.texts: list[str] = []
+        self.scripts: list[str] = []
+        self.open: list[str] = []
+        self.feed(text)
+
+    def handle_starttag(self, tag: str, attrs: list[tuple[str, str | None]]) -> None:
+        self.elements.append((tag, dict(attrs)))
+        if tag == "script":
+            self.scripts.append("")
+            self.open.append(tag)
+
+    def handle_endtag(self, tag: str) -> None:
+        if tag == "script":
+            self.open.pop()
+
+    def handle_data(self, data: str) -> None:
+        if self.open:
+            self.scripts[-1] += data
+        else:
+            self.texts.append(data)
+
+    @property
+    def text(self) -> str:
+        return re.sub(r"\s+", " ", " ".join(self.texts))
+
+    @property
+    def data(self) -> Any:
+        return json.loads(self.scripts[0])
+
+
+@pytest.fixture(scope="module")
+def source() -> str:
+    return build.render(samples.typical(), data_folder="report-data")
+
+
+@pytest.fixture(scope="module")
+def page(source: str) -> Page:
+    return Page(source)
+
+
+def test_names_from_a_file_never_become_markup(page: Page):
+    names = [name for name, _ in page.elements]
+    assert names.count("script") == 3, "the data, and the two scripts of the page"
+    assert "img" not in names
+    assert not [attrs for _, attrs in page.elements if any(key.startswith("on") for key in attrs)]
+    assert samples.SCRIPT in page.text
+    assert f"ValueError: {samples.CLOSING}" in page.text
+
+
+def test_names_in_the_data_are_what_the_file_said(page: Page):
+    assert page.data[2]["ids"][0].startswith(samples.CLOSING)
+
+
+def test_data_cannot_end_its_script_element():
+    text = build.script_json({"a": "</script><!--\u2028&"})
+    assert not set("<>&\u2028") & set(text)
+    assert json.loads(text) == {"a": "</script><!--\u2028&"}
+
+
+def test_page_refers_to_nothing_outside_itself(source: str, page: Page):
+    for name, attrs in page.elements:
+        assert "src" not in attrs, name
+        assert name not in ("link", "iframe", "object", "embed", "base")
+        href = attrs.get("href")
+        assert href is None or href.startswith("#"), href
+    assert "@import" not in source
+    assert re.findall(r"url\((?!#)", source) == []
+    assert [address for address in re.findall(r"https?://[^\s\"'<)]+", source) if "www.w3.org" not in address] == []
+
+
+def test_every_link_leads_somewhere(page: Page):
+    ids = [attrs["id"] for _, attrs in page.elements if "id" in attrs]
+    assert len(ids) == len(set(ids))
+    links = {(attrs["href"] or "")[1:] for _, attrs in page.elements if "href" in attrs}
+    assert links <= set(ids)
+
+
+def test_failed_runs_stay_with_their_sentences(page: Page):
+    assert "timeout" in page.text
+    assert "The wall limit of 60 s was reached." in page.text
+    assert "rejected by the judge" in page.text
+    assert "equilibrium 0.2 is not small" in page.text
+    rows = [attrs for name, attrs in page.elements if name == "tr" and "data-method" in attrs]
+    assert len(rows) == 4 + 6 + 2
+
+
+def test_findings_count_what_there_is(page: Page):
+    assert "Of 12 runs on 3 cases, 10 ended with an answer; the judge accepted 9 and rejected 1." in page.text
+    assert "Of 2 gated reference values, 2 are met." in page.text
+    assert "Of 3 statements of theory that could be tested, 2 hold." in page.text
+
+
+def test_references_stand_in_tables_by_what_a_disagreement_would_mean(page: Page):
+    places = [page.text.index(f"requirement of {name}") for name in ("closed", "others", "tests", "before")]
+    heads = [page.text.index(word) for word in ("Verification:", "Benchmark:", "Validation:", "Regression:")]
+    for head, place, following in zip(heads, places, [*heads[1:], len(page.text)], strict=True):
+        assert head < place < following
+    assert heads[0] < page.text.index("requirement of bound") < heads[1], "a bound is verification"
+
+
+def test_paper_values_stand_beside_ours(page: Page):
+    assert "0.476 0.5/1.05 0.47619 0" in page.text
+    assert "0.545 0.6/1.1 0.54545 0" in page.text
+    assert "[0.41270, 0.54550]" in page.text
+    assert "20 : 15 : 360" in page.text
+    assert "20 : 10 : 400" in page.text, "0.2 s, 0.1 s and 4 s with FE set to 20"
+
+
+def test_least_is_never_called_the_minimum(page: Page):
+    assert "the minimum" not in page.text.lower()
+    assert "least known" in page.text.lower()
+
+
+def test_every_table_is_introduced_and_followed_by_how_to_read_it(page: Page):
+    regions = sum(name == "table" for name, _ in page.elements)
+    explained = page.text.count("How to read")
+    # The four reference tables share one explanation.
+    assert explained >= regions - 3
+
+
+def test_numbers_carry_all_their_digits_in_the_hover_text(page: Page):
+    titles = [attrs.get("title") or "" for _, attrs in page.elements]
+    assert "0.5652173913043478" in titles
+
+
+def test_command_that_repeats_a_row_is_printed(page: Page):
+    assert "drystone run la wall-21" in page.text
+
+
+def test_same_comparison_gives_the_same_bytes(source: str):
+    assert build.render(samples.typical(), data_folder="report-data") == source
+
+
+def test_wall_that_cannot_be_built_is_reported_and_not_a_crash():
+    case = samples.unbuildable()
+    run = ComparisonRun("broken", "drystone compare", "now", [CaseResults(case, [])])
+    page = Page(build.render(run, data_folder="x"))
+    assert "This wall cannot be built" in page.text
+    assert "light" in page.text
+
+
+def test_comparison_without_results_is_a_page():
+    run = ComparisonRun("nothing", "drystone compare", "now", [])
+    assert "Of 0 runs on 0 cases" in Page(build.render(run, data_folder="x")).text
+
+
+def test_unknown_method_of_a_third_party_is_shown():
+    case = samples.bond()
+    run = ComparisonRun("other", "drystone compare", "now", [CaseResults(case, [samples.solved(case, "mine", 0.5)])])
+    assert "drystone run mine wall-21" in Page(build.render(run, data_folder="x")).text
+
+
+def test_fifty_cases_by_eight_methods_stay_below_five_megabytes():
+    assert len(build.render(samples.large(), data_folder="x").encode()) < 5_000_000
+
+
+def test_fields_are_cut_from_the_largest_cases_first(monkeypatch: pytest.MonkeyPatch):
+    run = samples.typical()
+    size = sum(build.weight_of_drawing(item.case, result) for item in run.cases for result in item.results)
+    monkeypatch.setattr(build, "DRAWING_BUDGET", size - 1)
+    data = Page(build.render(run, data_folder="x")).data
+    assert any("f" in result for result in data[0]["results"])
+    assert not any("f" in result for result in data[1]["results"])
+
+
+def test_report_is_replaced_as_a_whole(tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
+    path = tmp_path / "deep" / "report.html"
+    build.write_report(samples.typical(), path)
+    before = path.read_text(encoding="utf-8")
+    monkeypatch.setattr(build.os, "replace", _refuse)
+    with pytest.raises(OSError, match="no space"):
+        build.write_report(ComparisonRun("new", "", "", []), path)
+    assert path.read_text(encoding="utf-8") == before
+    assert sorted(item.name for item in path.parent.iterdir()) == ["report-data", "report.html"]
+
+
+def _refuse(*_: object) -> None:
+    raise OSError("no space")
+
+
+def test_failed_status_words_are_all_known():
+    case = samples.bond()
+    results = [samples.failed(case, f"method-{status}", status, "why") for status in Status if status is not Status.OK]
+    page = Page(build.render(ComparisonRun("", "", "", [CaseResults(case, results)]), data_folder="x"))
+    for word in ("not converged", "refused", "timeout", "out of memory", "crashed"):
+        assert word in page.text
