@@ -7,6 +7,7 @@ from typing import ClassVar
 from harness.model.assembly import Assembly, IntArray
 from harness.model.method import Answer, Finding, Settings, Status
 from methods.de.answer import solve_by_holds
+from methods.de.courses import Tuning
 from methods.de.settings import HoldSettings
 from methods.de.space import StripSpace
 
@@ -23,8 +24,8 @@ class DampedHolds:
     def solve(self, assembly: Assembly, settings: HoldSettings) -> Answer:
         """Bracket of the collapse multiplier over body orders; see `methods.de.answer`."""
 
-        def engine(blocks: IntArray, joints: IntArray) -> StripSpace:
-            return StripSpace(assembly, blocks, joints, settings.iterations, settings.mass_decay)
+        def engine(blocks: IntArray, joints: IntArray, tuning: Tuning) -> StripSpace:
+            return StripSpace(assembly, blocks, joints, settings.iterations, tuning)
 
         try:
             return solve_by_holds(assembly, settings, engine)

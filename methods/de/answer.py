@@ -7,11 +7,12 @@ from typing import Any
 
 import numpy as np
 
-from harness.model.assembly import Assembly
+from harness.model.assembly import Assembly, IntArray
 from harness.model.method import Answer, Finding, Status
 from methods.de.bracket import Bracket, Search, held_forces, load_unit, mechanism_at
-from methods.de.courses import courses, insertion_orders
+from methods.de.courses import Tuning, courses, insertion_orders, tunings
 from methods.de.engine import Engine
+from methods.de.hold import State, hold, hold_limit
 from methods.de.settings import HoldSettings
 
 BRACKET_MEANING = (
@@ -23,30 +24,36 @@ LOOSE = 0.02
 """Widest bracket of one order, as a part of the multiplier, that still counts as converged."""
 
 
-def solve_by_holds(assembly: Assembly, settings: HoldSettings, make_engine: Callable[..., Engine]) -> Answer:
+EngineMaker = Callable[[IntArray, IntArray, Tuning], Engine]
+"""From free blocks and interfaces in insertion order and a tuning to an engine that holds the wall."""
+
+
+def solve_by_holds(assembly: Assembly, settings: HoldSettings, make_engine: EngineMaker) -> Answer:
     """Bracket the collapse multiplier in every insertion order and put the findings together.
 
     Args:
         assembly: the wall.
         settings: settings of the holds.
-        make_engine: from (blocks, interfaces) in insertion order to an engine that holds the wall.
+        make_engine: makes the engine.
     """
     if assembly.n_free == 0:
         return Answer(Status.OK, Finding.STANDS, "every block is fixed: nothing can move")
     unit = load_unit(assembly)
-    orders = insertion_orders(assembly, courses(assembly), settings.orders, settings.seed)
+    course = courses(assembly)
+    orders = insertion_orders(assembly, course, settings.orders, settings.seed)
+    tuning = choose_tuning(settings, tunings(course, settings.mass_decay), make_engine, orders[0][1], orders[0][2])
     brackets: list[Bracket] = []
     for name, blocks, joints in orders:
-        engine = make_engine(blocks, joints)
+        engine = make_engine(blocks, joints, tuning)
         brackets.append(Search(engine, settings, unit, name).run(assembly.has_live_load))
     details = describe(assembly, brackets)
     answer = _conclude(assembly, settings, brackets, unit)
     answer.iterations = sum(b.steps for b in brackets)
-    answer.details = {**details, **answer.details}
+    answer.details = {**details, "mass_decay": tuning.mass_decay, "damping": tuning.damping, **answer.details}
     best = reporting(brackets)
     if best is not None:
         _, blocks, joints = next(order for order in orders if order[0] == best.order)
-        engine = make_engine(blocks, joints)
+        engine = make_engine(blocks, joints, tuning)
         answer.forces, residual = held_forces(engine, settings, best)
         answer.forces_multiplier = best.held
         answer.details["residual_of_forces"] = residual
@@ -55,6 +62,27 @@ def solve_by_holds(assembly: Assembly, settings: HoldSettings, make_engine: Call
             answer.mechanism, answer.flow = mechanism_at(engine, settings, best), "approximate"
         answer.iterations += engine.steps
     return answer
+
+
+def choose_tuning(
+    settings: HoldSettings, candidates: list[Tuning], make_engine: EngineMaker, blocks: IntArray, joints: IntArray
+) -> Tuning:
+    """The tuning with which the wall settles under its dead load in the fewest time steps.
+
+    If it settles with none, the one with which it most quickly moves; if it does neither, the first.
+    """
+    found: dict[State, tuple[int, Tuning]] = {}
+    for tuning in candidates if len(candidates) > 1 else []:
+        engine = make_engine(blocks, joints, tuning)
+        engine.load(0.0)
+        limit = found[State.HELD][0] if State.HELD in found else 4 * hold_limit(engine, settings)
+        end = hold(engine, settings, limit)
+        if end.state not in found or end.steps < found[end.state][0]:
+            found[end.state] = (end.steps, tuning)
+    for state in (State.HELD, State.MOVING):
+        if state in found:
+            return found[state][1]
+    return candidates[0]
 
 
 def reporting(brackets: list[Bracket]) -> Bracket | None:

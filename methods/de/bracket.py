@@ -8,11 +8,11 @@ import numpy as np
 
 from harness.model.assembly import Assembly, FloatArray
 from methods.de.engine import Engine
-from methods.de.hold import Hold, State, hold, settle
+from methods.de.hold import Hold, State, hold, hold_limit, settle
 from methods.de.settings import HoldSettings
 
-PATIENCE = 4.0
-"""How much longer the last undecided hold below a moving one is followed, once, before it is left undecided."""
+WIDE = 5e-3
+"""Relative width of [held, moving] above which undecided holds make the search look for a lower moving state."""
 
 
 @dataclass(eq=False)
@@ -68,6 +68,10 @@ def load_unit(assembly: Assembly) -> float:
     return assembly.force_scale / total if total > 0.0 else 1.0
 
 
+CREEPING = 2e-3
+"""Accuracy below a state that could not be told: just under collapse a wall creeps, and narrower costs much."""
+
+
 class Search:
     """The bracket of one insertion order, step by step.
 
@@ -97,13 +101,14 @@ class Search:
         self.found.exhausted = self.engine.steps * self.engine.interfaces >= self.settings.work
         return self.found.exhausted
 
-    def _try(self, multiplier: float, patience: float = 1.0) -> Hold:
+    def _try(self, multiplier: float) -> Hold:
         """Hold at this multiplier from the highest held state, and note what came of it."""
         found = self.found
         if found.state is not None:
             self.engine.restore(found.state)
         self.engine.load(multiplier)
-        end = hold(self.engine, self.settings, patience)
+        patience = 4 if multiplier == 0.0 else 1
+        end = hold(self.engine, self.settings, patience * hold_limit(self.engine, self.settings))
         found.holds += 1
         found.trials.append((multiplier, end.residual))
         if end.state is State.HELD:
@@ -134,27 +139,30 @@ class Search:
         if not top or found.held is None:
             return
         high = min(top)
-        while high - found.held > self.settings.accuracy * high and not self._spent():
+        told = found.moving == high
+        while not self._spent():
+            accuracy = self.settings.accuracy if told else max(self.settings.accuracy, CREEPING)
+            if high - found.held <= accuracy * high:
+                break
             middle = (found.held + high) / 2.0
-            if self._try(middle).state is not State.HELD:
-                high = middle
-        if found.moving is None or high < found.moving:
+            state = self._try(middle).state
+            if state is not State.HELD:
+                high, told = middle, state is State.MOVING
+        if found.moving is None or found.moving - found.held > WIDE * found.moving:
             self._raise_upper_end(high)
 
     def _raise_upper_end(self, high: float) -> None:
-        """The lowest state not held was undecided: find a state above it that moves."""
+        """The lowest state not held was undecided: find the lowest state above it that moves, by growing steps."""
         found = self.found
-        step = max(2.0 * self.settings.accuracy * high, 1e-12)
-        if self._try(high, PATIENCE).state is not State.UNDECIDED:
-            return
-        multiplier = high
-        while not self._spent():
-            multiplier += step
-            step *= 2.0
+        step = CREEPING * high
+        multiplier = high + step
+        while not self._spent() and multiplier <= self.settings.load_cap * self.unit:
             if found.moving is not None and multiplier >= found.moving:
                 return
-            if multiplier > self.settings.load_cap * self.unit or self._try(multiplier).state is State.MOVING:
+            if self._try(multiplier).state is State.MOVING:
                 return
+            step *= 2.0
+            multiplier += step
 
 
 def held_forces(engine: Engine, settings: HoldSettings, found: Bracket) -> tuple[FloatArray, float]:

@@ -1,6 +1,8 @@
-"""Courses counted from the supports, the masses chosen from them, and the insertion orders of bodies and interfaces."""
+"""Courses counted from the supports, the tuning chosen from them, and the insertion orders of bodies."""
 
 from __future__ import annotations
+
+from dataclasses import dataclass
 
 import numpy as np
 import scipy.sparse as sp
@@ -8,8 +10,31 @@ from scipy.sparse.csgraph import dijkstra
 
 from harness.model.assembly import Assembly, FloatArray, IntArray, polygon_area
 
-MAX_LOG_RANGE = 14.0
-"""Largest logarithm of the ratio of the heaviest to the lightest mass that `mass_decay` may produce."""
+
+@dataclass(frozen=True)
+class Tuning:
+    """Numbers that decide how fast a wall settles, and not what it settles to.
+
+    Attributes:
+        mass_decay: logarithmic decay of the masses from one course to the next.
+        damping: part of the velocity kept by a time step.
+    """
+
+    mass_decay: float
+    damping: float
+
+
+def tunings(course: IntArray, mass_decay: float | None) -> list[Tuning]:
+    """Tunings to choose from at multiplier zero: for walls, and for chains of blocks as arches are.
+
+    Walls: masses fall by exp(-0.4) a course, over at most exp(-14); damping 1 - 0.2 / courses between 0.95 and 0.9975.
+    Chains: masses fall over exp(-4) in all, damping 0.98. A mass decay that is given leaves one tuning.
+    """
+    tallest = max(int(course.max(initial=1)), 1)
+    keep = float(np.clip(1.0 - 0.2 / tallest, 0.95, 0.9975))
+    if mass_decay is not None:
+        return [Tuning(mass_decay, keep)]
+    return [Tuning(min(0.4, 14.0 / tallest), keep), Tuning(min(0.4, 4.0 / tallest), 0.98)]
 
 
 def courses(assembly: Assembly) -> IntArray:
@@ -30,17 +55,10 @@ def courses(assembly: Assembly) -> IntArray:
 
 
 def masses(assembly: Assembly, course: IntArray, decay: float) -> FloatArray:
-    """(n,) masses area_i / mean area x exp(-decay (course_i - 1)), the decay limited for very tall walls."""
+    """(n,) masses area_i / mean area x exp(-decay (course_i - 1))."""
     area = np.array([polygon_area(polygon) for polygon in assembly.polygons])
-    tallest = int(course[assembly.free].max(initial=1))
-    decay = min(decay, MAX_LOG_RANGE / tallest)
     scaled: FloatArray = area / area[assembly.free].mean() * np.exp(-decay * (course - 1.0))
     return scaled
-
-
-def damping(course: IntArray) -> float:
-    """Part of the velocity kept by a time step: 1 - 0.2 / courses, between 0.95 and 0.9975."""
-    return float(np.clip(1.0 - 0.2 / max(int(course.max(initial=1)), 1), 0.95, 0.9975))
 
 
 def insertion_orders(

@@ -12,11 +12,13 @@ class Engine(Protocol):
 
     Attributes:
         relaxation: relaxation time 1 / (1 - damping) in time steps.
+        courses: most interfaces between a block and the nearest support.
         steps: time steps made so far.
         interfaces: number of interfaces, the unit of work of a time step.
     """
 
     relaxation: float
+    courses: int
     steps: int
     interfaces: int
 
@@ -33,6 +35,13 @@ class Engine(Protocol):
 
         Scaled such that the largest entry is the out-of-balance acceleration as a part of gravity, (ux, uy) in unit
         lengths and omega in radians.
+        """
+        ...
+
+    def unbalance(self, velocity: FloatArray) -> float:
+        """Largest out-of-balance force that goes with this velocity field, as a part of the mean dead load of a block.
+
+        Moments count divided by the unit length.
         """
         ...
 

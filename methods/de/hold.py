@@ -35,7 +35,7 @@ class Hold:
 
     Attributes:
         state: held, moving or undecided.
-        residual: largest out-of-balance acceleration at the end, as a part of gravity.
+        residual: largest out-of-balance force at the end, as a part of the mean dead load of a block.
         steps: time steps made.
         velocity: (n, 3) velocity field at the end, scaled as `Engine.velocity`.
     """
@@ -46,7 +46,7 @@ class Hold:
     velocity: FloatArray
 
 
-def hold(engine: Engine, settings: HoldSettings, patience: float = 1.0) -> Hold:
+def hold(engine: Engine, settings: HoldSettings, limit: int | None = None) -> Hold:
     """Let the engine settle under its present load.
 
     Held: the residual stays below `held_residual` at two checks in a row. Moving: the velocity field is steady over
@@ -56,10 +56,10 @@ def hold(engine: Engine, settings: HoldSettings, patience: float = 1.0) -> Hold:
     Args:
         engine: the wall with its load.
         settings: tolerances.
-        patience: factor on `hold_steps`.
+        limit: most time steps, or None for `hold_limit`.
     """
     check = max(10, round(engine.relaxation / 3.0))
-    limit = int(patience * settings.hold_steps * engine.relaxation)
+    limit = hold_limit(engine, settings) if limit is None else limit
     start = engine.steps
     velocity = engine.velocity()
     residuals: list[float] = []
@@ -67,33 +67,47 @@ def hold(engine: Engine, settings: HoldSettings, patience: float = 1.0) -> Hold:
     while engine.steps - start < limit:
         engine.advance(check)
         before, velocity = velocity, engine.velocity()
-        residual = float(np.abs(velocity).max(initial=0.0))
+        residual = engine.unbalance(velocity)
         residuals.append(residual)
         low = low + 1 if residual < settings.held_residual else 0
         if low == 2:
             return Hold(State.HELD, residual, engine.steps - start, velocity)
-        change = float(np.abs(velocity - before).max(initial=0.0))
-        still = residual > settings.moving_residual and change <= STEADY * residual
+        change = float(np.abs(velocity - before).max(initial=0.0)) / max(
+            float(np.abs(velocity).max(initial=0.0)), 1e-300
+        )
+        still = residual > settings.moving_residual and change <= STEADY
         steady = steady + 1 if still else 0
         if steady == STEADY_CHECKS or residual > RUNAWAY or not np.isfinite(residual):
             return Hold(State.MOVING, residual, engine.steps - start, velocity)
-    half = np.array(residuals[len(residuals) // 2 :])
-    quarter = max(len(half) // 2, 1)
-    lasting = half.min() > 500.0 * settings.moving_residual and half[quarter:].max() >= 0.9 * half[:quarter].max()
-    state = State.MOVING if lasting else State.UNDECIDED
-    return Hold(state, residuals[-1], engine.steps - start, velocity)
+    state = State.MOVING if lasting(residuals, settings) else State.UNDECIDED
+    return Hold(state, residuals[-1] if residuals else float("inf"), engine.steps - start, velocity)
+
+
+def hold_limit(engine: Engine, settings: HoldSettings) -> int:
+    """Most time steps of one hold."""
+    return int(settings.hold_steps * max(engine.relaxation, 3.0 * engine.courses, 100.0))
+
+
+def lasting(residuals: list[float], settings: HoldSettings) -> bool:
+    """Whether an unsteady motion goes on: large, and no smaller in the last quarter of the hold than in the third."""
+    n = len(residuals)
+    if n < 16:
+        return False
+    third, last = np.array(residuals[n // 2 : 3 * n // 4]), np.array(residuals[3 * n // 4 :])
+    large = min(third.min(), last.min()) > 50.0 * settings.moving_residual
+    return bool(large and last.mean() >= 0.99 * third.mean() and last.max() >= 0.99 * third.max())
 
 
 def settle(engine: Engine, settings: HoldSettings) -> float:
     """Follow a held state until its residual is below `force_residual` or no longer falls; its last residual."""
     check = max(10, round(engine.relaxation / 3.0))
-    best = residual = float(np.abs(engine.velocity()).max(initial=0.0))
+    best = residual = engine.unbalance(engine.velocity())
     stale = 0
     for _ in range(3 * settings.hold_steps):
         if residual < settings.force_residual or stale == 6:
             break
         engine.advance(check)
-        residual = float(np.abs(engine.velocity()).max(initial=0.0))
+        residual = engine.unbalance(engine.velocity())
         stale = 0 if residual < 0.9 * best else stale + 1
         best = min(best, residual)
     return residual

@@ -16,7 +16,7 @@ import pymunk
 from pymunk import batch
 
 from harness.model.assembly import Assembly, FloatArray, IntArray
-from methods.de.courses import courses, damping, masses
+from methods.de.courses import Tuning, courses, masses
 from methods.de.strips import ROUNDING, build_strips
 
 TIME_STEP = 1e-2
@@ -36,33 +36,32 @@ class StripSpace:
         blocks: (n_free,) free blocks in the order in which their bodies are added.
         joints: (m,) interfaces in the order in which their strips are added.
         iterations: sweeps of the contact solver in a time step.
-        mass_decay: see `methods.de.courses.masses`.
+        tuning: masses and damping.
 
     Raises:
         ValueError: see `methods.de.strips.build_strips`.
     """
 
-    def __init__(
-        self, assembly: Assembly, blocks: IntArray, joints: IntArray, iterations: int, mass_decay: float
-    ) -> None:
+    def __init__(self, assembly: Assembly, blocks: IntArray, joints: IntArray, iterations: int, tuning: Tuning) -> None:
         self.assembly = assembly
         self.interfaces = assembly.n_interfaces
         self.steps = 0
         self._unit = assembly.length_scale
         self._force = assembly.force_scale / max(assembly.n_free, 1)
         course = courses(assembly)
-        keep = damping(course)
-        self.relaxation = 1.0 / (1.0 - keep)
+        self.relaxation = 1.0 / (1.0 - tuning.damping)
+        self.courses = int(course.max(initial=1))
         self._blocks = blocks
         self._space = pymunk.Space()
         self._space.iterations = iterations
         self._space.gravity = (0.0, 0.0)
-        self._space.damping = keep ** (1.0 / TIME_STEP)
+        self._space.damping = tuning.damping ** (1.0 / TIME_STEP)
         if not self._space.damping > 0.0:
             raise ArithmeticError("the damping of the pymunk space underflows to zero")
         self._space.collision_slop = 10.0 * ROUNDING
         self._ground = self._space.static_body
-        self._bodies = self._add_bodies(masses(assembly, course, mass_decay))
+        self._mass = np.zeros((assembly.n_blocks, 3))
+        self._bodies = self._add_bodies(masses(assembly, course, tuning.mass_decay))
         self._joint_of: dict[pymunk.Shape, int] = {}
         self._add_strips(joints)
         scale = GRAVITY / np.array([self._force, self._force, self._force * self._unit])
@@ -82,7 +81,9 @@ class StripSpace:
         bodies: dict[int, pymunk.Body] = {}
         for i in self._blocks:
             corners = (self.assembly.polygons[i] - self.assembly.centroid[i]) / self._unit
-            body = pymunk.Body(mass[i], mass[i] * polygon_gyration(corners))
+            inertia = mass[i] * polygon_gyration(corners)
+            self._mass[i] = mass[i], mass[i], inertia
+            body = pymunk.Body(mass[i], inertia)
             body.position = tuple(self.assembly.centroid[i] / self._unit)
             self._space.add(body)
             bodies[int(i)] = body
@@ -125,6 +126,10 @@ class StripSpace:
         read = np.frombuffer(self._out.float_buf()).reshape(-1, 3)
         result[self._blocks] = read[: len(self._blocks)] / (self.relaxation * GRAVITY * TIME_STEP)
         return result
+
+    def unbalance(self, velocity: FloatArray) -> float:
+        """Largest out-of-balance force of this velocity field, see `Engine.unbalance`."""
+        return float(np.abs(self._mass * velocity).max(initial=0.0))
 
     def save(self) -> FloatArray:
         """(m, 2, 2) normal and tangential impulse of both contact points of every interface."""
