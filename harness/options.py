@@ -20,6 +20,7 @@ STORE = Path("out/drystone.sqlite")
 REPORT = Path("out/report.html")
 
 INPUT_ERROR = 2
+INTERRUPTED = 130
 
 
 def catching(command: Callable[..., Any]) -> Callable[..., Any]:
@@ -32,6 +33,9 @@ def catching(command: Callable[..., Any]) -> Callable[..., Any]:
         except InputError as error:
             click.echo(f"drystone: {error}", err=True)
             sys.exit(INPUT_ERROR)
+        except KeyboardInterrupt:
+            click.echo("drystone: interrupted; finished runs are kept in the store", err=True)
+            sys.exit(INTERRUPTED)
         except BrokenPipeError:
             os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
             sys.exit(0)

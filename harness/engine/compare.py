@@ -7,7 +7,7 @@ from concurrent.futures import FIRST_COMPLETED, Future, ThreadPoolExecutor, wait
 from datetime import UTC, datetime
 from typing import Any
 
-from harness.engine.isolate import run_isolated
+from harness.engine.isolate import run_isolated, stop_all
 from harness.engine.judge import judge
 from harness.engine.plan import Run
 from harness.engine.provenance import machine, versions
@@ -66,6 +66,7 @@ def execute(
                     told(run, results[number], False)
         except BaseException:
             pool.shutdown(wait=False, cancel_futures=True)
+            stop_all()
             raise
     return [results[number] for number in range(len(runs))]
 

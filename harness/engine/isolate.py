@@ -60,11 +60,13 @@ def run_isolated(task: Task, case: str) -> Measured:
         clock = time.perf_counter()
         process.start()
         watched = _Watched(process, task)
+        _running.add(watched)
         try:
             watched.until_end()
         finally:
             watched.kill()
             process.join()
+            _running.discard(watched)
         elapsed = time.perf_counter() - clock
         record = _read_record(Path(folder))
         if record is None or watched.ending is not None:
@@ -96,6 +98,15 @@ def run_isolated(task: Task, case: str) -> Measured:
         }
     )
     return Measured(measured, float(record.get("tolerance") or 0.0))
+
+
+_running: set[_Watched] = set()
+
+
+def stop_all() -> None:
+    """End every run of this process that is under way, as when the user interrupts."""
+    for watched in list(_running):
+        watched.kill()
 
 
 class _Watched:
