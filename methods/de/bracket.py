@@ -71,6 +71,9 @@ def load_unit(assembly: Assembly) -> float:
 CREEPING = 2e-3
 """Accuracy below a state that could not be told: just under collapse a wall creeps, and narrower costs much."""
 
+CHEAP = 1_000_000
+"""Contact updates up to which a search keeps to the full accuracy even so."""
+
 
 class Search:
     """The bracket of one insertion order, step by step.
@@ -141,7 +144,8 @@ class Search:
         high = min(top)
         told = found.moving == high
         while not self._spent():
-            accuracy = self.settings.accuracy if told else max(self.settings.accuracy, CREEPING)
+            cheap = self.engine.steps * self.engine.interfaces < CHEAP
+            accuracy = self.settings.accuracy if told or cheap else max(self.settings.accuracy, CREEPING)
             if high - found.held <= accuracy * high:
                 break
             middle = (found.held + high) / 2.0

@@ -1,0 +1,164 @@
+"""Requirements on `de`: exact cases, the honest range, judged forces, bit-identical repeats, and its refusals."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from harness.model.method import Finding, Status
+from tests.de.answers import run, unbalanced, unyielding
+from tests.walls import assembly, running_bond, stack
+
+# The bracket is narrowed to 5e-4 of the multiplier: its middle may be 2.5e-4 away, and the load steps add nothing.
+EXACT = 5e-4
+
+
+@pytest.mark.parametrize(
+    ("pattern", "friction", "exact"),
+    [
+        (stack(1, 0.4, 0.2), 0.3, 0.3),
+        (stack(1, 0.2, 0.4), 0.7, 0.5),
+        (stack(2, 0.4, 0.2), 0.7, 0.7),
+        (stack(5, 0.4, 0.2), 0.7, 0.4),
+        (stack(10, 0.4, 0.2), 0.7, 0.2),
+        (stack(10, 0.4, 0.2), 0.15, 0.15),
+    ],
+    ids=["slide", "topple", "2 slide", "5 topple", "10 topple", "10 slide"],
+)
+def test_blocks_and_stacks_have_the_exact_multiplier_inside_a_narrow_bracket(pattern, friction, exact):
+    wall = assembly(pattern, friction)
+    answer = run(wall)
+    assert answer.status is Status.OK
+    assert answer.finding is Finding.COLLAPSES
+    low, high = answer.bracket
+    assert low * (1 - 1e-5) <= exact <= high
+    assert answer.multiplier == pytest.approx(exact, rel=EXACT)
+    # Distinct elements never hold more than statics allows, up to the residual a held state may have.
+    assert low <= exact * (1 + 1e-5)
+    assert unbalanced(wall, answer) < 1e-5
+    assert unyielding(wall, answer) < 1e-9
+
+
+@pytest.mark.parametrize("friction", [0.3, 0.4, 0.5, 0.65, 0.75, 1.0])
+def test_wall_of_21_bricks_slides_or_turns_with_unloaded_head_joints(friction):
+    wall = assembly(running_bond(6, 3), friction)
+    answer = run(wall)
+    exact = min(friction, 13 / 23)
+    assert answer.finding is Finding.COLLAPSES
+    assert answer.multiplier == pytest.approx(exact, rel=1e-3 if friction <= 0.5 else 5e-3)
+    assert answer.details["spread"] < 0.01
+    assert len(answer.details["orders"]) == 3
+    assert unbalanced(wall, answer) < 1e-5
+    assert unyielding(wall, answer) < 1e-9
+    assert answer.forces_multiplier <= answer.multiplier
+    assert answer.flow == "approximate"
+    assert answer.mechanism.shape == (22, 3)
+    assert np.sum(answer.mechanism * wall.live) > 0.0
+    assert np.all(answer.mechanism[wall.fixed] == 0.0)
+
+
+def two_friction_block():
+    """The paper's block L x L/2 on two supports of friction 0.6 and 0.4."""
+    return assembly(
+        None,
+        {
+            "default": 0.5,
+            "rules": [{"between": ["left", "block"], "value": 0.6}, {"between": ["right", "block"], "value": 0.4}],
+        },
+        blocks=[
+            {"id": "left", "polygon": [[0, -0.5], [0.5, -0.5], [0.5, 0], [0, 0]], "fixed": True},
+            {"id": "right", "polygon": [[0.5, -0.5], [1, -0.5], [1, 0], [0.5, 0]], "fixed": True},
+            {"id": "block", "polygon": [[0, 0], [1, 0], [1, 0.5], [0, 0.5]]},
+        ],
+    )
+
+
+def test_block_on_two_frictions_has_a_range_over_orders_inside_what_statics_allows():
+    answer = run(two_friction_block(), orders=5)
+    low, high = answer.bracket
+    # 0.4 and 0.6 / 1.1 are the least and greatest limit-analysis multipliers (Baggio and Trovalusci 1995).
+    assert low >= 0.4
+    assert low * 1.2 < high <= 0.6 / 1.1 * (1 + EXACT)
+    assert all(0.4 <= order["held"] <= 0.6 / 1.1 * (1 + 1e-6) for order in answer.details["orders"])
+
+
+def test_repeats_are_bit_identical():
+    wall = assembly(running_bond(4, 2))
+    one, two = run(wall), run(wall)
+    assert one.multiplier == two.multiplier
+    assert one.bracket == two.bracket
+    assert np.array_equal(one.forces, two.forces)
+    assert np.array_equal(one.mechanism, two.mechanism)
+
+
+def test_mirrored_wall_pushed_the_other_way_agrees():
+    push = {"live": {"body": [{"per_weight": [-1, 0]}]}}
+    right = run(assembly(running_bond(4, 2)))
+    left = run(assembly(running_bond(4, 2), loads=push))
+    assert left.multiplier == pytest.approx(right.multiplier, rel=5e-3)
+
+
+def test_units_do_not_matter():
+    small = run(assembly(stack(3, 0.4, 0.2), 0.7))
+    large = run(assembly(stack(3, 400.0, 200.0), 0.7, unit_weight=2e-5))
+    assert large.multiplier == pytest.approx(small.multiplier, rel=1e-9)
+
+
+def test_a_wall_without_live_load_stands_or_falls():
+    still = {"loads": {"live": None}}
+    offsets = {"offsets": [0.0, 0.0, 0.2]}
+    stands = run(assembly(stack(3), 0.7, **still))
+    assert (stands.status, stands.finding) == (Status.OK, Finding.STANDS)
+    assert stands.multiplier is None
+    falls = run(assembly(stack(3) | offsets, 0.7, **still))
+    assert (falls.status, falls.finding) == (Status.OK, Finding.FALLS)
+    assert falls.multiplier is None
+    assert "dead load" in falls.sentence
+
+
+def test_a_load_that_cannot_bring_it_down_is_unbounded_only_up_to_the_cap():
+    down = {"live": {"body": [{"per_weight": [0, -1]}]}}
+    answer = run(assembly(stack(2), 0.7, loads=down), load_cap=5.0)
+    assert answer.finding is Finding.UNBOUNDED
+    assert answer.multiplier is None
+    assert "held up to the cap" in answer.sentence
+    assert answer.details["cap"] == pytest.approx(5.0)
+
+
+def test_work_that_runs_out_is_not_called_converged():
+    answer = run(assembly(running_bond(6, 3)), work=20_000)
+    assert answer.status is Status.NOT_CONVERGED
+    assert any(order["work_exhausted"] for order in answer.details["orders"])
+
+
+def test_contact_points_set_in_lower_the_overturning_load():
+    wall = assembly(stack(1, 0.2, 0.4), 0.7, contact_inset={"fraction": 0.1})
+    assert run(wall).multiplier == pytest.approx(0.8 * 0.5, rel=EXACT)
+
+
+def test_a_block_that_is_not_convex_needs_no_decomposition():
+    # An L of three unit squares, pushed towards its foot: it turns about the end of the foot.
+    blocks = [
+        {"id": "base", "polygon": [[0, -1], [2, -1], [2, 0], [0, 0]], "fixed": True},
+        {"id": "L", "polygon": [[0, 0], [2, 0], [2, 1], [1, 1], [1, 2], [0, 2]]},
+    ]
+    wall = assembly(None, 2.0, blocks=blocks)
+    x, y = wall.centroid[1]
+    assert run(wall).multiplier == pytest.approx((2.0 - x) / y, rel=EXACT)
+
+
+def test_point_force_on_a_block():
+    # Weight 20 x 0.4 x 0.2 = 1.6 on friction 0.5: a pull of 1 slides it at 0.8.
+    pull = {"live": {"points": [{"block": "1", "at": [0.2, 0.0], "force": [1.0, 0.0]}]}}
+    wall = assembly(stack(1, 0.4, 0.2), 0.5, loads=pull)
+    assert run(wall).multiplier == pytest.approx(0.8, rel=EXACT)
+
+
+def test_arch_falls_when_thin_and_stands_when_thick():
+    # A semicircular arch of 27 voussoirs needs a thickness of 0.1075 of its mean radius (Milankovitch 1907).
+    def arch(thickness):
+        ring = {"type": "ring", "inner_radius": 1 - thickness / 2, "outer_radius": 1 + thickness / 2, "count": 27}
+        return assembly(ring, 0.7, loads={"live": None})
+
+    assert run(arch(0.112), orders=2).finding is Finding.STANDS
+    assert run(arch(0.100), orders=2).finding is Finding.FALLS
