@@ -105,6 +105,12 @@ def build(wall: Wall, name: str = "wall") -> Built:
         dead=_load(wall.loads.dead, "loads.dead", blocks, index, weight, centroids, fixed),
         live=_load(wall.loads.live or Load(), "loads.live", blocks, index, weight, centroids, fixed),
     )
+    if wall.loads.live is not None and not assembly.has_live_load:
+        raise InputError(
+            "the live load puts no force on any free block",
+            "Load a block, or leave loads.live out to ask only whether the wall stands",
+            "loads.live",
+        )
     return Built(
         assembly,
         _explicit(wall, blocks, weight, interfaces, joints, friction),

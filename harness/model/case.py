@@ -133,7 +133,15 @@ def read_case(folder: Path) -> Case:
     if file.id != folder.name:
         raise InputError(f'id is "{file.id}" in a folder called "{folder.name}"', "Give both one name", "id", str(path))
     wall_path = folder / file.wall
-    return Case(file, parse_wall(read_json(wall_path), str(wall_path)), str(wall_path))
+    wall = parse_wall(read_json(wall_path), str(wall_path))
+    if file.kind == "multiplier" and wall.loads.live is None:
+        raise InputError(
+            "a multiplier is asked for and there is no live load",
+            'Give loads.live, or set kind = "stability" in case.toml',
+            "loads.live",
+            str(wall_path),
+        )
+    return Case(file, wall, str(wall_path))
 
 
 def case_of_wall(path: Path) -> Case:

@@ -171,6 +171,7 @@ BAD: list[tuple[str, dict[str, Any], list[str]]] = [
         ['"zz"', "loads.live.points[0]"],
     ),
     ("unknown group", two_blocks(loads={"live": {"body": [{"per_weight": [1, 0], "group": "zz"}]}}), ['"zz"']),
+    ("live load of nothing", two_blocks(loads={"live": {"body": [{"per_weight": [0, 0]}]}}), ["loads.live", "force"]),
     ("no fixed block", two_blocks(blocks=[block("a", [[0, 0], [1, 0], [1, 1]])]), ["no block is fixed"]),
     (
         "no weight",

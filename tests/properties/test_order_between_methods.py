@@ -1,0 +1,70 @@
+"""On walls nobody chose, the methods stand to each other as theory says, and every state passes the judge."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import pytest
+from hypothesis import HealthCheck, given, settings
+from hypothesis import strategies as st
+
+from harness.conformance import answered
+from harness.engine.symmetry import VIEWS
+from harness.model.assembly import Assembly
+from harness.model.method import Finding, Status, load_method
+from tests.walls import assembly
+
+BOUND = 1e-7
+"""Relative: the accuracy of the linear programme's optimum, with a margin."""
+
+
+@st.composite
+def coursed_walls(draw: st.DrawFn) -> Assembly:
+    """Three to five courses of three block lengths in all, cut at random places, friction from 0.3 to 1.1."""
+    courses: list[list[float]] = []
+    for _ in range(draw(st.integers(3, 5))):
+        widths: list[float] = []
+        while sum(widths) < 3.0:
+            width = draw(st.sampled_from([0.5, 0.75, 1.0, 1.25]))
+            widths.append(min(width, 3.0 - sum(widths)))
+        courses.append(widths)
+    height = draw(st.sampled_from([0.15, 0.2, 0.3]))
+    friction = draw(st.sampled_from([0.3, 0.45, 0.65, 0.8, 1.1]))
+    pattern: dict[str, Any] = {
+        "type": "running_bond",
+        "block_length": 0.4,
+        "block_height": height,
+        "courses": courses,
+    }
+    return assembly(pattern, friction)
+
+
+@settings(max_examples=12, deadline=None, derandomize=True, suppress_health_check=list(HealthCheck))
+@given(coursed_walls())
+def test_least_known_plateau_and_associated_maximum_are_ordered(wall: Assembly):
+    found = {name: answered(load_method(name), wall) for name in ("la", "fe", "la-associated")}
+    values = {}
+    for name, (result, judgement) in found.items():
+        if result.status is not Status.OK:
+            assert name == "fe", result.sentence  # only a traced path may end without a plateau
+            continue
+        assert judgement.accepted, (name, judgement.sentence)
+        assert result.finding is Finding.COLLAPSES
+        assert result.multiplier is not None
+        values[name] = result.multiplier
+    slack = BOUND * max(1.0, values["la-associated"])
+    assert values["la"] <= values["la-associated"] + slack
+    if "fe" in values:
+        assert values["fe"] <= values["la-associated"] + slack
+        assert values["la"] <= values["fe"] + slack
+
+
+@settings(max_examples=4, deadline=None, derandomize=True, suppress_health_check=list(HealthCheck))
+@given(coursed_walls())
+@pytest.mark.parametrize("view", ["mirrored", "scaled", "rotated"])
+def test_associated_maximum_is_the_same_in_every_view(view: str, wall: Assembly):
+    method = load_method("la-associated")
+    plain, _ = answered(method, wall)
+    seen, judgement = answered(method, VIEWS[view](wall))
+    assert judgement.accepted
+    assert seen.multiplier == pytest.approx(plain.multiplier, rel=1e-9)
