@@ -144,13 +144,15 @@ def svg(chart: Chart) -> Markup:
         Markup('<svg class="chart" viewBox="0 0 {} {}" role="img" aria-label="{}">').format(WIDTH, height, chart.title),
         _axes(chart, across, up, height, top),
     ]
-    for name, value in chart.levels:
+    for number, (name, value) in enumerate(chart.levels):
         y = up.place(value)
         if y is not None:
+            # Names stand left and right in turn, so that close levels do not write over each other.
+            x, anchor = (LEFT + 6, "start") if number % 2 == 0 else (WIDTH - RIGHT - 4, "end")
             parts.append(
-                Markup('<path class="level" d="M{} {:.1f}H{}"/><text class="note" x="{}" y="{:.1f}">{}</text>').format(
-                    LEFT, y, WIDTH - RIGHT, LEFT + 6, y - 4, name
-                )
+                Markup(
+                    '<path class="level" d="M{} {:.1f}H{}"/><text class="note {}" x="{}" y="{:.1f}">{}</text>'
+                ).format(LEFT, y, WIDTH - RIGHT, anchor, x, y - 4, name)
             )
     for number, series in enumerate(chart.series):
         parts.append(_series(series, number, across, up))

@@ -31,6 +31,8 @@ def curves(item: CaseResults) -> list[tuple[str, Markup]]:
         else:
             if "residual" in result.path:
                 found.append(_holds(result))
+                found.extend(_orders(result))
+    found.extend(_starts(result) for result in ordered if len(result.details.get("start_values") or []) > 1)
     history = _history(ordered)
     if history:
         found.append(history)
@@ -99,6 +101,64 @@ def _holds(result: Result) -> tuple[str, Markup]:
         f"{result.method}: the holds of the reported body order, which close in on the bracket from both sides{count}.",
         charts.svg(chart),
     )
+
+
+def _orders(result: Result) -> list[tuple[str, Markup]]:
+    """The bracket of every body order, which shows the spread that rigid contacts leave."""
+    orders = result.details.get("orders")
+    if not isinstance(orders, list):
+        return []
+    ends = [
+        (float(number), float(order["held"]), float(order["moving"]))
+        for number, order in enumerate(orders, start=1)
+        if isinstance(order, dict) and order.get("held") is not None and order.get("moving") is not None
+    ]
+    if len(ends) < 2:
+        return []
+    x = [number for number, _, _ in ends]
+    held = charts.Series("held", x, [low for _, low, _ in ends], line=False)
+    moving = charts.Series(
+        "moving",
+        x,
+        [high for _, _, high in ends],
+        low=[low for _, low, _ in ends],
+        high=[high for _, _, high in ends],
+        line=False,
+    )
+    chart = charts.Chart(
+        title=f"Brackets of {result.method} over body orders",
+        x_label="body order",
+        y_label="multiplier",
+        series=[held, moving],
+    )
+    names = ", ".join(f"{number} {order.get('order', '')}" for number, order in enumerate(orders, start=1))
+    return [
+        (f"{result.method}: held and moving for every order in which blocks were entered ({names}).", charts.svg(chart))
+    ]
+
+
+def _starts(result: Result) -> tuple[str, Markup]:
+    """The collapse states that the starts of a search lead to, and the least known after each of them."""
+    values = [float(value) for value in result.details["start_values"]]
+    number = [float(k) for k in range(1, len(values) + 1)]
+    least = [min(values[:k]) for k in range(1, len(values) + 1)]
+    levels = []
+    if isinstance(result.details.get("associated"), float):
+        value = result.details["associated"]
+        levels.append((f"associated maximum {numbers.multiplier(value)}", value))
+    if result.multiplier is not None and result.multiplier < min(values) * (1.0 - 1e-9):
+        levels.append((f"least known, by continuation {numbers.multiplier(result.multiplier)}", result.multiplier))
+    chart = charts.Chart(
+        title=f"Least known multiplier over the starts of {result.method}",
+        x_label="start",
+        y_label="multiplier",
+        series=[
+            charts.Series("least known so far", number, least, step=True, marks=False),
+            charts.Series("found by this start", number, values, line=False),
+        ],
+        levels=levels,
+    )
+    return f"{result.method}: the collapse state each start of the search leads to.", charts.svg(chart)
 
 
 def _reporting_order(details: dict[str, Any]) -> dict[str, Any]:

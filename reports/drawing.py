@@ -13,7 +13,7 @@ from typing import Any
 import numpy as np
 from markupsafe import Markup
 
-from harness.model.assembly import Assembly, FloatArray
+from harness.model.assembly import Assembly, FloatArray, polygon_area
 from harness.model.case import Case
 from harness.model.result import Result
 from reports import numbers, shapes
@@ -21,6 +21,7 @@ from reports.words import STATE_LETTER
 
 SIZE = 4000
 MARGIN = 560
+BELOW = 240
 FORCE_STEPS = 10_000
 LABELLED_BLOCKS = 160
 DOTTED_INTERFACES = 240
@@ -44,13 +45,13 @@ class Frame:
     def view_box(self) -> str:
         """The part of the plane to show: the wall and room round it for loads and motion."""
         width, height = self.extent.width * self.scale, self.extent.height * self.scale
-        return f"{-MARGIN} {-MARGIN} {width + 2 * MARGIN:.0f} {height + 2 * MARGIN:.0f}"
+        return f"{-MARGIN} {-MARGIN} {width + 2 * MARGIN:.0f} {height + MARGIN + BELOW:.0f}"
 
-    @property
-    def aspect(self) -> float:
-        """Width over height of the view."""
-        width, height = self.extent.width * self.scale, self.extent.height * self.scale
-        return float((width + 2 * MARGIN) / (height + 2 * MARGIN))
+
+def stroke_factor(assembly: Assembly) -> float:
+    """How much thinner than usual lines are drawn, so that small blocks are not buried under them."""
+    block = assembly.length_scale * SIZE / shapes.extent(assembly).longest
+    return round(min(1.0, max(0.3, block / 450.0)), 2)
 
 
 def path_of(frame: Frame, polygon: FloatArray) -> str:
@@ -75,7 +76,8 @@ def wall_svg(case: Case) -> Markup:
     assembly = case.assembly
     frame = Frame(assembly)
     parts = [
-        Markup('<svg class="wall" viewBox="{}" role="img" aria-label="{}">').format(
+        Markup('<svg class="wall" style="--k:{}" viewBox="{}" role="img" aria-label="{}">').format(
+            stroke_factor(assembly),
             frame.view_box,
             f"The wall {case.id}: {numbers.count(assembly.n_free, 'free block')}, "
             f"{numbers.count(assembly.n_interfaces, 'interface')}, with its loads",
@@ -116,8 +118,9 @@ def _labels(frame: Frame, assembly: Assembly) -> Markup:
         block_labels(assembly), assembly.block_ids, assembly.polygons, assembly.centroid, assembly.fixed, strict=True
     ):
         box = (polygon.max(axis=0) - polygon.min(axis=0)) * frame.scale
-        size = min(170.0, 0.38 * float(box[1]), 1.4 * float(box[0]) / max(len(label), 1))
-        if size < 36.0:
+        slender = 2.0 * polygon_area(polygon) / _perimeter(polygon) * frame.scale
+        size = min(170.0, 0.38 * float(box[1]), 1.2 * slender / max(1.0, 0.55 * len(label)))
+        if size < 44.0:
             continue
         x, y = frame.place(centroid)
         drawn += Markup('<text x="{}" y="{}" font-size="{:.0f}">{}<title>{}</title></text>').format(
@@ -126,12 +129,17 @@ def _labels(frame: Frame, assembly: Assembly) -> Markup:
     return drawn
 
 
+def _perimeter(polygon: FloatArray) -> float:
+    return float(np.linalg.norm(polygon - np.roll(polygon, -1, axis=0), axis=1).sum())
+
+
 def _arrows(frame: Frame, assembly: Assembly, load: FloatArray, kind: str) -> Markup:
     arrows = shapes.load_arrows(assembly, load)
+    arrows = arrows[:: shapes.drawn_every(len(arrows))]
     if not arrows:
         return Markup("")
     largest = max(float(np.linalg.norm(arrow.force)) for arrow in arrows)
-    longest = min(420.0, max(160.0, 0.8 * assembly.length_scale * frame.scale))
+    longest = min(420.0, max(90.0, 0.8 * assembly.length_scale * frame.scale))
     shafts, heads = "", ""
     for arrow in arrows:
         size = float(np.linalg.norm(arrow.force))

@@ -7,16 +7,20 @@ import io
 import json
 import os
 import re
+import tempfile
 from pathlib import Path
 from typing import Any
 
 import pyarrow as pa
 import pyarrow.parquet as pq
 
-from harness.model.comparison import ComparisonRun
+from harness.model.comparison import CaseResults, ComparisonRun
 from harness.model.result import Result
-from reports import shapes
+from reports import figures, shapes, words
 from reports.tables import reference_of, worst_residual
+
+FIGURE_BLOCKS, MOST_PANELS = 400, 4
+"""Walls with more blocks are drawn on demand only (`drystone figure`), and a strip holds so many methods."""
 
 RESULT_COLUMNS: dict[str, pa.DataType] = {
     "case": pa.string(),
@@ -94,12 +98,30 @@ def export(run: ComparisonRun, folder: Path) -> None:
                     "units": item.case.wall.units.model_dump(mode="json"),
                 }
             )
+        drawing = comparison_figure(item)
+        if drawing is not None:
+            contents[f"figures/{_safe(item.case.id)}.pdf"] = drawing
     earlier = _index(folder)
     contents["index.json"] = _json({"files": sorted(contents)})
     for name, content in contents.items():
         _write(folder / name, content)
     for name in earlier - set(contents):
         (folder / name).unlink(missing_ok=True)
+
+
+def comparison_figure(item: CaseResults) -> bytes | None:
+    """A PDF of the families' main results side by side, or None where there is nothing to draw or too much."""
+    usable = [
+        result
+        for result in sorted(item.results, key=lambda result: words.order(result.method, result.family))
+        if (result.method == result.family or result.method == "la-associated") and result.mechanism is not None
+    ]
+    if not usable or shapes.problem(item.case) or item.case.assembly.n_blocks > FIGURE_BLOCKS:
+        return None
+    with tempfile.TemporaryDirectory() as folder:
+        path = Path(folder) / "figure.pdf"
+        figures.figure(item.case, usable[:MOST_PANELS], "comparison", path)
+        return path.read_bytes()
 
 
 def _safe(name: str) -> str:

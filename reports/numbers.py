@@ -24,7 +24,8 @@ def plain(value: float, digits: int = 5) -> str:
 def given(value: float, digits: int = 6) -> str:
     """A number as a source gives it: at most so many digits, no zeros added."""
     if value != 0.0 and not 1e-4 <= abs(value) < 1e6:
-        return power(value, 3)
+        mantissa = f"{value:.{digits - 1}e}".split("e")[0].rstrip("0").rstrip(".")
+        return power(value, max(1, len(mantissa.lstrip("-").replace(".", ""))))
     return f"{value:.{digits}g}".replace("-", "−")
 
 

@@ -13,7 +13,7 @@ from harness.model.comparison import CaseResults, ComparisonRun
 from harness.model.result import Result
 from reports import numbers, shapes
 from reports.agreement import Agreement
-from reports.drawing import Frame
+from reports.drawing import Frame, stroke_factor
 from reports.tables import RunRow
 
 
@@ -45,7 +45,8 @@ class CaseSection:
     case: Case
     wall: Markup
     view_box: str
-    aspect: float
+    stroke: float
+    loads_drawn: str
     facts: list[tuple[str, str]]
     warnings: tuple[str, ...]
     rows: list[RunRow]
@@ -74,7 +75,7 @@ def case_section(
     """The section of one case."""
     problem = shapes.problem(item.case)
     if problem:
-        return CaseSection(number, item.case, wall, "", 1.0, [], (), rows, [], rows, [], [], problem)
+        return CaseSection(number, item.case, wall, "", 1.0, "", [], (), rows, [], rows, [], [], problem)
     frame = Frame(item.case.assembly)
     panels, without = [], []
     for row in rows:
@@ -98,7 +99,8 @@ def case_section(
         case=item.case,
         wall=wall,
         view_box=frame.view_box,
-        aspect=frame.aspect,
+        stroke=stroke_factor(item.case.assembly),
+        loads_drawn=_loads_drawn(item.case),
         facts=_facts(item.case),
         warnings=item.case.built.warnings,
         rows=rows,
@@ -107,6 +109,16 @@ def case_section(
         agreements=agreements,
         curves=curves,
     )
+
+
+def _loads_drawn(case: Case) -> str:
+    """The caption of a wall: what of its loads is drawn."""
+    assembly = case.assembly
+    if not assembly.has_live_load:
+        return "The wall with its supports; dots are contact points."
+    step = shapes.drawn_every(len(shapes.load_arrows(assembly, assembly.live)))
+    every = f", drawn on one block in {step}" if step > 1 else ""
+    return f"The wall with its loads{every}; dots are contact points."
 
 
 def _states(result: Result) -> str:

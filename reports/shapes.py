@@ -162,6 +162,11 @@ def load_arrows(assembly: Assembly, load: FloatArray) -> list[Arrow]:
     return arrows
 
 
+def drawn_every(arrows: int, most: int = 60) -> int:
+    """One of how many load arrows is drawn, so that a body force on many blocks stays readable."""
+    return max(1, -(-arrows // most))
+
+
 def extra_dead_load(assembly: Assembly) -> FloatArray:
     """Dead load (n, 3) beyond the weights of the free blocks: what has to be drawn."""
     weights = np.zeros((assembly.n_blocks, 3))

@@ -282,7 +282,7 @@ def _reference_row(anchor: str, result: Result, comparison: Comparison, referenc
         type=str(reference.type),
         value=shown,
         expected=Cell(expected, numbers.every_digit(comparison.expected)),
-        tolerance=numbers.NOTHING if isinstance(comparison.expected, str) else numbers.plain(comparison.tolerance, 2),
+        tolerance=numbers.NOTHING if isinstance(comparison.expected, str) else numbers.given(comparison.tolerance, 2),
         gate=comparison.gate,
         glyph=words.VERDICT[comparison.verdict][0],
         word=words.VERDICT[comparison.verdict][1],
@@ -296,6 +296,28 @@ def _reference_row(anchor: str, result: Result, comparison: Comparison, referenc
 
 def _count_or_number(value: float, quantity: str) -> str:
     return f"{value:.0f}" if quantity in ("blocks", "interfaces", "unknowns") else numbers.plain(value)
+
+
+@dataclass(frozen=True)
+class Failure:
+    """Runs of one method that failed in the same way."""
+
+    method: str
+    glyph: str
+    word: str
+    sentence: str
+    runs: list[RunRow]
+
+
+def failures(rows: Iterable[RunRow]) -> list[Failure]:
+    """Failed and rejected runs, those of one method with the same sentence together, in the order they appear."""
+    groups: dict[tuple[str, str, str, str], list[RunRow]] = {}
+    for row in rows:
+        if row.failed:
+            groups.setdefault((row.method, row.status_glyph, row.status_word, row.sentence), []).append(row)
+        elif row.judged == "rejected":
+            groups.setdefault((row.method, "✗", "rejected by the judge", row.judge_sentence), []).append(row)
+    return [Failure(*words_of, runs) for words_of, runs in groups.items()]
 
 
 def findings(run: ComparisonRun) -> str:

@@ -65,7 +65,7 @@
       const path = make("path", { class: kind, d, "data-block": i }, svg);
       if (!still) movers.push([path, i]);
     });
-    const size = Math.min(46, Math.max(12, 0.07 * wall.block));
+    const size = Math.min(46, Math.max(8, 0.07 * wall.block));
     if (result.s) {
       [...result.s].forEach((letter, p) => {
         if (letter === "k") return;
@@ -123,7 +123,7 @@
         (normal * wall.n[2 * p + 1] / 1000 + s * t[1]) / force,
       ];
       const half = 0.36 * wall.block;
-      const width = Math.max(7, (0.16 * wall.block * force) / largest);
+      const width = Math.max(0.012 * wall.block, (0.16 * wall.block * force) / largest);
       const limit = at(wall.mu, p) * normal;
       const full = limit > 0 && Math.abs(s) >= 0.999 * limit;
       const group = make("g", { class: full ? "full" : "partly", "data-joint": p }, bars);
@@ -131,7 +131,7 @@
         d: `M${x - half * way[0]} ${y - half * way[1]}L${x + half * way[0]} ${y + half * way[1]}`,
         "stroke-width": width,
       }, group);
-      if (full) make("circle", { cx: x, cy: y, r: Math.max(16, 0.5 * width + 9) }, group);
+      if (full) make("circle", { cx: x, cy: y, r: Math.max(0.05 * wall.block, 0.5 * width + 9) }, group);
       const leg = (block, sign) => (wall.fixed[block] === "1" ? [x + sign * half * way[0], y + sign * half * way[1]] : junction(block));
       const [from, to] = [leg(wall.a[p], -1), leg(wall.b[p], 1)];
       make("path", {

@@ -11,7 +11,7 @@ from typing import Any
 import pytest
 from playwright.sync_api import Browser, Page
 
-from reports.build import write_report
+from reports.build import render
 from tests.reports import samples
 
 pytestmark = pytest.mark.browser
@@ -212,7 +212,7 @@ def test_tables_stand_without_the_script(browser: Browser, report: Path):
 
 def test_fifty_cases_by_eight_methods_open_fast(browser: Browser, tmp_path: Path):
     path = tmp_path / "large.html"
-    write_report(samples.large(), path)
+    path.write_text(render(samples.large(), data_folder="large-data"), encoding="utf-8")
     opened = Opened(browser, path)
     timing = opened.page.evaluate("performance.getEntriesByType('navigation')[0].domContentLoadedEventEnd")
     started = time.perf_counter()

@@ -60,6 +60,14 @@ def test_fields_of_every_run_are_exported(folder: Path):
     assert data["units"] == {"length": "m", "force": "kN"}
 
 
+def test_every_case_has_a_figure(folder: Path):
+    assert sorted(path.name for path in (folder / "figures").iterdir()) == [
+        "hostile.pdf",
+        "single-block.pdf",
+        "wall-21.pdf",
+    ]
+
+
 def test_stale_files_go_and_foreign_files_stay(tmp_path: Path):
     run = samples.typical()
     export(run, tmp_path)
