@@ -8,7 +8,7 @@ import numpy as np
 
 from harness.model.assembly import Assembly
 from harness.model.method import Answer, Finding, Settings, Status
-from methods.fe.continuation import PathEnd, PathRecord
+from methods.fe.path_record import PathEnd, PathRecord
 from methods.fe.factor import make_factor
 from methods.fe.histories import HistoryResult, gravity_state, moving_blocks, trace_history
 from methods.fe.newton import Equilibrium

@@ -11,16 +11,17 @@ that turns singular gives the null direction y; when nothing stops the motion al
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
-from enum import StrEnum
+from dataclasses import dataclass
 
 import numpy as np
 
 from harness.model.assembly import FloatArray, IntArray
+from methods.fe.exact_rates import exact_gap_rates
 from methods.fe.factor import Factor, SingularTangent
-from methods.fe.gap_law import OPEN, SLIP_PLUS, STICK, flip_vectors
+from methods.fe.gap_law import OPEN, SLIP_PLUS, STICK, flip_vectors, gap_forces
 from methods.fe.kinks import advance, live_rate, next_kink
 from methods.fe.newton import load_scale
+from methods.fe.path_record import PathEnd, PathRecord
 from methods.fe.wall_model import WallModel, point_strains
 
 ILL = 1e-6
@@ -29,6 +30,22 @@ SINGULAR = 1e-11
 """|1 + b'y| below which the tangent is singular: the multiplier rests while the wall moves along y."""
 DRIFT = 1e-9
 """Out-of-balance force (share of the load scale) above which the tangent is factorised afresh."""
+STEEP = 1e4
+"""Changes with |1 + b'y| or its inverse above this would cost digits; the tangent is factorised afresh."""
+FREE = 1e4
+"""Directions larger than this many times the first one are measured in doubled precision."""
+BENT = 1e-9
+"""Defect of K d = live (share of the live load) above which the tangent is factorised afresh."""
+CROOKED = 1e-5
+"""The same when refinement no longer helps."""
+NEARLY_FREE = 1e5
+"""Directions larger than this many times the first one are looked at as possible mechanisms."""
+FAR = 1e4
+"""A mechanism that moves this many times the present displacement before its next kink is the collapse."""
+LARGE = 1e8
+"""Displacements, in multiples of the first ones, beyond which the path is not followed."""
+LOST = 1e-5
+"""Out-of-balance force (share of the load scale) at which the path counts as lost."""
 LOOK = 8
 """Changes of state between two looks at the out-of-balance force."""
 TIE = 1e-12
@@ -37,37 +54,15 @@ ELASTIC = 1e-8
 """Elastic force rates below this share of the strain rates count as zero: the direction is a mechanism."""
 
 
-class PathEnd(StrEnum):
-    """Why a stretch of path ended."""
+@dataclass(frozen=True)
+class Snapshot:
+    """A mechanism met on the path: multiplier, gaps g and tau (P,), states (P,) and velocity (N,)."""
 
-    TARGET = "target"
-    PLATEAU = "plateau"
-    UNBOUNDED = "unbounded"
-    RUNS_DOWN = "runs_down"
-    TURNED_DOWN = "turned_down"
-    EVENTS = "events"
-    BREAKDOWN = "breakdown"
-
-
-@dataclass
-class PathRecord:
-    """Multiplier against live displacement, with the limit points passed."""
-
-    multiplier: list[float] = field(default_factory=list)
-    displacement: list[float] = field(default_factory=list)
-    slipping: list[int] = field(default_factory=list)
-    open: list[int] = field(default_factory=list)
-    peak: float = -np.inf
-    peak_displacements: FloatArray | None = None
-    first_limit: float | None = None
-    events: int = 0
-
-    def add(self, multiplier: float, displacement: float, slipping: int, n_open: int) -> None:
-        """Append one point of the path."""
-        self.multiplier.append(multiplier)
-        self.displacement.append(displacement)
-        self.slipping.append(slipping)
-        self.open.append(n_open)
+    multiplier: float
+    opening: FloatArray
+    trial: FloatArray
+    state: IntArray
+    velocity: FloatArray
 
 
 class Tracer:
@@ -94,42 +89,98 @@ class Tracer:
         self.scale = load_scale(model, multiplier)
         self.last_point, self.last_old = -1, OPEN
         self.worst_residual = 0.0
+        self.live_size = float(np.abs(model.live).max())
         p = model.n_points
         self.opening, self.trial = np.empty(p), np.empty(p)
         self.opening_rate, self.trial_rate = np.empty(p), np.empty(p)
         self.a, self.b, self.index = np.zeros(6), np.zeros(6), model.unknown[0]
+        self.direction, self.tail = np.zeros_like(u), np.zeros_like(u)
+        self.easy = True
+        self.first_size = np.inf
+        point_strains(model.unknown, model.rows, model.interface, model.position, u, self.opening, self.trial)
+        self.trial *= model.kt
+        self.trial += history
         self.n_open = int(np.count_nonzero(state == OPEN))
         self.n_slip = int(np.count_nonzero(state >= SLIP_PLUS))
         self._refresh()
+        self.first_size = float(np.abs(self.direction).max())
+        self.first_displacement = float(np.abs(u).max()) + 1.0
+        self.kept: Snapshot | None = None
 
     def _refresh(self) -> None:
-        """Factorise afresh, remove the drift of u and recompute the direction (which keeps its sign)."""
+        """Factorise afresh, remove the drift of the gaps and recompute the direction (which keeps its sign)."""
         self.factor.refactor(self.state)
-        residual = self.model.residual(self.u, self.multiplier, self.history, self.state)
-        self.worst_residual = max(self.worst_residual, float(np.abs(residual).max()) / self.scale)
-        correction = self.factor.solve(residual)
-        if np.abs(correction).max() <= 1e-6 * (1.0 + np.abs(self.u).max()):
-            self.u += correction
-        self._measure_gaps()
+        residual = self._out_of_balance()
+        worst = float(np.abs(residual).max()) / self.scale
+        self.worst_residual = max(self.worst_residual, worst)
+        for _ in range(2):
+            if worst < 1e-14:
+                break
+            correction = self.factor.solve(residual)
+            self.tail[:] = 0.0
+            self._rates(correction, self.tail)
+            self._advance(correction, 1.0)
+            residual = self._out_of_balance()
+            previous, worst = worst, float(np.abs(residual).max()) / self.scale
+            if worst >= previous:
+                self._advance(correction, -1.0)
+                break
+        if min(worst, self.worst_residual) > LOST:
+            raise SingularTangent("the path was lost to rounding")
         self.direction = self.factor.solve(self.model.live)
         self.resting = self.fragile = False
+        self._straighten()
 
-    def _measure_gaps(self) -> None:
-        model = self.model
-        point_strains(model.unknown, model.rows, model.interface, model.position, self.u, self.opening, self.trial)
-        self.trial *= model.kt
-        self.trial += self.history
+    def _out_of_balance(self) -> FloatArray:
+        return self.model.out_of_balance(self.opening, self.trial, self.state, self.multiplier)
 
-    def _rates(self, direction: FloatArray) -> None:
+    def _rates(self, direction: FloatArray, tail: FloatArray | None = None) -> None:
+        """Gap rates along a direction, in doubled precision when its small part `tail` is given."""
         model = self.model
-        point_strains(
-            model.unknown, model.rows, model.interface, model.position, direction, self.opening_rate, self.trial_rate
-        )
+        kinematics = model.unknown, model.rows, model.interface, model.position
+        if tail is not None:
+            exact_gap_rates(*kinematics, model.kt, direction, tail, self.opening_rate, self.trial_rate)
+            return
+        point_strains(*kinematics, direction, self.opening_rate, self.trial_rate)
         self.trial_rate *= model.kt
+
+    def _straighten(self) -> bool:
+        """Measure the gap rates of the direction, and refine it while K d = live is not met. False: it stays bent."""
+        size = float(np.abs(self.direction).max())
+        self.easy = size < FREE * self.first_size
+        if self.easy:
+            self._rates(self.direction)
+        else:
+            self.tail[:] = 0.0
+            self._rates(self.direction, self.tail)
+        previous = np.inf
+        for _ in range(4):
+            defect = self.model.out_of_balance(self.opening_rate, self.trial_rate, self.state, 1.0, 0.0)
+            worst = float(np.abs(defect).max())
+            if worst <= BENT * self.live_size:
+                return True
+            if not worst < 0.5 * previous:
+                return worst <= CROOKED * self.live_size
+            previous = worst
+            correction = self.factor.solve(defect)
+            if self.easy:
+                self.direction += correction
+                self._rates(self.direction)
+            else:
+                self.tail += correction
+                self._rates(self.direction, self.tail)
+        return worst <= CROOKED * self.live_size
 
     def along(self) -> FloatArray:
         """(N,) the velocity along the present piece: the null vector where the tangent is singular."""
         return self.direction if self.resting else self.sign * self.direction
+
+    def commit(self) -> FloatArray:
+        """The history h = T - kt s (P,) after the present shears are frozen in."""
+        model = self.model
+        normal, shear = np.empty_like(self.trial), np.empty_like(self.trial)
+        gap_forces(self.opening, self.trial, model.kn, model.mu, self.state, normal, shear)
+        return shear - (self.trial - self.history)
 
     def is_mechanism(self) -> bool:
         """Whether no force changes along the present piece (rates as last measured)."""
@@ -168,18 +219,15 @@ class Tracer:
         """Follow one straight piece and change the state at its end."""
         model = self.model
         velocity = self.along()
+        if not self.resting and self.sign < 0.0:
+            np.negative(self.opening_rate, out=self.opening_rate)
+            np.negative(self.trial_rate, out=self.trial_rate)
         step, point, new = next_kink(
-            model.unknown,
-            model.rows,
-            model.interface,
-            model.position,
-            velocity,
             self.opening,
             self.trial,
             self.opening_rate,
             self.trial_rate,
             model.kn,
-            model.kt,
             model.mu,
             self.state,
             TIE * self.scale,
@@ -199,6 +247,8 @@ class Tracer:
             if self.resting:
                 return PathEnd.BREAKDOWN
             return PathEnd.UNBOUNDED if speed > 0.0 else PathEnd.RUNS_DOWN
+        if self._is_collapse(velocity, step):
+            return PathEnd.PLATEAU
         self._advance(velocity, step)
         self.multiplier += speed * step
         record.events += 1
@@ -207,6 +257,21 @@ class Tracer:
             return PathEnd.TURNED_DOWN
         self._flip(point, new)
         return None
+
+    def _is_collapse(self, velocity: FloatArray, step: float) -> bool:
+        """Whether the piece is a mechanism that goes on so far that the next kink is of no interest.
+
+        Mechanisms that stop earlier are kept: each is an exact collapse state at its multiplier, and the last one
+        stands for the plateau when rounding ends the path among displacements of 1e8 times the elastic ones.
+        """
+        speed = float(np.abs(velocity).max())
+        if not self.resting and speed < NEARLY_FREE * self.first_size:
+            return False
+        size = float(np.abs(self.u).max())
+        if step * speed < 1e-3 * size or not self.is_mechanism() or live_rate(self.model.live, velocity) <= 0.0:
+            return False
+        self.kept = Snapshot(self.multiplier, self.opening.copy(), self.trial.copy(), self.state.copy(), velocity / speed)
+        return step * speed > FAR * size or size > LARGE * self.first_displacement
 
     def _advance(self, velocity: FloatArray, step: float) -> None:
         advance(self.u, self.opening, self.trial, velocity, self.opening_rate, self.trial_rate, step)
@@ -247,15 +312,24 @@ class Tracer:
             self.a, self.b, self.index = a, b, index
             if abs(denominator) < ILL and self._rests(y, along, crossing, abs(denominator)):
                 return
-        self.direction -= y * (float(b @ self.direction[index]) / denominator)
         self.sign *= 1.0 if denominator > 0.0 else -1.0
         self.fragile = abs(denominator) < ILL
         if self.fragile:
+            self.direction -= y * (float(b @ self.direction[index]) / denominator)
+            self.tail[:] = 0.0
+            self._rates(self.direction, self.tail)
             return
-        if self.factor.count >= self.factor.capacity - 1 or self._drifted():
+        if not 1.0 / STEEP < abs(denominator) < STEEP:
+            self._refresh()
+            self._orient(index, b, crossing)
+        elif self.factor.count >= self.factor.capacity - 1 or self._drifted():
             self._refresh()
         else:
+            self.direction -= y * (float(b @ self.direction[index]) / denominator)
             self.factor.update(y, index, b, denominator)
+            if not self._straighten() and self.factor.count > 1:
+                self._refresh()
+                self._orient(index, b, crossing)
 
     def _refine(self, point: int, old: int, index: IntArray, a: FloatArray, b: FloatArray) -> tuple[FloatArray, float]:
         """y = K^-1 a and b'y again, from a fresh factor of the tangent before the change, and the direction with it."""
@@ -271,8 +345,7 @@ class Tracer:
         """Whether the out-of-balance force has grown enough to factorise afresh (looked at every few changes)."""
         if self.factor.count % LOOK:
             return False
-        residual = self.model.residual(self.u, self.multiplier, self.history, self.state)
-        return float(np.abs(residual).max()) > DRIFT * self.scale
+        return float(np.abs(self._out_of_balance()).max()) > DRIFT * self.scale
 
     def _orient(self, index: IntArray, b: FloatArray, crossing: float) -> None:
         """Give the direction the sign that moves the kink function just crossed on into the new cell."""
@@ -284,9 +357,16 @@ class Tracer:
         self._rates(velocity)
         if denominator > SINGULAR and not self.is_mechanism():
             return False
-        self.resting = True
-        self.direction = velocity
+        self._rest(velocity)
         return True
+
+    def _rest(self, velocity: FloatArray) -> None:
+        """Move along a null vector whose gap rates have just been measured; a mechanism changes no force at all."""
+        self.resting, self.fragile = True, False
+        self.direction = velocity
+        if self.is_mechanism():
+            self.opening_rate[self.state != OPEN] = 0.0
+            self.trial_rate[self.state == STICK] = 0.0
 
     def _leave_held(self, index: IntArray, a: FloatArray, b: FloatArray, crossing: float) -> None:
         """Turn onto the next piece from a singular or fragile one, whose change (a1, b1) the factor does not hold yet.
@@ -305,8 +385,7 @@ class Tracer:
             velocity = null * (np.sign(crossing) / np.abs(null).max())
             self._rates(velocity)
             if determinant < SINGULAR * bound or self.is_mechanism():
-                self.direction = velocity
-                self.resting, self.fragile = True, False
+                self._rest(velocity)
                 self.factor.update(y, index, b, denominator)
                 return
         self._refresh()

@@ -18,7 +18,7 @@ from harness.model.assembly import FloatArray, IntArray
 from methods.fe.compiled import compiled
 from methods.fe.wall_model import WallModel
 
-DENSE_LIMIT = 260
+DENSE_LIMIT = 70
 """Unknowns up to which the dense inverse is faster than the sparse product form."""
 
 
@@ -83,7 +83,8 @@ class DenseFactor:
 
     def update(self, y: FloatArray, index: IntArray, b: FloatArray, denominator: float) -> None:
         """Sherman-Morrison."""
-        self.inverse -= np.outer(y / denominator, b @ self.inverse[index])
+        row = b @ self.inverse[index]
+        self.inverse = sla.blas.dger(-1.0 / denominator, y, row, a=self.inverse, overwrite_a=1)
         self.count += 1
 
 

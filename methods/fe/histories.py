@@ -12,14 +12,13 @@ from dataclasses import dataclass
 import numpy as np
 
 from harness.model.assembly import FloatArray
-from methods.fe.continuation import PathEnd, PathRecord, Tracer
+from methods.fe.continuation import Tracer
 from methods.fe.factor import Factor
 from methods.fe.newton import Equilibrium, equilibrium, newton
+from methods.fe.path_record import PathEnd, PathRecord
 from methods.fe.plateau import CollapseState, finish
 from methods.fe.wall_model import WallModel
 
-CERTIFICATE = 1e-8
-"""Largest relative residual at which a final state counts as an exact collapse state."""
 START = 1e-3
 """First Newton step off the kinks on which gravity leaves many gap points, as a multiplier."""
 
@@ -71,7 +70,7 @@ def trace_history(
         if end != PathEnd.TARGET:
             break
         u, multiplier = tracer.u, tracer.multiplier
-        fresh = model.commit(u, tracer.history, tracer.state)
+        fresh = tracer.commit()
         for ahead in (1.0, 0.1, 0.01):
             if not record.peak <= multiplier:
                 break

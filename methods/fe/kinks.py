@@ -49,17 +49,11 @@ def target_state(state: int, which: int, trial: float) -> int:
 
 @compiled
 def next_kink(
-    unknown: IntArray,
-    rows: FloatArray,
-    interface: IntArray,
-    position: FloatArray,
-    velocity: FloatArray,
     opening: FloatArray,
     trial: FloatArray,
     opening_rate: FloatArray,
     trial_rate: FloatArray,
     kn: FloatArray,
-    kt: FloatArray,
     mu: FloatArray,
     state: IntArray,
     tolerance: float,
@@ -67,12 +61,11 @@ def next_kink(
     barred_point: int,
     barred_state: int,
 ) -> tuple[float, int, int]:
-    """Measure the gap rates along a velocity, and find the first kink on the way.
+    """Find the first kink on the way.
 
     Args:
-        unknown, rows, interface, position: the kinematics, as in `WallModel`; velocity: (N,).
-        opening, trial: (P,) g and tau now; opening_rate, trial_rate: (P,) receive their rates.
-        kn, kt, mu: (P,) of the points; state: (P,) states.
+        opening, trial: (P,) g and tau now; opening_rate, trial_rate: (P,) their rates.
+        kn, mu: (P,) of the points; state: (P,) states.
         tolerance: how far (dimensionless force) a kink may be overrun by the choice among near ties.
         noise: rates of kink functions below this share of the fastest gap rate count as zero.
         barred_point, barred_state: the change just made the other way round, which is not taken back at once.
@@ -82,22 +75,8 @@ def next_kink(
     """
     count = len(state)
     fastest = 0.0
-    previous = -1
-    e0 = e1 = e2 = 0.0
     for p in range(count):
-        k = interface[p]
-        if k != previous:
-            e0 = e1 = e2 = 0.0
-            for j in range(6):
-                value = velocity[unknown[k, j]]
-                e0 += rows[k, 0, j] * value
-                e1 += rows[k, 1, j] * value
-                e2 += rows[k, 2, j] * value
-            previous = k
-        rate = (1.0 - position[p]) * e0 + position[p] * e1
-        opening_rate[p] = rate
-        trial_rate[p] = kt[p] * e2
-        fastest = max(fastest, abs(rate), abs(trial_rate[p]))
+        fastest = max(fastest, abs(opening_rate[p]), abs(trial_rate[p]))
     least = noise * fastest
     best = np.inf
     for p in range(count):
@@ -111,6 +90,7 @@ def next_kink(
     step, point, target, speed = np.inf, -1, 0, 0.0
     if best == np.inf:
         return step, point, target
+    best *= 1.0 + 1e-14
     for p in range(count):
         v0, r0, v1, r1 = kink_functions(opening[p], trial[p], opening_rate[p], trial_rate[p], kn[p], mu[p], state[p])
         if r0 < -least and -r0 > speed and max(v0, 0.0) <= -r0 * best:

@@ -7,6 +7,7 @@ state on the plateau (residual on the right) and for the mechanism (minus column
 
 from __future__ import annotations
 
+from contextlib import suppress
 from dataclasses import dataclass
 
 import numpy as np
@@ -14,9 +15,14 @@ import scipy.sparse as sp
 from scipy.sparse.linalg import splu
 
 from harness.model.assembly import Assembly, FloatArray
-from methods.fe.continuation import Tracer
+from methods.fe.continuation import Snapshot, Tracer
 from methods.fe.factor import SingularTangent
-from methods.fe.gap_law import equivalent_end_forces
+from methods.fe.gap_law import equivalent_end_forces, gap_forces
+from methods.fe.wall_model import point_strains
+
+
+CERTIFICATE = 1e-8
+"""Largest relative residual at which a final state counts as an exact collapse state."""
 
 
 @dataclass(frozen=True)
@@ -41,32 +47,77 @@ class CollapseState:
         return max(self.residuals.values())
 
 
-def finish(tracer: Tracer) -> CollapseState:
-    """The collapse state of a tracer that has come to a plateau. Raises SingularTangent when it is not unique."""
+def finish(tracer: Tracer) -> CollapseState | None:
+    """The best collapse state of a tracer that has come to a plateau, or broke off after a mechanism; None if none.
+
+    The state on the last piece is solved for exactly; where that overshoots a kink, the state as traced and the last
+    mechanism kept on the way are tried. Which one holds is decided by their residuals alone.
+    """
+    present = Snapshot(tracer.multiplier, tracer.opening, tracer.trial, tracer.state, tracer.along())
+    candidates: list[CollapseState] = []
+    with suppress(SingularTangent):
+        candidates.append(_solve_last_piece(tracer, present))
+    candidates.append(_as_traced(tracer, present))
+    if tracer.kept is not None:
+        candidates.append(_as_traced(tracer, tracer.kept))
+        if candidates[-1].worst > CERTIFICATE:
+            with suppress(SingularTangent):
+                candidates.append(_solve_last_piece(tracer, tracer.kept))
+    for state in candidates:
+        if state.worst <= CERTIFICATE:
+            return state
+    return None
+
+
+def _as_traced(tracer: Tracer, shot: Snapshot) -> CollapseState:
+    """Forces and velocity of a snapshot as they are."""
+    return _collapse_state(tracer, shot.multiplier, shot.opening, shot.trial, shot.state, shot.velocity)
+
+
+def _collapse_state(
+    tracer: Tracer,
+    multiplier: float,
+    opening: FloatArray,
+    trial: FloatArray,
+    state: IntArray,
+    velocity: FloatArray,
+) -> CollapseState:
     model = tracer.model
-    u, multiplier = tracer.u, tracer.multiplier
-    velocity = tracer.along()
-    fastest = int(np.argmax(np.abs(velocity)))
-    tangent = model.tangent(tracer.state)
+    normal, shear = np.empty_like(opening), np.empty_like(opening)
+    gap_forces(opening, trial, model.kn, model.mu, state, normal, shear)
+    assembly = model.assembly
+    forces = model.force * equivalent_end_forces(model.position, model.interface, normal, shear, assembly.n_interfaces)
+    field = model.block_displacements(velocity)
+    live = float(np.sum(assembly.live * field))
+    return check(assembly, multiplier, forces, field / (abs(live) or 1.0))
+
+
+def _solve_last_piece(tracer: Tracer, shot: Snapshot) -> CollapseState:
+    """Solve for the state and the mechanism of the singular piece. Raises SingularTangent when it is not unique."""
+    model = tracer.model
+    multiplier = shot.multiplier
+    opening, trial = shot.opening.copy(), shot.trial.copy()
+    opening_rate, slip_rate = np.empty_like(opening), np.empty_like(trial)
+    fastest = int(np.argmax(np.abs(shot.velocity)))
+    tangent = model.tangent(shot.state)
     column = tangent[:, [fastest]].toarray().ravel()
     try:
         factor = splu(_with_column(tangent, fastest, -model.live))
     except RuntimeError as error:
         raise SingularTangent("the plateau is not unique: more than one mechanism moves at once") from error
     for _ in range(4):
-        answer = factor.solve(model.residual(u, multiplier, tracer.history, tracer.state))
-        multiplier += answer[fastest]
+        answer = factor.solve(model.out_of_balance(opening, trial, shot.state, multiplier))
+        if not np.isfinite(answer).all():
+            raise SingularTangent("the plateau is not unique: more than one mechanism moves at once")
+        multiplier += float(answer[fastest])
         answer[fastest] = 0.0
-        u = u + answer
+        point_strains(model.unknown, model.rows, model.interface, model.position, answer, opening_rate, slip_rate)
+        opening += opening_rate
+        trial += model.kt * slip_rate
     mechanism = factor.solve(-column)
     mechanism[fastest] = 1.0
-    mechanism *= np.sign(velocity[fastest])
-    mechanism /= abs(float(model.live @ mechanism)) or 1.0
-    normal, shear = model.forces(u, tracer.history, tracer.state)
-    assembly = model.assembly
-    forces = model.force * equivalent_end_forces(model.position, model.interface, normal, shear, assembly.n_interfaces)
-    field = model.block_displacements(mechanism)
-    return check(assembly, multiplier, forces, field)
+    mechanism *= np.sign(shot.velocity[fastest])
+    return _collapse_state(tracer, multiplier, opening, trial, shot.state, mechanism)
 
 
 def _with_column(matrix: sp.csc_matrix, k: int, column: FloatArray) -> sp.csc_matrix:
@@ -107,6 +158,6 @@ def check(assembly: Assembly, multiplier: float, forces: FloatArray, mechanism: 
     }
     # power of the contact forces is friction only: n . opening = 0, s slip = -mu (n1 + n2) |slip|
     friction_work = float(np.sum(assembly.friction * total * np.abs(rates[:, 2])))
-    work = (friction_work - float(dead @ velocity)) / power if power else float("inf")
+    work = float(friction_work - dead @ velocity) / power if power else float("inf")
     residuals["work"] = abs(work - multiplier) / max(1.0, abs(multiplier)) if power > 0.0 else 1.0
     return CollapseState(multiplier, work, forces, mechanism, residuals)

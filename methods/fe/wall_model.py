@@ -15,6 +15,7 @@ from scipy.sparse.linalg import splu
 
 from harness.model.assembly import Assembly, FloatArray, IntArray
 from methods.fe.compiled import compiled
+from methods.fe.exact_rates import tangent_defect
 from methods.fe.gap_law import OPEN, classify, gap_forces, tangent_coefficients
 from methods.fe.points import gap_points
 from methods.fe.settings import GapSettings
@@ -96,6 +97,16 @@ class WallModel:
         subtract_internal(self.unknown, self.rows, self.interface, self.position, -normal, shear, out)
         return out
 
+    def out_of_balance(
+        self, opening: FloatArray, trial: FloatArray, state: IntArray, multiplier: float, dead: float = 1.0
+    ) -> FloatArray:
+        """dead * dead load + multiplier * live load minus the internal forces of gaps g, tau (P,): (N,)."""
+        out = dead * self.dead + multiplier * self.live
+        tangent_defect(
+            self.unknown, self.rows, self.interface, self.position, self.kn, self.mu, state, opening, trial, out
+        )
+        return out
+
     def tangent(self, state: IntArray, shift: float = 0.0) -> sp.csc_matrix:
         """The sparse tangent (N, N) in the given states, with `shift` times the inertia added to its diagonal."""
         values = np.zeros(len(self.row_index))
@@ -104,11 +115,6 @@ class WallModel:
         if shift:
             matrix.setdiag(matrix.diagonal() + shift * self.inertia)
         return matrix
-
-    def commit(self, u: FloatArray, history: FloatArray, state: IntArray) -> FloatArray:
-        """The history h = T - kt s (P,) after the present shears are frozen in."""
-        _, shear = self.forces(u, history, state)
-        return np.where(state == OPEN, 0.0, shear) - self.kt * self.strains(u)[1]
 
     def block_displacements(self, u: FloatArray) -> FloatArray:
         """(n, 3) displacements of all blocks [length, length, rad] from the dimensionless unknowns (N,)."""
@@ -287,3 +293,4 @@ def add_tangent(
             left_t = rows[k, 2, i] * tt
             for j in range(6):
                 values[slot[k, 6 * i + j]] += left_n * row_n[j] + left_t * rows[k, 2, j]
+
