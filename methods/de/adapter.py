@@ -4,10 +4,13 @@ from __future__ import annotations
 
 from typing import ClassVar
 
+import numpy as np
+
 from harness.model.assembly import Assembly, IntArray
 from harness.model.method import Answer, Finding, Settings, Status
 from methods.de.answer import solve_by_holds
 from methods.de.courses import Tuning
+from methods.de.release import ReleaseSettings, release
 from methods.de.settings import HoldSettings
 from methods.de.space import StripSpace
 
@@ -31,3 +34,42 @@ class DampedHolds:
             return solve_by_holds(assembly, settings, engine)
         except ValueError as error:
             return Answer(Status.REFUSED, Finding.NONE, str(error))
+
+
+class ReleasedCollapse:
+    """The bracket of `de`, and the collapse followed through large displacements once the wall is released."""
+
+    name: ClassVar[str] = "de-tilt"
+    family: ClassVar[str] = "de"
+    title: ClassVar[str] = "distinct elements, released after the bracket"
+    tolerance: ClassVar[float] = 1e-6
+    Settings: ClassVar[type[Settings]] = ReleaseSettings
+
+    def solve(self, assembly: Assembly, settings: ReleaseSettings) -> Answer:
+        """Answer of `de` with the history of the collapse: frames in `details`, time and displacement in `path`."""
+        answer = DampedHolds().solve(assembly, settings)
+        if answer.finding not in (Finding.COLLAPSES, Finding.FALLS):
+            return answer
+        multiplier = settings.excess * (answer.multiplier or 0.0)
+        collapse = release(assembly, multiplier, settings)
+        pairs = [
+            (assembly.block_ids[assembly.block_a[p]], assembly.block_ids[assembly.block_b[p]])
+            for p in collapse.separated
+        ]
+        answer.path = {
+            "time": collapse.time.tolist(),
+            "live_displacement": collapse.live_displacement.tolist(),
+            "multiplier": [multiplier] * len(collapse.time),
+        }
+        answer.details["release"] = {
+            "multiplier": multiplier,
+            "reached": collapse.reached,
+            "separated": [list(pair) for pair in pairs],
+            "frames": np.round(collapse.places, 6).tolist(),
+            "time_unit": "sqrt(length scale / gravity)",
+        }
+        end = (
+            "until a block had moved as far as asked" if collapse.reached else "without a block moving as far as asked"
+        )
+        answer.sentence += f"; released at {multiplier:.6g} and followed {end}: {len(pairs)} interfaces came apart"
+        return answer

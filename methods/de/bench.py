@@ -46,7 +46,8 @@ def greatest_with_unloaded_heads(assembly: Assembly) -> float:
     """Greatest multiplier of admissible forces that leave the head joints empty (static theorem, HiGHS)."""
     m = assembly.n_interfaces
     dead, live = assembly.free_loads()
-    equilibrium: Any = sp.hstack([assembly.kinematic_matrix.T, live[:, None]])
+    matrices: Any = [assembly.kinematic_matrix.T, live[:, None]]
+    equilibrium: Any = sp.hstack(matrices)
     sliding: Any = sp.kron(sp.diags(assembly.friction), np.array([[1.0, 1.0, 0.0]] * 2)) + sp.kron(
         sp.eye(m), np.array([[0.0, 0.0, 1.0], [0.0, 0.0, -1.0]])
     )
