@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import os
 import tempfile
+from datetime import datetime
 from importlib.resources import files
 from pathlib import Path
 from typing import Any
@@ -57,6 +58,7 @@ def render(run: ComparisonRun, *, data_folder: str) -> str:
     template = _environment().get_template("report.html.j2")
     return template.render(
         run=run,
+        created=_date(run.created),
         findings=tables.findings(run),
         columns=tables.columns(run),
         matrix=_matrix(rows, tables.columns(run)),
@@ -155,6 +157,16 @@ def _origins(rows: list[list[tables.RunRow]]) -> list[tuple[str, str, int]]:
     for row in (row for case_rows in rows for row in case_rows):
         counted[row.machine, row.versions] = counted.get((row.machine, row.versions), 0) + 1
     return [(machine, versions, number) for (machine, versions), number in counted.items()]
+
+
+def _date(created: str) -> str:
+    """A time as people write it, or the text as it is."""
+    try:
+        moment = datetime.fromisoformat(created)
+    except ValueError:
+        return created
+    zone = moment.tzname()
+    return moment.strftime("%Y-%m-%d %H:%M") + (f" {zone}" if zone else "")
 
 
 def _provenance(run: ComparisonRun) -> list[tuple[str, str]]:

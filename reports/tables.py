@@ -112,7 +112,7 @@ def _reference_cell(case: Case, result: Result) -> Cell:
     text = expected_text(first, reference.relation if reference else "equal")
     if first.quantity != "multiplier" and not isinstance(first.expected, str):
         text = f"{first.quantity.removeprefix('details.').replace('_', ' ')} {text}"
-    more = f" and {len(ranked) - 1} more" if len(ranked) > 1 else ""
+    more = f" +{len(ranked) - 1}" if len(ranked) > 1 else ""
     source = f"; {reference.source}" if reference else ""
     title = f"{first.sentence}{source}"
     return Cell(text + more, title, first.expected if isinstance(first.expected, float) else None)
@@ -245,6 +245,7 @@ class ReferenceRow:
     source: str
     requirement: str
     reason: str
+    settings: str
 
 
 def reference_rows(run: ComparisonRun) -> dict[str, list[ReferenceRow]]:
@@ -291,6 +292,7 @@ def _reference_row(anchor: str, result: Result, comparison: Comparison, referenc
         source=reference.source,
         requirement=reference.requirement,
         reason=reference.tolerance_reason,
+        settings=_pairs(reference.settings),
     )
 
 
