@@ -16,10 +16,10 @@ from markupsafe import Markup
 from harness.model.comparison import CaseResults, ComparisonRun
 from reports import agreement, numbers, paper, shapes, tables, words
 from reports.curves import curves
-from reports.drawing import case_data, force_unit, result_data, wall_svg, weight_of_drawing
+from reports.drawing import case_data, fields_drawn, force_unit, result_data, wall_svg
 from reports.export import export
 from reports.limits import KNOWN_LIMITS
-from reports.sections import CaseSection, case_section, case_svg_sizes
+from reports.sections import CaseSection, case_section
 from reports.studies import studies
 
 DRAWING_BUDGET = 3_000_000
@@ -55,6 +55,7 @@ def render(run: ComparisonRun, *, data_folder: str) -> str:
         data_folder: name of the folder with the data, for the text.
     """
     rows = tables.run_rows(run)
+    fields = fields_drawn(run, DRAWING_BUDGET)
     template = _environment().get_template("report.html.j2")
     return template.render(
         run=run,
@@ -70,13 +71,13 @@ def render(run: ComparisonRun, *, data_folder: str) -> str:
         gates=[(number, item.case.id, gate) for number, item in enumerate(run.cases) for gate in item.gates],
         paper=paper.paper_comparison(run),
         errata=[(number, item.case) for number, item in enumerate(run.cases) if item.case.file.errata],
-        sections=_sections(run, rows),
+        sections=_sections(run, rows, fields),
         studies=studies(run),
         limits=KNOWN_LIMITS,
         provenance=_provenance(run),
         origins=_origins(rows),
         data_folder=data_folder,
-        data=Markup(script_json(_data(run))),
+        data=Markup(script_json(_data(run, fields))),
         style=Markup(_static("report.css")),
         scripts=[Markup(_static(name)) for name in ("table.js", "draw.js")],
         numbers=numbers,
@@ -122,25 +123,26 @@ def _matrix(
     ]
 
 
-def _sections(run: ComparisonRun, rows: list[list[tables.RunRow]]) -> list[CaseSection]:
+def _sections(run: ComparisonRun, rows: list[list[tables.RunRow]], fields: list[str]) -> list[CaseSection]:
     sections = []
     for number, item in enumerate(run.cases):
         if shapes.problem(item.case):
             sections.append(case_section(number, item, rows[number], [], [], Markup("")))
             continue
         pairs = agreement.agreements(item)
-        sections.append(case_section(number, item, rows[number], pairs, curves(item), wall_svg(item.case)))
+        sections.append(
+            case_section(number, item, rows[number], pairs, curves(item), wall_svg(item.case), fields[number])
+        )
     return sections
 
 
-def _data(run: ComparisonRun) -> list[dict[str, Any]]:
+def _data(run: ComparisonRun, fields: list[str]) -> list[dict[str, Any]]:
     """What the page draws from: per case its geometry and the fields of its results, within the budget."""
-    fields = case_svg_sizes(run, DRAWING_BUDGET, weight_of_drawing)
-    return [_case_data(item, fields[number]) for number, item in enumerate(run.cases)]
+    return [_case_data(item, level) for item, level in zip(run.cases, fields, strict=True)]
 
 
 def _case_data(item: CaseResults, fields: str) -> dict[str, Any]:
-    if shapes.problem(item.case):
+    if fields == "none" or shapes.problem(item.case):
         return {"results": []}
     unit = force_unit(item.results)
     return case_data(item.case) | {

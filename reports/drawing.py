@@ -15,6 +15,7 @@ from markupsafe import Markup
 
 from harness.model.assembly import Assembly, FloatArray, polygon_area
 from harness.model.case import Case
+from harness.model.comparison import CaseResults, ComparisonRun
 from harness.model.result import Result
 from reports import numbers, shapes
 from reports.words import STATE_LETTER
@@ -25,6 +26,7 @@ BELOW = 240
 FORCE_STEPS = 10_000
 LABELLED_BLOCKS = 160
 DOTTED_INTERFACES = 240
+DRAWN_INTERFACES = 4000
 
 
 class Frame:
@@ -99,6 +101,8 @@ def wall_svg(case: Case) -> Markup:
 
 
 def _joints(frame: Frame, assembly: Assembly) -> Markup:
+    if assembly.n_interfaces > DRAWN_INTERFACES:
+        return Markup("")
     lines, dots = "", ""
     for start, end in zip(assembly.end1, assembly.end2, strict=True):
         (x0, y0), (x1, y1) = frame.place(start), frame.place(end)
@@ -222,11 +226,27 @@ def force_unit(results: list[Result]) -> float:
     return largest or 1.0
 
 
-def weight_of_drawing(case: Case, result: Result) -> int:
-    """About how many bytes the fields of a result take in the page."""
-    size = 0
-    if result.mechanism is not None:
-        size += 13 * len(result.mechanism)
-    if result.forces is not None:
-        size += 14 * len(result.forces)
-    return size
+def fields_drawn(run: ComparisonRun, budget: int) -> list[str]:
+    """What the page draws of each case: "all", "mechanism" (no forces) or "none" (the wall only).
+
+    The largest cases are cut first, until about `budget` bytes are left; sizes are estimates per number written.
+    """
+    sizes = [(0, 0, 0) if shapes.problem(item.case) else _sizes(item) for item in run.cases]
+    fields = ["all"] * len(sizes)
+    total = sum(sum(size) for size in sizes)
+    for level in ("mechanism", "none"):
+        for number in sorted(range(len(sizes)), key=lambda k: -sum(sizes[k])):
+            if total <= budget:
+                return fields
+            fields[number] = level
+            total -= sizes[number][2] if level == "mechanism" else sum(sizes[number][:2])
+    return fields
+
+
+def _sizes(item: CaseResults) -> tuple[int, int, int]:
+    """Bytes of the geometry, the mechanisms and the contact forces of a case, about."""
+    assembly = item.case.assembly
+    geometry = 45 * assembly.n_blocks + 40 * assembly.n_interfaces
+    mechanisms = sum(13 * len(result.mechanism) for result in item.results if result.mechanism is not None)
+    forces = sum(14 * len(result.forces) for result in item.results if result.forces is not None)
+    return geometry, mechanisms, forces

@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
 from markupsafe import Markup
 
 from harness.model.case import Case
-from harness.model.comparison import CaseResults, ComparisonRun
+from harness.model.comparison import CaseResults
 from harness.model.result import Result
 from reports import numbers, shapes
 from reports.agreement import Agreement
@@ -55,6 +54,7 @@ class CaseSection:
     agreements: list[Agreement]
     curves: list[tuple[str, Markup]]
     problem: str = ""
+    cut: str = "all"
 
 
 FLOW = {
@@ -71,8 +71,9 @@ def case_section(
     agreements: list[Agreement],
     curves: list[tuple[str, Markup]],
     wall: Markup,
+    fields: str = "all",
 ) -> CaseSection:
-    """The section of one case."""
+    """The section of one case; `fields` as in `reports.drawing.fields_drawn`."""
     problem = shapes.problem(item.case)
     if problem:
         return CaseSection(number, item.case, wall, "", 1.0, "", [], (), rows, [], rows, [], [], problem)
@@ -88,8 +89,8 @@ def case_section(
             Panel(
                 row=row,
                 number=index,
-                mechanism=result.mechanism is not None,
-                forces=result.forces is not None,
+                mechanism=result.mechanism is not None and fields != "none",
+                forces=result.forces is not None and fields == "all",
                 flow=FLOW.get(result.flow, result.flow),
                 states=_states(result),
             )
@@ -108,6 +109,7 @@ def case_section(
         without_drawing=without,
         agreements=agreements,
         curves=curves,
+        cut=fields,
     )
 
 
@@ -149,17 +151,3 @@ def _facts(case: Case) -> list[tuple[str, str]]:
         ("Live load", " and ".join(ways) if ways else "none: the question is whether it stands"),
     ]
     return facts
-
-
-def case_svg_sizes(run: ComparisonRun, budget: int, weigh: Callable[[Case, Result], int]) -> list[str]:
-    """Which fields of each case the page draws: "all", "mechanism" or "none", the largest cases cut first."""
-    sizes = [sum(weigh(item.case, result) for result in item.results) for item in run.cases]
-    fields = ["all"] * len(sizes)
-    total = sum(sizes)
-    for level, saved in (("mechanism", 0.6), ("none", 0.4)):
-        for number in sorted(range(len(sizes)), key=lambda k: -sizes[k]):
-            if total <= budget:
-                return fields
-            fields[number] = level
-            total -= int(saved * sizes[number])
-    return fields

@@ -12,7 +12,7 @@ import pytest
 
 from harness.model.comparison import CaseResults, ComparisonRun
 from harness.model.method import Status
-from reports import build
+from reports import build, drawing
 from tests.reports import samples
 
 
@@ -180,11 +180,21 @@ def test_fifty_cases_by_eight_methods_stay_below_five_megabytes():
 
 def test_fields_are_cut_from_the_largest_cases_first(monkeypatch: pytest.MonkeyPatch):
     run = samples.typical()
-    size = sum(build.weight_of_drawing(item.case, result) for item in run.cases for result in item.results)
+    size = sum(sum(drawing._sizes(item)) for item in run.cases)
     monkeypatch.setattr(build, "DRAWING_BUDGET", size - 1)
-    data = Page(build.render(run, data_folder="x")).data
+    page = Page(build.render(run, data_folder="x"))
+    data = page.data
+    assert "too large to draw its contact forces" in page.text
     assert any("f" in result for result in data[0]["results"])
     assert not any("f" in result for result in data[1]["results"])
+
+
+def test_wall_of_thousands_of_blocks_stays_a_small_page():
+    case = samples.bond(courses=70, bricks=70)
+    assert case.assembly.n_free > 4900
+    results = [samples.solved(case, method, 0.5) for method in ("fe", "la", "la-associated", "de", "la-paper", "fe-qp")]
+    page = build.render(ComparisonRun("large", "", "", [CaseResults(case, results)]), data_folder="x")
+    assert len(page.encode()) < 5_000_000
 
 
 def test_report_is_replaced_as_a_whole(tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
