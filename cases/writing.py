@@ -30,7 +30,7 @@ def case_text(file: CaseFile) -> str:
 def wall_text(wall: Wall) -> str:
     """The content of `wall.json`, fields at their defaults left out and short lists on one line."""
     data = {"format": "wall/1"} | wall.model_dump(mode="json", by_alias=True, exclude_defaults=True)
-    return _json(data, 0) + "\n"
+    return _json(_type_first(data), 0) + "\n"
 
 
 def case_files(file: CaseFile, wall: Wall) -> dict[str, str]:
@@ -49,6 +49,15 @@ def write_files(files: dict[str, str], root: Path) -> list[str]:
         path.write_text(text, encoding="utf-8")
         changed.append(name)
     return changed
+
+
+def _type_first(value: Any) -> Any:
+    if isinstance(value, list):
+        return [_type_first(item) for item in value]
+    if not isinstance(value, dict):
+        return value
+    ordered = {"type": value["type"]} | value if "type" in value else value
+    return {key: _type_first(item) for key, item in ordered.items()}
 
 
 def _table(data: dict[str, Any]) -> str:

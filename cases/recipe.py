@@ -1,0 +1,127 @@
+"""What the generators share: short ways to say a wall, a reference and a case."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+from typing import Any, Literal
+
+from harness.model.case import CaseFile, Erratum, Reference, ReferenceType
+from harness.model.wall import Wall
+
+STATIC = ("la", "la-associated", "fe")
+"""Methods that give one exact number where theory has one."""
+
+ROUND_OFF = 1e-9
+ROUND_OFF_REASON = "round-off of an exact method"
+
+DE_TOLERANCE = 0.005
+DE_REASON = "damped holds end within 0.5 % on walls: a rigid contact chooses one vertex of the admissible forces"
+
+
+@dataclass(frozen=True)
+class Recipe:
+    """A case before it is written: the content of its two files."""
+
+    file: CaseFile
+    wall: Wall
+
+
+def push(x: float = 1.0) -> dict[str, Any]:
+    """Loads of a tilting table: gravity dead, a horizontal multiple `x` of every weight live."""
+    return {"live": {"body": [{"per_weight": (x, 0.0)}]}}
+
+
+def wall(title: str, **content: Any) -> Wall:
+    """A wall of format wall/1 with this title."""
+    return Wall.model_validate({"format": "wall/1", "title": title} | content)
+
+
+def reference(
+    name: str,
+    kind: Literal["exact", "bound", "published", "measured", "regression"],
+    value: float | tuple[float, float] | str,
+    methods: Sequence[str],
+    source: str,
+    requirement: str,
+    **more: Any,
+) -> Reference:
+    """One reference; `more` holds tolerance, tolerance_reason, relation, gate, tier, quantity."""
+    return Reference(
+        id=name,
+        type=ReferenceType(kind),
+        value=value,
+        applies_to=list(methods),
+        source=source,
+        requirement=requirement,
+        **more,
+    )
+
+
+def exact(
+    value: float, source: str, requirement: str, *, relative_de: float = 0.001, scale: float = 1.0
+) -> list[Reference]:
+    """The references of a case with one multiplier for all methods: exact ones to round-off, DE to `relative_de`.
+
+    `scale` is the size of the multiplier that round-off is relative to.
+    """
+    reason = f"damped holds end within {100 * relative_de:g} % here"
+    value = round(value, 14)
+    return [
+        reference(
+            "closed-form",
+            "exact",
+            value,
+            STATIC,
+            source,
+            requirement,
+            tolerance=ROUND_OFF * scale,
+            tolerance_reason=ROUND_OFF_REASON,
+            gate=True,
+        ),
+        reference(
+            "closed-form-de",
+            "exact",
+            value,
+            ["de"],
+            source,
+            f"DE: {requirement}",
+            tolerance=relative_de * abs(value),
+            tolerance_reason=reason,
+            gate=True,
+        ),
+    ]
+
+
+def finding(word: str, source: str, requirement: str, *, gate_de: bool = True) -> list[Reference]:
+    """The references of a stability case: the finding of limit analysis and FE, and that of DE."""
+    return [
+        reference(word, "exact", word, STATIC, source, requirement, quantity="finding", gate=True),
+        reference(f"{word}-de", "exact", word, ["de"], source, f"DE: {requirement}", quantity="finding", gate=gate_de),
+    ]
+
+
+@dataclass(frozen=True)
+class Remarks:
+    """What surrounds the references of a case."""
+
+    source: str
+    summary: str
+    suites: Sequence[str]
+    errata: Sequence[str] = field(default_factory=tuple)
+    kind: Literal["multiplier", "stability"] = "multiplier"
+
+
+def recipe(name: str, content: Wall, references: Sequence[Reference], remarks: Remarks) -> Recipe:
+    """A case of this id; its title is the wall's."""
+    file = CaseFile(
+        id=name,
+        title=content.title,
+        summary=remarks.summary,
+        kind=remarks.kind,
+        suites=list(remarks.suites),
+        source=remarks.source,
+        errata=[Erratum(text=text) for text in remarks.errata],
+        references=list(references),
+    )
+    return Recipe(file, content)
