@@ -61,6 +61,7 @@ class BlockSpace:
         self._set_friction()
         self._loads = batch.Buffer()
         self._out = batch.Buffer()
+        self._in = batch.Buffer()
         self._now = np.zeros((assembly.n_free + 1, 3))
         self.load(0.0)
 
@@ -116,6 +117,16 @@ class BlockSpace:
         result[free, :2] = read[:, :2] * self.unit - self.assembly.centroid[free]
         result[free, 2] = read[:, 2]
         return result
+
+    def put(self, places: FloatArray) -> None:
+        """All free blocks at rest at these places, see `places`."""
+        free = self.assembly.free
+        rows = np.zeros((len(free) + 1, 6))
+        rows[:-1, :2] = (self.assembly.centroid[free] + places[free, :2]) / self.unit
+        rows[:-1, 2] = places[free, 2]
+        self._put = np.ascontiguousarray(rows).ravel()
+        self._in.set_float_buf(self._put)
+        batch.set_space_bodies(self._space, _PLACE | _VELOCITY, self._in)
 
     def speed(self) -> float:
         """Largest velocity component of a free block [sqrt(length_scale x gravity)]."""
