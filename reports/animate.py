@@ -1,11 +1,14 @@
-"""A collapse as a moving picture: the mechanism of a result grows from rest. GIF, animated PNG or WebP by pillow."""
+"""A collapse as a moving picture: frames that a run followed, or the mechanism growing from rest. GIF, PNG or WebP."""
 
 from __future__ import annotations
 
+from collections.abc import Callable
+from functools import partial
 from pathlib import Path
 from typing import Any
 
 import numpy as np
+from matplotlib.axes import Axes
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from PIL import Image
 
@@ -37,7 +40,7 @@ def animate(case: Case, result: Result, path: Path) -> None:
     suffix = path.suffix.lower()
     if suffix not in FORMATS:
         raise InputError(f'no animation is written as "{path.suffix}"', f"Use {', '.join(FORMATS)}", source=str(path))
-    if result.mechanism is None:
+    if result.mechanism is None and shapes.released(result, case.assembly.n_blocks) is None:
         raise InputError(
             f"{result.method} left no mechanism to animate ({words.STATUS[result.status][1]}: {result.sentence})",
             "Choose a method that ended with a collapse state",
@@ -55,21 +58,45 @@ def animate(case: Case, result: Result, path: Path) -> None:
 
 
 def frames(case: Case, result: Result) -> list[Image.Image]:
-    """The pictures of an animation, from rest to the greatest displacement, ever faster as a collapse is."""
+    """The pictures of an animation: the collapse a run followed, else the mechanism from rest to twice its size."""
     assembly = case.assembly
+    followed = shapes.released(result, assembly.n_blocks)
+    if followed is not None:
+        return [
+            _picture(
+                case,
+                result,
+                partial(figures.draw_blocks, assembly=assembly, polygons=shapes.moved(assembly, places)),
+            )
+            for places in followed
+        ]
     mechanism = np.asarray(result.mechanism, dtype=float)
     scale = shapes.amplitude(assembly, mechanism)
-    images = []
-    for time in np.linspace(0.0, 1.0, FRAMES):
-        with figures.style():
-            page, axes = figures.blank(assembly, 1, 1)
-            value = "" if result.multiplier is None else f" at {numbers.multiplier(result.multiplier)}"
-            axes[0][0].set_title(f"{case.id}, {result.method}{value}", pad=3, color=figures.INK)
-            figures.draw_mechanism(
-                axes[0][0], assembly, mechanism, result.states if time > 0.0 else None, GREATEST * scale * time**2
-            )
-            page.set_dpi(DOTS_PER_INCH)
-            canvas: Any = FigureCanvasAgg(page)
-            canvas.draw()
-            images.append(Image.fromarray(np.asarray(canvas.buffer_rgba())).convert("RGB"))
-    return images
+    # The square of time lets the blocks move ever faster, as in a collapse.
+    return [
+        _picture(
+            case,
+            result,
+            partial(
+                figures.draw_mechanism,
+                assembly=assembly,
+                mechanism=mechanism,
+                states=result.states if time > 0.0 else None,
+                scale=float(GREATEST * scale * time**2),
+            ),
+        )
+        for time in np.linspace(0.0, 1.0, FRAMES)
+    ]
+
+
+def _picture(case: Case, result: Result, draw: Callable[[Axes], None]) -> Image.Image:
+    """One frame: a title and what `draw` puts on the axes."""
+    with figures.style():
+        page, axes = figures.blank(case.assembly, 1, 1)
+        value = "" if result.multiplier is None else f" at {numbers.multiplier(result.multiplier)}"
+        axes[0][0].set_title(f"{case.id}, {result.method}{value}", pad=3, color=figures.INK)
+        draw(axes[0][0])
+        page.set_dpi(DOTS_PER_INCH)
+        canvas: Any = FigureCanvasAgg(page)
+        canvas.draw()
+        return Image.fromarray(np.asarray(canvas.buffer_rgba())).convert("RGB")

@@ -9,9 +9,10 @@ from markupsafe import Markup
 
 from harness.model.comparison import CaseResults
 from harness.model.result import Result
-from reports import charts, numbers, words
+from reports import charts, numbers, shapes, words
+from reports.drawing import polygons_svg
 
-TIMES = ("cpu_seconds", "seconds", "search_seconds", "time")
+TIMES = ("cpu_seconds", "seconds", "search_seconds")
 """Columns of a path that tell when a value was found [s]."""
 LENGTHS = ("live_displacement", "displacement")
 
@@ -21,6 +22,9 @@ def curves(item: CaseResults) -> list[tuple[str, Markup]]:
     found: list[tuple[str, Markup]] = []
     ordered = sorted(item.results, key=lambda result: words.order(result.method, result.family))
     for result in ordered:
+        if "time" in result.path:
+            found.extend(_release(item, result))
+            continue
         loads = result.path.get("multiplier", [])
         if len(loads) < 2:
             continue
@@ -73,6 +77,31 @@ def _until_plateau(moved: list[float], loads: list[float]) -> int:
         return len(loads)
     limit = 3.0 * abs(moved[rising[-1]]) or math.inf
     return max(rising[-1] + 1, sum(abs(value) <= limit for value in moved))
+
+
+def _release(item: CaseResults, result: Result) -> list[tuple[str, Markup]]:
+    """The collapse after the bracket: displacement over time, and the wall at the end."""
+    found = []
+    moved = next((result.path[name] for name in LENGTHS if name in result.path), None)
+    release = result.details.get("release")
+    unit = release.get("time_unit", "") if isinstance(release, dict) else ""
+    if moved is not None and len(moved) > 1:
+        chart = charts.Chart(
+            title=f"Displacement over time of the released wall, {result.method}",
+            x_label=f"time [{unit}]" if unit else "time",
+            y_label=f"displacement of the live load [{item.case.wall.units.length}]",
+            series=[charts.Series(result.method, result.path["time"], moved, marks=False)],
+        )
+        found.append((f"{result.method}: the wall released just above its multiplier.", charts.svg(chart)))
+    frames = shapes.released(result, item.case.assembly.n_blocks)
+    if frames is not None:
+        found.append(
+            (
+                f"{result.method}: the wall at the end of the release.",
+                polygons_svg(item.case, shapes.moved(item.case.assembly, frames[-1])),
+            )
+        )
+    return found
 
 
 def _holds(result: Result) -> tuple[str, Markup]:

@@ -100,6 +100,23 @@ def wall_svg(case: Case) -> Markup:
     return Markup("").join(parts)
 
 
+def polygons_svg(case: Case, polygons: list[FloatArray]) -> Markup:
+    """Blocks of a case at other places, as an inline SVG element."""
+    assembly = case.assembly
+    frame = Frame(assembly)
+    drawn = Markup('<svg class="wall" style="--k:{}" viewBox="{}" role="img" aria-label="{}">').format(
+        stroke_factor(assembly), frame.view_box, f"Displaced blocks of {case.id}"
+    )
+    for still, name in ((True, "held"), (False, "moves")):
+        data = "".join(
+            path_of(frame, polygon)
+            for polygon, fixed in zip(polygons, assembly.fixed, strict=True)
+            if bool(fixed) is still
+        )
+        drawn += Markup('<path class="{}" d="{}"/>').format(name, data)
+    return drawn + Markup("</svg>")
+
+
 def _joints(frame: Frame, assembly: Assembly) -> Markup:
     if assembly.n_interfaces > DRAWN_INTERFACES:
         return Markup("")

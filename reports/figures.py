@@ -89,7 +89,7 @@ def show_wall(built: Built, path: Path) -> None:
     assembly = built.assembly
     with style():
         page, axes = blank(assembly, 1, 1)
-        _blocks(axes[0][0], assembly, list(assembly.polygons))
+        draw_blocks(axes[0][0], assembly, list(assembly.polygons))
         draw_joints(axes[0][0], assembly)
         _labels(axes[0][0], assembly)
         _loads(axes[0][0], assembly, shapes.extra_dead_load(assembly), RUST, "dead")
@@ -155,7 +155,8 @@ def _panels(case: Case, results: list[Result], rows: list[str]) -> Figure:
     return page
 
 
-def _blocks(ax: Axes, assembly: Assembly, polygons: list[FloatArray], moving: np.ndarray | None = None) -> None:
+def draw_blocks(ax: Axes, assembly: Assembly, polygons: list[FloatArray], moving: np.ndarray | None = None) -> None:
+    """Blocks at given places: fixed ones hatched, moving ones shaded."""
     fixed = [polygon for polygon, still in zip(polygons, assembly.fixed, strict=True) if still]
     ax.add_collection(PolyCollection(fixed, facecolor="white", edgecolor=INK, linewidth=0.5, hatch="/////"))
     moves = np.zeros(assembly.n_blocks, dtype=bool) if moving is None else moving
@@ -189,7 +190,7 @@ def draw_mechanism(
     ax.add_collection(
         PolyCollection(list(assembly.polygons), facecolor="none", edgecolor=GREY, linewidth=0.3, linestyle=(0, (3, 3)))
     )
-    _blocks(ax, assembly, shapes.displaced(assembly, mechanism, scale), shapes.moving(assembly, mechanism))
+    draw_blocks(ax, assembly, shapes.displaced(assembly, mechanism, scale), shapes.moving(assembly, mechanism))
     if states is None:
         return
     opening, _ = relative_velocities(assembly, mechanism)

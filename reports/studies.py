@@ -6,58 +6,28 @@ A comparison may bring further studies in `provenance["studies"]`, a list of obj
 
 from __future__ import annotations
 
-import hashlib
-import itertools
 import math
-from collections import defaultdict
-from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-from markupsafe import Markup
 
-from harness.model.comparison import CaseResults, ComparisonRun
-from harness.model.method import Status
-from harness.model.result import Result, Verdict
-from reports import charts, numbers, shapes, words
-
-
-@dataclass(frozen=True)
-class Study:
-    """A chart with the sentence that introduces it and how to read it."""
-
-    title: str
-    sentence: str
-    read: str
-    drawing: Markup
+from harness.model.comparison import ComparisonRun
+from reports import charts, numbers
+from reports.families import Study, families, methods_of, solved
 
 
 def studies(run: ComparisonRun) -> list[Study]:
     """All studies the results allow, then those the comparison brought."""
     found = [study for study in (cost_against_size(run), performance_profile(run)) if study is not None]
-    found = [*friction_families(run), *found]
+    found = [*families(run), *found]
     given = run.provenance.get("studies", [])
     return found + [_given(item) for item in given if isinstance(item, dict)]
-
-
-def solved(result: Result) -> bool:
-    """Whether a run counts as solved: it ended, the judge did not reject it, and no reference contradicts it."""
-    return (
-        result.status is Status.OK
-        and result.judge.accepted is not False
-        and result.verdict in (Verdict.AGREES, Verdict.NO_REFERENCE)
-    )
-
-
-def _methods(run: ComparisonRun) -> list[str]:
-    found = {result.method: words.order(result.method, result.family) for item in run.cases for result in item.results}
-    return sorted(found, key=lambda method: found[method])
 
 
 def cost_against_size(run: ComparisonRun) -> Study | None:
     """CPU time of solved runs against the number of free blocks, log-log, with slopes."""
     series, slopes = [], []
-    for method in _methods(run):
+    for method in methods_of(run):
         points = sorted(
             (result.blocks, result.cpu_seconds)
             for item in run.cases
@@ -115,7 +85,7 @@ def profile(run: ComparisonRun, methods: list[str]) -> dict[str, list[float]]:
 
 def performance_profile(run: ComparisonRun) -> Study | None:
     """Share of all cases solved within a multiple of the fastest method's time."""
-    methods = [method for method in _methods(run) if not method.startswith("la-associated")]
+    methods = [method for method in methods_of(run) if not method.startswith("la-associated")]
     if len(run.cases) < 2 or len(methods) < 2:
         return None
     ratios = profile(run, methods)
@@ -147,79 +117,6 @@ def performance_profile(run: ComparisonRun) -> Study | None:
         "The associated maximum is left out: it answers an easier question.",
         charts.svg(chart),
     )
-
-
-def _geometry_key(item: CaseResults) -> str:
-    """What two walls that differ only in friction share: polygons, interfaces, weights and loads."""
-    assembly = item.case.assembly
-    digest = hashlib.sha256()
-    arrays = [*assembly.polygons, assembly.end1, assembly.end2, assembly.dead, assembly.live]
-    for array in arrays:
-        digest.update(np.round(array, 9).tobytes())
-        digest.update(str(array.shape).encode())
-    return digest.hexdigest()
-
-
-def friction_families(run: ComparisonRun) -> list[Study]:
-    """Cases on the same wall with another friction each, as one plot a wall."""
-    families: dict[str, list[tuple[float, CaseResults]]] = defaultdict(list)
-    for item in run.cases:
-        if shapes.problem(item.case):
-            continue
-        frictions = {round(float(mu), 9) for mu in item.case.assembly.friction}
-        if len(frictions) == 1:
-            families[_geometry_key(item)].append((frictions.pop(), item))
-    found = []
-    for members in families.values():
-        if len({friction for friction, _ in members}) < 3:
-            continue
-        members.sort(key=lambda pair: pair[0])
-        series = []
-        for method in _methods(run):
-            points = [
-                (friction, result)
-                for friction, item in members
-                if (result := item.of(method)) is not None and result.multiplier is not None and solved(result)
-            ]
-            if points:
-                brackets = [result.bracket for _, result in points] if method == "de" else []
-                whole = bool(brackets) and all(brackets)
-                series.append(
-                    charts.Series(
-                        method,
-                        [friction for friction, _ in points],
-                        [result.multiplier or 0.0 for _, result in points],
-                        low=[pair[0] for pair in brackets if pair] if whole else [],
-                        high=[pair[1] for pair in brackets if pair] if whole else [],
-                    )
-                )
-        if not series:
-            continue
-        title = members[0][1].case.file.title
-        chart = charts.Chart(f"Multiplier against friction, {title}", "friction tan φ", "multiplier", series)
-        found.append(
-            Study(
-                f"Multiplier against friction: {title} and its kin",
-                f"The same wall with {len(members)} values of friction, all methods in one plot. " + _changes(members),
-                "A bar is a bracket. Where a line bends, another mechanism takes over; where the lines part, the "
-                "answer depends on the flow rule or on the path, and only the least one is safe.",
-                charts.svg(chart),
-            )
-        )
-    return found
-
-
-def _changes(members: list[tuple[float, CaseResults]]) -> str:
-    """Between which frictions the set of slipping, rocking and open interfaces of limit analysis changes."""
-    seen: list[tuple[float, str]] = []
-    for friction, item in members:
-        result = item.of("la") or item.of("fe")
-        if result is not None and result.states and solved(result):
-            seen.append((friction, "".join(words.STATE_LETTER.get(state, "k") for state in result.states)))
-    changes = [
-        f"{numbers.plain(a[0], 3)} and {numbers.plain(b[0], 3)}" for a, b in itertools.pairwise(seen) if a[1] != b[1]
-    ]
-    return f"The mechanism changes between {', '.join(changes)}." if changes else ""
 
 
 def _given(item: dict[str, Any]) -> Study:

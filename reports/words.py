@@ -43,6 +43,7 @@ NUMBER_IS: dict[str, str] = {
     "la-tresca": "fixed point of Tresca steps",
     "la-from-fe": "least known, started from FE",
     "de": "between held and moving",
+    "de-tilt": "as de, then released and followed",
 }
 
 STATE_LETTER: dict[str, str] = {"stick": "k", "slip": "s", "rock": "r", "open": "o"}

@@ -35,6 +35,7 @@ def bond(
     courses: int = 3,
     bricks: int = 2,
     prefix: str = "",
+    length: float = 0.4,
     references: list[dict[str, Any]] | None = None,
     errata: list[str] | None = None,
     source: str = "invented for a test",
@@ -47,7 +48,7 @@ def bond(
         "friction": friction,
         "pattern": {
             "type": "running_bond",
-            "block_length": 0.4,
+            "block_length": length,
             "block_height": 0.2,
             "count": courses,
             "bricks": bricks,

@@ -71,3 +71,12 @@ def test_animation_moves(ending: str, tmp_path: Path):
         first = image.convert("RGB").tobytes()
         image.seek(FRAMES - 1)
         assert image.convert("RGB").tobytes() != first
+
+
+def test_animation_shows_a_collapse_that_was_followed(tmp_path: Path):
+    case = samples.bond()
+    steps = [[[0.01 * k * (not fixed), 0.0, 0.05 * k] for fixed in case.assembly.fixed] for k in range(5)]
+    result = samples.solved(case, "de-tilt", 0.5, details={"release": {"frames": steps}})
+    animate(case, result, tmp_path / "a.gif")
+    with Image.open(tmp_path / "a.gif") as image:
+        assert getattr(image, "n_frames", 1) == 5

@@ -10,7 +10,7 @@ import pytest
 from harness.model.comparison import CaseResults, ComparisonRun
 from harness.model.method import Status
 from harness.model.result import Verdict
-from reports import agreement, charts, curves, drawing, numbers, paper, shapes, studies, tables
+from reports import agreement, charts, curves, drawing, families, numbers, paper, shapes, studies, tables
 from tests.reports import samples
 
 
@@ -173,9 +173,19 @@ def test_walls_that_differ_in_friction_make_a_study():
         "",
         [CaseResults(case, [samples.solved(case, "la", 0.5, turn=0.1 * (k == 1))]) for k, case in enumerate(cases)],
     )
-    (study,) = studies.friction_families(run)
+    (study,) = families.families(run)
     assert "3 values of friction" in study.sentence
-    assert "0.400 and 0.650" in study.sentence, "the mechanism of the one with friction 0.4 is another"
+    assert "0.4 and 0.65" in study.sentence, "the mechanism of the one with friction 0.4 is another"
+
+
+def test_walls_that_differ_in_proportion_make_a_study():
+    cases = [samples.bond(f"wall-{k}", length=length) for k, length in enumerate((0.2, 0.4, 0.6))]
+    run = ComparisonRun("", "", "", [CaseResults(case, [samples.solved(case, "la", 0.5)]) for case in cases])
+    (study,) = families.families(run)
+    assert "3 values of proportion" in study.sentence
+    other = samples.bond("other", length=0.8, friction=0.3)
+    run.cases[2] = CaseResults(other, [samples.solved(other, "la", 0.5)])
+    assert families.families(run) == [], "another friction is another family"
 
 
 def test_given_study_is_drawn():
@@ -211,3 +221,29 @@ def test_least_known_history_never_rises():
 def test_worst_residual_leaves_out_what_ought_to_be_large():
     result = samples.solved(samples.bond(), "la", 0.5)
     assert tables.worst_residual(result) == ("equilibrium", 3e-16)
+
+
+def test_released_blocks_turn_without_changing_their_shape():
+    assembly = samples.bond().assembly
+    places = np.tile([0.1, -0.2, 1.3], (assembly.n_blocks, 1))
+    for before, after in zip(assembly.polygons, shapes.moved(assembly, places), strict=True):
+        sides = [np.linalg.norm(polygon - np.roll(polygon, 1, axis=0), axis=1) for polygon in (before, after)]
+        assert sides[0] == pytest.approx(sides[1], rel=1e-12)
+
+
+def test_released_wall_is_drawn_over_time_and_at_its_end():
+    case = samples.bond()
+    frames = np.zeros((3, case.assembly.n_blocks, 3)).tolist()
+    path = {"time": [0.0, 1.0, 2.0], "live_displacement": [0.0, 0.1, 0.3], "multiplier": [0.5, 0.5, 0.5]}
+    details = {"release": {"frames": frames, "time_unit": "s"}}
+    found = curves.curves(CaseResults(case, [samples.solved(case, "de-tilt", 0.5, path=path, details=details)]))
+    assert [caption for caption, _ in found] == [
+        "de-tilt: the wall released just above its multiplier.",
+        "de-tilt: the wall at the end of the release.",
+    ]
+
+
+def test_frames_of_another_wall_are_not_drawn():
+    case = samples.bond()
+    result = samples.solved(case, "de-tilt", 0.5, details={"release": {"frames": [[[0.0, 0.0, 0.0]]] * 3}})
+    assert shapes.released(result, case.assembly.n_blocks) is None
