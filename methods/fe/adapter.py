@@ -8,10 +8,10 @@ import numpy as np
 
 from harness.model.assembly import Assembly
 from harness.model.method import Answer, Finding, Settings, Status
-from methods.fe.path_record import PathEnd, PathRecord
 from methods.fe.factor import make_factor
 from methods.fe.histories import HistoryResult, gravity_state, moving_blocks, trace_history
 from methods.fe.newton import Equilibrium
+from methods.fe.path_record import PathEnd, PathRecord
 from methods.fe.settings import GapSpringsSettings
 from methods.fe.wall_model import WallModel, build_model
 
@@ -30,21 +30,29 @@ class GapSprings:
 
     def solve(self, assembly: Assembly, settings: Any) -> Answer:
         """Gravity first, then the live load to the plateau under every history asked for."""
-        model = build_model(assembly, settings)
+        answer = self._solve(build_model(assembly, settings, settings.friction_cap), settings)
+        if answer.finding != Finding.COLLAPSES and float(assembly.friction.max(initial=0.0)) > settings.friction_cap:
+            answer = self._solve(build_model(assembly, settings), settings)
+        return answer
+
+    def _solve(self, model: WallModel, settings: GapSpringsSettings) -> Answer:
         factor = make_factor(model)
         gravity = gravity_state(model, factor)
         if not gravity.found:
             return gravity_failure(model, gravity)
-        if not assembly.has_live_load:
+        if not model.assembly.has_live_load:
             return stands(gravity)
         results: list[HistoryResult] = []
         scale = 1.0
+        limit = settings.max_events or 2000 + 12 * model.n_points
         for step in chosen_histories(model, settings):
-            result = trace_history(model, factor, gravity, step, scale, settings.max_events)
+            result = trace_history(model, factor, gravity, step, scale, limit)
             results.append(result)
+            if result.end == PathEnd.UNBOUNDED:
+                break
             if result.state is not None:
-                scale = result.state.multiplier
-        return collapse_answer(model, results)
+                scale = abs(result.state.multiplier) or 1.0
+        return collapse_answer(model, results, factor.factorisations)
 
 
 def chosen_histories(model: WallModel, settings: GapSpringsSettings) -> tuple[float, ...]:
@@ -88,7 +96,7 @@ def stands(gravity: Equilibrium) -> Answer:
     )
 
 
-def collapse_answer(model: WallModel, results: list[HistoryResult]) -> Answer:
+def collapse_answer(model: WallModel, results: list[HistoryResult], factorisations: int) -> Answer:
     """The answer from the histories: the least plateau, with its spread."""
     reached = [r for r in results if r.state is not None]
     details: dict[str, Any] = {
@@ -102,11 +110,14 @@ def collapse_answer(model: WallModel, results: list[HistoryResult]) -> Answer:
                 "first_limit": r.record.first_limit,
                 "events": r.record.events,
                 "commits": r.commits,
+                "path_residual": r.residual,
+                "disturbance": r.disturbance,
                 "residuals": r.state.residuals if r.state else None,
             }
             for r in results
         ],
         "gap_points": model.n_points,
+        "factorisations": factorisations,
         "events": sum(r.record.events for r in results),
     }
     iterations = int(details["events"])

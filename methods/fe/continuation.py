@@ -40,9 +40,11 @@ CROOKED = 1e-5
 """The same when refinement no longer helps."""
 NEARLY_FREE = 1e5
 """Directions larger than this many times the first one are looked at as possible mechanisms."""
+BLIND = 1e10
+"""Directions larger than this many times the first one that refinement cannot straighten are null vectors."""
 FAR = 1e4
 """A mechanism that moves this many times the present displacement before its next kink is the collapse."""
-LARGE = 1e8
+LARGE = 1e13
 """Displacements, in multiples of the first ones, beyond which the path is not followed."""
 LOST = 1e-5
 """Out-of-balance force (share of the load scale) at which the path counts as lost."""
@@ -75,7 +77,14 @@ class Tracer:
     """
 
     def __init__(
-        self, model: WallModel, factor: Factor, u: FloatArray, multiplier: float, history: FloatArray, state: IntArray
+        self,
+        model: WallModel,
+        factor: Factor,
+        u: FloatArray,
+        multiplier: float,
+        history: FloatArray,
+        state: IntArray,
+        factorised: bool = False,
     ) -> None:
         self.model = model
         self.factor = factor
@@ -84,8 +93,7 @@ class Tracer:
         self.history = history
         self.state = state.copy()
         self.sign = 1.0
-        self.resting = False
-        self.fragile = False
+        self.resting = self.fragile = self.held = False
         self.scale = load_scale(model, multiplier)
         self.last_point, self.last_old = -1, OPEN
         self.worst_residual = 0.0
@@ -102,12 +110,16 @@ class Tracer:
         self.trial += history
         self.n_open = int(np.count_nonzero(state == OPEN))
         self.n_slip = int(np.count_nonzero(state >= SLIP_PLUS))
-        self._refresh()
+        if factorised:
+            self.direction = factor.solve(model.live)
+            self._straighten()
+        else:
+            self.refresh()
         self.first_size = float(np.abs(self.direction).max())
         self.first_displacement = float(np.abs(u).max()) + 1.0
         self.kept: Snapshot | None = None
 
-    def _refresh(self) -> None:
+    def refresh(self) -> None:
         """Factorise afresh, remove the drift of the gaps and recompute the direction (which keeps its sign)."""
         self.factor.refactor(self.state)
         residual = self._out_of_balance()
@@ -129,7 +141,19 @@ class Tracer:
             raise SingularTangent("the path was lost to rounding")
         self.direction = self.factor.solve(self.model.live)
         self.resting = self.fragile = False
-        self._straighten()
+        if not self._straighten() and float(np.abs(self.direction).max()) > BLIND * self.first_size:
+            self._rest_blindly(self.sign)
+
+    def _rest_blindly(self, sign: float) -> None:
+        """Take a direction beyond the reach of double precision for the null vector that it is close to."""
+        velocity = self.direction * (sign / np.abs(self.direction).max())
+        rates = self.opening_rate.copy(), self.trial_rate.copy()
+        self._rates(velocity)
+        if self.is_mechanism():
+            self._rest(velocity)
+            self.held = False
+        else:
+            self.opening_rate[:], self.trial_rate[:] = rates
 
     def _out_of_balance(self) -> FloatArray:
         return self.model.out_of_balance(self.opening, self.trial, self.state, self.multiplier)
@@ -262,7 +286,7 @@ class Tracer:
         """Whether the piece is a mechanism that goes on so far that the next kink is of no interest.
 
         Mechanisms that stop earlier are kept: each is an exact collapse state at its multiplier, and the last one
-        stands for the plateau when rounding ends the path among displacements of 1e8 times the elastic ones.
+        stands for the plateau when rounding ends the path among displacements of 1e13 times the elastic ones.
         """
         speed = float(np.abs(velocity).max())
         if not self.resting and speed < NEARLY_FREE * self.first_size:
@@ -270,7 +294,9 @@ class Tracer:
         size = float(np.abs(self.u).max())
         if step * speed < 1e-3 * size or not self.is_mechanism() or live_rate(self.model.live, velocity) <= 0.0:
             return False
-        self.kept = Snapshot(self.multiplier, self.opening.copy(), self.trial.copy(), self.state.copy(), velocity / speed)
+        self.kept = Snapshot(
+            self.multiplier, self.opening.copy(), self.trial.copy(), self.state.copy(), velocity / speed
+        )
         return step * speed > FAR * size or size > LARGE * self.first_displacement
 
     def _advance(self, velocity: FloatArray, step: float) -> None:
@@ -300,6 +326,10 @@ class Tracer:
         self.n_open += (new == OPEN) - (old == OPEN)
         self.n_slip += (new >= SLIP_PLUS) - (old >= SLIP_PLUS)
         self.last_point, self.last_old = point, old
+        if self.resting and not self.held:
+            self.refresh()
+            self._orient(index, b, crossing)
+            return
         if self.resting or self.fragile:
             self._leave_held(index, a, b, crossing)
             return
@@ -309,7 +339,7 @@ class Tracer:
         if abs(denominator) < ILL:
             y, along = self._refine(point, old, index, a, b)
             denominator = 1.0 + along
-            self.a, self.b, self.index = a, b, index
+            self.a, self.b, self.index, self.held = a, b, index, True
             if abs(denominator) < ILL and self._rests(y, along, crossing, abs(denominator)):
                 return
         self.sign *= 1.0 if denominator > 0.0 else -1.0
@@ -320,15 +350,15 @@ class Tracer:
             self._rates(self.direction, self.tail)
             return
         if not 1.0 / STEEP < abs(denominator) < STEEP:
-            self._refresh()
+            self.refresh()
             self._orient(index, b, crossing)
         elif self.factor.count >= self.factor.capacity - 1 or self._drifted():
-            self._refresh()
+            self.refresh()
         else:
             self.direction -= y * (float(b @ self.direction[index]) / denominator)
             self.factor.update(y, index, b, denominator)
             if not self._straighten() and self.factor.count > 1:
-                self._refresh()
+                self.refresh()
                 self._orient(index, b, crossing)
 
     def _refine(self, point: int, old: int, index: IntArray, a: FloatArray, b: FloatArray) -> tuple[FloatArray, float]:
@@ -349,6 +379,12 @@ class Tracer:
 
     def _orient(self, index: IntArray, b: FloatArray, crossing: float) -> None:
         """Give the direction the sign that moves the kink function just crossed on into the new cell."""
+        if self.resting:
+            if float(b @ self.direction[index]) * crossing < 0.0:
+                self.direction = -self.direction
+                np.negative(self.opening_rate, out=self.opening_rate)
+                np.negative(self.trial_rate, out=self.trial_rate)
+            return
         self.sign = 1.0 if float(b @ self.direction[index]) * crossing > 0.0 else -1.0
 
     def _rests(self, y: FloatArray, along: float, crossing: float, denominator: float) -> bool:
@@ -388,5 +424,5 @@ class Tracer:
                 self._rest(velocity)
                 self.factor.update(y, index, b, denominator)
                 return
-        self._refresh()
+        self.refresh()
         self._orient(index, b, crossing)

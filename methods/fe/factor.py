@@ -31,6 +31,7 @@ class Factor(Protocol):
 
     count: int
     capacity: int
+    factorisations: int
 
     def refactor(self, state: IntArray, shift: float = 0.0) -> None:
         """Factorise the tangent in these states afresh, with `shift` times the inertia added."""

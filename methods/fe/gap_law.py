@@ -87,7 +87,7 @@ def flip_vectors(
     b: FloatArray,
 ) -> None:
     """The rank-one change a b' of one point's tangent between neighbouring states, all vectors (6,), into a and b."""
-    slip = old if new == OPEN or new == STICK else new
+    slip = old if new in (OPEN, STICK) else new
     sign = 1.0 if slip == SLIP_PLUS else -1.0
     if old == OPEN or new == OPEN:
         direction = 1.0 if old == OPEN else -1.0

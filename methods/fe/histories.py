@@ -12,15 +12,37 @@ from dataclasses import dataclass
 import numpy as np
 
 from harness.model.assembly import FloatArray
+from methods.fe.commits import committed_step
 from methods.fe.continuation import Tracer
 from methods.fe.factor import Factor
-from methods.fe.newton import Equilibrium, equilibrium, newton
+from methods.fe.newton import Equilibrium, equilibrium
 from methods.fe.path_record import PathEnd, PathRecord
 from methods.fe.plateau import CollapseState, finish
 from methods.fe.wall_model import WallModel
 
 START = 1e-3
 """First Newton step off the kinks on which gravity leaves many gap points, as a multiplier."""
+
+
+DISTURBANCES = (1e-9, 1e-7, 1e-5)
+"""Random initial shears, in weights of a block, tried in turn where exact ties lead a path astray."""
+COMMIT_WITHIN = 300.0
+"""Displacements, in multiples of the first, up to which the history is still committed."""
+TURN = 0.1
+"""Share of the peak by which a path may turn down before a jump from it is tried."""
+ASTRAY = 3.0
+"""Multiple of the first history's plateau at which a committed history counts as lost."""
+JUMPS = 5
+"""Jumps allowed in one history."""
+SENTENCES = {
+    PathEnd.PLATEAU: "the path ends on a plateau",
+    PathEnd.UNBOUNDED: "the path goes on to any multiplier",
+    PathEnd.RUNS_DOWN: "the path has a peak but runs down without a plateau",
+    PathEnd.EVENTS: "the path was given up at the largest number of events",
+    PathEnd.BREAKDOWN: "the path was lost",
+    PathEnd.TARGET: "the path was left at its target",
+    PathEnd.TURNED_DOWN: "the path turned down",
+}
 
 
 @dataclass(frozen=True)
@@ -40,6 +62,7 @@ class HistoryResult:
     state: CollapseState | None
     commits: int
     residual: float
+    disturbance: float
 
 
 def trace_history(
@@ -47,47 +70,93 @@ def trace_history(
 ) -> HistoryResult:
     """Trace one history from the gravity state.
 
+    Where exact ties lead the path astray it is traced again with the initial shears disturbed by 1e-9, 1e-7 and 1e-5
+    of a block's weight: data nobody knows, and the end is an exact collapse state all the same.
+
     Args:
         model: the wall; factor: its tangent; gravity: equilibrium under the dead load.
         step: commit interval as a share of `scale`, 0 for no history; scale: a multiplier of the order of collapse.
         max_events: changes of state after which the history is given up.
     """
+    result = _trace(model, factor, gravity.u, model.history, step, scale, max_events, 0.0)
+    for disturbance in DISTURBANCES:
+        if result.state is not None or result.end == PathEnd.UNBOUNDED:
+            break
+        noise = np.random.default_rng(1995).uniform(-disturbance, disturbance, model.n_points)
+        start = equilibrium(model, factor, gravity.u, 0.0, model.history + noise)
+        if start.found:
+            result = _trace(model, factor, start.u, model.history + noise, step, scale, max_events, disturbance)
+    return result
+
+
+def _trace(
+    model: WallModel,
+    factor: Factor,
+    u: FloatArray,
+    history: FloatArray,
+    step: float,
+    scale: float,
+    max_events: int,
+    disturbance: float,
+) -> HistoryResult:
+    """Trace one history from displacements u with the initial history h."""
     record = PathRecord()
-    history, u, multiplier = model.history, gravity.u, 0.0
-    interval = step * scale if step > 0.0 else np.inf
-    commits = 0
-    tracer: Tracer | None = None
-    end = PathEnd.BREAKDOWN
+    commits, worst, jumps = 0, 0.0, 0
     start = START * min(1.0, scale)
+    first = equilibrium(model, factor, u, start, history)
+    if not first.found:
+        sentence = "no equilibrium a small step off the dead load"
+        return HistoryResult(step, PathEnd.BREAKDOWN, sentence, record, None, 0, 0.0, disturbance)
+    tracer = Tracer(model, factor, first.u, start, history, first.state)
+    interval = step * scale if step > 0.0 else np.inf
+    large = COMMIT_WITHIN * tracer.first_displacement
+    turn = TURN
     while True:
-        if tracer is None:
-            first = equilibrium(model, factor, u, start, history)
-            if not first.found:
-                return HistoryResult(step, end, "no equilibrium a small step off the dead load", record, None, 0, 0.0)
-            tracer = Tracer(model, factor, first.u, start, history, first.state)
-        target = tracer.multiplier + interval
-        end = tracer.run(record, max_events, target=target)
+        end = tracer.run(record, max_events, tracer.multiplier + interval, turn)
+        worst = max(worst, tracer.worst_residual)
+        if end == PathEnd.TURNED_DOWN:
+            turn = np.inf
+            jumped = _jump(model, factor, tracer, record) if jumps < JUMPS else None
+            if jumped is not None:
+                jumps, tracer, turn = jumps + 1, jumped, TURN
+            else:
+                tracer.refresh()
+            continue
         if end != PathEnd.TARGET:
             break
-        u, multiplier = tracer.u, tracer.multiplier
-        fresh = tracer.commit()
-        for ahead in (1.0, 0.1, 0.01):
-            if not record.peak <= multiplier:
-                break
-            answer = newton(model, factor, u, multiplier + ahead * interval, fresh, 15)
-            if answer.found:
-                commits += 1
-                tracer = Tracer(model, factor, answer.u, multiplier + ahead * interval, fresh, answer.state)
-                record.peak = max(record.peak, tracer.multiplier)
-                break
-        else:
-            tracer = Tracer(model, factor, u, multiplier, tracer.history, tracer.state)
-    state = finish(tracer) if end == PathEnd.PLATEAU else None
-    sentence = f"the path ended: {end.value}"
-    if state is not None and state.worst > CERTIFICATE:
-        sentence = f"the last state is no exact collapse state (worst residual {state.worst:.1e})"
-        state = None
-    return HistoryResult(step, end, sentence, record, state, commits, tracer.worst_residual)
+        if step > 0.0 and tracer.multiplier > ASTRAY * scale:
+            end = PathEnd.BREAKDOWN
+            break
+        follow = None
+        if tracer.multiplier >= record.peak and float(np.abs(tracer.u).max()) < large:
+            follow = committed_step(tracer, interval)
+            if follow is None:
+                tracer.refresh()
+                follow = committed_step(tracer, 0.1 * interval)
+            if follow is None:
+                tracer.refresh()
+        if follow is not None:
+            commits += 1
+            follow.first_size, follow.first_displacement = tracer.first_size, tracer.first_displacement
+            tracer = follow
+            record.peak = max(record.peak, tracer.multiplier)
+            record.add(tracer.multiplier, float(model.live @ tracer.u), tracer.n_slip, tracer.n_open)
+    state = finish(tracer) if end in (PathEnd.PLATEAU, PathEnd.BREAKDOWN, PathEnd.EVENTS) else None
+    sentence = SENTENCES[end]
+    if state is None and end == PathEnd.PLATEAU:
+        sentence = "the last piece is a mechanism, but its forces do not pass the check of an exact collapse state"
+    return HistoryResult(step, end, sentence, record, state, commits, worst, disturbance)
+
+
+def _jump(model: WallModel, factor: Factor, tracer: Tracer, record: PathRecord) -> Tracer | None:
+    """A dynamic jump from a path that has turned down to equilibrium just above its peak, if there is any."""
+    above = record.peak * (1.0 + 1e-3) + 1e-9
+    answer = equilibrium(model, factor, tracer.u, above, tracer.history)
+    if not answer.found:
+        return None
+    follow = Tracer(model, factor, answer.u, above, tracer.history, answer.state)
+    follow.first_size, follow.first_displacement = tracer.first_size, tracer.first_displacement
+    return follow
 
 
 def gravity_state(model: WallModel, factor: Factor) -> Equilibrium:

@@ -7,6 +7,7 @@ from enum import StrEnum
 
 import numpy as np
 
+
 class PathEnd(StrEnum):
     """Why a stretch of path ended."""
 

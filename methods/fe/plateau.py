@@ -14,12 +14,11 @@ import numpy as np
 import scipy.sparse as sp
 from scipy.sparse.linalg import splu
 
-from harness.model.assembly import Assembly, FloatArray
+from harness.model.assembly import Assembly, FloatArray, IntArray
 from methods.fe.continuation import Snapshot, Tracer
 from methods.fe.factor import SingularTangent
 from methods.fe.gap_law import equivalent_end_forces, gap_forces
 from methods.fe.wall_model import point_strains
-
 
 CERTIFICATE = 1e-8
 """Largest relative residual at which a final state counts as an exact collapse state."""

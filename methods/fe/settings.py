@@ -43,12 +43,13 @@ class GapSpringsSettings(GapSettings):
 
     Attributes:
         histories: how often the friction history is committed, as fractions of the multiplier reached; 0: never.
-            None: none, 1 % and 0.2 % up to 1,200 blocks, fewer above.
-        max_events: changes of state of one gap point after which one history is given up.
-        newton_start: fraction of the way that Newton steps may cover before the event-by-event continuation takes
-            over; None: 0 up to 1,200 blocks (every event is followed), else as far as Newton's steps converge.
+            None: none, 1 % and 0.2 % up to 1,200 blocks, 1 % alone above.
+        max_events: changes of state after which one history is given up; None: 2,000 and 12 for every gap point.
+        friction_cap: friction coefficients above this are lowered to it while the path is traced; the final state is
+            checked with the true ones, and traced again with them if it does not hold. Coefficients such as 1000,
+            which stand for "no sliding", would otherwise make the path stiff for nothing.
     """
 
     histories: tuple[float, ...] | None = None
-    max_events: int = Field(2_000_000, ge=1)
-    newton_start: bool | None = None
+    max_events: int | None = Field(None, ge=1)
+    friction_cap: float = Field(4.0, gt=0.0)

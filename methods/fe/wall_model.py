@@ -124,7 +124,7 @@ class WallModel:
         return out
 
 
-def build_model(assembly: Assembly, settings: GapSettings) -> WallModel:
+def build_model(assembly: Assembly, settings: GapSettings, friction_cap: float = np.inf) -> WallModel:
     """The gap-spring model of a wall.
 
     Raises:
@@ -162,7 +162,7 @@ def build_model(assembly: Assembly, settings: GapSettings) -> WallModel:
         position=np.tile(xi, m),
         kn=kn,
         kt=kn * settings.stiffness_ratio,
-        mu=assembly.friction[interface],
+        mu=np.minimum(assembly.friction, friction_cap)[interface],
         history=np.zeros(m * q),
         dead=(assembly.dead[order] * scale).ravel(),
         live=(assembly.live[order] * scale).ravel(),
@@ -197,7 +197,7 @@ def _kinematic_rows(assembly: Assembly, place: IntArray, length: float) -> tuple
 
 
 def _elimination_order(assembly: Assembly) -> IntArray:
-    """Free blocks in a minimum-degree order of the contact graph, so that the tangent can be factorised as it stands."""
+    """Free blocks in a minimum-degree order of the contact graph: the tangent is factorised in that order."""
     n = assembly.n_blocks
     ones = np.ones(assembly.n_interfaces)
     graph = sp.csr_matrix((ones, (assembly.block_a, assembly.block_b)), shape=(n, n))[assembly.free][:, assembly.free]
@@ -293,4 +293,3 @@ def add_tangent(
             left_t = rows[k, 2, i] * tt
             for j in range(6):
                 values[slot[k, 6 * i + j]] += left_n * row_n[j] + left_t * rows[k, 2, j]
-

@@ -1,0 +1,118 @@
+"""A finite step with freshly committed friction history, by Newton on the factor that the path already has.
+
+After a commit every slipping point sits exactly on its kink, where a path has no single direction. A finite step
+decides which of them stick. Few points change, so the factor follows by rank-one updates.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from harness.model.assembly import FloatArray, IntArray
+from methods.fe.continuation import Tracer
+from methods.fe.factor import Factor, SingularTangent
+from methods.fe.gap_law import OPEN, SLIP_MINUS, SLIP_PLUS, STICK, classify, flip_vectors, gap_forces
+from methods.fe.wall_model import WallModel, point_strains
+
+MANY = 24
+"""Changed points above which a fresh factor is cheaper than updates."""
+NEAR = 5.0
+"""Committed steps longer than this many tangent steps may have left the branch and are not taken."""
+SAFE = 1e3
+"""Updates with |1 + b'y| or its inverse above this are not trusted here."""
+
+
+def committed_step(tracer: Tracer, ahead: float, limit: int = 12) -> Tracer | None:
+    """Commit the history where the tracer stands and step `ahead` in the multiplier.
+
+    Returns:
+        A tracer on the new path, or None when Newton did not settle (the old tracer must then be `refresh`ed).
+    """
+    model, factor = tracer.model, tracer.factor
+    history = tracer.commit()
+    multiplier = tracer.multiplier + ahead
+    u, state = tracer.u.copy(), tracer.state.copy()
+    shift = history - tracer.history
+    opening, trial = tracer.opening.copy(), tracer.trial + shift
+    opening_rate, slip_rate = np.empty_like(opening), np.empty_like(trial)
+    seen: set[bytes] = set()
+    landed = np.empty_like(state)
+    try:
+        for _ in range(limit):
+            step = factor.solve(model.out_of_balance(opening, trial, state, multiplier))
+            u += step
+            point_strains(model.unknown, model.rows, model.interface, model.position, step, opening_rate, slip_rate)
+            opening += opening_rate
+            trial += model.kt * slip_rate
+            classify(opening, trial, model.kn, model.mu, landed, False)
+            if np.array_equal(landed, state) or _same_forces(model, opening, trial, state, landed, tracer.scale):
+                if not _near(tracer, u, ahead):
+                    return None
+                return Tracer(model, factor, u, multiplier, history, state, factorised=True)
+            key = landed.tobytes()
+            if key in seen:
+                return None
+            seen.add(key)
+            change_states(model, factor, state, landed)
+    except SingularTangent:
+        return None
+    return None
+
+
+def _near(tracer: Tracer, u: FloatArray, ahead: float) -> bool:
+    """Whether a step stays on its branch: the live load works forwards, not much further than the tangent predicts."""
+    moved = u - tracer.u
+    predicted = float(np.abs(tracer.direction).max()) * ahead
+    return float(tracer.model.live @ moved) > 0.0 and float(np.abs(moved).max()) <= NEAR * predicted
+
+
+def _same_forces(
+    model: WallModel, opening: FloatArray, trial: FloatArray, state: IntArray, landed: IntArray, scale: float
+) -> bool:
+    """Whether two sets of states differ only at points that sit on their kink."""
+    normal, shear = np.empty_like(opening), np.empty_like(opening)
+    other_normal, other_shear = np.empty_like(opening), np.empty_like(opening)
+    gap_forces(opening, trial, model.kn, model.mu, state, normal, shear)
+    gap_forces(opening, trial, model.kn, model.mu, landed, other_normal, other_shear)
+    return bool(max(np.abs(normal - other_normal).max(), np.abs(shear - other_shear).max()) < 1e-12 * scale)
+
+
+def change_states(model: WallModel, factor: Factor, state: IntArray, wanted: IntArray) -> None:
+    """Bring a factor from one set of states (changed in place) to another. Raises SingularTangent."""
+    points = np.flatnonzero(state != wanted)
+    if len(points) <= MANY and factor.count + 2 * len(points) < factor.capacity:
+        for point in points:
+            for new in _way(int(state[point]), int(wanted[point])):
+                if not _change(model, factor, int(point), int(state[point]), new):
+                    state[:] = wanted
+                    factor.refactor(state)
+                    return
+                state[point] = new
+        return
+    state[:] = wanted
+    factor.refactor(state)
+
+
+def _way(old: int, new: int) -> tuple[int, ...]:
+    """The neighbouring states to pass from one state to another."""
+    if {old, new} == {OPEN, STICK}:
+        return (SLIP_PLUS, new)
+    if {old, new} == {SLIP_PLUS, SLIP_MINUS}:
+        return (STICK, new)
+    return (new,)
+
+
+def _change(model: WallModel, factor: Factor, point: int, old: int, new: int) -> bool:
+    """One rank-one update; False when it would cost digits."""
+    k, x = model.interface[point], model.position[point]
+    rows = model.rows[k]
+    a, b = np.empty(6), np.empty(6)
+    row_n = (1.0 - x) * rows[0] + x * rows[1]
+    flip_vectors(row_n, rows[2], model.kn[point], model.kt[point], model.mu[point], old, new, a, b)
+    index = model.unknown[k]
+    y = factor.solve_sparse(index, a)
+    denominator = 1.0 + float(b @ y[index])
+    if not 1.0 / SAFE < abs(denominator) < SAFE:
+        return False
+    factor.update(y, index, b, denominator)
+    return True
