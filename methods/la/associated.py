@@ -12,9 +12,10 @@ from typing import Any
 import numpy as np
 
 from harness.model.assembly import FloatArray
-from methods.la.exact import exact_mechanism
+from methods.la.exact import exact_forces
 from methods.la.interior_point import PathSettings, follow_path, start_point
 from methods.la.newton_matrix import NewtonMatrix
+from methods.la.newton_step import Point
 from methods.la.problem import Problem
 from methods.la.programmes import KinematicProgramme, StaticProgramme
 from methods.la.state import CollapseState, moving_contacts, polished, residuals, tight_contacts
@@ -88,31 +89,44 @@ def duality_gap(problem: Problem, state: CollapseState) -> float:
 
 
 def _by_interior_point(problem: Problem, newton: NewtonMatrix) -> AssociatedResult:
-    settings = PathSettings(associated=True, gap=1e-9, residual=1e-9)
+    settings = PathSettings(dilatancy=1.0, gap=1e-12, residual=1e-3)
     result = follow_path(problem, newton, start_point(problem), settings)
     if not result.gap < 1e-4 or result.statics > 1e-3:
         return AssociatedResult("unknown", iterations=result.iterations)
     point = result.point
-    slack = problem.slacks(point.forces)
     best: CollapseState | None = None
     merit = float("inf")
-    for bias in (1.0, 1e2, 1e-2):
-        moving = point.rates > bias * slack
-        try:
-            velocities = exact_mechanism(problem, newton, point.velocities, moving, True)
-        except RuntimeError:
+    for bias in (1e6, 1e3, 1.0, 1e9):
+        state = from_path(problem, newton, point, bias)
+        if state is None:
             continue
-        state = polished(
-            problem, newton, CollapseState(point.forces, point.multiplier, velocities, moving, associated=True)
-        )
         size = max(residuals(problem, state).values())
         if size < merit:
             best, merit = state, size
-        if merit < 1e-11:
+        if merit < 1e-12:
             break
     if best is None:
         return AssociatedResult("unknown", iterations=result.iterations)
     return AssociatedResult("optimal", best, duality_gap(problem, best), result.iterations)
+
+
+def from_path(problem: Problem, newton: NewtonMatrix, point: Point, bias: float) -> CollapseState | None:
+    """The end of an associated path with its forces brought into equilibrium; its mechanism is exact as it is.
+
+    Slacks with g > bias y are set to zero; the others change in proportion to their size.
+    """
+    try:
+        forces, multiplier = exact_forces(
+            problem,
+            newton,
+            problem.forces_of_slacks(point.slack),
+            point.multiplier,
+            point.rates > bias * point.slack,
+            floor=1e-14,
+        )
+    except RuntimeError:
+        return None
+    return CollapseState(forces, multiplier, point.velocities, point.rates > point.slack, associated=True)
 
 
 def solve_with_cvxpy(problem: Problem, solver: str) -> tuple[str, FloatArray | None, float]:

@@ -10,12 +10,14 @@ from __future__ import annotations
 import numpy as np
 
 from harness.model.assembly import BoolArray, FloatArray
-from methods.la.flexibility import flexibility
+from methods.la.flexibility import Compliance
 from methods.la.newton_matrix import NewtonMatrix
 from methods.la.problem import Problem
 
 RIGID = 1e40
 """Weight of a slack that may not change."""
+PENALTY = 1e13
+"""Stiffness of contacts that may not move, against a unit stiffness of the velocities; near-singular sets need it."""
 
 
 def close_tight(problem: Problem, tight: BoolArray) -> BoolArray:
@@ -38,9 +40,24 @@ def snap(problem: Problem, forces: FloatArray, tight: BoolArray) -> FloatArray:
 
 
 def exact_forces(
-    problem: Problem, newton: NewtonMatrix, forces: FloatArray, multiplier: float, tight: BoolArray, rounds: int = 6
+    problem: Problem,
+    newton: NewtonMatrix,
+    forces: FloatArray,
+    multiplier: float,
+    tight: BoolArray,
+    rounds: int = 6,
+    floor: float = 1e-9,
 ) -> tuple[FloatArray, float]:
     """Forces (m, 3) and multiplier in equilibrium to rounding with the tight slacks (m, 4) zero, near the given ones.
+
+    Args:
+        problem: the scaled wall.
+        newton: its Newton matrix.
+        forces: (m, 3) approximate forces.
+        multiplier: approximate multiplier.
+        tight: (m, 4) slacks to hold at zero.
+        rounds: refinements of each of two passes.
+        floor: least size of a slack in the measure of change, relative to the largest.
 
     Raises:
         RuntimeError: the equilibrium matrix is singular to rounding.
@@ -50,10 +67,10 @@ def exact_forces(
     for _ in range(2):
         current = snap(problem, forces, tight)
         slack = problem.slacks(current)
-        floor = 1e-9 * max(float(slack.max(initial=0.0)), 1e-9)
-        weight = np.where(tight, RIGID, 1.0 / np.maximum(slack, floor) ** 2)
-        compliance = flexibility(problem.friction, weight, True)
-        factor = newton.factorise(compliance, 0.0, 1e-13)
+        least = floor * max(float(slack.max(initial=0.0)), 1e-9)
+        weight = np.where(tight, RIGID, 1.0 / np.maximum(slack, least) ** 2)
+        compliance = Compliance(problem.friction, weight, 1.0)
+        factor = newton.factorise(compliance.matrices, 0.0, 1e-13)
         by_live = factor.solve(problem.live)
         stiffness = float(problem.live @ by_live)
         for _ in range(rounds):
@@ -64,7 +81,7 @@ def exact_forces(
             velocity = factor.solve(residual)
             change = -float(problem.live @ velocity) / stiffness if stiffness > 0.0 else 0.0
             velocity = velocity + change * by_live
-            shift = -np.einsum("pij,pj->pi", compliance, problem.strains(velocity))
+            shift = -compliance.forces(problem.strains(velocity))
             current, multiplier = snap(problem, current + shift, tight), multiplier + change
         forces = current
     assert best is not None
@@ -85,9 +102,14 @@ def exact_mechanism(
         sense = np.where(moving[:, 2], 1.0, np.where(moving[:, 3], -1.0, 0.0)) * problem.friction
         transform[:, 0, 2] = transform[:, 1, 2] = -sense
     stiff = np.einsum("pki,pk,pkj->pij", transform, still, transform)
-    factor = newton.factorise(stiff * 1e10, 0.0, 0.0, shift=1.0)
-    for _ in range(8):
+    factor = newton.factorise(stiff * PENALTY, 0.0, 0.0, shift=1.0)
+    least = np.inf
+    for _ in range(30):
         strain = np.einsum("pij,pj->pi", stiff, problem.strains(velocities))
-        velocities = velocities - factor.solve(1e10 * np.asarray(problem.statics @ strain.ravel()))
+        size = float(abs(strain).max(initial=0.0))
+        if size > 0.5 * least and size < 1e-14 * float(abs(velocities).max(initial=0.0)):
+            break
+        least = min(least, size)
+        velocities = velocities - factor.solve(PENALTY * np.asarray(problem.statics @ strain.ravel()))
     work = float(problem.live @ velocities)
     return velocities * (problem.live_work / work) if work > 0.0 else velocities

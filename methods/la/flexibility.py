@@ -7,31 +7,55 @@ import numpy as np
 from harness.model.assembly import FloatArray
 
 
-def flexibility(friction: FloatArray, weight: FloatArray, associated: bool) -> FloatArray:
-    """(m, 3, 3) inverses of A = E diag(w) S.
+class Compliance:
+    """A^-1 of every interface, as matrices and as a product without cancellation.
+
+    With N = n1 + n2 the third row of A r = e reads s = e3 / (w3 + w4) - skew N; what remains for (n1, n2) is
+    diag(w1, w2) plus a rank-one term of the dilatancy.
 
     Args:
         friction: (m,) friction coefficients mu.
         weight: (m, 4) weights w > 0 of the slacks; 1e40 holds a slack where it is.
-        associated: E = S'; otherwise E without dilatancy.
+        dilatancy: part of mu by which a slip opens: 1 associated flow, 0 sliding without dilatancy.
     """
-    mu = friction
-    inverse = np.zeros((len(mu), 3, 3))
-    total = weight[:, 2] + weight[:, 3]
-    skew = (weight[:, 2] - weight[:, 3]) / total * mu
-    if associated:
-        # A = [[w1 + a, a, b], [a, w2 + a, b], [b, b, c]] with a = mu^2 c, b = mu d; eliminate the shear first.
-        leftover = mu**2 * 4.0 * weight[:, 2] * weight[:, 3] / total
+
+    def __init__(self, friction: FloatArray, weight: FloatArray, dilatancy: float) -> None:
+        self.friction, self.dilatancy = friction, dilatancy
+        self.total = weight[:, 2] + weight[:, 3]
+        self.share = weight[:, 2:] / self.total[:, None]
+        self.skew = (self.share[:, 0] - self.share[:, 1]) * friction
+        leftover = dilatancy * friction**2 * 4.0 * weight[:, 2] * self.share[:, 1]
         w1, w2 = weight[:, 0], weight[:, 1]
         determinant = w1 * w2 + leftover * (w1 + w2)
-        n11, n22, n12 = (w2 + leftover) / determinant, (w1 + leftover) / determinant, -leftover / determinant
-        inverse[:, 0, 0], inverse[:, 1, 1] = n11, n22
-        inverse[:, 0, 1] = inverse[:, 1, 0] = n12
-        inverse[:, 0, 2] = inverse[:, 2, 0] = -skew * (n11 + n12)
-        inverse[:, 1, 2] = inverse[:, 2, 1] = -skew * (n22 + n12)
-        inverse[:, 2, 2] = 1.0 / total + skew**2 * (n11 + 2.0 * n12 + n22)
-    else:
-        inverse[:, 0, 0], inverse[:, 1, 1] = 1.0 / weight[:, 0], 1.0 / weight[:, 1]
-        inverse[:, 2, 0], inverse[:, 2, 1] = -skew / weight[:, 0], -skew / weight[:, 1]
-        inverse[:, 2, 2] = 1.0 / total
-    return inverse
+        self.ends = np.column_stack([w2, w1]) / determinant[:, None]
+        self.turn = leftover / determinant
+
+    @property
+    def matrices(self) -> FloatArray:
+        """(m, 3, 3) inverses."""
+        inverse = np.zeros((len(self.total), 3, 3))
+        inverse[:, 0, 0], inverse[:, 1, 1] = self.ends[:, 0] + self.turn, self.ends[:, 1] + self.turn
+        inverse[:, 0, 1] = inverse[:, 1, 0] = -self.turn
+        inverse[:, 2, :2] = -self.skew[:, None] * self.ends
+        inverse[:, :2, 2] = self.dilatancy * inverse[:, 2, :2]
+        inverse[:, 2, 2] = 1.0 / self.total + self.dilatancy * self.skew**2 * self.ends.sum(axis=1)
+        return inverse
+
+    def forces(self, strain: FloatArray) -> FloatArray:
+        """(m, 3) forces r = A^-1 e of strains e (m, 3)."""
+        return self._both(strain)[0]
+
+    def slacks(self, strain: FloatArray) -> FloatArray:
+        """(m, 4) slacks S A^-1 e: y3 = 2 mu N w4/(w3 + w4) + e3/(w3 + w4) and y4 likewise."""
+        forces, normal = self._both(strain)
+        strength = 2.0 * self.friction * normal
+        own = strain[:, 2] / self.total
+        return np.column_stack([forces[:, :2], strength * self.share[:, 1] + own, strength * self.share[:, 0] - own])
+
+    def _both(self, strain: FloatArray) -> tuple[FloatArray, FloatArray]:
+        opening = strain[:, :2] - (self.dilatancy * self.skew * strain[:, 2])[:, None]
+        parts = self.ends * opening
+        turned = self.turn * (opening[:, 0] - opening[:, 1])
+        normal = parts[:, 0] + parts[:, 1]
+        shear = strain[:, 2] / self.total - self.skew * normal
+        return np.column_stack([parts[:, 0] + turned, parts[:, 1] - turned, shear]), normal

@@ -31,6 +31,7 @@ class Problem:
         unit_force: mean dead load of a free block [force].
         unit_length: typical size of a block [length].
         unit_multiplier: multiplier per scaled multiplier.
+        cohesion: None, or (m, 4) constants c of the slacks y = S r + c, for programmes that need them.
     """
 
     assembly: Assembly
@@ -41,6 +42,7 @@ class Problem:
     unit_force: float
     unit_length: float
     unit_multiplier: float
+    cohesion: FloatArray | None = None
 
     @property
     def n_interfaces(self) -> int:
@@ -65,16 +67,23 @@ class Problem:
     @cached_property
     def rigid_in_shear(self) -> BoolArray:
         """(m,) interfaces without friction, whose shear is zero and whose slip is free."""
-        return np.asarray(self.friction == 0.0)
+        without = self.friction == 0.0
+        return np.asarray(without if self.cohesion is None else without & (self.cohesion[:, 2:].sum(axis=1) == 0.0))
 
     def slacks(self, forces: FloatArray) -> FloatArray:
-        """(m, 4) yield slacks y of forces (m, 3)."""
+        """(m, 4) yield slacks y = S r (+ c) of forces (m, 3)."""
         strength = self.friction * (forces[:, 0] + forces[:, 1])
-        return np.column_stack([forces[:, 0], forces[:, 1], strength + forces[:, 2], strength - forces[:, 2]])
+        slack = np.column_stack([forces[:, 0], forces[:, 1], strength + forces[:, 2], strength - forces[:, 2]])
+        return slack if self.cohesion is None else slack + self.cohesion
 
-    def strains_of_rates(self, rates: FloatArray, associated: bool) -> FloatArray:
-        """(m, 3) strains E g of rates g (m, 4)."""
-        dilation = self.friction * (rates[:, 2] + rates[:, 3]) if associated else np.zeros(len(rates))
+    def forces_of_slacks(self, slack: FloatArray) -> FloatArray:
+        """(m, 3) forces of slacks (m, 4)."""
+        own = slack if self.cohesion is None else slack - self.cohesion
+        return np.column_stack([own[:, :2], 0.5 * (own[:, 2] - own[:, 3])])
+
+    def strains_of_rates(self, rates: FloatArray, dilatancy: float) -> FloatArray:
+        """(m, 3) strains E g of rates g (m, 4); a slip opens by mu times `dilatancy`."""
+        dilation = dilatancy * self.friction * (rates[:, 2] + rates[:, 3])
         return np.column_stack([rates[:, 0] + dilation, rates[:, 1] + dilation, rates[:, 2] - rates[:, 3]])
 
     def strains(self, velocities: FloatArray) -> FloatArray:

@@ -13,8 +13,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from harness.model.assembly import BoolArray, FloatArray
-from methods.la.interior_point import PathResult, PathSettings, Point, follow_path, start_point
+from methods.la.interior_point import PathResult, PathSettings, follow_path, start_point
 from methods.la.newton_matrix import NewtonMatrix
+from methods.la.newton_step import Point
 from methods.la.problem import Problem
 from methods.la.programmes import KinematicProgramme, StaticProgramme
 from methods.la.state import CollapseState, moving_contacts, tight_contacts
@@ -105,7 +106,7 @@ class Search:
         result = self.follow(start_point(self.problem, spread, self.generator), settings)
         if result.gap > 1e-2:
             return None
-        return self.nearest_mechanism(result.point.forces, result.point.rates)
+        return self.nearest_mechanism(self.problem.forces_of_slacks(result.point.slack), result.point.rates)
 
     def descend(self, state: CollapseState, effort: Effort) -> CollapseState:
         """Ray descent from a state."""

@@ -55,10 +55,20 @@ def tight_contacts(problem: Problem, forces: FloatArray) -> BoolArray:
     return problem.slacks(forces) <= TIGHT
 
 
-def polished(problem: Problem, newton: NewtonMatrix, state: CollapseState) -> CollapseState:
-    """The same collapse state with forces and mechanism exact to rounding, where that lowers its residuals."""
+def polished(
+    problem: Problem, newton: NewtonMatrix, state: CollapseState, tight: BoolArray | None = None
+) -> CollapseState:
+    """The same collapse state with forces and mechanism exact to rounding, where that lowers its residuals.
+
+    Args:
+        problem: the scaled wall.
+        newton: its Newton matrix.
+        state: an approximate collapse state; its `moving` contacts are kept.
+        tight: (m, 4) slacks to hold at zero; by default those that are zero to rounding.
+    """
     best, merit = state, max(residuals(problem, state).values())
-    for tight in (tight_contacts(problem, state.forces) | state.moving, state.moving):
+    guess = tight_contacts(problem, state.forces) if tight is None else tight
+    for tight in (guess | state.moving, state.moving):
         try:
             forces, multiplier = exact_forces(problem, newton, state.forces, state.multiplier, tight)
             velocities = exact_mechanism(problem, newton, state.velocities, state.moving, state.associated)

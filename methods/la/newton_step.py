@@ -1,0 +1,124 @@
+"""One Newton step of the interior point: residuals at a point, one factorisation, directions for any target.
+
+Slacks and rates are both kept as unknowns, and every small one of them is computed without cancellation: a slack
+that tends to zero from the compliance of its own pair, a rate that tends to zero from its complementarity.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from harness.model.assembly import BoolArray, FloatArray
+from methods.la.exact import RIGID
+from methods.la.flexibility import Compliance
+from methods.la.newton_matrix import NewtonMatrix
+from methods.la.problem import Problem
+
+SOFTEST = 1e-15
+"""Least weight g/y in the matrix: softer contacts would magnify rounding of the velocities into their forces."""
+
+
+@dataclass
+class Point:
+    """An iterate, scaled: slacks y (m, 4), multiplier, velocities (3n,), rates g (m, 4)."""
+
+    slack: FloatArray
+    multiplier: float
+    velocities: FloatArray
+    rates: FloatArray
+
+
+@dataclass
+class Direction:
+    """A change of a point."""
+
+    slack: FloatArray
+    multiplier: float
+    velocities: FloatArray
+    rates: FloatArray
+
+
+class NewtonStep:
+    """The factorised Newton system at a point.
+
+    Raises:
+        FloatingPointError: a slack or rate is not positive.
+        RuntimeError: the matrix is singular to rounding.
+    """
+
+    def __init__(
+        self, problem: Problem, newton: NewtonMatrix, point: Point, dilatancy: float, tight: BoolArray
+    ) -> None:
+        self.problem, self.point, self.dilatancy, self.tight = problem, point, dilatancy, tight
+        if not (np.all(point.slack[~tight] > 0.0) and np.all(point.rates[~tight] > 0.0)):
+            raise FloatingPointError("the iterate left the interior")
+        self.slack = np.where(tight, 1.0, point.slack)
+        self.weight = np.where(tight, RIGID, np.maximum(point.rates / self.slack, SOFTEST))
+        self.compliance = Compliance(problem.friction, self.weight, dilatancy)
+        self.statics = problem.imbalance(problem.forces_of_slacks(point.slack), point.multiplier)
+        self.kinematics = problem.strains(point.velocities) - problem.strains_of_rates(point.rates, dilatancy)
+        self.work = problem.live_work - float(problem.live @ point.velocities)
+        self.factor = newton.factorise(self.compliance.matrices, 0.0, 1e-15)
+        self.by_live = self.factor.solve(problem.live)
+        self.live_compliance = float(problem.live @ self.by_live)
+
+    def _bordered(self, load: FloatArray, work: float) -> tuple[FloatArray, float]:
+        by_load = self.factor.solve(load)
+        change = (work - float(self.problem.live @ by_load)) / self.live_compliance
+        return by_load + change * self.by_live, change
+
+    def direction(self, target: FloatArray) -> Direction:
+        """Newton direction towards y o g = target (m, 4)."""
+        problem = self.problem
+        rate_shift = np.where(self.tight, 0.0, target / self.slack - self.point.rates)
+        shift = problem.strains_of_rates(rate_shift, self.dilatancy) - self.kinematics
+        load = np.asarray(problem.statics @ self.compliance.forces(shift).ravel()) + self.statics
+        velocity, multiplier = self._bordered(load, self.work)
+        for _ in range(2):
+            forces = self.compliance.forces(shift - problem.strains(velocity))
+            defect = self.statics + np.asarray(problem.statics @ forces.ravel()) + multiplier * problem.live
+            extra, more = self._bordered(defect, self.work - float(problem.live @ velocity))
+            velocity, multiplier = velocity + extra, multiplier + more
+        strain = shift - problem.strains(velocity)
+        slack = np.where(self.tight, 0.0, self.compliance.slacks(strain))
+        rates = self._rates(rate_shift, slack, problem.strains(velocity) + self.kinematics)
+        return Direction(slack, multiplier, velocity, rates)
+
+    def _rates(self, shift: FloatArray, slack: FloatArray, strain: FloatArray) -> FloatArray:
+        """Changes of the rates: from the complementarity where that is accurate, else from compatibility E dg = strain.
+
+        Where w = g/y is large, w dy magnifies rounding; compatibility gives dg there without loss.
+        """
+        rate = shift - np.where(self.tight, 0.0, self.weight * slack)
+        forward, backward = rate[:, 2].copy(), rate[:, 3].copy()
+        stiff = np.maximum(self.weight[:, 2], self.weight[:, 3]) > 1.0
+        ahead = self.weight[:, 2] >= self.weight[:, 3]
+        rate[:, 2] = np.where(stiff & ahead, strain[:, 2] + backward, forward)
+        rate[:, 3] = np.where(stiff & ~ahead, forward - strain[:, 2], backward)
+        dilation = self.dilatancy * self.problem.friction * (rate[:, 2] + rate[:, 3])
+        for end in (0, 1):
+            rate[:, end] = np.where(self.weight[:, end] > 1.0, strain[:, end] - dilation, rate[:, end])
+        return rate
+
+    def advance(self, change: Direction, primal: float, dual: float) -> Point:
+        """The point after a step; the larger shear slack is set from y3 + y4 = 2 mu N, so that no error builds up."""
+        point = self.point
+        slack = point.slack + primal * change.slack
+        if self.problem.cohesion is None:
+            self._agree(slack)
+        return Point(
+            np.where(self.tight, 0.0, slack),
+            point.multiplier + primal * change.multiplier,
+            point.velocities + dual * change.velocities,
+            point.rates + dual * change.rates,
+        )
+
+    def _agree(self, slack: FloatArray) -> None:
+        strength = 2.0 * self.problem.friction * (slack[:, 0] + slack[:, 1])
+        low = np.minimum(slack[:, 2], slack[:, 3])
+        first = slack[:, 2] <= slack[:, 3]
+        safe = strength > 2.0 * low
+        slack[:, 2] = np.where(safe & ~first, strength - low, slack[:, 2])
+        slack[:, 3] = np.where(safe & first, strength - low, slack[:, 3])
