@@ -253,10 +253,11 @@ def _semicircle_slack(count: int, thickness: float) -> float:
     half = count // 2
     places = [reach * math.sin((number + 0.5) * step) for number in range(half)]  # from the crown's axis, weight 1
     thrust = sum(outer - place for place in places) / outer  # crown's extrados, moments about the springing's extrados
-    slack = math.inf
+    slack, above = math.inf, 0.0
     for joint in range(1, half):
         x, y = inner * math.sin(joint * step), inner * math.cos(joint * step)
-        slack = min(slack, thrust * (outer - y) - sum(x - place for place in places[:joint]))
+        above += places[joint - 1]
+        slack = min(slack, thrust * (outer - y) - (joint * x - above))
     return slack
 
 

@@ -74,13 +74,17 @@ def irregular_stones(seed: int = 7, length: float = 3.0, courses: int = 8) -> Wa
         {"id": "ground", "polygon": [(0.0, -0.3), (length, -0.3), (length, 0.0), (0.0, 0.0)], "fixed": True}
     ]
     bottom = 0.0
+    below: list[float] = []
     for number in range(1, courses + 1):
         top = round(bottom + dice.uniform(0.22, 0.36), 3)
         joints = [(0.0, 0.0)]
         while joints[-1][0] < length - 0.75:
             foot = round(joints[-1][0] + dice.uniform(0.3, 0.65), 3)
+            if any(abs(foot - head) < 0.02 for head in below):
+                foot = round(foot + 0.05, 3)  # no joint upon a joint: masons avoid it, and slivers spoil the numbers
             joints.append((foot, round(foot + dice.uniform(-0.05, 0.05), 3)))
         joints.append((length, length))
+        below = [head for _, head in joints[1:-1]]
         for place, ((foot1, head1), (foot2, head2)) in enumerate(itertools.pairwise(joints), start=1):
             polygon = [(foot1, bottom), (foot2, bottom), (head2, top), (head1, top)]
             blocks.append({"id": f"{number}.{place}", "polygon": polygon})
@@ -197,9 +201,9 @@ TABLE: tuple[tuple[str, Wall, float, float, float, str], ...] = (
     (
         "irregular-wall",
         irregular_stones(),
-        0.4046041960,
-        0.3271045293,
-        0.3271045293,
+        0.5011333984,
+        0.4625950495,
+        0.4625950495,
         "Stones of random length with inclined head joints in courses of random height: rubble with flat beds.",
     ),
     (
