@@ -1,22 +1,19 @@
-"""The gap-spring methods as the harness knows them."""
+"""The gap-spring methods as the harness knows them: `fe`, `fe-newton` and `fe-qp`."""
 
 from __future__ import annotations
 
 from typing import Any, ClassVar
 
-import numpy as np
-
 from harness.model.assembly import Assembly
 from harness.model.method import Answer, Finding, Settings, Status
+from methods.fe.answers import bracket_answer, collapse_answer, compact, gravity_failure, single_state_answer, stands
+from methods.fe.convex_steps import bracket_collapse
 from methods.fe.factor import make_factor
-from methods.fe.histories import HistoryResult, gravity_state, moving_blocks, trace_history
-from methods.fe.newton import Equilibrium
-from methods.fe.path_record import PathEnd, PathRecord
-from methods.fe.settings import GapSpringsSettings
+from methods.fe.histories import HistoryResult, gravity_state, trace_history
+from methods.fe.incremental import march
+from methods.fe.path_record import PathEnd
+from methods.fe.settings import ConvexSettings, GapSpringsSettings, NewtonSettings
 from methods.fe.wall_model import WallModel, build_model
-
-PATH_POINTS = 300
-"""Points of the path that an answer keeps at most."""
 
 
 class GapSprings:
@@ -62,143 +59,75 @@ def chosen_histories(model: WallModel, settings: GapSpringsSettings) -> tuple[fl
     return (0.0, 0.01, 0.002) if model.assembly.n_free <= 1200 else (0.01,)
 
 
-def gravity_failure(model: WallModel, gravity: Equilibrium) -> Answer:
-    """The answer for a wall that falls under its dead load, or for a gravity step that did not end."""
-    rate = model.block_displacements(gravity.rate)
-    if not np.any(rate):
-        return Answer(
-            Status.NOT_CONVERGED,
-            Finding.NONE,
-            "the equilibrium under the dead load was not found",
-            details={"path_status": "not_converged"},
-        )
-    blocks = moving_blocks(model, rate)
-    shown = ", ".join(blocks[:8]) + (f" and {len(blocks) - 8} more" if len(blocks) > 8 else "")
-    return Answer(
-        Status.OK,
-        Finding.FALLS,
-        f"the wall falls under its dead load: the gap springs find no equilibrium for {shown}",
-        mechanism=rate / np.abs(rate).max(),
-        flow="approximate",
-        iterations=gravity.iterations,
-        details={"path_status": "gravity_failure", "moving_blocks": blocks},
-    )
-
-
-def stands(gravity: Equilibrium) -> Answer:
-    """The answer for a wall without live load that is in equilibrium under its dead load."""
-    return Answer(
-        Status.OK,
-        Finding.STANDS,
-        "the wall is in equilibrium under its dead load; no live load was asked about",
-        iterations=gravity.iterations,
-        details={"path_status": "stands", "residual": gravity.residual},
-    )
-
-
-def collapse_answer(model: WallModel, results: list[HistoryResult], factorisations: int) -> Answer:
-    """The answer from the histories: the least plateau, with its spread."""
-    reached = [r for r in results if r.state is not None]
-    details: dict[str, Any] = {
-        "histories": [
-            {
-                "step": r.step,
-                "end": r.end.value,
-                "sentence": r.sentence,
-                "plateau": r.state.multiplier if r.state else None,
-                "peak": r.record.peak if np.isfinite(r.record.peak) else None,
-                "first_limit": r.record.first_limit,
-                "events": r.record.events,
-                "commits": r.commits,
-                "path_residual": r.residual,
-                "disturbance": r.disturbance,
-                "residuals": r.state.residuals if r.state else None,
-            }
-            for r in results
-        ],
-        "gap_points": model.n_points,
-        "factorisations": factorisations,
-        "events": sum(r.record.events for r in results),
-    }
-    iterations = int(details["events"])
-    if not reached:
-        if results and results[0].end == PathEnd.UNBOUNDED:
-            details["path_status"] = "unbounded"
-            return Answer(
-                Status.OK,
-                Finding.UNBOUNDED,
-                "the live load cannot make the wall collapse: the path goes on to any multiplier",
-                iterations=iterations,
-                details=details,
-            )
-        peaked = [r for r in results if r.end in (PathEnd.RUNS_DOWN, PathEnd.TURNED_DOWN)]
-        details["path_status"] = "peak_only" if peaked else "not_converged"
-        reason = results[0].sentence if results else "no history was asked for"
-        return Answer(
-            Status.NOT_CONVERGED,
-            Finding.NONE,
-            f"no plateau was reached: {reason}",
-            iterations=iterations,
-            path=compact(model, results[0].record) if results else {},
-            details=details,
-        )
-    best = reached[0]
-    assert best.state is not None
-    plateaus = [r.state.multiplier for r in reached if r.state is not None]
-    spread = (max(plateaus) - min(plateaus)) / max(abs(min(plateaus)), 1e-12)
-    details |= {
-        "path_status": "plateau",
-        "first_limit": best.record.first_limit if best.record.first_limit is not None else best.record.peak,
-        "peak": best.record.peak,
-        "plateau": best.state.multiplier,
-        "spread": spread,
-        "moving_blocks": moving_blocks(model, best.state.mechanism),
-        "residuals": best.state.residuals,
-        "work_multiplier": best.state.work_multiplier,
-    }
-    return Answer(
-        Status.OK,
-        Finding.COLLAPSES,
-        f"the wall collapses at {best.state.multiplier:.6g} times the live load (plateau; peak {best.record.peak:.6g})",
-        multiplier=best.state.multiplier,
-        forces=best.state.forces,
-        mechanism=best.state.mechanism,
-        iterations=iterations,
-        path=compact(model, best.record),
-        details=details,
-    )
-
-
-def compact(model: WallModel, record: PathRecord) -> dict[str, list[float]]:
-    """At most `PATH_POINTS` points of a path, evenly picked, the last one kept."""
-    count = len(record.multiplier)
-    pick = np.unique(np.linspace(0, count - 1, min(count, PATH_POINTS)).astype(int)) if count else np.array([], int)
-    scale = model.displacement / (float(np.abs(model.live.reshape(-1, 3)[:, :2]).sum()) or 1.0)
-    return {
-        "multiplier": [record.multiplier[i] for i in pick],
-        "live_displacement": [record.displacement[i] * scale for i in pick],
-        "slipping_points": [float(record.slipping[i]) for i in pick],
-        "open_points": [float(record.open[i]) for i in pick],
-    }
-
-
-class IncrementalNewton(GapSprings):
-    """Ordinary incremental Newton (`fe-newton`)."""
+class IncrementalNewton:
+    """Ordinary incremental Newton: load control, then displacement control (`fe-newton`)."""
 
     name: ClassVar[str] = "fe-newton"
+    family: ClassVar[str] = "fe"
     title: ClassVar[str] = "FE, incremental Newton"
+    tolerance: ClassVar[float] = 1e-8
+    Settings: ClassVar[type[Settings]] = NewtonSettings
 
     def solve(self, assembly: Assembly, settings: Any) -> Answer:
-        """Not available yet."""
-        return Answer(Status.REFUSED, Finding.NONE, "the incremental Newton method is not part of this version")
+        """March as a general code does; a value only where a mechanism was reached and checked."""
+        model = build_model(assembly, settings)
+        factor = make_factor(model)
+        gravity = gravity_state(model, factor)
+        if not gravity.found:
+            return gravity_failure(model, gravity)
+        if not assembly.has_live_load:
+            return stands(gravity)
+        result = march(model, factor, gravity, settings.first_step, settings.cuts, settings.displacement_steps)
+        details = {"load_control_limit": result.load_control, "gap_points": model.n_points}
+        if result.state is not None:
+            return single_state_answer(model, result.state, result.sentence, result.record, details, result.iterations)
+        return Answer(
+            Status.NOT_CONVERGED,
+            Finding.NONE,
+            result.sentence,
+            iterations=result.iterations,
+            path=compact(model, result.record),
+            details=details | {"path_status": "not_converged"},
+        )
 
 
-class ConvexSteps(GapSprings):
-    """Each step as convex quadratic programmes (`fe-qp`)."""
+class ConvexSteps:
+    """Each step as convex quadratic programmes with frozen friction limits (`fe-qp`)."""
 
     name: ClassVar[str] = "fe-qp"
+    family: ClassVar[str] = "fe"
     title: ClassVar[str] = "FE, convex steps"
+    tolerance: ClassVar[float] = 1e-3
+    Settings: ClassVar[type[Settings]] = ConvexSettings
 
     def solve(self, assembly: Assembly, settings: Any) -> Answer:
-        """Not available yet."""
-        return Answer(Status.REFUSED, Finding.NONE, "the convex-step method is not part of this version")
+        """Bracket the multiplier at which the steps lose their equilibrium; refused above the set number of blocks."""
+        if assembly.n_free > settings.max_blocks:
+            return Answer(
+                Status.REFUSED,
+                Finding.NONE,
+                f"{assembly.n_free} blocks: the convex steps are a cross-check for up to {settings.max_blocks} blocks, "
+                "above which their fixed point is too slow; use fe",
+                details={"path_status": "refused"},
+            )
+        model = build_model(assembly, settings, settings.friction_cap)
+        result = bracket_collapse(model, settings.first_step, settings.resolution, settings.fixed_points)
+        details = {"programmes": result.programmes, "gap_points": model.n_points}
+        if not result.gravity:
+            return Answer(
+                Status.NOT_CONVERGED,
+                Finding.NONE,
+                "no equilibrium was found under the dead load alone; fe tells whether the wall falls",
+                iterations=result.programmes,
+                details=details | {"path_status": "not_converged"},
+            )
+        if not assembly.has_live_load:
+            return Answer(
+                Status.OK,
+                Finding.STANDS,
+                "the wall is in equilibrium under its dead load; no live load was asked about",
+                iterations=result.programmes,
+                details=details | {"path_status": "stands"},
+            )
+        path = {"multiplier": list(result.record.multiplier)}
+        return bracket_answer(result.lower, result.upper, details, path, result.programmes)

@@ -199,6 +199,12 @@ class Tracer:
         """(N,) the velocity along the present piece: the null vector where the tangent is singular."""
         return self.direction if self.resting else self.sign * self.direction
 
+    def settle_on(self, velocity: FloatArray) -> None:
+        """Take a velocity (N,) found by other means for the direction of motion at a constant multiplier."""
+        scaled = velocity / np.abs(velocity).max()
+        self._rates(scaled)
+        self._rest(scaled)
+
     def commit(self) -> FloatArray:
         """The history h = T - kt s (P,) after the present shears are frozen in."""
         model = self.model

@@ -53,3 +53,32 @@ class GapSpringsSettings(GapSettings):
     histories: tuple[float, ...] | None = None
     max_events: int | None = Field(None, ge=1)
     friction_cap: float = Field(4.0, gt=0.0)
+
+
+class NewtonSettings(GapSettings):
+    """Settings of `fe-newton`.
+
+    Attributes:
+        first_step: first step of the multiplier; cuts: halvings after which load control stops.
+        displacement_steps: steps of displacement control.
+    """
+
+    first_step: float = Field(0.02, gt=0.0)
+    cuts: int = Field(8, ge=0)
+    displacement_steps: int = Field(80, ge=0)
+
+
+class ConvexSettings(GapSettings):
+    """Settings of `fe-qp`.
+
+    Attributes:
+        first_step: first step of the multiplier; resolution: relative width of the bracket at which to stop.
+        fixed_points: Tresca iterations allowed for one step; max_blocks: size above which the method refuses.
+        friction_cap: friction coefficients above this are lowered to it.
+    """
+
+    first_step: float = Field(0.05, gt=0.0)
+    resolution: float = Field(0.005, gt=0.0)
+    fixed_points: int = Field(60, ge=1)
+    max_blocks: int = Field(60, ge=1)
+    friction_cap: float = Field(4.0, gt=0.0)

@@ -1,0 +1,185 @@
+"""What the gap-spring methods say, put into the words of the harness."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from harness.model.method import Answer, Finding, Status
+from methods.fe.histories import HistoryResult, moving_blocks
+from methods.fe.newton import Equilibrium
+from methods.fe.path_record import PathEnd, PathRecord
+from methods.fe.plateau import CollapseState
+from methods.fe.wall_model import WallModel
+
+PATH_POINTS = 300
+"""Points of the path that an answer keeps at most."""
+
+
+def gravity_failure(model: WallModel, gravity: Equilibrium) -> Answer:
+    """The answer for a wall that falls under its dead load, or for a gravity step that did not end."""
+    rate = model.block_displacements(gravity.rate)
+    if not np.any(rate):
+        return Answer(
+            Status.NOT_CONVERGED,
+            Finding.NONE,
+            "the equilibrium under the dead load was not found",
+            details={"path_status": "not_converged"},
+        )
+    blocks = moving_blocks(model, rate)
+    shown = ", ".join(blocks[:8]) + (f" and {len(blocks) - 8} more" if len(blocks) > 8 else "")
+    return Answer(
+        Status.OK,
+        Finding.FALLS,
+        f"the wall falls under its dead load: the gap springs find no equilibrium for {shown}",
+        mechanism=rate / np.abs(rate).max(),
+        flow="approximate",
+        iterations=gravity.iterations,
+        details={"path_status": "gravity_failure", "moving_blocks": blocks},
+    )
+
+
+def stands(gravity: Equilibrium) -> Answer:
+    """The answer for a wall without live load that is in equilibrium under its dead load."""
+    return Answer(
+        Status.OK,
+        Finding.STANDS,
+        "the wall is in equilibrium under its dead load; no live load was asked about",
+        iterations=gravity.iterations,
+        details={"path_status": "stands", "residual": gravity.residual},
+    )
+
+
+def collapse_answer(model: WallModel, results: list[HistoryResult], factorisations: int) -> Answer:
+    """The answer from the histories: the least plateau, with its spread."""
+    reached = [r for r in results if r.state is not None]
+    details: dict[str, Any] = {
+        "histories": [
+            {
+                "step": r.step,
+                "end": r.end.value,
+                "sentence": r.sentence,
+                "plateau": r.state.multiplier if r.state else None,
+                "peak": r.record.peak if np.isfinite(r.record.peak) else None,
+                "first_limit": r.record.first_limit,
+                "events": r.record.events,
+                "commits": r.commits,
+                "path_residual": r.residual,
+                "disturbance": r.disturbance,
+                "residuals": r.state.residuals if r.state else None,
+            }
+            for r in results
+        ],
+        "gap_points": model.n_points,
+        "factorisations": factorisations,
+        "events": sum(r.record.events for r in results),
+    }
+    iterations = int(details["events"])
+    if not reached:
+        if results and results[0].end == PathEnd.UNBOUNDED:
+            details["path_status"] = "unbounded"
+            return Answer(
+                Status.OK,
+                Finding.UNBOUNDED,
+                "the live load cannot make the wall collapse: the path goes on to any multiplier",
+                iterations=iterations,
+                details=details,
+            )
+        peaked = [r for r in results if r.end in (PathEnd.RUNS_DOWN, PathEnd.TURNED_DOWN)]
+        details["path_status"] = "peak_only" if peaked else "not_converged"
+        reason = results[0].sentence if results else "no history was asked for"
+        return Answer(
+            Status.NOT_CONVERGED,
+            Finding.NONE,
+            f"no plateau was reached: {reason}",
+            iterations=iterations,
+            path=compact(model, results[0].record) if results else {},
+            details=details,
+        )
+    best = reached[0]
+    assert best.state is not None
+    plateaus = [r.state.multiplier for r in reached if r.state is not None]
+    spread = (max(plateaus) - min(plateaus)) / max(abs(min(plateaus)), 1e-12)
+    details |= {
+        "path_status": "plateau",
+        "first_limit": best.record.first_limit if best.record.first_limit is not None else best.record.peak,
+        "peak": best.record.peak,
+        "plateau": best.state.multiplier,
+        "spread": spread,
+        "moving_blocks": moving_blocks(model, best.state.mechanism),
+        "residuals": best.state.residuals,
+        "work_multiplier": best.state.work_multiplier,
+    }
+    return Answer(
+        Status.OK,
+        Finding.COLLAPSES,
+        f"the wall collapses at {best.state.multiplier:.6g} times the live load (plateau; peak {best.record.peak:.6g})",
+        multiplier=best.state.multiplier,
+        forces=best.state.forces,
+        mechanism=best.state.mechanism,
+        iterations=iterations,
+        path=compact(model, best.record),
+        details=details,
+    )
+
+
+def compact(model: WallModel, record: PathRecord) -> dict[str, list[float]]:
+    """At most `PATH_POINTS` points of a path, evenly picked, the last one kept."""
+    count = len(record.multiplier)
+    pick = np.unique(np.linspace(0, count - 1, min(count, PATH_POINTS)).astype(int)) if count else np.array([], int)
+    scale = model.displacement / (float(np.abs(model.live.reshape(-1, 3)[:, :2]).sum()) or 1.0)
+    return {
+        "multiplier": [record.multiplier[i] for i in pick],
+        "live_displacement": [record.displacement[i] * scale for i in pick],
+        "slipping_points": [float(record.slipping[i]) for i in pick],
+        "open_points": [float(record.open[i]) for i in pick],
+    }
+
+
+def bracket_answer(
+    lower: float, upper: float | None, details: dict[str, Any], path: dict[str, list[float]], iterations: int
+) -> Answer:
+    """The answer of a method that only knows between which two steps the wall lost its equilibrium."""
+    if upper is None:
+        return Answer(
+            Status.OK,
+            Finding.UNBOUNDED,
+            "every step of the live load found equilibrium",
+            iterations=iterations,
+            path=path,
+            details=details | {"path_status": "unbounded"},
+        )
+    return Answer(
+        Status.OK,
+        Finding.COLLAPSES,
+        f"equilibrium is found at {lower:.6g} times the live load and no longer at {upper:.6g}",
+        multiplier=0.5 * (lower + upper),
+        bracket=(lower, upper),
+        bracket_meaning="last step with equilibrium, first step without",
+        iterations=iterations,
+        path=path,
+        details=details | {"path_status": "bracket"},
+    )
+
+
+def single_state_answer(
+    model: WallModel, state: CollapseState, sentence: str, record: PathRecord, details: dict[str, Any], iterations: int
+) -> Answer:
+    """The answer of a method that ended in one checked collapse state."""
+    return Answer(
+        Status.OK,
+        Finding.COLLAPSES,
+        f"the wall collapses at {state.multiplier:.6g} times the live load: {sentence}",
+        multiplier=state.multiplier,
+        forces=state.forces,
+        mechanism=state.mechanism,
+        iterations=iterations,
+        path=compact(model, record),
+        details=details
+        | {
+            "path_status": "plateau",
+            "residuals": state.residuals,
+            "moving_blocks": moving_blocks(model, state.mechanism),
+        },
+    )

@@ -1,0 +1,147 @@
+"""Each step as convex quadratic programmes: `fe-qp`, an independent cross-check for small walls.
+
+With the friction limits c = mu N frozen (Tresca), the equilibrium of the gap springs minimises a convex energy:
+
+    min 1/2 sum kn z^2 + 1/2 sum (kt (s - e) + h)^2 / kt + sum c |e| - load'u    with z >= -g(u)
+
+where z is the compression and e the frictional part of the slip. OSQP (Stellato et al., 2020) solves it, split as
+e = e+ - e-, and the limits follow by fixed-point iteration until they repeat (Haslinger, 1983). The step of the
+multiplier is bisected between the last step that converged and the first that did not: the answer is that bracket.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+import osqp
+import scipy.sparse as sp
+
+from harness.model.assembly import FloatArray
+from methods.fe.path_record import PathRecord
+from methods.fe.wall_model import WallModel
+
+
+@dataclass(frozen=True)
+class ConvexResult:
+    """The bracket of the multiplier: the last step with equilibrium and the first without; and the work done."""
+
+    lower: float
+    upper: float | None
+    record: PathRecord
+    programmes: int
+    gravity: bool
+
+
+class TrescaProgramme:
+    """The quadratic programme of one wall, factorised once by OSQP; unknowns (u, z, e+, e-)."""
+
+    def __init__(self, model: WallModel, accuracy: float) -> None:
+        self.model = model
+        self.programmes = 0
+        n, p = model.n_unknowns, model.n_points
+        opening, slip = self._gap_matrices()
+        self._opening, self._slip = opening, slip
+        kn, kt = sp.diags(model.kn), sp.diags(model.kt)
+        us = slip.T @ kt
+        self._quadratic = sp.bmat(
+            [
+                [us @ slip, None, -us, us],
+                [None, kn, None, None],
+                [-us.T, None, kt, -kt],
+                [us.T, None, -kt, kt],
+            ],
+            format="csc",
+        )
+        eye = sp.identity(p)
+        self._constraint = sp.bmat(
+            [[opening, eye, None, None], [None, eye, None, None], [None, None, eye, None], [None, None, None, eye]],
+            format="csc",
+        )
+        self.n, self.p = n, p
+        self._solver = osqp.OSQP()
+        self._solver.setup(
+            sp.triu(self._quadratic, format="csc"),
+            np.zeros(n + 3 * p),
+            self._constraint,
+            np.zeros(4 * p),
+            np.full(4 * p, np.inf),
+            verbose=False,
+            eps_abs=accuracy,
+            eps_rel=accuracy,
+            max_iter=20_000,
+            polishing=True,
+            adaptive_rho_interval=50,
+        )
+
+    def _gap_matrices(self) -> tuple[sp.csr_matrix, sp.csr_matrix]:
+        """Sparse (P, N) matrices of the openings and slips."""
+        model = self.model
+        x = model.position[:, None]
+        rows = model.rows[model.interface]
+        index = model.unknown[model.interface]
+        points = np.repeat(np.arange(model.n_points), 6)
+        shape = (model.n_points, model.n_unknowns)
+        normal = (1.0 - x) * rows[:, 0] + x * rows[:, 1]
+        return (
+            sp.csr_matrix((normal.ravel(), (points, index.ravel())), shape=shape),
+            sp.csr_matrix((rows[:, 2].ravel(), (points, index.ravel())), shape=shape),
+        )
+
+    def solve(self, multiplier: float, limit: FloatArray) -> tuple[FloatArray, FloatArray] | None:
+        """Displacements (N,) and compressions (P,) under Tresca limits (P,), or None when OSQP finds no minimum."""
+        model = self.model
+        h = model.history
+        load = model.dead + multiplier * model.live
+        linear = np.concatenate([self._slip.T @ h - load, np.zeros(self.p), limit - h, limit + h])
+        self._solver.update(q=linear)
+        result = self._solver.solve(raise_error=False)
+        self.programmes += 1
+        if result.info.status not in ("solved", "solved inaccurate") or not np.isfinite(result.x).all():
+            return None
+        u = result.x[: self.n]
+        return u, np.maximum(0.0, -model.kn * (self._opening @ u))
+
+
+def bracket_collapse(
+    model: WallModel, first_step: float, resolution: float, fixed_points: int, accuracy: float = 1e-7
+) -> ConvexResult:
+    """March the multiplier up and bisect the step at which the fixed point is lost.
+
+    Args:
+        first_step: first step of the multiplier; resolution: width of the bracket at which to stop, relative.
+        fixed_points: Tresca iterations allowed for one step; accuracy: of OSQP.
+    """
+    programme = TrescaProgramme(model, accuracy)
+    record = PathRecord()
+    limit = _settle(programme, 0.0, np.zeros(model.n_points), fixed_points)
+    if limit is None:
+        return ConvexResult(0.0, None, record, programme.programmes, False)
+    lower, upper, step = 0.0, None, first_step
+    while upper is None or upper - lower > resolution * max(abs(upper), 1e-6):
+        goal = lower + step if upper is None else 0.5 * (lower + upper)
+        settled = _settle(programme, goal, limit, fixed_points)
+        if settled is None:
+            upper = goal
+        else:
+            lower, limit = goal, settled
+            record.add(goal, 0.0, 0, 0)
+            step *= 1.5
+        if upper is None and lower > 1e6 * first_step:
+            break
+    return ConvexResult(lower, upper, record, programme.programmes, True)
+
+
+def _settle(programme: TrescaProgramme, multiplier: float, limit: FloatArray, count: int) -> FloatArray | None:
+    """Friction limits (P,) that repeat at this multiplier, or None when they do not."""
+    model = programme.model
+    scale = float(np.abs(model.dead).max() + abs(multiplier) * np.abs(model.live).max()) or 1.0
+    for _ in range(count):
+        answer = programme.solve(multiplier, limit)
+        if answer is None or np.abs(answer[0]).max() > 1e6 * scale:
+            return None
+        new = model.mu * answer[1]
+        if np.abs(new - limit).max() < 1e-4 * scale:
+            return new
+        limit = new
+    return None
