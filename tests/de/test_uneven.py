@@ -20,13 +20,13 @@ def test_even_blocks_have_the_exact_multiplier():
     assert found.fell - found.stood <= 0.01
 
 
-def test_uneven_blocks_lean_either_way():
+def test_uneven_blocks_scatter_about_the_even_multiplier():
+    # Cuts shorten the base and lower the centroids alike: for a stack the load may rise as well as fall.
     wall = assembly(stack(3, 0.4, 0.2), 0.9)
     found = [load_uneven(wall, 0.1, seed=seed, step=0.04, accuracy=0.02) for seed in range(4)]
     fell = np.array([loading.fell for loading in found])
-    assert fell.min() < 0.96 * 2 / 3
     assert np.ptp(fell) > 0.03
-    assert np.all(np.abs(fell - 2 / 3) < 0.25)
+    assert np.all(np.abs(fell / (2 / 3) - 1) < 0.15)
 
 
 def test_uneven_blocks_repeat_with_their_seed_and_lose_area():
