@@ -59,6 +59,12 @@ class TrescaProgramme:
             format="csc",
         )
         self.n, self.p = n, p
+        self._accuracy = accuracy
+        self.restart()
+
+    def restart(self) -> None:
+        """Set the solver up afresh: a programme without minimum leaves its iterate and its step far away."""
+        n, p = self.n, self.p
         self._solver = osqp.OSQP()
         self._solver.setup(
             sp.triu(self._quadratic, format="csc"),
@@ -67,9 +73,9 @@ class TrescaProgramme:
             np.zeros(4 * p),
             np.full(4 * p, np.inf),
             verbose=False,
-            eps_abs=accuracy,
-            eps_rel=accuracy,
-            max_iter=20_000,
+            eps_abs=self._accuracy,
+            eps_rel=self._accuracy,
+            max_iter=10_000,
             polishing=True,
             adaptive_rho_interval=50,
         )
@@ -98,13 +104,14 @@ class TrescaProgramme:
         result = self._solver.solve(raise_error=False)
         self.programmes += 1
         if result.info.status not in ("solved", "solved inaccurate") or not np.isfinite(result.x).all():
+            self.restart()
             return None
         u = result.x[: self.n]
         return u, np.maximum(0.0, -model.kn * (self._opening @ u))
 
 
 def bracket_collapse(
-    model: WallModel, first_step: float, resolution: float, fixed_points: int, accuracy: float = 1e-7
+    model: WallModel, first_step: float, resolution: float, fixed_points: int, accuracy: float = 1e-6
 ) -> ConvexResult:
     """March the multiplier up and bisect the step at which the fixed point is lost.
 
@@ -122,6 +129,8 @@ def bracket_collapse(
         goal = lower + step if upper is None else 0.5 * (lower + upper)
         settled = _settle(programme, goal, limit, fixed_points)
         if settled is None:
+            settled = _settle(programme, goal, limit, 2 * fixed_points, 0.5)
+        if settled is None:
             upper = goal
         else:
             lower, limit = goal, settled
@@ -132,16 +141,19 @@ def bracket_collapse(
     return ConvexResult(lower, upper, record, programme.programmes, True)
 
 
-def _settle(programme: TrescaProgramme, multiplier: float, limit: FloatArray, count: int) -> FloatArray | None:
-    """Friction limits (P,) that repeat at this multiplier, or None when they do not."""
+def _settle(
+    programme: TrescaProgramme, multiplier: float, limit: FloatArray, count: int, share: float = 1.0
+) -> FloatArray | None:
+    """Friction limits (P,) that repeat at this multiplier, or None; `share` of each change of the limits is taken."""
     model = programme.model
     scale = float(np.abs(model.dead).max() + abs(multiplier) * np.abs(model.live).max()) or 1.0
     for _ in range(count):
         answer = programme.solve(multiplier, limit)
         if answer is None or np.abs(answer[0]).max() > 1e6 * scale:
+            programme.restart()
             return None
         new = model.mu * answer[1]
         if np.abs(new - limit).max() < 1e-4 * scale:
             return new
-        limit = new
+        limit = limit + share * (new - limit)
     return None

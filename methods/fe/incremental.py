@@ -79,7 +79,7 @@ def march(
             if failures > 8:
                 break
             continue
-        flat = abs(new_multiplier - multiplier) <= 1e-10 * max(1.0, abs(multiplier))
+        flat = abs(new_multiplier - multiplier) <= 1e-8 * max(1.0, abs(multiplier))
         direction = new_u - u
         u, multiplier, state = new_u, new_multiplier, new_state
         record.add(multiplier, float(model.live @ u), 0, 0)
