@@ -8,10 +8,20 @@ from harness.model.assembly import Assembly
 from harness.model.method import Answer, Settings
 from methods.la.answers import collapse_answer, dead_load_answer, not_converged, unbounded_answer
 from methods.la.associated import AssociatedResult, solve_associated, solve_with_cvxpy, with_mechanism
+from methods.la.extra_adapters import FromFiniteElements, PaperProgramme, TrescaSequence
 from methods.la.least import least_known
 from methods.la.newton_matrix import NewtonMatrix
 from methods.la.problem import Problem, make_problem
 from methods.la.settings import AssociatedSettings, CvxpySettings, SearchSettings
+
+__all__ = [
+    "AssociatedLimitAnalysis",
+    "AssociatedLimitAnalysisCvxpy",
+    "FromFiniteElements",
+    "LimitAnalysis",
+    "PaperProgramme",
+    "TrescaSequence",
+]
 
 
 class AssociatedLimitAnalysis:

@@ -62,7 +62,8 @@ def unbounded_answer(sentence: str, iterations: int = 0, details: dict[str, Any]
 def dead_load_answer(problem: Problem, has_live_load: bool) -> Answer | None:
     """Falls with its mechanism, or stands if there is no live load; None if there is a live load to study."""
     try:
-        found = StaticProgramme(problem).stands_at(0.0)
+        solver = "ipm" if problem.n_interfaces > 1500 else "simplex"
+        found = StaticProgramme(problem, solver).stands_at(0.0)
     except RuntimeError as error:
         return not_converged(f"Whether the wall stands under its dead load was not settled: {error}")
     if isinstance(found, np.ndarray):

@@ -109,6 +109,8 @@ def exact_mechanism(
         size = float(abs(strain).max(initial=0.0))
         if size > 0.5 * least and size < 1e-14 * float(abs(velocities).max(initial=0.0)):
             break
+        if not np.isfinite(size):
+            raise RuntimeError("the kinematic matrix is singular to rounding")
         least = min(least, size)
         velocities = velocities - factor.solve(PENALTY * np.asarray(problem.statics @ strain.ravel()))
     work = float(problem.live @ velocities)

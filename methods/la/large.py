@@ -24,7 +24,9 @@ SHARP = PathSettings(dilatancy=1.0, gap=1e-17, residual=1e-3, max_iterations=150
 """Rates of contacts that do not move must vanish against forces of any size, hence the small gap."""
 
 
-def cheapest_mechanism(problem: Problem, newton: NewtonMatrix, cost: FloatArray, generator: np.random.Generator, least: float = 1e-3) -> PathResult:
+def cheapest_mechanism(
+    problem: Problem, newton: NewtonMatrix, cost: FloatArray, generator: np.random.Generator, least: float = 1e-4
+) -> PathResult:
     """The zero-dilatancy mechanism of least cost c.g; cost (m, 4) >= 0. Velocities and rates are in its point.
 
     A random cost of relative size `least` is added, so that one extreme mechanism is the cheapest by a margin.
@@ -73,3 +75,26 @@ def state_of_mechanism(
         if merit < 1e-12:
             break
     return best, result.iterations
+
+
+def large_search(problem: Problem, newton: NewtonMatrix, seed: int) -> tuple[list[CollapseState], int, float]:
+    """Exact collapse states near the end of the zero-dilatancy path, the Newton steps spent, the gap of that path.
+
+    The path need not end: where it stalls at a fold, the mechanism of least work on the slacks reached is still near
+    a collapse state. Contacts count as moving down to rates of a millionth of their own slack, because rates decay
+    geometrically away from the centre of a mechanism.
+    """
+    generator = np.random.default_rng(seed)
+    path = follow_path(problem, newton, start_point(problem), PathSettings(gap=1e-8, residual=1e-3, max_iterations=150))
+    steps = path.iterations
+    states: list[CollapseState] = []
+    for least in (1e-4, 1e-6, 1e-2):
+        mechanism = cheapest_mechanism(problem, newton, path.point.slack, generator, least)
+        steps += mechanism.iterations
+        moving = mechanism.point.rates > 1e-6 * mechanism.point.slack
+        state, spent = state_of_mechanism(problem, newton, mechanism.point.velocities, moving)
+        steps += spent
+        if state is not None and max(residuals(problem, state).values()) < 1e-11:
+            states.append(state)
+            break
+    return states, steps, path.gap

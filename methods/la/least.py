@@ -11,8 +11,10 @@ from harness.model.method import Answer
 from methods.la.answers import collapse_answer, not_converged, unbounded_answer
 from methods.la.associated import AssociatedResult, solve_associated
 from methods.la.continuation import POOL, climb, descend_from
+from methods.la.large import large_search
 from methods.la.newton_matrix import NewtonMatrix
 from methods.la.problem import Problem
+from methods.la.rational import confirm
 from methods.la.search import Effort, Search
 from methods.la.settings import SearchSettings
 from methods.la.state import CollapseState, polished
@@ -28,8 +30,12 @@ class Plan:
     descents: int
 
 
+SIMPLEX_SEARCH = 1500
+"""Interfaces above which the search by simplex programmes is too slow and the interior point does all."""
 LADDER = (0.55, 0.65, 0.75, 0.85, 0.925)
-FINE_LADDER = (1.3, 1.15, 1.0, 0.9, 0.8, 0.7, 0.6, 0.5, 0.55, 0.6, 0.65, 0.7, 0.75, 0.8, 0.85, 0.9, 0.95)
+FINE_SIMPLEX_SEARCH = 1500
+"""Interfaces above which the search by simplex programmes is too slow and the interior point does all."""
+LADDER = (1.3, 1.15, 1.0, 0.9, 0.8, 0.7, 0.6, 0.5, 0.55, 0.6, 0.65, 0.7, 0.75, 0.8, 0.85, 0.9, 0.95)
 
 
 def plan_of(settings: SearchSettings, n_free: int) -> Plan:
@@ -57,6 +63,8 @@ def least_known(problem: Problem, settings: SearchSettings, tolerance: float) ->
     """
     newton = NewtonMatrix(problem)
     associated = solve_associated(problem, newton)
+    if problem.n_interfaces > SIMPLEX_SEARCH:
+        return _large(problem, newton, settings, associated, tolerance)
     plan = plan_of(settings, problem.n_velocities // 3)
     effort = Effort(failures=plan.failures)
     below = climb(problem, newton, settings.seed, plan.ladder, effort, plan.descents) if plan.ladder else None
@@ -66,7 +74,34 @@ def least_known(problem: Problem, settings: SearchSettings, tolerance: float) ->
     if not found and not climbed:
         return _nothing_found(search, associated)
     best = polished(problem, newton, min(found + climbed, key=lambda state: state.multiplier))
-    return _answer(problem, search, best, (found, climbed), associated, tolerance)
+    return _answer(problem, search, best, (found, climbed), associated, tolerance, settings.rational_interfaces)
+
+
+def _large(
+    problem: Problem, newton: NewtonMatrix, settings: SearchSettings, associated: AssociatedResult, tolerance: float
+) -> Answer:
+    states, steps, gap = large_search(problem, newton, settings.seed)
+    details: dict[str, Any] = {
+        "starts": 1,
+        "newton_steps": steps,
+        "path_gap": gap,
+        "unknowns": 7 * problem.n_interfaces + problem.n_velocities + 1,
+    }
+    if associated.state is not None:
+        details["associated"] = associated.state.multiplier * problem.unit_multiplier
+    if not states:
+        return not_converged(
+            f"The path of zero-dilatancy flow stalled at a relative gap of {gap:.2g}, and no forces fit the mechanism "
+            "nearest to its end.",
+            steps,
+            details,
+        )
+    multiplier = states[0].multiplier * problem.unit_multiplier
+    sentence = (
+        f"The least collapse multiplier known is {multiplier:.7g}, from one start without descent because of the size "
+        "of the wall. It is not proved to be the minimum."
+    )
+    return collapse_answer(problem, states[0], sentence, tolerance, steps, details)
 
 
 def _starting_states(search: Search, associated: AssociatedResult, starts: int) -> list[CollapseState]:
@@ -95,6 +130,7 @@ def _answer(
     states: tuple[list[CollapseState], list[CollapseState]],
     associated: AssociatedResult,
     tolerance: float,
+    rational_interfaces: int,
 ) -> Answer:
     unit = problem.unit_multiplier
     values, climbed = ([state.multiplier * unit for state in group] for group in states)
@@ -109,6 +145,8 @@ def _answer(
         "programmes": search.programmes,
         "unknowns": 7 * problem.n_interfaces + problem.n_velocities + 1,
     }
+    if problem.n_interfaces <= rational_interfaces:
+        details["rational_confirmation"] = confirm(problem, best)
     if associated.state is not None:
         details["associated"] = associated.state.multiplier * unit
     return collapse_answer(

@@ -169,10 +169,12 @@ class StaticProgramme:
         programme.set_rows(self.problem.n_velocities, np.zeros(m), np.full(m, INFINITY))
         programme.set_columns(3 * m, np.array([multiplier]), np.array([multiplier]))
         programme.set_costs(3 * m, np.array([0.0]))
-        programme.highs.setOptionValue("presolve", "off")
-        programme.highs.setOptionValue("solver", "simplex")
         try:
             status, value, _ = programme.run()
+            if status != "optimal":
+                programme.highs.setOptionValue("presolve", "off")
+                programme.highs.setOptionValue("solver", "simplex")
+                status, value, _ = programme.run()
             if status == "optimal":
                 forces = np.asarray(self._forces @ np.maximum(value[:-1], 0.0)).reshape(-1, 3)
                 return StaticSolution(forces, multiplier, programme.iterations())

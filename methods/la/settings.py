@@ -50,3 +50,47 @@ class SearchSettings(Settings):
     ladder: tuple[PositiveFactor, ...] | None = None
     failures: int | None = Field(default=None, ge=1)
     rational_interfaces: int = Field(default=100, ge=0)
+
+
+class PaperSettings(Settings):
+    """Settings of `la-paper`.
+
+    Attributes:
+        start: "zero" for the paper's r2 = 0, "fe" for the contact forces of the finite-element collapse state.
+        max_blocks: walls with more free blocks are refused.
+        max_iterations: of Ipopt, for each relaxation.
+        epsilons: bounds on y.m relative to the live work, in order.
+    """
+
+    start: Literal["zero", "fe"] = "zero"
+    max_blocks: int = Field(default=50, ge=1)
+    max_iterations: int = Field(default=500, ge=1)
+    epsilons: tuple[PositiveFactor, ...] = (1e-2, 1e-4, 1e-6, 1e-8)
+
+
+class TrescaSettings(Settings):
+    """Settings of `la-tresca`.
+
+    Attributes:
+        max_iterations: programmes at most.
+        weight: part of the new normal force in the next friction bound.
+        settled: largest change of a bound, in mean block weights, at which the sequence has settled.
+    """
+
+    max_iterations: int = Field(default=300, ge=1)
+    weight: float = Field(default=0.7, gt=0.0, le=1.0)
+    settled: float = Field(default=1e-10, gt=0.0)
+
+
+class FromFeSettings(Settings):
+    """Settings of `la-from-fe`.
+
+    Attributes:
+        seed: of the ray descent.
+        fe_method: the installed method whose collapse state is the start.
+        failures: draws without success that end a descent.
+    """
+
+    seed: int = Field(default=0, ge=0)
+    fe_method: str = "fe"
+    failures: int = Field(default=12, ge=1)

@@ -1,0 +1,198 @@
+"""The adapters of the literature's methods and of co-operation with finite elements."""
+
+from __future__ import annotations
+
+from typing import Any, ClassVar
+
+import numpy as np
+
+from harness.model.assembly import Assembly
+from harness.model.method import Answer, Finding, Settings, Status, load_method
+from methods.la.answers import collapse_answer, dead_load_answer, not_converged
+from methods.la.associated import solve_associated
+from methods.la.cooperation import project_forces
+from methods.la.newton_matrix import NewtonMatrix
+from methods.la.paper_programme import PaperResult, solve_paper_programme
+from methods.la.problem import Problem, make_problem
+from methods.la.search import Effort, Search
+from methods.la.settings import FromFeSettings, PaperSettings, TrescaSettings
+from methods.la.state import CollapseState, moving_contacts, polished, tight_contacts
+from methods.la.tresca import tresca_sequence
+
+
+def finite_element_answer(assembly: Assembly, name: str) -> Answer | None:
+    """The collapse answer of an installed finite-element method at its default settings, or None."""
+    method = load_method(name)
+    answer = method.solve(assembly, method.Settings())
+    usable = answer.finding is Finding.COLLAPSES and answer.forces is not None and answer.multiplier is not None
+    return answer if usable else None
+
+
+class PaperProgramme:
+    """The paper's own programme (8)-(11) in reduced unknowns, by Ipopt (`la-paper`)."""
+
+    name: ClassVar[str] = "la-paper"
+    family: ClassVar[str] = "la"
+    title: ClassVar[str] = "LA, programme of 1995"
+    tolerance: ClassVar[float] = 1e-9
+    Settings: ClassVar[type[Settings]] = PaperSettings
+
+    def solve(self, assembly: Assembly, settings: Any) -> Answer:
+        """A local solution of the programme, made exact on the mechanism it ends at."""
+        problem = make_problem(assembly)
+        early = dead_load_answer(problem, assembly.has_live_load)
+        if early is not None:
+            return early
+        if assembly.n_free > settings.max_blocks:
+            return Answer(
+                Status.REFUSED,
+                Finding.NONE,
+                f"The programme of the paper is not reliable above {settings.max_blocks} blocks; "
+                f"this wall has {assembly.n_free}. Use la, or raise max_blocks.",
+            )
+        start = None
+        if settings.start == "fe":
+            answer = finite_element_answer(assembly, "fe")
+            if answer is None or answer.forces is None:
+                return not_converged("The finite-element run gave no collapse state to start from.")
+            start = answer.forces / problem.unit_force
+        try:
+            result = solve_paper_programme(problem, start, settings.max_iterations, settings.epsilons)
+        except (ValueError, RuntimeError) as error:
+            return not_converged(f"The programme could not be set up or solved: {error}")
+        return paper_answer(problem, result, settings.start, self.tolerance)
+
+
+def paper_answer(problem: Problem, result: PaperResult, start: str, tolerance: float) -> Answer:
+    """The exact state on the mechanism that the programme ends at, with what the programme itself said."""
+    newton = NewtonMatrix(problem)
+    details: dict[str, Any] = {
+        "unknowns": result.unknowns,
+        "programme_value": result.multiplier * problem.unit_multiplier,
+        "solver_message": result.message,
+        "start": start,
+    }
+    if not (np.all(np.isfinite(result.forces)) and np.all(np.isfinite(result.rates))):
+        return not_converged(f"Ipopt ended with {result.message}.", result.iterations, details)
+    state = Search(problem, newton).nearest_mechanism(result.forces, result.rates)
+    if state is None:
+        return not_converged(
+            f"Ipopt ended with {result.message} and no collapse state lies near its end.", result.iterations, details
+        )
+    multiplier = state.multiplier * problem.unit_multiplier
+    return collapse_answer(
+        problem,
+        polished(problem, newton, state),
+        f"The programme of the paper leads to a collapse state at {multiplier:.7g}, a local solution.",
+        tolerance,
+        result.iterations,
+        details,
+    )
+
+
+class TrescaSequence:
+    """Sequence of programmes with the friction bound of the previous iterate: a baseline (`la-tresca`)."""
+
+    name: ClassVar[str] = "la-tresca"
+    family: ClassVar[str] = "la"
+    title: ClassVar[str] = "LA, friction-bound sequence"
+    tolerance: ClassVar[float] = 1e-8
+    Settings: ClassVar[type[Settings]] = TrescaSettings
+
+    def solve(self, assembly: Assembly, settings: Any) -> Answer:
+        """The sequence from the associated solution; its fixed point is a collapse state, not the least one."""
+        problem = make_problem(assembly)
+        early = dead_load_answer(problem, assembly.has_live_load)
+        if early is not None:
+            return early
+        newton = NewtonMatrix(problem)
+        associated = solve_associated(problem, newton)
+        if associated.state is None:
+            return not_converged(f"The associated programme that starts the sequence ended as {associated.outcome}.")
+        result = tresca_sequence(
+            problem, associated.state.forces, settings.max_iterations, settings.weight, settings.settled
+        )
+        details = {"history": [value * problem.unit_multiplier for value in result.history], "change": result.change}
+        if result.forces is None or result.outcome != "settled":
+            return not_converged(f"The sequence is {result.outcome}.", len(result.history), details)
+        search = Search(problem, newton)
+        tight = tight_contacts(problem, result.forces) | (problem.slacks(result.forces) < 1e-6)
+        mechanism = search.kinematic.solve(tight, np.ones(tight.shape))
+        if mechanism is None:
+            return not_converged("No mechanism fits the last forces.", len(result.history), details)
+        state = CollapseState(result.forces, result.multiplier, mechanism.velocities, moving_contacts(mechanism.rates))
+        state = polished(problem, newton, state, tight=tight)
+        return collapse_answer(
+            problem,
+            state,
+            f"The sequence settles at {state.multiplier * problem.unit_multiplier:.7g}: a collapse state, "
+            "seldom the least one.",
+            self.tolerance,
+            len(result.history),
+            details,
+        )
+
+
+class FromFiniteElements:
+    """Ray descent from the finite-element collapse state, against a cold start (`la-from-fe`)."""
+
+    name: ClassVar[str] = "la-from-fe"
+    family: ClassVar[str] = "la"
+    title: ClassVar[str] = "LA started from FE"
+    tolerance: ClassVar[float] = 1e-10
+    Settings: ClassVar[type[Settings]] = FromFeSettings
+
+    def solve(self, assembly: Assembly, settings: Any) -> Answer:
+        """FE forces projected onto equilibrium and yield, nearest mechanism, descent; and the same from cold."""
+        problem = make_problem(assembly)
+        early = dead_load_answer(problem, assembly.has_live_load)
+        if early is not None:
+            return early
+        given = finite_element_answer(assembly, settings.fe_method)
+        if given is None or given.forces is None or given.multiplier is None:
+            return not_converged("The finite-element run gave no collapse state to start from.")
+        forces, _, projected = project_forces(
+            problem, given.forces / problem.unit_force, given.multiplier / problem.unit_multiplier
+        )
+        newton = NewtonMatrix(problem)
+        effort = Effort(failures=settings.failures)
+        warm = Search(problem, newton, settings.seed)
+        first = warm.nearest_mechanism(forces, fe_rates(problem, given))
+        warm_end = None if first is None else warm.descend(first, effort)
+        cold = Search(problem, newton, settings.seed)
+        second = cold.interior()
+        cold_end = None if second is None else cold.descend(second, effort)
+        if first is None or warm_end is None:
+            return not_converged("No collapse state lies near the finite-element forces.")
+        unit = problem.unit_multiplier
+        state = polished(problem, newton, warm_end)
+        details: dict[str, Any] = {
+            "fe_multiplier": given.multiplier,
+            "projected": projected,
+            "first_multiplier": first.multiplier * unit,
+            "iterations": {"from_fe": warm.programmes, "cold": cold.programmes + cold.newton_steps},
+            "cold_first_multiplier": None if second is None else second.multiplier * unit,
+            "cold_multiplier": None if cold_end is None else cold_end.multiplier * unit,
+            "gain_in_value": None if cold_end is None else (cold_end.multiplier - warm_end.multiplier) * unit,
+            "gain_in_iterations": cold.programmes + cold.newton_steps - warm.programmes,
+        }
+        return collapse_answer(
+            problem,
+            state,
+            f"From the finite-element state at {given.multiplier:.6g} the descent leads to a collapse state at "
+            f"{state.multiplier * unit:.7g}.",
+            self.tolerance,
+            warm.programmes,
+            details,
+        )
+
+
+def fe_rates(problem: Problem, answer: Answer) -> np.ndarray[Any, np.dtype[np.float64]] | None:
+    """(m, 4) rates of the finite-element mechanism, scaled to the live work; None if it has none."""
+    if answer.mechanism is None:
+        return None
+    velocities = problem.from_mechanism(answer.mechanism)
+    work = float(problem.live @ velocities)
+    if work <= 0.0:
+        return None
+    return np.maximum(problem.rates_of_velocities(velocities * (problem.live_work / work), False), 0.0)
