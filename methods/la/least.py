@@ -33,9 +33,7 @@ class Plan:
 SIMPLEX_SEARCH = 1500
 """Interfaces above which the search by simplex programmes is too slow and the interior point does all."""
 LADDER = (0.55, 0.65, 0.75, 0.85, 0.925)
-FINE_SIMPLEX_SEARCH = 1500
-"""Interfaces above which the search by simplex programmes is too slow and the interior point does all."""
-LADDER = (1.3, 1.15, 1.0, 0.9, 0.8, 0.7, 0.6, 0.5, 0.55, 0.6, 0.65, 0.7, 0.75, 0.8, 0.85, 0.9, 0.95)
+FINE_LADDER = (1.3, 1.15, 1.0, 0.9, 0.8, 0.7, 0.6, 0.5, 0.55, 0.6, 0.65, 0.7, 0.75, 0.8, 0.85, 0.9, 0.95)
 
 
 def plan_of(settings: SearchSettings, n_free: int) -> Plan:

@@ -23,6 +23,9 @@ from scipy.sparse.linalg import splu
 from harness.model.assembly import FloatArray, IntArray
 from methods.la.problem import Problem
 
+FASTEST = 1e3
+"""Bound on the rates at a mean live displacement of one; without it Ipopt's tolerances admit rates of any size."""
+
 
 @dataclass(frozen=True)
 class PaperResult:
@@ -120,6 +123,7 @@ def solve_paper_programme(
     programme: Any = {"x": unknowns, "f": multiplier, "g": constraints}
     solver = casadi.nlpsol("paper", "ipopt", programme, options)
     lower = np.concatenate([[0.0], np.full(len(rows2), -np.inf), np.zeros(4 * m)])
+    upper = np.concatenate([np.full(1 + len(rows2), np.inf), np.full(4 * m, FASTEST)])
     start = np.concatenate([[0.0], np.zeros(len(rows2)), np.full(4 * m, 0.1)])
     if start_forces is not None:
         start[1 : 1 + len(rows2)] = start_forces.ravel()[rows2]
@@ -130,7 +134,7 @@ def solve_paper_programme(
         found = solver(
             x0=start,
             lbx=lower,
-            ubx=np.full(len(lower), np.inf),
+            ubx=upper,
             lbg=np.concatenate([equalities, np.zeros(4 * m), [-np.inf, 0.0]]),
             ubg=np.concatenate([equalities, np.full(4 * m, np.inf), [epsilon, 0.0]]),
         )
