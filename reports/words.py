@@ -17,8 +17,8 @@ STATUS: dict[Status, tuple[str, str]] = {
     Status.OK: ("", "ok"),
     Status.NOT_CONVERGED: ("~", "not converged"),
     Status.REFUSED: ("⊘", "refused"),
-    Status.TIMEOUT: ("⧗", "timeout"),
-    Status.OUT_OF_MEMORY: ("▣", "out of memory"),
+    Status.TIMEOUT: ("…", "timeout"),
+    Status.OUT_OF_MEMORY: ("■", "out of memory"),
     Status.CRASHED: ("✗", "crashed"),
 }
 

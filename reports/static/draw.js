@@ -123,7 +123,7 @@
         (normal * wall.n[2 * p + 1] / 1000 + s * t[1]) / force,
       ];
       const half = 0.36 * wall.block;
-      const width = Math.max(0.012 * wall.block, (0.16 * wall.block * force) / largest);
+      const width = Math.max(0.02 * wall.block, (0.16 * wall.block * force) / largest);
       const limit = at(wall.mu, p) * normal;
       const full = limit > 0 && Math.abs(s) >= 0.999 * limit;
       const group = make("g", { class: full ? "full" : "partly", "data-joint": p }, bars);

@@ -34,9 +34,19 @@ class Opened:
 
     def see_everything(self) -> None:
         """Scroll through the page, so that every figure is drawn."""
-        for top in range(0, int(self.page.evaluate("document.documentElement.scrollHeight")), 700):
+        top = 0
+        # The page grows as it is seen, because sections far off are laid out only when they come near.
+        while top < int(self.page.evaluate("document.documentElement.scrollHeight")):
             self.page.evaluate(f"window.scrollTo({{top: {top}, behavior: 'instant'}})")
             self.page.wait_for_timeout(20)
+            top += 700
+
+    def look_at(self, selector: str) -> None:
+        """See everything, then go to the first element that a selector finds."""
+        self.see_everything()
+        for _ in range(2):
+            self.page.locator(selector).first.evaluate("e => e.scrollIntoView({block: 'center', behavior: 'instant'})")
+            self.page.wait_for_timeout(100)
 
 
 @pytest.fixture
@@ -53,7 +63,7 @@ def test_page_asks_for_nothing_and_complains_of_nothing(opened: Opened, report: 
 
 
 def test_hostile_names_are_shown_as_text(opened: Opened):
-    opened.see_everything()
+    opened.look_at("#case-2 svg[data-kind=mechanism]")
     assert opened.page.locator("img").count() == 0
     assert opened.page.get_by_text(samples.SCRIPT).first.is_visible()
     opened.page.locator("#case-2 svg[data-kind=mechanism] path[data-block='1']").first.hover()
@@ -72,8 +82,7 @@ def test_every_figure_is_drawn(opened: Opened):
 
 def test_slider_moves_the_blocks_of_all_methods(opened: Opened):
     section = opened.page.locator("#case-1")
-    section.scroll_into_view_if_needed()
-    opened.see_everything()
+    opened.look_at("#case-1 .tools")
     read = "all => all.map(path => path.getAttribute('transform')).filter(Boolean)"
     before = section.locator("path.moves").evaluate_all(read)
     section.locator("input[type=range]").evaluate(
@@ -103,7 +112,7 @@ def test_slider_at_zero_puts_the_wall_back(opened: Opened):
 
 
 def test_thrust_lines_replace_resultants(opened: Opened):
-    opened.see_everything()
+    opened.look_at("#case-1 .tools")
     section = opened.page.locator("#case-1")
     assert section.locator(".bars").first.is_visible()
     section.get_by_label("thrust lines").check()
@@ -112,7 +121,7 @@ def test_thrust_lines_replace_resultants(opened: Opened):
 
 
 def test_hover_shows_the_values_of_an_interface(opened: Opened):
-    opened.see_everything()
+    opened.look_at("#case-1 svg[data-kind=forces]")
     opened.page.locator("#case-1 svg[data-kind=forces] .bars g").first.hover(force=True)
     text = opened.page.locator(".tip").inner_text()
     assert "kN" in text
