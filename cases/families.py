@@ -151,6 +151,7 @@ def _parted(friction: float, known: Known) -> list[Reference]:
             relation="at_most",
             tolerance=1e-6,
             tolerance_reason="seven digits recorded",
+            gate=True,
         ),
         r.reference(
             "tresca",

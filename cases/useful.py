@@ -259,6 +259,7 @@ def recipes() -> Iterator[Recipe]:
                 relation="at_most",
                 tolerance=float(f"{1e-6 * max(1.0, least):.2g}"),
                 tolerance_reason="accuracy of an exact collapse state",
+                gate=True,
             ),
             r.reference(
                 "fe-plateau",
