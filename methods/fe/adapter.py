@@ -9,8 +9,9 @@ from harness.model.method import Answer, Finding, Settings, Status
 from methods.fe.answers import bracket_answer, collapse_answer, compact, gravity_failure, single_state_answer, stands
 from methods.fe.convex_steps import bracket_collapse
 from methods.fe.factor import make_factor
-from methods.fe.histories import HistoryResult, gravity_state, trace_history
+from methods.fe.histories import HistoryResult, gravity_state, trace_history, with_initial_shear
 from methods.fe.incremental import march
+from methods.fe.newton import equilibrium
 from methods.fe.path_record import PathEnd
 from methods.fe.settings import ConvexSettings, GapSpringsSettings, NewtonSettings
 from methods.fe.wall_model import WallModel, build_model
@@ -39,6 +40,11 @@ class GapSprings:
             return gravity_failure(model, gravity)
         if not model.assembly.has_live_load:
             return stands(gravity)
+        if settings.initial_shear > 0.0:
+            model = with_initial_shear(model, gravity, settings.initial_shear, settings.seed)
+            gravity = equilibrium(model, factor, gravity.u, 0.0, model.history)
+            if not gravity.found:
+                return gravity_failure(model, gravity)
         results: list[HistoryResult] = []
         scale = 1.0
         limit = settings.max_events or 2000 + 12 * model.n_points

@@ -7,7 +7,7 @@ from data nobody can know.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -162,6 +162,13 @@ def _jump(model: WallModel, factor: Factor, tracer: Tracer, record: PathRecord) 
 def gravity_state(model: WallModel, factor: Factor) -> Equilibrium:
     """Equilibrium under the dead load from the virgin state."""
     return equilibrium(model, factor, np.zeros(model.n_unknowns), 0.0, model.history)
+
+
+def with_initial_shear(model: WallModel, gravity: Equilibrium, share: float, seed: int) -> WallModel:
+    """The model with shears frozen in before the live load: a random share of what friction holds under gravity."""
+    normal, _ = model.forces(gravity.u, model.history, gravity.state)
+    noise = np.random.default_rng(seed).uniform(-share, share, model.n_points)
+    return replace(model, history=noise * model.mu * normal)
 
 
 def moving_blocks(model: WallModel, mechanism: FloatArray) -> list[str]:

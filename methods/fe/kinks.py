@@ -81,12 +81,18 @@ def next_kink(
     best = np.inf
     for p in range(count):
         v0, r0, v1, r1 = kink_functions(opening[p], trial[p], opening_rate[p], trial_rate[p], kn[p], mu[p], state[p])
-        if r0 < -least and max(v0, 0.0) + tolerance < -r0 * best:
-            if p != barred_point or target_state(state[p], 0, trial[p]) != barred_state:
-                best = (max(v0, 0.0) + tolerance) / -r0
-        if r1 < -least and max(v1, 0.0) + tolerance < -r1 * best:
-            if p != barred_point or target_state(state[p], 1, trial[p]) != barred_state:
-                best = (max(v1, 0.0) + tolerance) / -r1
+        if (
+            r0 < -least
+            and max(v0, 0.0) + tolerance < -r0 * best
+            and (p != barred_point or target_state(state[p], 0, trial[p]) != barred_state)
+        ):
+            best = (max(v0, 0.0) + tolerance) / -r0
+        if (
+            r1 < -least
+            and max(v1, 0.0) + tolerance < -r1 * best
+            and (p != barred_point or target_state(state[p], 1, trial[p]) != barred_state)
+        ):
+            best = (max(v1, 0.0) + tolerance) / -r1
     step, point, target, speed = np.inf, -1, 0, 0.0
     if best == np.inf:
         return step, point, target

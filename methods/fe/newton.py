@@ -92,7 +92,8 @@ def pseudo_transient(
     while steps < limit and sigma > 1e-12:
         trial, previous = u.copy(), state
         converged = False
-        for inner in range(12):
+        inner = 0
+        while inner < 12:
             right = model.residual(trial, multiplier, history, previous) - sigma * model.inertia * (trial - u)
             try:
                 factor.refactor(previous, sigma)
@@ -100,6 +101,7 @@ def pseudo_transient(
             except SingularTangent:
                 break
             iterations += 1
+            inner += 1
             landed = model.states(trial, history)
             if np.array_equal(landed, previous) or _only_ties(model, trial, history, previous, landed, scale):
                 converged = bool(np.isfinite(trial).all())
@@ -119,7 +121,7 @@ def pseudo_transient(
                 return final
         if np.abs(u).max() > 1e8 * scale * len(u):
             break
-        sigma *= 0.25 if inner <= 3 else 0.7
+        sigma *= 0.25 if inner <= 4 else 0.7
     return Equilibrium(False, u, state, np.inf, rate, iterations)
 
 

@@ -1,0 +1,135 @@
+"""What the exact continuation must find."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from harness.model.assembly import Assembly
+from harness.model.method import Answer, Finding, Status
+from methods.fe.adapter import GapSprings
+from methods.fe.patterns import block_on_halves, running_bond
+from methods.fe.plateau import check
+from methods.fe.settings import GapSpringsSettings
+
+EXACT = 1e-9  # closed forms are met to rounding; this leaves room for other linear algebra libraries
+
+
+def solve(wall: Assembly, **settings: object) -> Answer:
+    return GapSprings().solve(wall, GapSpringsSettings.model_validate(settings))
+
+
+@pytest.mark.parametrize("stiffness", [1e2, 1e5, 1e8])
+@pytest.mark.parametrize("ratio", [0.01, 1.0, 100.0])
+def test_fe_single_block_is_stiffness_independent(stiffness: float, ratio: float) -> None:
+    answer = solve(block_on_halves((0.6, 0.4)), normal_stiffness=stiffness, stiffness_ratio=ratio)
+    assert answer.multiplier == pytest.approx(0.5 / 1.05, rel=EXACT)
+
+
+def test_fe_single_block_with_three_lobatto_points() -> None:
+    answer = solve(block_on_halves((0.6, 0.4)), rule="lobatto", points=3)
+    assert answer.multiplier == pytest.approx(0.5 / 1.075, rel=EXACT)
+
+
+@pytest.mark.parametrize(
+    ("friction", "value"), [(0.3, 0.3), (0.5, 0.5), (0.65, 13 / 23), (0.75, 13 / 23), (1.0, 13 / 23)]
+)
+def test_fe_21_bricks_slide_or_rock(friction: float, value: float) -> None:
+    answer = solve(running_bond(6, 3, friction))
+    assert answer.multiplier == pytest.approx(value, rel=1e-8)
+    assert answer.details["spread"] < 1e-8
+
+
+def test_fe_55_bricks_reach_the_plateau_below_the_peak() -> None:
+    answer = solve(running_bond(10, 5, 0.65))
+    details = answer.details
+    assert answer.multiplier == pytest.approx(0.5056, rel=1e-3)
+    assert details["peak"] == pytest.approx(0.50574, rel=1e-3)
+    assert details["plateau"] <= details["peak"]
+    assert 0.0 < details["spread"] < 0.025
+
+
+def test_fe_answer_is_an_exact_collapse_state() -> None:
+    wall = running_bond(10, 5, 0.65)
+    answer = solve(wall, histories=(0.0,))
+    assert answer.multiplier is not None
+    assert answer.forces is not None
+    assert answer.mechanism is not None
+    state = check(wall, answer.multiplier, answer.forces, answer.mechanism)
+    assert state.worst < GapSprings.tolerance
+    assert state.work_multiplier == pytest.approx(answer.multiplier, rel=1e-8)
+
+
+def test_check_notices_wrong_forces_and_wrong_mechanisms() -> None:
+    wall = running_bond(6, 3, 0.65)
+    answer = solve(wall, histories=(0.0,))
+    assert answer.forces is not None
+    assert answer.mechanism is not None
+    assert check(wall, 0.5, answer.forces, answer.mechanism).worst > 1e-3
+    assert check(wall, 13 / 23, answer.forces * 1.01, answer.mechanism).worst > 1e-3
+    assert check(wall, 13 / 23, answer.forces, -answer.mechanism).worst > 1e-3
+
+
+def test_fe_multiplier_is_the_same_however_the_wall_is_looked_at(view: Callable[[Assembly], Assembly]) -> None:
+    wall = running_bond(8, 4, 0.6)
+    ours, theirs = solve(wall, histories=(0.0,)), solve(view(wall), histories=(0.0,))
+    assert ours.multiplier is not None
+    assert theirs.multiplier == pytest.approx(ours.multiplier, rel=1e-6)
+
+
+def test_fe_multiplier_does_not_depend_on_the_normal_stiffness_of_a_wall() -> None:
+    values = [
+        solve(running_bond(8, 4, 0.65), normal_stiffness=kn, histories=(0.0,)).multiplier for kn in (1e2, 1e4, 1e8)
+    ]
+    assert values[0] == pytest.approx(values[1], rel=1e-9)
+    assert values[0] == pytest.approx(values[2], rel=1e-9)
+
+
+def test_fe_same_run_gives_the_same_numbers() -> None:
+    wall = running_bond(8, 4, 0.65)
+    assert solve(wall).multiplier == solve(wall).multiplier
+
+
+def test_fe_wall_without_live_load_stands() -> None:
+    wall = running_bond(4, 3, 0.65)
+    answer = solve(replace(wall, live=np.zeros_like(wall.live)))
+    assert (answer.status, answer.finding, answer.multiplier) == (Status.OK, Finding.STANDS, None)
+
+
+def test_fe_live_load_that_presses_down_is_unbounded() -> None:
+    wall = running_bond(4, 3, 0.65)
+    answer = solve(replace(wall, live=wall.dead.copy()))
+    assert (answer.finding, answer.multiplier) == (Finding.UNBOUNDED, None)
+
+
+def test_fe_floating_block_is_a_gravity_failure_that_names_it() -> None:
+    wall = running_bond(3, 3, 0.65)
+    top = wall.n_blocks - 1
+    keep = (wall.block_a != top) & (wall.block_b != top)
+    cut = {
+        name: getattr(wall, name)[keep]
+        for name in ("block_a", "block_b", "end1", "end2", "face1", "face2", "normal", "friction")
+    }
+    answer = solve(replace(wall, joint=tuple(np.array(wall.joint)[keep]), **cut))
+    assert answer.finding is Finding.FALLS
+    assert answer.details["path_status"] == "gravity_failure"
+    assert answer.details["moving_blocks"] == [wall.block_ids[top]]
+    assert wall.block_ids[top] in answer.sentence
+
+
+def test_fe_path_columns_have_equal_length_and_end_at_the_plateau() -> None:
+    answer = solve(running_bond(8, 4, 0.65))
+    lengths = {len(column) for column in answer.path.values()}
+    assert len(lengths) == 1
+    assert lengths.pop() <= 300
+    assert answer.path["multiplier"][-1] == pytest.approx(answer.multiplier, rel=1e-6)
+
+
+@pytest.mark.slow
+def test_fe_210_bricks_within_a_thousandth() -> None:
+    answer = solve(running_bond(20, 10, 0.65))
+    assert answer.multiplier == pytest.approx(0.4484, rel=1e-3)
+    assert answer.details["spread"] < 0.025

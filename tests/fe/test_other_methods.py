@@ -1,0 +1,44 @@
+"""Incremental Newton and the convex steps beside the exact continuation."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from harness.model.method import Finding, Status
+from methods.fe.adapter import ConvexSteps, IncrementalNewton
+from methods.fe.patterns import block_on_halves, running_bond
+from methods.fe.sensitivity import main
+from methods.fe.settings import ConvexSettings, NewtonSettings
+
+
+def test_newton_reaches_the_plateau_of_the_single_block() -> None:
+    answer = IncrementalNewton().solve(block_on_halves((0.6, 0.4)), NewtonSettings())
+    assert answer.multiplier == pytest.approx(0.5 / 1.05, rel=1e-9)
+
+
+def test_newton_that_stops_says_so_and_gives_no_number() -> None:
+    answer = IncrementalNewton().solve(running_bond(10, 5, 0.65), NewtonSettings(displacement_steps=0))
+    assert (answer.status, answer.finding, answer.multiplier) == (Status.NOT_CONVERGED, Finding.NONE, None)
+    assert "no proof of collapse" in answer.sentence
+    assert answer.details["load_control_limit"] < 0.5056
+
+
+def test_convex_steps_bracket_the_multiplier_of_the_exact_continuation() -> None:
+    answer = ConvexSteps().solve(running_bond(6, 3, 0.65), ConvexSettings())
+    assert answer.bracket is not None
+    lower, upper = answer.bracket
+    assert lower * (1 - 0.01) <= 13 / 23 <= upper * (1 + 0.01)
+
+
+def test_convex_steps_refuse_walls_that_are_too_large_for_them() -> None:
+    answer = ConvexSteps().solve(running_bond(20, 10, 0.65), ConvexSettings())
+    assert (answer.status, answer.finding) == (Status.REFUSED, Finding.NONE)
+    assert "210 blocks" in answer.sentence
+
+
+@pytest.mark.slow
+def test_sensitivity_study_writes_its_table_and_plot(tmp_path: Path) -> None:
+    assert main([str(tmp_path)]) == 0
+    assert {p.name for p in tmp_path.iterdir()} == {"fe_sensitivity.csv", "fe_sensitivity.svg"}
