@@ -9,20 +9,15 @@ import numpy as np
 
 from harness.model.assembly import Assembly, IntArray
 from harness.model.method import Answer, Finding, Status
-from methods.de.bracket import Bracket, Search, held_forces, load_unit, mechanism_at
+from methods.de.bracket import LOOSE, Bracket, Search, held_forces, load_unit, mechanism_at
 from methods.de.courses import Tuning, courses, insertion_orders, tunings
 from methods.de.engine import Engine
-from methods.de.hold import State, hold, hold_limit
 from methods.de.settings import HoldSettings
 
 BRACKET_MEANING = (
     "[lowest multiplier held, highest multiplier moving] over the body orders: every order was held at or above the "
     "lower end and moved at or below the upper end"
 )
-
-LOOSE = 0.02
-"""Widest bracket of one order, as a part of the multiplier, that still counts as converged."""
-
 
 EngineMaker = Callable[[IntArray, IntArray, Tuning], Engine]
 """From free blocks and interfaces in insertion order and a tuning to an engine that holds the wall."""
@@ -41,9 +36,9 @@ def solve_by_holds(assembly: Assembly, settings: HoldSettings, make_engine: Engi
     unit = load_unit(assembly)
     course = courses(assembly)
     orders = insertion_orders(assembly, course, settings.orders, settings.seed)
-    tuning = choose_tuning(settings, tunings(course, settings.mass_decay), make_engine, orders[0][1], orders[0][2])
-    brackets: list[Bracket] = []
-    for name, blocks, joints in orders:
+    tuning, first = first_bracket(assembly, settings, make_engine, orders[0], tunings(course, settings.mass_decay))
+    brackets = [first]
+    for name, blocks, joints in orders[1:]:
         engine = make_engine(blocks, joints, tuning)
         brackets.append(Search(engine, settings, unit, name).run(assembly.has_live_load))
     details = describe(assembly, brackets)
@@ -64,25 +59,28 @@ def solve_by_holds(assembly: Assembly, settings: HoldSettings, make_engine: Engi
     return answer
 
 
-def choose_tuning(
-    settings: HoldSettings, candidates: list[Tuning], make_engine: EngineMaker, blocks: IntArray, joints: IntArray
-) -> Tuning:
-    """The tuning with which the wall settles under its dead load in the fewest time steps.
+def first_bracket(
+    assembly: Assembly,
+    settings: HoldSettings,
+    make_engine: EngineMaker,
+    order: tuple[str, IntArray, IntArray],
+    candidates: list[Tuning],
+) -> tuple[Tuning, Bracket]:
+    """The first order's bracket, and the tuning that gave it: the first that converges, else the one that got nearest.
 
-    If it settles with none, the one with which it most quickly moves; if it does neither, the first.
+    The tunings decide only how fast a wall settles; a bracket of either is a bracket.
     """
-    found: dict[State, tuple[int, Tuning]] = {}
-    for tuning in candidates if len(candidates) > 1 else []:
+    name, blocks, joints = order
+    tried: list[tuple[float, int, Tuning, Bracket]] = []
+    for k, tuning in enumerate(candidates):
         engine = make_engine(blocks, joints, tuning)
-        engine.load(0.0)
-        limit = found[State.HELD][0] if State.HELD in found else 4 * hold_limit(engine, settings)
-        end = hold(engine, settings, limit)
-        if end.state not in found or end.steps < found[end.state][0]:
-            found[end.state] = (end.steps, tuning)
-    for state in (State.HELD, State.MOVING):
-        if state in found:
-            return found[state][1]
-    return candidates[0]
+        found = Search(engine, settings, load_unit(assembly), name).run(assembly.has_live_load)
+        if found.told(assembly.has_live_load):
+            return tuning, found
+        width = 1.0 if found.width is None else found.width
+        tried.append((width + (1.0 if found.held is None else 0.0), k, tuning, found))
+    _, _, tuning, found = min(tried, key=lambda item: item[:2])
+    return tuning, found
 
 
 def reporting(brackets: list[Bracket]) -> Bracket | None:

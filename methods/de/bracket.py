@@ -15,6 +15,10 @@ WIDE = 5e-3
 """Relative width of [held, moving] above which undecided holds make the search look for a lower moving state."""
 
 
+LOOSE = 0.02
+"""Widest bracket of one order, as a part of the multiplier, that still counts as converged."""
+
+
 @dataclass(eq=False)
 class Bracket:
     """What one insertion order found.
@@ -58,6 +62,14 @@ class Bracket:
         if self.held is None or self.moving is None or self.moving <= 0.0:
             return None
         return (self.moving - self.held) / self.moving
+
+    def told(self, ask_multiplier: bool) -> bool:
+        """Whether the search came to an end that says something."""
+        if self.held is None:
+            return self.moving is not None
+        if not ask_multiplier or self.capped:
+            return True
+        return self.width is not None and self.width <= LOOSE
 
 
 def load_unit(assembly: Assembly) -> float:
