@@ -47,7 +47,7 @@ class GapSprings:
                 return gravity_failure(model, gravity)
         results: list[HistoryResult] = []
         scale = 1.0
-        limit = settings.max_events or 2000 + 12 * model.n_points
+        limit = settings.max_events or 2000 + 5 * model.n_points
         for step in chosen_histories(model, settings):
             result = trace_history(model, factor, gravity, step, scale, limit)
             results.append(result)

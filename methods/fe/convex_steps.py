@@ -12,6 +12,7 @@ multiplier is bisected between the last step that converged and the first that d
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 import osqp
@@ -44,20 +45,21 @@ class TrescaProgramme:
         self._opening, self._slip = opening, slip
         kn, kt = sp.diags(model.kn), sp.diags(model.kt)
         us = slip.T @ kt
-        self._quadratic = sp.bmat(
-            [
-                [us @ slip, None, -us, us],
-                [None, kn, None, None],
-                [-us.T, None, kt, -kt],
-                [us.T, None, -kt, kt],
-            ],
-            format="csc",
-        )
+        blocks: list[list[Any]] = [
+            [us @ slip, None, -us, us],
+            [None, kn, None, None],
+            [-us.T, None, kt, -kt],
+            [us.T, None, -kt, kt],
+        ]
+        self._quadratic = sp.csc_matrix(sp.bmat(blocks))
         eye = sp.identity(p)
-        self._constraint = sp.bmat(
-            [[opening, eye, None, None], [None, eye, None, None], [None, None, eye, None], [None, None, None, eye]],
-            format="csc",
-        )
+        rows: list[list[Any]] = [
+            [opening, eye, None, None],
+            [None, eye, None, None],
+            [None, None, eye, None],
+            [None, None, None, eye],
+        ]
+        self._constraint = sp.csc_matrix(sp.bmat(rows))
         self.n, self.p = n, p
         self._accuracy = accuracy
         self.restart()

@@ -69,7 +69,7 @@ def _only_ties(
     """Whether the two sets of states give the same forces at u: points that sit on their kink."""
     ours = model.forces(u, history, state)
     theirs = model.forces(u, history, landed)
-    return max(np.abs(ours[0] - theirs[0]).max(), np.abs(ours[1] - theirs[1]).max()) < 1e-12 * scale
+    return bool(max(np.abs(ours[0] - theirs[0]).max(), np.abs(ours[1] - theirs[1]).max()) < 1e-12 * scale)
 
 
 def load_scale(model: WallModel, multiplier: float) -> float:

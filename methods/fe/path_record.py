@@ -7,6 +7,8 @@ from enum import StrEnum
 
 import numpy as np
 
+from harness.model.assembly import FloatArray, IntArray
+
 
 class PathEnd(StrEnum):
     """Why a stretch of path ended."""
@@ -38,3 +40,14 @@ class PathRecord:
         self.displacement.append(displacement)
         self.slipping.append(slipping)
         self.open.append(n_open)
+
+
+@dataclass(frozen=True)
+class Snapshot:
+    """A mechanism met on the path: multiplier, gaps g and tau (P,), states (P,) and velocity (N,)."""
+
+    multiplier: float
+    opening: FloatArray
+    trial: FloatArray
+    state: IntArray
+    velocity: FloatArray

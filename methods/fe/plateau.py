@@ -15,9 +15,10 @@ import scipy.sparse as sp
 from scipy.sparse.linalg import splu
 
 from harness.model.assembly import Assembly, FloatArray, IntArray
-from methods.fe.continuation import Snapshot, Tracer
+from methods.fe.continuation import Tracer
 from methods.fe.factor import SingularTangent
 from methods.fe.gap_law import equivalent_end_forces, gap_forces
+from methods.fe.path_record import Snapshot
 from methods.fe.wall_model import point_strains
 
 CERTIFICATE = 1e-8

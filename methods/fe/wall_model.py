@@ -8,6 +8,7 @@ scale of the displacements only.
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import cast
 
 import numpy as np
 import scipy.sparse as sp
@@ -218,7 +219,8 @@ def _pattern(unknown: IntArray, rows: FloatArray, n: int) -> tuple[IntArray, Int
     start = np.zeros(n + 1, dtype=np.int32)
     start[1:] = np.cumsum(np.bincount(unique // n, minlength=n))
     slot = inverse[: len(r)].reshape(-1, 36).astype(np.int64)
-    return start, (unique % n).astype(np.int32), slot
+    row_index: IntArray = (unique % n).astype(np.int32)
+    return cast(IntArray, start), row_index, slot
 
 
 @compiled
