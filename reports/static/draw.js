@@ -188,6 +188,24 @@
     }
   }
 
+  /* Sections far off have an estimated height until they are laid out, so a jump is corrected as they come near. */
+  const settle = () => {
+    const target = location.hash.length > 1 ? document.getElementById(location.hash.slice(1)) : null;
+    if (!target) return;
+    let left = 8;
+    const correct = () => {
+      if (Math.abs(target.getBoundingClientRect().top) > 2) target.scrollIntoView({ behavior: "instant" });
+      if (--left > 0) requestAnimationFrame(correct);
+    };
+    requestAnimationFrame(correct);
+  };
+  window.addEventListener("hashchange", settle);
+  document.addEventListener("click", (event) => {
+    const link = event.target instanceof Element ? event.target.closest("a[href^='#']") : null;
+    if (link && link.getAttribute("href") === location.hash) settle();
+  });
+  settle();
+
   /* Values of the block or interface under the pointer. */
   const tip = document.createElement("div");
   tip.className = "tip";

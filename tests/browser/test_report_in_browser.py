@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import time
 from collections.abc import Iterator
 from importlib.resources import files
 from pathlib import Path
@@ -219,16 +218,30 @@ def test_tables_stand_without_the_script(browser: Browser, report: Path):
     context.close()
 
 
+@pytest.mark.parametrize("size", [PHONE, DESKTOP], ids=["phone", "desktop"])
+def test_links_lead_to_their_place(browser: Browser, report: Path, size: Any):
+    opened = Opened(browser, report, size)
+    for target in ("#case-2", "#provenance", "#case-1", "#how-run-1-2", "#run-0-1"):
+        opened.page.locator(f"a[href='{target}']").first.evaluate("link => link.click()")
+        opened.page.wait_for_timeout(400)
+        top = opened.page.locator(target).evaluate("e => e.getBoundingClientRect().top")
+        bottom = opened.page.evaluate("document.documentElement.scrollHeight - window.scrollY - window.innerHeight")
+        assert -3 <= top <= 3 or (0 <= top < size["height"] and bottom <= 3), target
+    opened.context.close()
+
+
 def test_fifty_cases_by_eight_methods_open_fast(browser: Browser, tmp_path: Path):
     path = tmp_path / "large.html"
     path.write_text(render(samples.large(), data_folder="large-data"), encoding="utf-8")
-    opened = Opened(browser, path)
-    timing = opened.page.evaluate("performance.getEntriesByType('navigation')[0].domContentLoadedEventEnd")
-    started = time.perf_counter()
-    assert opened.page.locator("#runs-count").inner_text() == "400 runs"
-    answered = time.perf_counter() - started
-    opened.context.close()
-    # A second is the requirement on a free machine; this one may be shared.
-    assert timing < 3000
-    assert answered < 3.0
+    context = browser.new_context(viewport=DESKTOP)
+    page = context.new_page()
+    session = context.new_cdp_session(page)
+    session.send("Performance.enable", {"timeDomain": "threadTicks"})
+    page.goto(path.as_uri())
+    metrics = {item["name"]: item["value"] for item in session.send("Performance.getMetrics")["metrics"]}
+    assert page.locator("#runs-count").inner_text() == "400 runs"
+    context.close()
+    # CPU seconds of the page's thread, which other work on the machine does not count in. A second is the
+    # requirement and 0.7 is usual; half as much again is left for a slower processor.
+    assert 0.0 < metrics["TaskDuration"] < 1.5
     assert path.stat().st_size < 5_000_000
