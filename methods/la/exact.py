@@ -113,5 +113,9 @@ def exact_mechanism(
             raise RuntimeError("the kinematic matrix is singular to rounding")
         least = min(least, size)
         velocities = velocities - factor.solve(PENALTY * np.asarray(problem.statics @ strain.ravel()))
+    if not np.all(np.isfinite(velocities)):
+        raise RuntimeError("the kinematic matrix is singular to rounding")
     work = float(problem.live @ velocities)
-    return velocities * (problem.live_work / work) if work > 0.0 else velocities
+    if work <= 1e-6 * problem.live_work:
+        raise RuntimeError("no mechanism with live work moves in these contacts only")
+    return velocities * (problem.live_work / work)

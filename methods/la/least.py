@@ -40,7 +40,7 @@ def plan_of(settings: SearchSettings, n_free: int) -> Plan:
     """The plan for a wall of n_free blocks; normal effort shrinks with size so that the time grows slowly."""
     plan = {
         "quick": Plan(0, 8, (), 1),
-        "normal": Plan(3, 12, LADDER, 3) if n_free <= 60 else Plan(1, 12, LADDER[::2] if n_free <= 160 else (), 2),
+        "normal": Plan(3, 12, LADDER, 3) if n_free <= 30 else Plan(1, 12, LADDER[::2] if n_free <= 60 else (), 1),
         "deep": Plan(20, 40, FINE_LADDER, 8),
     }[settings.effort]
     return Plan(

@@ -16,6 +16,9 @@ import scipy.sparse as sp
 
 from harness.model.assembly import Assembly, BoolArray, FloatArray
 
+FRICTIONLESS = 1e-12
+"""Friction coefficients below this are zero to rounding."""
+
 
 @dataclass(frozen=True, eq=False)
 class Problem:
@@ -138,7 +141,7 @@ def make_problem(assembly: Assembly) -> Problem:
         kinematic=(assembly.kinematic_matrix @ sp.diags(column)).tocsr(),
         dead=dead,
         live=live * unit_multiplier,
-        friction=np.asarray(assembly.friction, dtype=float),
+        friction=np.where(assembly.friction < FRICTIONLESS, 0.0, assembly.friction),
         unit_force=unit_force,
         unit_length=unit_length,
         unit_multiplier=unit_multiplier,

@@ -9,7 +9,7 @@ from methods.la.exact import exact_forces, exact_mechanism
 from methods.la.newton_matrix import NewtonMatrix
 from methods.la.problem import Problem
 
-MOVING = 1e-9
+MOVING = 1e-11
 """Rates below this, relative to the largest, are rounding."""
 TIGHT = 1e-8
 """Slacks below this, in mean block weights, are rounding."""

@@ -1,0 +1,85 @@
+"""Measured values and CPU seconds of limit analysis beside the figures that prototypes reached.
+
+Run with `python -m methods.la.bench`; `--full` adds the largest walls. Seconds are CPU time of the solver, without
+process start.
+"""
+
+from __future__ import annotations
+
+import sys
+import time
+
+from harness.model.assembly import Assembly
+from harness.model.build import build
+from harness.model.method import Answer
+from harness.model.wall import Wall
+from methods.la.adapter import AssociatedLimitAnalysis, LimitAnalysis
+from methods.la.settings import AssociatedSettings, SearchSettings
+
+BRICKS = (6, 3, 0.2)
+WALLS: tuple[tuple[tuple[int, int, float], float, str, str], ...] = (
+    (BRICKS, 0.65, ".584461", ".5579978"),
+    (BRICKS, 0.75, ".622318", ".5519524"),
+    (BRICKS, 0.85, ".690766", ".5375880"),
+    (BRICKS, 1.0, ".979073", ".5339130"),
+    ((6, 5, 0.175), 0.65, ".642859", ".6389818"),
+    ((10, 5, 0.175), 0.65, ".579999", ".5574159"),
+    ((14, 7, 0.175), 0.65, ".540900", ".5156315"),
+    ((20, 11, 0.175), 0.65, ".503216", ".4844"),
+)
+LARGE: tuple[tuple[tuple[int, int, float], float, str, str], ...] = (
+    ((28, 16, 0.175), 0.65, ".474130", ".4622"),
+    ((40, 30, 0.175), 0.65, ".452420", ".4463"),
+    ((100, 70, 0.175), 0.65, ".42676", "none"),
+)
+
+
+def running_bond(courses: int, bricks: int, height: float, friction: float) -> Assembly:
+    """A wall of blocks 0.4 long in running bond, pushed sideways by its own weight; odd courses end in half blocks."""
+    wall = Wall.model_validate(
+        {
+            "format": "wall/1",
+            "unit_weight": 1.0,
+            "friction": friction,
+            "pattern": {
+                "type": "running_bond",
+                "block_length": 0.4,
+                "block_height": height,
+                "count": courses,
+                "bricks": bricks,
+                "start": "half",
+            },
+            "loads": {"live": {"body": [{"per_weight": [1.0, 0.0]}]}},
+        }
+    )
+    return build(wall).assembly
+
+
+def measured(answer: Answer) -> str:
+    """The multiplier, or how the run ended."""
+    return f"{answer.multiplier:.7f}" if answer.multiplier is not None else answer.status.value
+
+
+def main() -> None:
+    """Print the table."""
+    walls = WALLS + (LARGE if "--full" in sys.argv[1:] else ())
+    print("limit analysis: values and CPU seconds; the figures to reach stand in brackets")
+    for (courses, bricks, height), friction, associated_known, least_known in walls:
+        assembly = running_bond(courses, bricks, height, friction)
+        start = time.process_time()
+        associated = AssociatedLimitAnalysis().solve(assembly, AssociatedSettings())
+        middle = time.process_time()
+        least = LimitAnalysis().solve(assembly, SearchSettings())
+        end = time.process_time()
+        residuals = least.details.get("residuals", {})
+        print(
+            f"n {assembly.n_free:5d}  m {assembly.n_interfaces:6d}  mu {friction:.2f}  "
+            f"associated {measured(associated)} ({associated_known}) {middle - start:7.2f} s  "
+            f"least known {measured(least)} ({least_known}) {end - middle:7.2f} s  "
+            f"largest residual {max(residuals.values(), default=float('nan')):.0e}",
+            flush=True,
+        )
+
+
+if __name__ == "__main__":
+    main()
