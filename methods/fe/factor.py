@@ -129,7 +129,7 @@ class SparseFactor:
             alpha = np.empty(k)
             _product_form(x, self._coupling, self._denominator, self._index, self._b, alpha)
             x -= alpha @ self._y[:k]
-        if not np.isfinite(x[-1]):
+        if not np.isfinite(x).all():
             raise SingularTangent("the tangent is singular in these states")
         return x
 

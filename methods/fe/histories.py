@@ -71,7 +71,8 @@ def trace_history(
     """Trace one history from the gravity state.
 
     Where exact ties lead the path astray it is traced again with the initial shears disturbed by 1e-9, 1e-7 and 1e-5
-    of a block's weight (a history with commits once, by 1e-7): data nobody knows, and the end is an exact collapse state all the same.
+    of a block's weight (a history with commits once, by 1e-7): data nobody knows, and the end is an exact collapse
+    state all the same.
 
     Args:
         model: the wall; factor: its tangent; gravity: equilibrium under the dead load.
