@@ -91,7 +91,7 @@ def duality_gap(problem: Problem, state: CollapseState) -> float:
 def _by_interior_point(problem: Problem, newton: NewtonMatrix) -> AssociatedResult:
     settings = PathSettings(dilatancy=1.0, gap=1e-12, residual=1e-3)
     result = follow_path(problem, newton, start_point(problem), settings)
-    if not result.gap < 1e-4 or result.statics > 1e-3:
+    if not result.gap < 1e-4 or result.statics > 0.1:
         return AssociatedResult("unknown", iterations=result.iterations)
     point = result.point
     best: CollapseState | None = None
