@@ -13,6 +13,7 @@ from methods.de.courses import Tuning
 from methods.de.release import ReleaseSettings, release
 from methods.de.settings import HoldSettings
 from methods.de.space import StripSpace
+from methods.de.strips import CannotModel
 
 
 class DampedHolds:
@@ -32,7 +33,7 @@ class DampedHolds:
 
         try:
             return solve_by_holds(assembly, settings, engine)
-        except ValueError as error:
+        except CannotModel as error:
             return Answer(Status.REFUSED, Finding.NONE, str(error))
 
 

@@ -39,7 +39,7 @@ class StripSpace:
         tuning: masses and damping.
 
     Raises:
-        ValueError: see `methods.de.strips.build_strips`.
+        CannotModel: see `methods.de.strips.build_strips`.
     """
 
     def __init__(self, assembly: Assembly, blocks: IntArray, joints: IntArray, iterations: int, tuning: Tuning) -> None:

@@ -36,6 +36,10 @@ whose normal is then decided by rounding noise.
 """
 
 
+class CannotModel(ValueError):
+    """The wall has something that contact strips cannot model; the message names it."""
+
+
 @dataclass(frozen=True, eq=False)
 class Strips:
     """The strips of all interfaces, in unit lengths.
@@ -59,12 +63,12 @@ def build_strips(assembly: Assembly, unit: float) -> Strips:
         unit: the length that becomes 1 [length].
 
     Raises:
-        ValueError: an interface has no length, or more than 32 interfaces crowd one place.
+        CannotModel: an interface has no length, or more than 32 interfaces crowd one place.
     """
     length = assembly.length / unit
     for p in np.flatnonzero(~(length > 0.0)):
         a, b = assembly.block_a[p], assembly.block_b[p]
-        raise ValueError(
+        raise CannotModel(
             f"interface {p} between {assembly.block_ids[a]} and {assembly.block_ids[b]} has no length between its "
             "contact points; distinct elements need two points a distance apart"
         )
@@ -91,7 +95,7 @@ def colour_strips(vertices: FloatArray, margin: float) -> IntArray:
         margin: how far the boxes are widened.
 
     Raises:
-        ValueError: more than 32 colours would be needed.
+        CannotModel: more than 32 colours would be needed.
     """
     low, high = vertices.min(axis=1) - margin, vertices.max(axis=1) + margin
     boxes = [box(*lo, *hi) for lo, hi in zip(low, high, strict=True)]
@@ -106,5 +110,5 @@ def colour_strips(vertices: FloatArray, margin: float) -> IntArray:
         taken = {int(colour[j]) for j in near}
         colour[i] = next(c for c in range(len(boxes) + 1) if c not in taken)
     if colour.max() >= MAX_COLOURS:
-        raise ValueError(f"{colour.max() + 1} interfaces crowd one place; distinct elements can part {MAX_COLOURS}")
+        raise CannotModel(f"{colour.max() + 1} interfaces crowd one place; distinct elements can part {MAX_COLOURS}")
     return colour

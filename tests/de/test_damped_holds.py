@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -162,3 +164,29 @@ def test_arch_falls_when_thin_and_stands_when_thick():
 
     assert run(arch(0.112), orders=2).finding is Finding.STANDS
     assert run(arch(0.100), orders=2).finding is Finding.FALLS
+
+
+def test_an_interface_without_length_is_refused_by_name():
+    wall = assembly(stack(2), 0.7)
+    pinched = replace(wall, end2=np.where(np.arange(2)[:, None] == 1, wall.end1, wall.end2))
+    answer = run(pinched)
+    assert answer.status is Status.REFUSED
+    assert "interface 1 between 1 and 2" in answer.sentence
+
+
+@pytest.mark.slow
+def test_wall_of_105_bricks_has_the_multiplier_with_unloaded_head_joints():
+    wall = assembly(running_bond(10, 10, 0.4, 0.175))
+    answer = run(wall)
+    # Greatest multiplier of the linear programme whose head joints carry nothing (methods.de.bench).
+    assert answer.multiplier == pytest.approx(0.562957, rel=5e-3)
+    assert answer.details["spread"] < 0.01
+    assert unbalanced(wall, answer) < 1e-5
+
+
+@pytest.mark.slow
+def test_arch_of_100_voussoirs_on_a_tilting_table():
+    ring = {"type": "ring", "inner_radius": 0.9, "outer_radius": 1.1, "count": 100}
+    answer = run(assembly(ring, 0.7), orders=1)
+    # Associated limit analysis 0.28381; Ochsendorf (2002) 0.28373.
+    assert answer.multiplier == pytest.approx(0.28381, rel=3e-3)

@@ -7,7 +7,7 @@ import pytest
 
 from methods.de.courses import courses, insertion_orders, tunings
 from methods.de.space import polygon_gyration
-from methods.de.strips import build_strips, colour_strips
+from methods.de.strips import CannotModel, build_strips, colour_strips
 from tests.walls import assembly, running_bond, stack
 
 
@@ -32,7 +32,7 @@ def test_neighbouring_strips_have_different_colours():
 
 def test_more_than_32_interfaces_in_one_place_are_refused():
     one = np.array([[0.0, 0.0], [1.0, 0.0], [1.0, 1.0]])
-    with pytest.raises(ValueError, match="33 interfaces crowd one place"):
+    with pytest.raises(CannotModel, match="33 interfaces crowd one place"):
         colour_strips(np.repeat(one[None], 33, axis=0), margin=0.0)
 
 
