@@ -18,11 +18,12 @@ from harness.engine import compare as comparing
 from harness.engine import regression
 from harness.engine.plan import Limits, Run, check_methods, find_cases, gated_runs, plan_case
 from harness.engine.store import open_store
-from harness.model.case import shipped_cases
+from harness.model.case import Case, shipped_cases
 from harness.model.comparison import ComparisonRun
 from harness.model.errors import InputError
 from harness.model.method import Status, load_method
 from harness.options import (
+    REPORT,
     cases_option,
     catching,
     fresh_flag,
@@ -147,19 +148,62 @@ def compare(
     limits = Limits(seconds, memory * 2**20)
     for case in chosen:
         warn(case)
-    runs = [planned for case in chosen for planned in plan_case(case, names, limits)]
     title = ", ".join(cases) if cases else f"suite {suite or 'small'}"
-    with open_store(store) as opened:
-        with terminal.progress(len(runs), quiet=as_json) as told:
-            results = comparing.execute(runs, opened, jobs, fresh=fresh, told=told)
-        compared = comparing.comparison_run(title, _command_line(), chosen, runs, results)
-        comparing.remember(opened, compared, runs)
-    _write_report(compared, report)
+    compared = _compare(title, chosen, names, limits, jobs, report, store, fresh, quiet=as_json)
     if as_json:
         print_json(terminal.comparison_json(compared, report))
     else:
         terminal.print_comparison(compared, report)
     sys.exit(1 if regression.violations(compared) else 0)
+
+
+def _compare(
+    title: str,
+    chosen: list[Case],
+    methods: list[str] | None,
+    limits: Limits,
+    jobs: int,
+    report: Path,
+    store: Path,
+    fresh: bool,
+    *,
+    quiet: bool,
+) -> ComparisonRun:
+    """Run, judge, store and report; what is printed afterwards is the command's own affair."""
+    runs = [planned for case in chosen for planned in plan_case(case, methods, limits)]
+    with open_store(store) as opened:
+        with terminal.progress(len(runs), quiet=quiet) as told:
+            results = comparing.execute(runs, opened, jobs, fresh=fresh, told=told)
+        compared = comparing.comparison_run(title, _command_line(), chosen, runs, results)
+        comparing.remember(opened, compared, runs)
+    _write_report(compared, report)
+    return compared
+
+
+@main.command()
+@click.argument("name", required=False)
+@jobs_option
+@click.option(
+    "--report", type=click.Path(path_type=Path), help="Where the report is written.  [default: out/NAME.html]"
+)
+@store_option
+@fresh_flag
+@catching
+def study(name: str | None, jobs: int, report: Path | None, store: Path, fresh: bool) -> None:
+    """Run the study NAME (without a name: list them) and report where the methods agree and where they part."""
+    from cases.studies import STUDIES
+
+    if name is None:
+        for known, members in STUDIES.items():
+            click.echo(f"{known:16s} {sum(1 for _ in members())} walls: {members.__doc__}")
+        return
+    if name not in STUDIES:
+        raise InputError(f'no study is called "{name}"', f"There are: {', '.join(STUDIES)}", "study")
+    path = report or REPORT.with_name(f"{name}.html")
+    chosen = list(STUDIES[name]())
+    compared = _compare(f"study {name}", chosen, None, Limits(), jobs, path, store, fresh, quiet=False)
+    terminal.print_agreement(compared)
+    click.echo(f"Report: {path}")
 
 
 def _command_line() -> str:
