@@ -17,8 +17,10 @@ MARKERS = (
     "M-3.2-3.2h6.4v6.4h-6.4z",
     "M0-4.2L4 3H-4z",
     "M0-4.6L4.6 0L0 4.6L-4.6 0z",
+    "M0 4.2L4-3H-4z",
+    "M-1.2-4.2h2.4v3h3v2.4h-3v3h-2.4v-3h-3v-2.4h3z",
 )
-DASHES = ("", "7 3", "2 3", "9 3 2 3")
+DASHES = ("", "7 3", "2 3", "9 3 2 3", "4 2", "12 4")
 COLOURS = 6
 MOST_POINTS = 300
 
@@ -203,11 +205,13 @@ def _series(series: Series, number: int, across: Axis, up: Axis) -> Markup:
         place, bottom, top = across.place(x), up.place(low), up.place(high)
         if place is not None and bottom is not None and top is not None:
             drawn += Markup('<path class="bar {}" d="M{:.1f} {:.1f}V{:.1f}"/>').format(style, place, bottom, top)
+    # Later series are smaller, so that points on one place show as rings.
+    size = max(0.7, 1.35 - 0.15 * number)
     if series.marks or len(points) == 1:
         for px, py, x, y in points:
             drawn += Markup(
-                '<path class="mark {}" transform="translate({:.1f} {:.1f})" d="{}"><title>{}</title></path>'
-            ).format(style, px, py, MARKERS[number % len(MARKERS)], f"{series.name}: {x:.6g}, {y:.6g}")
+                '<path class="mark {}" transform="translate({:.1f} {:.1f}) scale({})" d="{}"><title>{}</title></path>'
+            ).format(style, px, py, round(size, 2), MARKERS[number % len(MARKERS)], f"{series.name}: {x:.6g}, {y:.6g}")
     return drawn
 
 

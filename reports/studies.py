@@ -114,7 +114,8 @@ def performance_profile(run: ComparisonRun) -> Study | None:
         f"fastest method's time; {numbers.count(unsolved, 'case')} nobody solved.",
         "Higher is more often right, further left is faster. A run that failed, was rejected by the judge or "
         "contradicts a reference is not solved, however fast it was; a case that nobody solved counts for nobody. "
-        "The associated maximum is left out: it answers an easier question.",
+        "A case that a method was not asked about is not solved by it. The associated maximum is left out: it "
+        "answers an easier question.",
         charts.svg(chart),
     )
 
