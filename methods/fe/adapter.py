@@ -62,7 +62,7 @@ def chosen_histories(model: WallModel, settings: GapSpringsSettings) -> tuple[fl
     """The commit intervals to run: as set, or by the size of the wall."""
     if settings.histories is not None:
         return settings.histories
-    return (0.0, 0.01, 0.002) if model.assembly.n_free <= 1200 else (0.01,)
+    return (0.0, 0.01, 0.002) if model.assembly.n_free <= 1200 else (0.0,)
 
 
 class IncrementalNewton:

@@ -15,7 +15,7 @@ from harness.model.assembly import FloatArray
 from methods.fe.commits import committed_step
 from methods.fe.continuation import Tracer
 from methods.fe.factor import Factor
-from methods.fe.newton import Equilibrium, equilibrium
+from methods.fe.newton import Equilibrium, equilibrium, newton
 from methods.fe.path_record import PathEnd, PathRecord
 from methods.fe.plateau import CollapseState, finish
 from methods.fe.wall_model import WallModel
@@ -30,6 +30,8 @@ COMMIT_WITHIN = 300.0
 """Displacements, in multiples of the first, up to which the history is still committed."""
 TURN = 0.1
 """Share of the peak by which a path may turn down before a jump from it is tried."""
+DOUBLE_ABOVE = 1200
+"""Blocks above which a path without commits starts where doubled Newton steps end, to save the early events."""
 ASTRAY = 3.0
 """Multiple of the first history's plateau at which a committed history counts as lost."""
 JUMPS = 5
@@ -108,6 +110,8 @@ def _trace(
     if not first.found:
         sentence = "no equilibrium a small step off the dead load"
         return HistoryResult(step, PathEnd.BREAKDOWN, sentence, record, None, 0, 0.0, disturbance)
+    if step == 0.0 and model.assembly.n_free > DOUBLE_ABOVE:
+        first, start = _doubled(model, factor, first, start, history)
     tracer = Tracer(model, factor, first.u, start, history, first.state)
     interval = step * scale if step > 0.0 else np.inf
     large = COMMIT_WITHIN * tracer.first_displacement
@@ -147,6 +151,18 @@ def _trace(
     if state is None and end == PathEnd.PLATEAU:
         sentence = "the last piece is a mechanism, but its forces do not pass the check of an exact collapse state"
     return HistoryResult(step, end, sentence, record, state, commits, worst, disturbance)
+
+
+def _doubled(
+    model: WallModel, factor: Factor, first: Equilibrium, start: float, history: FloatArray
+) -> tuple[Equilibrium, float]:
+    """Double the multiplier while Newton converges; without commits the law has no history, so the path is the same."""
+    while start < 1e6:
+        answer = newton(model, factor, first.u, 2.0 * start, history, 25)
+        if not answer.found:
+            break
+        first, start = answer, 2.0 * start
+    return first, start
 
 
 def _jump(model: WallModel, factor: Factor, tracer: Tracer, record: PathRecord) -> Tracer | None:
