@@ -36,7 +36,6 @@ from methods.fe.tolerances import (
     SINGULAR,
     STEEP,
     TIE,
-    WRONG,
 )
 from methods.fe.wall_model import WallModel, point_strains
 
@@ -78,7 +77,6 @@ class Tracer:
         self.a, self.b, self.index = np.zeros(6), np.zeros(6), model.unknown[0]
         self.direction, self.tail = np.zeros_like(u), np.zeros_like(u)
         self.easy = True
-        self.defect = 0.0
         self.first_size = np.inf
         point_strains(model.unknown, model.rows, model.interface, model.position, u, self.opening, self.trial)
         self.trial *= model.kt
@@ -118,8 +116,6 @@ class Tracer:
         self.resting = self.fragile = False
         if not self._straighten() and float(np.abs(self.direction).max()) > BLIND * self.first_size:
             self._rest_blindly(self.sign)
-        if self.defect > WRONG * self.live_size and not self.resting:
-            raise SingularTangent("the tangent cannot be solved with in these states")
 
     def _rest_blindly(self, sign: float) -> None:
         """Take a direction beyond the reach of double precision for the null vector that it is close to."""
@@ -157,7 +153,7 @@ class Tracer:
         previous = np.inf
         for _ in range(4):
             defect = self.model.out_of_balance(self.opening_rate, self.trial_rate, self.state, 1.0, 0.0)
-            worst = self.defect = float(np.abs(defect).max())
+            worst = float(np.abs(defect).max())
             if worst <= BENT * self.live_size:
                 return True
             if not worst < 0.5 * previous:

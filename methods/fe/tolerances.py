@@ -32,5 +32,3 @@ TIE = 1e-12
 """How far a kink may be overrun by the choice among near ties (share of the load scale)."""
 ELASTIC = 1e-8
 """Elastic force rates below this share of the strain rates count as zero: the direction is a mechanism."""
-WRONG = 1e-2
-"""Defect of K d = live (share of the live load) after refinement at which the tangent counts as unusable."""
