@@ -16,6 +16,7 @@ from harness import terminal
 from harness.engine import baseline as recording
 from harness.engine import compare as comparing
 from harness.engine import regression
+from harness.engine.imperfection import imperfection_runs, imperfection_study
 from harness.engine.plan import Limits, Run, check_methods, find_cases, gated_runs, plan_case
 from harness.engine.store import open_store
 from harness.model.case import Case, shipped_cases
@@ -37,6 +38,8 @@ from harness.options import (
     warn,
 )
 from harness.wall_commands import animate, expand, figure, judge, list_, schema, show
+
+IMPERFECTION = "imperfection"
 
 
 @click.group(context_settings={"help_option_names": ["-h", "--help"], "max_content_width": 100})
@@ -168,6 +171,7 @@ def _compare(
     fresh: bool,
     *,
     quiet: bool,
+    study: dict[str, Any] | None = None,
 ) -> ComparisonRun:
     """Run, judge, store and report; what is printed afterwards is the command's own affair."""
     runs = [planned for case in chosen for planned in plan_case(case, methods, limits)]
@@ -175,6 +179,8 @@ def _compare(
         with terminal.progress(len(runs), quiet=quiet) as told:
             results = comparing.execute(runs, opened, jobs, fresh=fresh, told=told)
         compared = comparing.comparison_run(title, _command_line(), chosen, runs, results)
+        if study is not None:
+            compared.provenance["studies"] = [study]
         comparing.remember(opened, compared, runs)
     _write_report(compared, report)
     return compared
@@ -183,26 +189,33 @@ def _compare(
 @main.command()
 @click.argument("name", required=False)
 @jobs_option
-@click.option(
-    "--report", type=click.Path(path_type=Path), help="Where the report is written.  [default: out/NAME.html]"
-)
+@click.option("--report", type=click.Path(path_type=Path), help="Where it is written.  [default: out/NAME.html]")
 @store_option
 @fresh_flag
 @catching
 def study(name: str | None, jobs: int, report: Path | None, store: Path, fresh: bool) -> None:
-    """Run the study NAME (without a name: list them) and report where the methods agree and where they part."""
+    """Run the study NAME (without a name: list them) and report what many walls say together."""
     from cases.studies import STUDIES
 
     if name is None:
         for known, members in STUDIES.items():
             click.echo(f"{known:16s} {sum(1 for _ in members())} walls: {members.__doc__}")
+        click.echo(f"{IMPERFECTION:16s} the paper's wall of uneven blocks: how far the multiplier falls, with scatter.")
         return
-    if name not in STUDIES:
-        raise InputError(f'no study is called "{name}"', f"There are: {', '.join(STUDIES)}", "study")
+    if name not in (*STUDIES, IMPERFECTION):
+        raise InputError(f'no study is called "{name}"', f"There are: {', '.join([*STUDIES, IMPERFECTION])}", "study")
     path = report or REPORT.with_name(f"{name}.html")
-    chosen = list(STUDIES[name]())
-    compared = _compare(f"study {name}", chosen, None, Limits(), jobs, path, store, fresh, quiet=False)
-    terminal.print_agreement(compared)
+    if name == IMPERFECTION:
+        chosen = find_cases(["wall-21"], None, ())
+        runs = imperfection_runs(chosen[0], Limits())
+        with open_store(store) as opened, terminal.progress(len(runs)) as told:
+            found = imperfection_study(runs, comparing.execute(runs, opened, jobs, fresh=fresh, told=told))
+        compared = _compare(f"study {name}", chosen, None, Limits(), jobs, path, store, fresh, quiet=False, study=found)
+        click.echo(found["sentence"])
+    else:
+        chosen = list(STUDIES[name]())
+        compared = _compare(f"study {name}", chosen, None, Limits(), jobs, path, store, fresh, quiet=False)
+        terminal.print_agreement(compared)
     click.echo(f"Report: {path}")
 
 

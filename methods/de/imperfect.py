@@ -1,0 +1,66 @@
+"""`de-uneven`: one wall of blocks with uneven faces, loaded at large displacements until it no longer comes to rest."""
+
+from __future__ import annotations
+
+from typing import ClassVar
+
+from pydantic import Field
+
+from harness.model.assembly import Assembly
+from harness.model.method import Answer, Finding, Settings, Status
+from methods.de.defects import Faces
+from methods.de.uneven import load_uneven
+
+
+class UnevenSettings(Settings):
+    """The defects of planarity and how finely the multiplier is sought.
+
+    Attributes:
+        size: greatest cut of a corner as a part of the block height; each is drawn from U(0, size x height).
+        faces: which faces are uneven.
+        seed: seed of the cuts.
+        accuracy: the multiplier is narrowed to this difference.
+        greatest: multiplier at which the loading ends.
+    """
+
+    size: float = Field(default=0.03, ge=0.0, le=0.3)
+    faces: Faces = "both"
+    seed: int = Field(default=0, ge=0)
+    accuracy: float = Field(default=0.005, gt=0.0, le=0.1)
+    greatest: float = Field(default=2.0, gt=0.0)
+
+
+class UnevenBlocks:
+    """Distinct elements on a wall with seeded defects of planarity (C. Baggio and P. Trovalusci 1995, section 4)."""
+
+    name: ClassVar[str] = "de-uneven"
+    family: ClassVar[str] = "de"
+    title: ClassVar[str] = "distinct elements, uneven blocks"
+    tolerance: ClassVar[float] = 1e-6
+    Settings: ClassVar[type[Settings]] = UnevenSettings
+
+    def solve(self, assembly: Assembly, settings: UnevenSettings) -> Answer:
+        """The bracket [stood, fell] of one imperfect wall; gaps close under the load as they do."""
+        if not assembly.has_live_load:
+            return Answer(Status.REFUSED, Finding.NONE, "Uneven walls are loaded until they fall: give a live load.")
+        found = load_uneven(
+            assembly, settings.size, settings.faces, settings.seed, settings.greatest, accuracy=settings.accuracy
+        )
+        wall = f"The wall with corners cut by up to {settings.size:g} of the block height (seed {settings.seed})"
+        if found.stood is None:
+            return Answer(
+                Status.OK, Finding.FALLS, f"{wall} does not come to rest under its dead load.", flow="approximate"
+            )
+        if found.fell is None:
+            sentence = f"{wall} stood at {found.stood:.6g}, the greatest multiplier asked."
+            return Answer(Status.NOT_CONVERGED, Finding.NONE, sentence)
+        return Answer(
+            Status.OK,
+            Finding.COLLAPSES,
+            f"{wall} came to rest at {found.stood:.6g} and did not at {found.fell:.6g}.",
+            multiplier=0.5 * (found.stood + found.fell),
+            bracket=(found.stood, found.fell),
+            bracket_meaning="[highest multiplier at which it came to rest, lowest at which it did not]",
+            flow="approximate",
+            details={"drift": found.drift},
+        )
