@@ -30,17 +30,7 @@ from harness.options import cases_option, catching, json_flag, print_json, store
 def list_(what: str, as_json: bool, folders: tuple[Path, ...]) -> None:
     """List the cases, the methods or the suites there are."""
     if what == "methods":
-        rows: list[dict[str, Any]] = []
-        for name in method_names():
-            method = load_method(name)
-            rows.append(
-                {
-                    "name": name,
-                    "family": method.family,
-                    "title": method.title,
-                    "settings": method.Settings().model_dump(mode="json"),
-                }
-            )
+        rows = [_method_row(name) for name in method_names()]
     else:
         cases = [read_case(folder) for folder in case_folders([shipped_cases(), *folders]).values()]
         if what == "cases":
@@ -64,6 +54,16 @@ def list_(what: str, as_json: bool, folders: tuple[Path, ...]) -> None:
         print_json(rows)
     else:
         terminal.print_rows(rows)
+
+
+def _method_row(name: str) -> dict[str, Any]:
+    """A method as a row; one that cannot be loaded says why in place of its title."""
+    try:
+        method = load_method(name)
+    except InputError as error:
+        return {"name": name, "family": "", "title": str(error), "settings": {}}
+    settings = method.Settings().model_dump(mode="json")
+    return {"name": name, "family": method.family, "title": method.title, "settings": settings}
 
 
 @click.command()

@@ -50,6 +50,7 @@ def run_task(task: Task, folder: str) -> None:
     """Run a task in this process and leave `answer.json` in the folder. Called in a fresh child process only."""
     os.setsid()
     _die_with_parent()
+    os.chdir(folder)  # what a library drops in the working directory goes with the run
     _send_output_to(Path(folder) / "output.txt")
     resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
     _limit_address_space(task.memory_bytes)
