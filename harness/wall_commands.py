@@ -53,7 +53,7 @@ def list_(what: str, as_json: bool, folders: tuple[Path, ...]) -> None:
     if as_json:
         print_json(rows)
     else:
-        terminal.print_rows(rows)
+        terminal.print_rows([{name: value for name, value in row.items() if name != "settings"} for row in rows])
 
 
 def _method_row(name: str) -> dict[str, Any]:
