@@ -16,7 +16,7 @@ from harness.model.case import Case
 from harness.model.result import Result
 
 METHOD = "de-uneven"
-SIZES = (0.0, 0.003, 0.01, 0.03, 0.05, 0.08)
+SIZES = (0.0, 0.01, 0.03, 0.05, 0.08, 0.12)
 SEEDS = range(12)
 FACES = ("both", "beds")
 EXPERIMENT = -0.20
