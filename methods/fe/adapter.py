@@ -6,7 +6,16 @@ from typing import Any, ClassVar
 
 from harness.model.assembly import Assembly
 from harness.model.method import Answer, Finding, Settings, Status
-from methods.fe.answers import bracket_answer, collapse_answer, compact, gravity_failure, single_state_answer, stands
+from methods.fe.answers import (
+    bracket_answer,
+    collapse_answer,
+    compact,
+    end_forces,
+    gravity_failure,
+    single_state_answer,
+    standing_answer,
+    stands,
+)
 from methods.fe.convex_steps import bracket_collapse
 from methods.fe.factor import make_factor
 from methods.fe.histories import HistoryResult, gravity_state, trace_history, with_initial_shear
@@ -39,7 +48,7 @@ class GapSprings:
         if not gravity.found:
             return gravity_failure(model, gravity)
         if not model.assembly.has_live_load:
-            return stands(gravity)
+            return stands(model, gravity)
         if settings.initial_shear > 0.0:
             model = with_initial_shear(model, gravity, settings.initial_shear, settings.seed)
             gravity = equilibrium(model, factor, gravity.u, 0.0, model.history)
@@ -82,7 +91,7 @@ class IncrementalNewton:
         if not gravity.found:
             return gravity_failure(model, gravity)
         if not assembly.has_live_load:
-            return stands(gravity)
+            return stands(model, gravity)
         result = march(model, factor, gravity, settings.first_step, settings.cuts, settings.displacement_steps)
         details = {"load_control_limit": result.load_control, "gap_points": model.n_points}
         if result.state is not None:
@@ -128,12 +137,9 @@ class ConvexSteps:
                 details=details | {"path_status": "not_converged"},
             )
         if not assembly.has_live_load:
-            return Answer(
-                Status.OK,
-                Finding.STANDS,
-                "the wall is in equilibrium under its dead load; no live load was asked about",
-                iterations=result.programmes,
-                details=details | {"path_status": "stands"},
+            assert result.dead_forces is not None
+            return standing_answer(
+                end_forces(model, *result.dead_forces), result.programmes, details | {"path_status": "stands"}
             )
         path = {"multiplier": list(result.record.multiplier)}
         return bracket_answer(result.lower, result.upper, details, path, result.programmes)

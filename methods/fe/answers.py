@@ -6,7 +6,9 @@ from typing import Any
 
 import numpy as np
 
+from harness.model.assembly import FloatArray
 from harness.model.method import Answer, Finding, Status
+from methods.fe.gap_law import equivalent_end_forces
 from methods.fe.histories import HistoryResult, moving_blocks
 from methods.fe.newton import Equilibrium
 from methods.fe.path_record import PathEnd, PathRecord
@@ -40,14 +42,30 @@ def gravity_failure(model: WallModel, gravity: Equilibrium) -> Answer:
     )
 
 
-def stands(gravity: Equilibrium) -> Answer:
-    """The answer for a wall without live load that is in equilibrium under its dead load."""
+def end_forces(model: WallModel, normal: FloatArray, shear: FloatArray) -> FloatArray:
+    """(m, 3) contact forces (n1, n2, s) [force] from dimensionless gap forces N and T (P,)."""
+    ends = equivalent_end_forces(model.position, model.interface, normal, shear, model.assembly.n_interfaces)
+    return model.force * ends
+
+
+def stands(model: WallModel, gravity: Equilibrium) -> Answer:
+    """The answer for a wall without live load that is in equilibrium under its dead load, with its gap forces."""
+    normal, shear = model.forces(gravity.u, model.history, gravity.state)
+    return standing_answer(
+        end_forces(model, normal, shear), gravity.iterations, {"path_status": "stands", "residual": gravity.residual}
+    )
+
+
+def standing_answer(forces: FloatArray, iterations: int, details: dict[str, Any]) -> Answer:
+    """The answer for a wall that stands by the contact forces (m, 3) under its dead load."""
     return Answer(
         Status.OK,
         Finding.STANDS,
         "the wall is in equilibrium under its dead load; no live load was asked about",
-        iterations=gravity.iterations,
-        details={"path_status": "stands", "residual": gravity.residual},
+        forces=forces,
+        forces_multiplier=0.0,
+        iterations=iterations,
+        details=details,
     )
 
 

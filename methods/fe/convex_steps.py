@@ -25,13 +25,19 @@ from methods.fe.wall_model import WallModel
 
 @dataclass(frozen=True)
 class ConvexResult:
-    """The bracket of the multiplier: the last step with equilibrium and the first without; and the work done."""
+    """The bracket of the multiplier: the last step with equilibrium and the first without; and the work done.
+
+    Attributes:
+        lower, upper: the bracket; upper None when no step lost its equilibrium.
+        dead_forces: gap forces N and T (P,) under the dead load alone, where they settled.
+    """
 
     lower: float
     upper: float | None
     record: PathRecord
     programmes: int
     gravity: bool
+    dead_forces: tuple[FloatArray, FloatArray] | None = None
 
 
 class TrescaProgramme:
@@ -40,6 +46,7 @@ class TrescaProgramme:
     def __init__(self, model: WallModel, accuracy: float) -> None:
         self.model = model
         self.programmes = 0
+        self.normal, self.shear = np.zeros(model.n_points), np.zeros(model.n_points)
         n, p = model.n_unknowns, model.n_points
         opening, slip = self._gap_matrices()
         self._opening, self._slip = opening, slip
@@ -109,7 +116,10 @@ class TrescaProgramme:
             self.restart()
             return None
         u = result.x[: self.n]
-        return u, np.maximum(0.0, -model.kn * (self._opening @ u))
+        sliding = result.x[self.n + self.p : self.n + 2 * self.p] - result.x[self.n + 2 * self.p :]
+        self.shear = model.kt * (self._slip @ u - sliding) + h
+        self.normal = np.maximum(0.0, -model.kn * (self._opening @ u))
+        return u, self.normal
 
 
 def bracket_collapse(
@@ -126,6 +136,9 @@ def bracket_collapse(
     limit = _settle(programme, 0.0, np.zeros(model.n_points), fixed_points)
     if limit is None:
         return ConvexResult(0.0, None, record, programme.programmes, False)
+    dead_forces = programme.normal, np.clip(programme.shear, -limit, limit)
+    if not model.assembly.has_live_load:
+        return ConvexResult(0.0, None, record, programme.programmes, True, dead_forces)
     lower, upper, step = 0.0, None, first_step
     while upper is None or upper - lower > resolution * max(abs(upper), 1e-6):
         goal = lower + step if upper is None else 0.5 * (lower + upper)
@@ -140,7 +153,7 @@ def bracket_collapse(
             step *= 1.5
         if upper is None and lower > 1e6 * first_step:
             break
-    return ConvexResult(lower, upper, record, programme.programmes, True)
+    return ConvexResult(lower, upper, record, programme.programmes, True, dead_forces)
 
 
 def _settle(
