@@ -97,12 +97,12 @@ class IncrementalNewton:
         if result.state is not None:
             return single_state_answer(model, result.state, result.sentence, result.record, details, result.iterations)
         return Answer(
-            Status.NOT_CONVERGED,
-            Finding.NONE,
+            Status.OK if result.unbounded else Status.NOT_CONVERGED,
+            Finding.UNBOUNDED if result.unbounded else Finding.NONE,
             result.sentence,
             iterations=result.iterations,
             path=compact(model, result.record),
-            details=details | {"path_status": "not_converged"},
+            details=details | {"path_status": "unbounded" if result.unbounded else "not_converged"},
         )
 
 
@@ -136,10 +136,9 @@ class ConvexSteps:
                 iterations=result.programmes,
                 details=details | {"path_status": "not_converged"},
             )
+        assert result.forces is not None
+        forces = end_forces(model, *result.forces)
         if not assembly.has_live_load:
-            assert result.dead_forces is not None
-            return standing_answer(
-                end_forces(model, *result.dead_forces), result.programmes, details | {"path_status": "stands"}
-            )
+            return standing_answer(forces, result.programmes, details | {"path_status": "stands"})
         path = {"multiplier": list(result.record.multiplier)}
-        return bracket_answer(result.lower, result.upper, details, path, result.programmes)
+        return bracket_answer(result.lower, result.upper, forces, details, path, result.programmes)

@@ -156,7 +156,12 @@ def compact(model: WallModel, record: PathRecord) -> dict[str, list[float]]:
 
 
 def bracket_answer(
-    lower: float, upper: float | None, details: dict[str, Any], path: dict[str, list[float]], iterations: int
+    lower: float,
+    upper: float | None,
+    forces: FloatArray,
+    details: dict[str, Any],
+    path: dict[str, list[float]],
+    iterations: int,
 ) -> Answer:
     """The answer of a method that only knows between which two steps the wall lost its equilibrium."""
     if upper is None:
@@ -164,6 +169,8 @@ def bracket_answer(
             Status.OK,
             Finding.UNBOUNDED,
             "every step of the live load found equilibrium",
+            forces=forces,
+            forces_multiplier=lower,
             iterations=iterations,
             path=path,
             details=details | {"path_status": "unbounded"},
@@ -175,6 +182,9 @@ def bracket_answer(
         multiplier=0.5 * (lower + upper),
         bracket=(lower, upper),
         bracket_meaning="last step with equilibrium, first step without",
+        forces=forces,
+        forces_multiplier=lower,
+        flow="approximate",
         iterations=iterations,
         path=path,
         details=details | {"path_status": "bracket"},

@@ -29,7 +29,7 @@ class ConvexResult:
 
     Attributes:
         lower, upper: the bracket; upper None when no step lost its equilibrium.
-        dead_forces: gap forces N and T (P,) under the dead load alone, where they settled.
+        forces: gap forces N and T (P,) of the last step that settled, at `lower`.
     """
 
     lower: float
@@ -37,7 +37,7 @@ class ConvexResult:
     record: PathRecord
     programmes: int
     gravity: bool
-    dead_forces: tuple[FloatArray, FloatArray] | None = None
+    forces: tuple[FloatArray, FloatArray] | None = None
 
 
 class TrescaProgramme:
@@ -135,10 +135,13 @@ def bracket_collapse(
     record = PathRecord()
     limit = _settle(programme, 0.0, np.zeros(model.n_points), fixed_points)
     if limit is None:
+        rough = model.mu * float(np.abs(model.dead).sum())
+        limit = _settle(programme, 0.0, rough, 2 * fixed_points, 0.5)
+    if limit is None:
         return ConvexResult(0.0, None, record, programme.programmes, False)
-    dead_forces = programme.normal, np.clip(programme.shear, -limit, limit)
+    forces = programme.normal, np.clip(programme.shear, -limit, limit)
     if not model.assembly.has_live_load:
-        return ConvexResult(0.0, None, record, programme.programmes, True, dead_forces)
+        return ConvexResult(0.0, None, record, programme.programmes, True, forces)
     lower, upper, step = 0.0, None, first_step
     while upper is None or upper - lower > resolution * max(abs(upper), 1e-6):
         goal = lower + step if upper is None else 0.5 * (lower + upper)
@@ -149,11 +152,12 @@ def bracket_collapse(
             upper = goal
         else:
             lower, limit = goal, settled
+            forces = programme.normal, np.clip(programme.shear, -limit, limit)
             record.add(goal, 0.0, 0, 0)
             step *= 1.5
         if upper is None and lower > 1e6 * first_step:
             break
-    return ConvexResult(lower, upper, record, programme.programmes, True, dead_forces)
+    return ConvexResult(lower, upper, record, programme.programmes, True, forces)
 
 
 def _settle(

@@ -30,6 +30,7 @@ class IncrementalResult:
     Attributes:
         load_control: largest multiplier at which load control converged; record: all converged points.
         state: the collapse state, or None; sentence: why it stopped; iterations: Newton iterations.
+        unbounded: whether load control went on to any multiplier.
     """
 
     load_control: float
@@ -37,6 +38,7 @@ class IncrementalResult:
     state: CollapseState | None
     sentence: str
     iterations: int
+    unbounded: bool = False
 
 
 def march(
@@ -65,7 +67,7 @@ def march(
     reached = multiplier
     record.peak = reached
     if cut <= cuts:
-        return IncrementalResult(reached, record, None, "load control went on to any multiplier", iterations)
+        return IncrementalResult(reached, record, None, "load control went on to any multiplier", iterations, True)
     travelled = float(model.live @ (u - gravity.u))
     push = max(0.02 * abs(travelled), START)
     failures = 0
