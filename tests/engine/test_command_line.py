@@ -175,3 +175,42 @@ def test_wall_that_cannot_stand_is_a_result_and_no_crash(tmp_path: Path):
     assert {row["finding"] for row in rows} == {"falls"}
     assert all(row["multiplier"] is None for row in rows)
     assert done.returncode == 0
+
+
+CASE = """
+id = "my-block"
+title = "A block of a user"
+source = "a drawing"
+
+[[references]]
+id = "closed-form"
+type = "exact"
+value = {value}
+tolerance = 1e-9
+applies_to = ["la"]
+gate = true
+source = "statics"
+requirement = "It slides at mu."
+"""
+
+
+@pytest.mark.parametrize(("value", "code"), [(0.25, 0), (0.26, 1)])
+def test_cases_of_a_user_are_compared_and_gated(value: float, code: int, tmp_path: Path):
+    folder = tmp_path / "mine" / "my-block"
+    folder.mkdir(parents=True)
+    (folder / "wall.json").write_text(json.dumps(wall_data(stack(1), 0.25)))
+    (folder / "case.toml").write_text(CASE.format(value=value))
+    done = drystone("compare", "--cases", "mine", "--methods", "la", cwd=tmp_path)
+    assert done.returncode == code, done.stdout + done.stderr
+    assert "my-block" in done.stdout
+    assert ("do not hold" in done.stdout) is bool(code)
+    checked = drystone("check", "my-block", "--cases", "mine", "--json", cwd=tmp_path)
+    assert checked.returncode == code
+    assert json.loads(checked.stdout)["passed"] is not bool(code)
+
+
+def test_a_method_that_crashes_costs_one_row_and_not_the_run(wall: Path):
+    done = drystone("compare", wall.name, "--methods", "dummy,la-associated", "--seconds", "30", cwd=wall.parent)
+    assert done.returncode == 0, done.stderr
+    assert "dummy" in done.stdout
+    assert (wall.parent / "out" / "report.html").is_file()
