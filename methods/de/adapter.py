@@ -10,8 +10,9 @@ from harness.model.assembly import Assembly, IntArray
 from harness.model.method import Answer, Finding, Settings, Status
 from methods.de.answer import solve_by_holds
 from methods.de.courses import Tuning
+from methods.de.mujoco_wall import MujocoWall, load_mujoco, mujoco_tunings
 from methods.de.release import ReleaseSettings, release
-from methods.de.settings import HoldSettings
+from methods.de.settings import HoldSettings, MujocoSettings
 from methods.de.space import StripSpace
 from methods.de.strips import CannotModel
 
@@ -33,6 +34,35 @@ class DampedHolds:
 
         try:
             return solve_by_holds(assembly, settings, engine)
+        except CannotModel as error:
+            return Answer(Status.REFUSED, Finding.NONE, str(error))
+
+
+class MujocoHolds:
+    """The holds, the bracket and the orders of `de` on MuJoCo, so that an answer does not hang on one engine."""
+
+    name: ClassVar[str] = "de-mujoco"
+    family: ClassVar[str] = "de"
+    title: ClassVar[str] = "distinct elements (MuJoCo, damped holds)"
+    tolerance: ClassVar[float] = 1e-4
+    Settings: ClassVar[type[Settings]] = MujocoSettings
+
+    def solve(self, assembly: Assembly, settings: MujocoSettings) -> Answer:
+        """Bracket of the collapse multiplier over body orders; see `methods.de.answer`.
+
+        Raises:
+            InputError: mujoco is not installed.
+        """
+        load_mujoco()
+        candidates = mujoco_tunings(assembly, settings)
+        soft = dict(candidates)
+
+        def engine(blocks: IntArray, joints: IntArray, tuning: Tuning) -> MujocoWall:
+            ratio = settings.friction_ratio
+            return MujocoWall(assembly, blocks, joints, settings.iterations, tuning, soft[tuning], ratio)
+
+        try:
+            return solve_by_holds(assembly, settings, engine, [tuning for tuning, _ in candidates])
         except CannotModel as error:
             return Answer(Status.REFUSED, Finding.NONE, str(error))
 

@@ -23,20 +23,24 @@ EngineMaker = Callable[[IntArray, IntArray, Tuning], Engine]
 """From free blocks and interfaces in insertion order and a tuning to an engine that holds the wall."""
 
 
-def solve_by_holds(assembly: Assembly, settings: HoldSettings, make_engine: EngineMaker) -> Answer:
+def solve_by_holds(
+    assembly: Assembly, settings: HoldSettings, make_engine: EngineMaker, candidates: list[Tuning] | None = None
+) -> Answer:
     """Bracket the collapse multiplier in every insertion order and put the findings together.
 
     Args:
         assembly: the wall.
         settings: settings of the holds.
         make_engine: makes the engine.
+        candidates: tunings to try in turn; None: those of `methods.de.courses.tunings`.
     """
     if assembly.n_free == 0:
         return Answer(Status.OK, Finding.STANDS, "every block is fixed: nothing can move")
     unit = load_unit(assembly)
     course = courses(assembly)
     orders = insertion_orders(assembly, course, settings.orders, settings.seed)
-    tuning, first = first_bracket(assembly, settings, make_engine, orders[0], tunings(course, settings.mass_decay))
+    candidates = candidates or tunings(course, settings.mass_decay)
+    tuning, first = first_bracket(assembly, settings, make_engine, orders[0], candidates)
     brackets = [first]
     for name, blocks, joints in orders[1:]:
         engine = make_engine(blocks, joints, tuning)

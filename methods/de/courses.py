@@ -40,7 +40,12 @@ def tunings(course: IntArray, mass_decay: float | None) -> list[Tuning]:
     if mass_decay is not None:
         return [Tuning(mass_decay, keep)]
     wall, chain = Tuning(min(0.4, 14.0 / tallest), keep), Tuning(min(0.4, 4.0 / tallest), 0.98)
-    return [chain, wall] if np.count_nonzero(course) <= CHAIN * tallest else [wall, chain]
+    return [chain, wall] if is_chain(course) else [wall, chain]
+
+
+def is_chain(course: IntArray) -> bool:
+    """Whether there are few blocks a course, as in stacks and arches."""
+    return bool(np.count_nonzero(course) <= CHAIN * max(int(course.max(initial=1)), 1))
 
 
 def courses(assembly: Assembly) -> IntArray:

@@ -43,3 +43,27 @@ class HoldSettings(Settings):
     hold_steps: int = Field(default=20, ge=1)
     work: int = Field(default=200_000_000, ge=1)
     seed: int = Field(default=0, ge=0)
+
+
+class MujocoSettings(HoldSettings):
+    """Settings of the holds in MuJoCo: those of `de`, and how soft its contacts are.
+
+    Attributes:
+        iterations: most Newton iterations of the contact solver in a time step.
+        impedance: constraint impedance of the contacts; None: 0.9 on walls, 0.97 on chains of blocks. Nearer to 1 is
+            stiffer and settles sooner, but head joints of walls then chatter.
+        friction_ratio: MuJoCo's impratio. Shear forces cost a creep that falls with it: at 100 it exceeds
+            `held_residual`, at 1e4 the contact problem is so ill-conditioned that walls chatter. It is raised in
+            proportion to the courses above 6, as the creep is.
+        held_residual: above the creep that shear forces cost.
+        moving_residual: above `held_residual`.
+        force_residual: what the creep leaves to be gained.
+    """
+
+    iterations: int = Field(default=50, ge=1, le=1000)
+    impedance: float | None = Field(default=None, gt=0.0, lt=1.0)
+    held_residual: float = Field(default=2e-5, gt=0.0, lt=1.0)
+    moving_residual: float = Field(default=4e-5, gt=0.0, lt=1.0)
+    force_residual: float = Field(default=1e-6, gt=0.0, lt=1.0)
+    friction_ratio: float = Field(default=1e3, ge=100.0)
+    work: int = Field(default=20_000_000, ge=1)

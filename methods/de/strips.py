@@ -55,6 +55,20 @@ class Strips:
     colour: IntArray
 
 
+def require_lengths(assembly: Assembly) -> None:
+    """Make sure that the two contact points of every interface are a distance apart.
+
+    Raises:
+        CannotModel: they are not.
+    """
+    for p in np.flatnonzero(~(assembly.length > 0.0)):
+        a, b = assembly.block_a[p], assembly.block_b[p]
+        raise CannotModel(
+            f"interface {p} between {assembly.block_ids[a]} and {assembly.block_ids[b]} has no length between its "
+            "contact points; distinct elements need two points a distance apart"
+        )
+
+
 def build_strips(assembly: Assembly, unit: float) -> Strips:
     """The pair of strips of every interface.
 
@@ -65,13 +79,8 @@ def build_strips(assembly: Assembly, unit: float) -> Strips:
     Raises:
         CannotModel: an interface has no length, or more than 32 interfaces crowd one place.
     """
+    require_lengths(assembly)
     length = assembly.length / unit
-    for p in np.flatnonzero(~(length > 0.0)):
-        a, b = assembly.block_a[p], assembly.block_b[p]
-        raise CannotModel(
-            f"interface {p} between {assembly.block_ids[a]} and {assembly.block_ids[b]} has no length between its "
-            "contact points; distinct elements need two points a distance apart"
-        )
     back = ROUNDING - OVERLAP / 2.0
     end1, end2 = assembly.end1 / unit, assembly.end2 / unit
     along = assembly.tangent * length[:, None]

@@ -1,0 +1,88 @@
+"""Requirements on `de-mujoco`: the exact cases of `de` on a second engine, judged forces, its absence said clearly."""
+
+from __future__ import annotations
+
+import importlib.util
+import sys
+
+import numpy as np
+import pytest
+
+from harness.engine.judge import equilibrium_residual, yield_violation
+from harness.model.errors import InputError
+from harness.model.method import Finding, Status
+from methods.de.adapter import MujocoHolds
+from methods.de.settings import MujocoSettings
+from tests.de.answers import run
+from tests.de.test_damped_holds import two_friction_block
+from tests.walls import assembly, running_bond, stack
+
+needs_mujoco = pytest.mark.skipif(importlib.util.find_spec("mujoco") is None, reason="the extra mujoco is missing")
+
+
+def run_mujoco(wall, **settings):
+    return MujocoHolds().solve(wall, MujocoSettings(**settings))
+
+
+@needs_mujoco
+@pytest.mark.parametrize(
+    ("pattern", "friction", "exact"),
+    [
+        (stack(1, 0.4, 0.2), 0.3, 0.3),
+        (stack(1, 0.2, 0.4), 0.7, 0.5),
+        (stack(5, 0.4, 0.2), 0.7, 0.4),
+        (stack(10, 0.4, 0.2), 0.7, 0.2),
+    ],
+    ids=["slide", "topple", "5 topple", "10 topple"],
+)
+def test_blocks_and_stacks_have_the_exact_multiplier_and_forces_the_judge_accepts(pattern, friction, exact):
+    wall = assembly(pattern, friction)
+    answer = run_mujoco(wall, orders=1)
+    assert (answer.status, answer.finding) == (Status.OK, Finding.COLLAPSES)
+    assert answer.multiplier == pytest.approx(exact, rel=1e-3)
+    assert answer.bracket[0] <= exact * (1 + 1e-4)
+    assert equilibrium_residual(wall, answer.forces, answer.forces_multiplier) < 1e-5
+    assert yield_violation(wall, answer.forces) < 1e-8
+
+
+@needs_mujoco
+def test_forces_are_those_of_the_other_engine_where_statics_leaves_no_choice():
+    # A single block has three unknown forces and three equations: both engines must find the same ones.
+    wall = assembly(stack(1, 0.2, 0.4), 0.7)
+    one, two = run(wall, orders=1, accuracy=1e-3), run_mujoco(wall, orders=1, accuracy=1e-3)
+    assert two.forces_multiplier == pytest.approx(one.forces_multiplier, rel=2e-3)
+    assert np.allclose(two.forces, one.forces, atol=4e-3 * wall.force_scale)
+
+
+@needs_mujoco
+def test_block_on_two_frictions_lies_inside_what_statics_allows():
+    low, high = run_mujoco(two_friction_block(), orders=2).bracket
+    assert 0.4 <= low <= high <= 0.6 / 1.1 * (1 + 5e-4)
+
+
+@needs_mujoco
+def test_wall_without_live_load_stands_or_falls_and_repeats_are_bit_identical():
+    still = {"loads": {"live": None}}
+    wall = assembly(running_bond(4, 2), 0.7, **still)
+    one, two = run_mujoco(wall, orders=1), run_mujoco(wall, orders=1)
+    assert one.finding is Finding.STANDS
+    assert np.array_equal(one.forces, two.forces)
+    assert equilibrium_residual(wall, one.forces, 0.0) < 1e-5
+    falls = run_mujoco(assembly(stack(3) | {"offsets": [0.0, 0.0, 0.2]}, 0.7, **still), orders=1)
+    assert falls.finding is Finding.FALLS
+
+
+@needs_mujoco
+@pytest.mark.slow
+@pytest.mark.parametrize("friction", [0.4, 0.65, 0.75])
+def test_wall_of_21_bricks_agrees_with_the_other_engine(friction):
+    wall = assembly(running_bond(6, 3), friction)
+    answer = run_mujoco(wall, orders=1)
+    assert answer.multiplier == pytest.approx(min(friction, 13 / 23), rel=5e-3)
+    assert equilibrium_residual(wall, answer.forces, answer.forces_multiplier) < MujocoHolds.tolerance
+
+
+def test_without_the_extra_the_user_is_told_what_to_install(monkeypatch):
+    monkeypatch.setitem(sys.modules, "mujoco", None)
+    with pytest.raises(InputError, match=r"Install drystone\[mujoco\]"):
+        run_mujoco(assembly(stack(1), 0.5))
