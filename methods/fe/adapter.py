@@ -24,6 +24,9 @@ from methods.fe.newton import equilibrium
 from methods.fe.path_record import PathEnd
 from methods.fe.settings import ConvexSettings, GapSpringsSettings, NewtonSettings
 from methods.fe.wall_model import WallModel, build_model
+from methods.fe.warm_up import load_kernels
+
+load_kernels()
 
 
 class GapSprings:

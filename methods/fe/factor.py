@@ -12,10 +12,11 @@ from typing import Protocol
 
 import numpy as np
 import scipy.linalg as sla
-from scipy.sparse.linalg import SuperLU, splu
+from scipy.sparse.linalg import splu
 
 from harness.model.assembly import FloatArray, IntArray
 from methods.fe.compiled import compiled
+from methods.fe.triangular import Triangles
 from methods.fe.wall_model import WallModel
 
 DENSE_LIMIT = 70
@@ -98,32 +99,40 @@ class SparseFactor:
         self.count = 0
         self.factorisations = 0
         n = model.n_unknowns
-        self._lu: SuperLU | None = None
+        self._triangles: Triangles | None = None
+        self._work = np.empty(n)
         self._y = np.empty((self.capacity, n))
         self._coupling = np.zeros((self.capacity, self.capacity))
         self._denominator = np.empty(self.capacity)
         self._index = np.empty((self.capacity, 6), dtype=np.int64)
         self._b = np.empty((self.capacity, 6))
-        self._right = np.zeros(n)
 
     def refactor(self, state: IntArray, shift: float = 0.0) -> None:
         """Factorise afresh. Raises SingularTangent."""
         self.count = 0
         self.factorisations += 1
         try:
-            self._lu = splu(
+            lu = splu(
                 self.model.tangent(state, shift),
                 permc_spec="NATURAL",
                 diag_pivot_thresh=1e-3,
+                panel_size=1,
+                relax=1,
                 options={"SymmetricMode": True},
             )
+            self._triangles = Triangles(lu)
         except RuntimeError as error:
             raise SingularTangent(str(error)) from error
 
     def solve(self, right: FloatArray) -> FloatArray:
         """K^-1 right (N,). Raises SingularTangent when the result is not finite."""
-        assert self._lu is not None
-        x: FloatArray = self._lu.solve(right)
+        assert self._triangles is not None
+        x = np.empty_like(right)
+        self._triangles.solve(right, self._work, x)
+        return self._corrected(x)
+
+    def _corrected(self, x: FloatArray) -> FloatArray:
+        """K^-1 right from the solution x (N,) of the factorised tangent, which is overwritten."""
         k = self.count
         if k:
             alpha = np.empty(k)
@@ -135,10 +144,10 @@ class SparseFactor:
 
     def solve_sparse(self, index: IntArray, value: FloatArray) -> FloatArray:
         """K^-1 times the vector with `value` (6,) at `index` (6,)."""
-        np.add.at(self._right, index, value)
-        out = self.solve(self._right)
-        self._right[index] = 0.0
-        return out
+        assert self._triangles is not None
+        x = np.empty_like(self._work)
+        self._triangles.solve_sparse(index, value, self._work, x)
+        return self._corrected(x)
 
     def update(self, y: FloatArray, index: IntArray, b: FloatArray, denominator: float) -> None:
         """Append one term to the product form."""

@@ -15,6 +15,7 @@ from harness.model.assembly import FloatArray
 from methods.fe.commits import committed_step
 from methods.fe.continuation import Tracer
 from methods.fe.factor import Factor
+from methods.fe.gap_law import OPEN, SLIP_PLUS
 from methods.fe.newton import Equilibrium, equilibrium, newton
 from methods.fe.path_record import PathEnd, PathRecord
 from methods.fe.plateau import CollapseState, finish
@@ -30,7 +31,7 @@ COMMIT_WITHIN = 300.0
 """Displacements, in multiples of the first, up to which the history is still committed."""
 TURN = 0.1
 """Share of the peak by which a path may turn down before a jump from it is tried."""
-DOUBLE_ABOVE = 1200
+DOUBLE_ABOVE = 100
 """Blocks above which a path without commits starts where doubled Newton steps end, to save the early events."""
 ASTRAY = 3.0
 """Multiple of the first history's plateau at which a committed history counts as lost."""
@@ -111,7 +112,7 @@ def _trace(
         sentence = "no equilibrium a small step off the dead load"
         return HistoryResult(step, PathEnd.BREAKDOWN, sentence, record, None, 0, 0.0, disturbance)
     if step == 0.0 and model.assembly.n_free > DOUBLE_ABOVE:
-        first, start = _doubled(model, factor, first, start, history)
+        first, start = _doubled(model, factor, first, start, history, record)
     tracer = Tracer(model, factor, first.u, start, history, first.state)
     interval = step * scale if step > 0.0 else np.inf
     large = COMMIT_WITHIN * tracer.first_displacement
@@ -154,7 +155,7 @@ def _trace(
 
 
 def _doubled(
-    model: WallModel, factor: Factor, first: Equilibrium, start: float, history: FloatArray
+    model: WallModel, factor: Factor, first: Equilibrium, start: float, history: FloatArray, record: PathRecord
 ) -> tuple[Equilibrium, float]:
     """Double the multiplier while Newton converges; without commits the law has no history, so the path is the same."""
     while start < 1e6:
@@ -162,6 +163,8 @@ def _doubled(
         if not answer.found:
             break
         first, start = answer, 2.0 * start
+        slipping = int(np.count_nonzero(first.state >= SLIP_PLUS))
+        record.add(start, float(model.live @ first.u), slipping, int(np.count_nonzero(first.state == OPEN)))
     return first, start
 
 

@@ -8,11 +8,11 @@ SINGULAR = 1e-11
 """|1 + b'y| below which the tangent is singular: the multiplier rests while the wall moves along y."""
 DRIFT = 1e-9
 """Out-of-balance force (share of the load scale) above which the tangent is factorised afresh."""
-STEEP = 1e4
+STEEP = 1e6
 """Changes with |1 + b'y| or its inverse above this would cost digits; the tangent is factorised afresh."""
-FREE = 1e4
+FREE = 1e5
 """Directions larger than this many times the first one are measured in doubled precision."""
-BENT = 1e-9
+BENT = 1e-7
 """Defect of K d = live (share of the live load) above which the tangent is factorised afresh."""
 CROOKED = 1e-5
 """The same when refinement no longer helps."""
