@@ -36,10 +36,11 @@ class AssociatedLimitAnalysis:
     def solve(self, assembly: Assembly, settings: Any) -> Answer:
         """The linear programme on HiGHS or on the own interior point."""
         problem = make_problem(assembly)
-        early = dead_load_answer(problem, assembly.has_live_load)
+        newton = NewtonMatrix(problem)
+        early = dead_load_answer(problem, newton, assembly.has_live_load)
         if early is not None:
             return early
-        return associated_answer(problem, solve_associated(problem, NewtonMatrix(problem), settings.solver), 1e-9)
+        return associated_answer(problem, solve_associated(problem, newton, settings.solver), 1e-9)
 
 
 class AssociatedLimitAnalysisCvxpy:
@@ -54,13 +55,14 @@ class AssociatedLimitAnalysisCvxpy:
     def solve(self, assembly: Assembly, settings: Any) -> Answer:
         """The linear programme through cvxpy; its mechanism is found as for `la-associated`."""
         problem = make_problem(assembly)
-        early = dead_load_answer(problem, assembly.has_live_load)
+        newton = NewtonMatrix(problem)
+        early = dead_load_answer(problem, newton, assembly.has_live_load)
         if early is not None:
             return early
         outcome, forces, multiplier = solve_with_cvxpy(problem, settings.solver)
         if forces is None:
             return associated_answer(problem, AssociatedResult(outcome), 1e-9)
-        return associated_answer(problem, with_mechanism(problem, NewtonMatrix(problem), forces, multiplier, 0), 1e-9)
+        return associated_answer(problem, with_mechanism(problem, newton, forces, multiplier, 0), 1e-9)
 
 
 class LimitAnalysis:
@@ -75,8 +77,9 @@ class LimitAnalysis:
     def solve(self, assembly: Assembly, settings: Any) -> Answer:
         """Interior point, exact programme, ray descent, restarts and continuation, as the settings say."""
         problem = make_problem(assembly)
-        early = dead_load_answer(problem, assembly.has_live_load)
-        return early if early is not None else least_known(problem, settings, self.tolerance)
+        newton = NewtonMatrix(problem)
+        early = dead_load_answer(problem, newton, assembly.has_live_load)
+        return early if early is not None else least_known(problem, newton, settings, self.tolerance)
 
 
 def associated_answer(problem: Problem, result: AssociatedResult, tolerance: float) -> Answer:

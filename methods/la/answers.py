@@ -8,9 +8,14 @@ import numpy as np
 
 from harness.model.assembly import Assembly, FloatArray
 from harness.model.method import Answer, Finding, Status
+from methods.la.newton_matrix import NewtonMatrix
 from methods.la.problem import Problem
 from methods.la.programmes import StaticProgramme
+from methods.la.standing import standing_forces
 from methods.la.state import CollapseState, residuals
+
+SIMPLEX_INTERFACES = 100
+"""Interfaces up to which the simplex method decides at once whether a wall stands."""
 
 
 def collapse_answer(
@@ -59,24 +64,27 @@ def unbounded_answer(sentence: str, iterations: int = 0, details: dict[str, Any]
     return Answer(Status.OK, Finding.UNBOUNDED, sentence, iterations=iterations, details=details or {})
 
 
-def dead_load_answer(problem: Problem, has_live_load: bool) -> Answer | None:
+def dead_load_answer(problem: Problem, newton: NewtonMatrix, has_live_load: bool) -> Answer | None:
     """Falls with its mechanism, or stands if there is no live load; None if there is a live load to study."""
-    try:
-        solver = "ipm" if problem.n_interfaces > 1500 else "simplex"
-        found = StaticProgramme(problem, solver).stands_at(0.0)
-    except RuntimeError as error:
-        return not_converged(f"Whether the wall stands under its dead load was not settled: {error}")
-    if isinstance(found, np.ndarray):
-        return falls_answer(problem, found)
+    forces = standing_forces(problem, newton) if problem.n_interfaces > SIMPLEX_INTERFACES else None
+    iterations = 0
+    if forces is None:
+        try:
+            found = StaticProgramme(problem).stands_at(0.0)
+        except RuntimeError as error:
+            return not_converged(f"Whether the wall stands under its dead load was not settled: {error}")
+        if isinstance(found, np.ndarray):
+            return falls_answer(problem, found)
+        forces, iterations = found.forces, found.iterations
     if has_live_load:
         return None
     return Answer(
         Status.OK,
         Finding.STANDS,
         "Under its dead load the wall has an equilibrium within yield; no live load was given.",
-        forces=problem.to_forces(found.forces),
+        forces=problem.to_forces(forces),
         forces_multiplier=0.0,
-        iterations=found.iterations,
+        iterations=iterations,
     )
 
 

@@ -17,11 +17,11 @@ from methods.la.interior_point import PathSettings, follow_path, start_point
 from methods.la.newton_matrix import NewtonMatrix
 from methods.la.newton_step import Point
 from methods.la.problem import Problem
-from methods.la.programmes import KinematicProgramme, StaticProgramme
+from methods.la.programmes import SIMPLEX_INTERFACES, KinematicProgramme, StaticProgramme
 from methods.la.state import CollapseState, moving_contacts, polished, residuals, tight_contacts
 
-SIMPLEX_INTERFACES = 600
-"""Interfaces up to which the simplex method is the quicker way to a vertex."""
+MANY_INTERFACES = 5000
+"""Interfaces above which the path ends earlier: there rounding of the forces grows faster than the gap falls."""
 
 
 @dataclass(frozen=True)
@@ -89,7 +89,8 @@ def duality_gap(problem: Problem, state: CollapseState) -> float:
 
 
 def _by_interior_point(problem: Problem, newton: NewtonMatrix) -> AssociatedResult:
-    settings = PathSettings(dilatancy=1.0, gap=1e-12, residual=1e-3)
+    gap = 1e-12 if problem.n_interfaces <= MANY_INTERFACES else 1e-10
+    settings = PathSettings(dilatancy=1.0, gap=gap, residual=1e-3)
     result = follow_path(problem, newton, start_point(problem), settings)
     if not result.gap < 1e-4 or result.statics > 0.1:
         return AssociatedResult("unknown", iterations=result.iterations)

@@ -40,7 +40,8 @@ class PaperProgramme:
     def solve(self, assembly: Assembly, settings: Any) -> Answer:
         """A local solution of the programme, made exact on the mechanism it ends at."""
         problem = make_problem(assembly)
-        early = dead_load_answer(problem, assembly.has_live_load)
+        newton = NewtonMatrix(problem)
+        early = dead_load_answer(problem, newton, assembly.has_live_load)
         if early is not None:
             return early
         if assembly.n_free > settings.max_blocks:
@@ -60,12 +61,11 @@ class PaperProgramme:
             result = solve_paper_programme(problem, start, settings.max_iterations, settings.epsilons)
         except (ValueError, RuntimeError) as error:
             return not_converged(f"The programme could not be set up or solved: {error}")
-        return paper_answer(problem, result, settings.start, self.tolerance)
+        return paper_answer(problem, newton, result, settings.start, self.tolerance)
 
 
-def paper_answer(problem: Problem, result: PaperResult, start: str, tolerance: float) -> Answer:
+def paper_answer(problem: Problem, newton: NewtonMatrix, result: PaperResult, start: str, tolerance: float) -> Answer:
     """The exact state on the mechanism that the programme ends at, with what the programme itself said."""
-    newton = NewtonMatrix(problem)
     details: dict[str, Any] = {
         "unknowns": result.unknowns,
         "programme_value": result.multiplier * problem.unit_multiplier,
@@ -102,10 +102,10 @@ class TrescaSequence:
     def solve(self, assembly: Assembly, settings: Any) -> Answer:
         """The sequence from the associated solution; its fixed point is a collapse state, not the least one."""
         problem = make_problem(assembly)
-        early = dead_load_answer(problem, assembly.has_live_load)
+        newton = NewtonMatrix(problem)
+        early = dead_load_answer(problem, newton, assembly.has_live_load)
         if early is not None:
             return early
-        newton = NewtonMatrix(problem)
         associated = solve_associated(problem, newton)
         if associated.state is None:
             return not_converged(f"The associated programme that starts the sequence ended as {associated.outcome}.")
@@ -145,7 +145,8 @@ class FromFiniteElements:
     def solve(self, assembly: Assembly, settings: Any) -> Answer:
         """FE forces projected onto equilibrium and yield, nearest mechanism, descent; and the same from cold."""
         problem = make_problem(assembly)
-        early = dead_load_answer(problem, assembly.has_live_load)
+        newton = NewtonMatrix(problem)
+        early = dead_load_answer(problem, newton, assembly.has_live_load)
         if early is not None:
             return early
         given = finite_element_answer(assembly, settings.fe_method)
@@ -154,7 +155,6 @@ class FromFiniteElements:
         forces, _, projected = project_forces(
             problem, given.forces / problem.unit_force, given.multiplier / problem.unit_multiplier
         )
-        newton = NewtonMatrix(problem)
         effort = Effort(failures=settings.failures)
         warm = Search(problem, newton, settings.seed)
         first = warm.nearest_mechanism(forces, fe_rates(problem, given))

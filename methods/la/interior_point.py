@@ -21,6 +21,10 @@ from methods.la.problem import Problem
 
 MIDDLE = 0.995
 """Part of the way to the boundary that a step goes."""
+CORRECTORS = 3
+"""Corrections of a step for centrality, each one more solution with the factors of the step."""
+AHEAD = 0.3
+"""How much longer a step a correction aims at."""
 
 
 @dataclass(frozen=True)
@@ -35,6 +39,7 @@ class PathSettings:
         patience: steps without progress after which it gives the best point it had.
         fade: None, or the relative gap below which dilatancy fades from one in proportion to the gap, to reach
             zero-dilatancy flow from the well-behaved path of associated flow.
+        above: None, or a multiplier at which the path ends if the forces are in equilibrium.
     """
 
     dilatancy: float = 0.0
@@ -43,6 +48,7 @@ class PathSettings:
     max_iterations: int = 200
     patience: int = 12
     fade: float | None = None
+    above: float | None = None
 
 
 @dataclass(frozen=True)
@@ -119,6 +125,8 @@ def follow_path(
         statics, kinematics = float(abs(step.statics).max()), float(abs(step.kinematics).max())
         history.append(point.multiplier)
         residual = max(statics, kinematics, abs(step.work) / problem.live_work)
+        if settings.above is not None and point.multiplier >= settings.above and statics <= settings.residual:
+            return PathResult(point, True, iteration, gap, statics, kinematics, history)
         merit = max(gap / settings.gap, residual / settings.residual)
         if best is None or merit < best_merit:
             if merit < 0.9 * best_merit:
@@ -138,26 +146,53 @@ def _centred_step(
 ) -> Point:
     """Mehrotra's predictor and corrector; where that is blocked, a step that mostly centres."""
     mean = float(product.sum()) / pairs
-    predictor = step.direction(np.zeros(product.shape))
-    primal, dual = _step_lengths(point, predictor, tight, 1.0, dilatancy)
+    predictor = step.direction(np.zeros(product.shape), refinements=0)
+    primal, dual = step_lengths(point, predictor, tight, 1.0, dilatancy)
     ahead = (point.slack + primal * predictor.slack) * (point.rates + dual * predictor.rates)
     mean_ahead = float(np.where(tight, 0.0, ahead).sum()) / pairs
     centring = float(np.clip((mean_ahead / mean) ** 3, 1e-6, 1.0))
     second_order = predictor.slack * predictor.rates * min(primal, dual)
     target = np.clip(centring * mean - second_order, -10.0 * mean, 10.0 * mean)
     corrector = step.direction(target)
-    primal, dual = _step_lengths(point, corrector, tight, MIDDLE, dilatancy)
+    primal, dual = step_lengths(point, corrector, tight, MIDDLE, dilatancy)
+    corrector, primal, dual = _longer_step(step, point, corrector, target, centring * mean, tight, dilatancy)
     if min(primal, dual) < 0.1:
         centred = step.direction(np.clip(0.5 * mean, 0.1 * product, None))
-        lengths = _step_lengths(point, centred, tight, MIDDLE, dilatancy)
+        lengths = step_lengths(point, centred, tight, MIDDLE, dilatancy)
         if min(lengths) > min(primal, dual):
             corrector, (primal, dual) = centred, lengths
     return step.advance(corrector, primal, dual)
 
 
-def _step_lengths(
+def _longer_step(
+    step: NewtonStep,
+    point: Point,
+    change: Direction,
+    target: FloatArray,
+    mean: float,
+    tight: BoolArray,
+    dilatancy: float,
+) -> tuple[Direction, float, float]:
+    """Correctors that bring the products of a longer step back to the middle (Gondzio 1996), while they lengthen it."""
+    primal, dual = step_lengths(point, change, tight, MIDDLE, dilatancy)
+    for _ in range(CORRECTORS):
+        if min(primal, dual) > 0.9:
+            break
+        reach = (min(1.0, primal + AHEAD), min(1.0, dual + AHEAD))
+        product = (point.slack + reach[0] * change.slack) * (point.rates + reach[1] * change.rates)
+        shift = np.clip(np.clip(product, 0.1 * mean, 10.0 * mean) - product, -10.0 * mean, None)
+        other = step.direction(target + shift)
+        lengths = step_lengths(point, other, tight, MIDDLE, dilatancy)
+        if sum(lengths) < primal + dual + 0.1 * AHEAD:
+            break
+        change, target, (primal, dual) = other, target + shift, lengths
+    return change, primal, dual
+
+
+def step_lengths(
     point: Point, change: Direction, tight: BoolArray, fraction: float, dilatancy: float
 ) -> tuple[float, float]:
+    """Longest steps of slacks and of rates that stay inside; one length for both where flow is not associated."""
     primal = min(1.0, fraction * _longest(point.slack, change.slack, tight))
     dual = min(1.0, fraction * _longest(point.rates, change.rates, tight))
     if dilatancy < 1.0:

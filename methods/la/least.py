@@ -30,8 +30,10 @@ class Plan:
     descents: int
 
 
-SIMPLEX_SEARCH = 1500
+SIMPLEX_SEARCH = 1000
 """Interfaces above which the search by simplex programmes is too slow and the interior point does all."""
+FEW_INTERFACES = 400
+"""Interfaces up to which the associated solution is one more start; on larger walls it led to high states only."""
 LADDER = (0.55, 0.65, 0.75, 0.85, 0.925)
 FINE_LADDER = (1.3, 1.15, 1.0, 0.9, 0.8, 0.7, 0.6, 0.5, 0.55, 0.6, 0.65, 0.7, 0.75, 0.8, 0.85, 0.9, 0.95)
 
@@ -40,9 +42,11 @@ def plan_of(settings: SearchSettings, n_free: int) -> Plan:
     """The plan for a wall of n_free blocks; normal effort shrinks with size so that the time grows slowly."""
     plan = {
         "quick": Plan(0, 8, (), 1),
-        "normal": Plan(3, 12, LADDER, 3) if n_free <= 30 else Plan(1, 12, LADDER[::2] if n_free <= 60 else (), 1),
+        "normal": Plan(3, 12, LADDER, 3) if n_free <= 30 else Plan(1, 12, LADDER[::2], 1),
         "deep": Plan(20, 40, FINE_LADDER, 8),
     }[settings.effort]
+    if settings.effort == "normal" and n_free > 60:
+        plan = Plan(1, 40, (), 1)
     return Plan(
         plan.starts if settings.starts is None else settings.starts,
         plan.failures if settings.failures is None else settings.failures,
@@ -51,15 +55,15 @@ def plan_of(settings: SearchSettings, n_free: int) -> Plan:
     )
 
 
-def least_known(problem: Problem, settings: SearchSettings, tolerance: float) -> Answer:
+def least_known(problem: Problem, newton: NewtonMatrix, settings: SearchSettings, tolerance: float) -> Answer:
     """The answer with the least collapse state that the search finds.
 
     Args:
         problem: the scaled wall, which stands under its dead load and has a live load.
+        newton: its Newton matrix.
         settings: effort and seed.
         tolerance: largest residual of a state that is returned.
     """
-    newton = NewtonMatrix(problem)
     associated = solve_associated(problem, newton)
     if problem.n_interfaces > SIMPLEX_SEARCH:
         return _large(problem, newton, settings, associated, tolerance)
@@ -97,14 +101,15 @@ def _large(
     multiplier = states[0].multiplier * problem.unit_multiplier
     sentence = (
         f"The least collapse multiplier known is {multiplier:.7g}, from one start without descent because of the size "
-        "of the wall. It is not proved to be the minimum."
+        "of the wall. It is not proved to be the least."
     )
     return collapse_answer(problem, states[0], sentence, tolerance, steps, details)
 
 
 def _starting_states(search: Search, associated: AssociatedResult, starts: int) -> list[CollapseState]:
     states = [search.interior()]
-    if associated.state is not None:
+    few = search.problem.n_interfaces <= FEW_INTERFACES
+    if associated.state is not None and (few or states[0] is None):
         states.append(search.nearest_mechanism(associated.state.forces))
     states += [search.interior(spread=2.0) for _ in range(starts)]
     return [state for state in states if state is not None]
@@ -151,7 +156,7 @@ def _answer(
         problem,
         best,
         f"The least collapse multiplier known is {best.multiplier * unit:.7g}; {agreeing} of {len(values)} starts "
-        "lead to it. It is not proved to be the minimum.",
+        "lead to it. It is not proved to be the least.",
         tolerance,
         search.newton_steps,
         details,

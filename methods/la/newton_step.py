@@ -69,14 +69,14 @@ class NewtonStep:
         change = (work - float(self.problem.live @ by_load)) / self.live_compliance
         return by_load + change * self.by_live, change
 
-    def direction(self, target: FloatArray) -> Direction:
+    def direction(self, target: FloatArray, refinements: int = 2) -> Direction:
         """Newton direction towards y o g = target (m, 4)."""
         problem = self.problem
         rate_shift = np.where(self.tight, 0.0, target / self.slack - self.point.rates)
         shift = problem.strains_of_rates(rate_shift, self.dilatancy) - self.kinematics
         load = np.asarray(problem.statics @ self.compliance.forces(shift).ravel()) + self.statics
         velocity, multiplier = self._bordered(load, self.work)
-        for _ in range(2):
+        for _ in range(refinements):
             forces = self.compliance.forces(shift - problem.strains(velocity))
             defect = self.statics + np.asarray(problem.statics @ forces.ravel()) + multiplier * problem.live
             extra, more = self._bordered(defect, self.work - float(problem.live @ velocity))

@@ -17,6 +17,8 @@ from harness.model.assembly import BoolArray, FloatArray
 from methods.la.problem import Problem
 
 INFINITY = highspy.kHighsInf
+SIMPLEX_INTERFACES = 800
+"""Interfaces up to which the simplex method is the quicker way to a vertex of a static programme."""
 
 
 @dataclass(frozen=True)

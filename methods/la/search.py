@@ -17,7 +17,7 @@ from methods.la.interior_point import PathResult, PathSettings, follow_path, sta
 from methods.la.newton_matrix import NewtonMatrix
 from methods.la.newton_step import Point
 from methods.la.problem import Problem
-from methods.la.programmes import KinematicProgramme, StaticProgramme
+from methods.la.programmes import SIMPLEX_INTERFACES, KinematicProgramme, StaticProgramme
 from methods.la.state import CollapseState, moving_contacts, tight_contacts
 
 LOWER = 1e-10
@@ -42,7 +42,7 @@ class Search:
 
     def __init__(self, problem: Problem, newton: NewtonMatrix, seed: int = 0, parent: Search | None = None) -> None:
         self.problem, self.newton = problem, newton
-        self.static = StaticProgramme(problem)
+        self.static = StaticProgramme(problem, "simplex" if problem.n_interfaces <= SIMPLEX_INTERFACES else "ipm")
         self.kinematic: KinematicProgramme = KinematicProgramme(problem) if parent is None else parent.kinematic
         self.generator: np.random.Generator = np.random.default_rng(seed) if parent is None else parent.generator
         self.known: dict[bytes, CollapseState | None] = {}

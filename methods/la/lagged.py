@@ -1,0 +1,88 @@
+"""Interior point with friction bounds that lag behind: the way to collapse states of walls of any size.
+
+With the friction bounds c = mu N held, zero-dilatancy flow is a linear programme and its Newton matrix symmetric and
+positive (Gilbert, Casapulla and Ahmed 2006 solve a sequence of them). Here one path does it: at every Newton step the
+bounds move a part of the way to mu N of the iterate, and y o g falls as the steps allow. Where Newton's method on the
+nonsymmetric complementarity problem stalls at a fold, this does not; the end is approximate and serves to identify
+the moving contacts.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+
+from harness.model.assembly import FloatArray
+from methods.la.exact import close_tight
+from methods.la.interior_point import PathResult, PathSettings, follow_path, start_point, step_lengths
+from methods.la.newton_matrix import NewtonMatrix
+from methods.la.newton_step import NewtonStep, Point
+from methods.la.problem import Problem
+
+LEAST_BOUND = 1e-4
+"""Least friction bound, in mean block weights, where a joint carries nothing."""
+FOLLOW = 0.3
+"""Part of the way to mu N that a bound moves in a step."""
+FALL = 0.8
+"""Factor on y o g in a step that is not blocked."""
+START_GAP = 1e-2
+"""Relative gap of the associated path at which the bounds take over."""
+END_GAP = 1e-6
+"""Relative gap at which y o g falls no further."""
+SHARP = PathSettings(dilatancy=1.0, gap=1e-17, residual=1e-3, max_iterations=150, patience=5)
+"""Rates of contacts that do not move must vanish against forces of any size, hence the small gap."""
+
+
+def with_bounds(problem: Problem, bound: FloatArray) -> Problem:
+    """The problem with fixed friction bounds (m,) instead of friction."""
+    cohesion = np.column_stack([np.zeros((len(bound), 2)), bound, bound])
+    return replace(problem, friction=np.zeros(len(bound)), cohesion=cohesion)
+
+
+def lagged_mechanism(problem: Problem, newton: NewtonMatrix, steps: int) -> tuple[PathResult, int]:
+    """The exact mechanism of the programme with the bounds reached after `steps`, and the Newton steps in all.
+
+    Raises:
+        RuntimeError: a Newton matrix is singular to rounding.
+    """
+    settings = PathSettings(dilatancy=1.0, gap=START_GAP, residual=1e-3)
+    start = follow_path(problem, newton, start_point(problem), settings)
+    point, bound = start.point, _strength(problem, start.point)
+    tight = close_tight(problem, np.zeros(point.slack.shape, dtype=bool))
+    mean = float((point.slack * point.rates).mean())
+    least = END_GAP * problem.live_work / point.slack.size
+    taken = 0
+    for _ in range(steps):
+        held = with_bounds(problem, bound)
+        try:
+            step = NewtonStep(held, newton, point, 1.0, tight)
+        except (RuntimeError, FloatingPointError):
+            break
+        taken += 1
+        wanted = bound + FOLLOW * (_strength(problem, point) - bound)
+        point, length = _step(step, point, wanted - bound, mean)
+        bound = 0.5 * point.slack[:, 2:].sum(axis=1)
+        if length > 0.3:
+            mean = max(FALL * mean, least)
+    held = with_bounds(problem, bound)
+    sharp = follow_path(held, newton, start_point(held), SHARP)
+    return sharp, start.iterations + taken + sharp.iterations
+
+
+def _strength(problem: Problem, point: Point) -> FloatArray:
+    return np.asarray(np.maximum(problem.friction * point.slack[:, :2].sum(axis=1), LEAST_BOUND))
+
+
+def _step(step: NewtonStep, point: Point, shift: FloatArray, mean: float) -> tuple[Point, float]:
+    """A predictor and corrector to y o g = mean while both shear slacks grow by `shift` (m,); and its length."""
+    grown = np.zeros(point.slack.shape)
+    grown[:, 2:] = shift[:, None]
+    target = mean - point.rates * grown
+    predictor = step.direction(target, refinements=0)
+    lengths = step_lengths(point, replace(predictor, slack=predictor.slack + grown), step.tight, 1.0, 1.0)
+    second = (predictor.slack + grown) * predictor.rates * min(lengths)
+    corrector = step.direction(target - np.clip(second, -5.0 * mean, 5.0 * mean))
+    corrector = replace(corrector, slack=corrector.slack + grown)
+    primal, dual = step_lengths(point, corrector, step.tight, 0.95, 1.0)
+    return step.advance(corrector, primal, dual), min(primal, dual)
