@@ -10,7 +10,7 @@ from harness.model.assembly import Assembly, IntArray
 from harness.model.method import Answer, Finding, Settings, Status
 from methods.de.answer import solve_by_holds
 from methods.de.courses import Tuning
-from methods.de.mujoco_wall import MujocoWall, load_mujoco, mujoco_tunings
+from methods.de.mujoco_wall import MujocoWall, SolverFailed, load_mujoco, mujoco_tunings
 from methods.de.release import ReleaseSettings, release
 from methods.de.settings import HoldSettings, MujocoSettings
 from methods.de.space import StripSpace
@@ -65,6 +65,8 @@ class MujocoHolds:
             return solve_by_holds(assembly, settings, engine, [tuning for tuning, _ in candidates])
         except CannotModel as error:
             return Answer(Status.REFUSED, Finding.NONE, str(error))
+        except SolverFailed as error:
+            return Answer(Status.NOT_CONVERGED, Finding.NONE, str(error))
 
 
 class ReleasedCollapse:

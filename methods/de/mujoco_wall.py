@@ -44,6 +44,17 @@ FORCE_STEPS = 200
 SOLVER_TOLERANCE = 1e-14
 
 
+OVERLAP = 1e-12
+"""By which a sphere starts inside its face, in unit lengths, so that rounding does not decide which contacts start."""
+
+EXPLODED = 1e4
+"""Acceleration, as a part of gravity, that no wall reaches: a failure of the contact solver, not a collapse."""
+
+
+class SolverFailed(ArithmeticError):
+    """MuJoCo's contact solver stopped before it converged, and the motion is not that of the wall."""
+
+
 def load_mujoco() -> Any:
     """The package mujoco.
 
@@ -61,7 +72,10 @@ def load_mujoco() -> Any:
 
 def mujoco_tunings(assembly: Assembly, settings: MujocoSettings) -> list[tuple[Tuning, float]]:
     """Tunings with their impedances, in the order in which they are tried; see WALL and CHAIN."""
-    pairs = [CHAIN, WALL] if is_chain(courses(assembly)) else [WALL, CHAIN]
+    course = courses(assembly)
+    light_top = min(CHAIN[0].mass_decay, 4.0 / max(int(course.max(initial=1)), 1))
+    chain = replace(CHAIN[0], mass_decay=light_top), CHAIN[1]
+    pairs = [chain, WALL] if is_chain(course) else [WALL, chain]
     if settings.mass_decay is not None:
         tuning, soft = pairs[0]
         pairs = [(replace(tuning, mass_decay=settings.mass_decay), soft)]
@@ -101,6 +115,8 @@ class MujocoWall:
         self.interfaces = assembly.n_interfaces
         self.steps = 0
         self._unit = assembly.length_scale
+        # Penetrations of 1e-9 vanish in rounding far from the origin.
+        self._origin = assembly.centroid[assembly.free].mean(axis=0)
         self._force = assembly.force_scale / max(assembly.n_free, 1)
         course = courses(assembly)
         self.relaxation = 1.0 / (1.0 - tuning.damping)
@@ -141,7 +157,7 @@ class MujocoWall:
         """Bodies with planar joints; x, y of the wall are x, z of MuJoCo, counter-clockwise is about -y."""
         slide, hinge = self._mujoco.mjtJoint.mjJNT_SLIDE, self._mujoco.mjtJoint.mjJNT_HINGE
         for k, i in enumerate(self._blocks):
-            x, y = self.assembly.centroid[i] / self._unit
+            x, y = (self.assembly.centroid[i] - self._origin) / self._unit
             body = spec.worldbody.add_body(name=f"block {i}", pos=[x, 0.0, y])
             body.explicitinertial = True
             body.mass = float(self._mass[k, 0])
@@ -157,7 +173,7 @@ class MujocoWall:
 
         def add(name: str, block: int, place: FloatArray, **shape: Any) -> None:
             body = spec.body(f"block {block}") if block in free else spec.worldbody
-            x, y = (place - (wall.centroid[block] if block in free else 0.0)) / self._unit
+            x, y = (place - (wall.centroid[block] if block in free else self._origin)) / self._unit
             body.add_geom(name=name, pos=[x, 0.0, y], contype=0, conaffinity=0, **shape)
 
         for p in joints.tolist():
@@ -172,7 +188,13 @@ class MujocoWall:
             add(f"face {p}", b, middle, type=box, size=size, quat=[np.cos(half), 0.0, -np.sin(half), 0.0])
             friction = max(float(wall.friction[p]), 1e-12)
             for k, end in enumerate((wall.end1[p], wall.end2[p])):
-                add(f"end {p} {k}", a, end - RADIUS * self._unit * normal, type=sphere, size=[RADIUS, 0.0, 0.0])
+                add(
+                    f"end {p} {k}",
+                    a,
+                    end - RADIUS * self._unit * normal,
+                    type=sphere,
+                    size=[RADIUS + OVERLAP, 0.0, 0.0],
+                )
                 spec.add_pair(
                     name=f"contact {p} {k}",
                     geomname1=f"end {p} {k}",
@@ -199,9 +221,15 @@ class MujocoWall:
         self._data.qfrc_applied[:] = (self._dead + multiplier * self._live).ravel()
 
     def advance(self, steps: int) -> None:
-        """Make time steps."""
+        """Make time steps.
+
+        Raises:
+            SolverFailed: the blocks were thrown apart.
+        """
         self._mujoco.mj_step(self._model, self._data, nstep=steps)
         self.steps += steps
+        if not float(np.abs(self._data.qvel).max(initial=0.0)) * self._drag < EXPLODED:
+            raise SolverFailed("MuJoCo's contact solver did not converge: blocks were thrown apart")
 
     def velocity(self) -> FloatArray:
         """(n, 3) velocities as out-of-balance accelerations, see `Engine.velocity`.
