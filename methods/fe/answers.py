@@ -17,6 +17,8 @@ from methods.fe.wall_model import WallModel
 
 PATH_POINTS = 300
 """Points of the path that an answer keeps at most."""
+WIDE = 0.025
+"""Spread of the histories above which the sentence of an answer speaks of it."""
 
 
 def gravity_failure(model: WallModel, gravity: Equilibrium) -> Answer:
@@ -129,10 +131,21 @@ def collapse_answer(model: WallModel, results: list[HistoryResult], factorisatio
         "residuals": best.state.residuals,
         "work_multiplier": best.state.work_multiplier,
     }
+    sentence = (
+        f"the wall collapses at {best.state.multiplier:.6g} times the live load (plateau; peak {best.record.peak:.6g})"
+    )
+    if spread > WIDE:
+        sentence += (
+            f"; friction histories that nobody can know differ by {100.0 * spread:.1f} %, "
+            f"from {min(plateaus):.6g} to {max(plateaus):.6g}"
+        )
+    lost = len(results) - len(reached)
+    if lost:
+        sentence += f"; {lost} of {len(results)} histories reached no plateau"
     return Answer(
         Status.OK,
         Finding.COLLAPSES,
-        f"the wall collapses at {best.state.multiplier:.6g} times the live load (plateau; peak {best.record.peak:.6g})",
+        sentence,
         multiplier=best.state.multiplier,
         forces=best.state.forces,
         mechanism=best.state.mechanism,

@@ -11,7 +11,7 @@ import numpy as np
 from harness.model.assembly import FloatArray, IntArray
 from methods.fe.continuation import Tracer
 from methods.fe.factor import Factor, SingularTangent
-from methods.fe.gap_law import OPEN, SLIP_MINUS, SLIP_PLUS, STICK, classify, flip_vectors, gap_forces
+from methods.fe.gap_law import OPEN, SLIP_MINUS, SLIP_PLUS, STICK, classify, gap_forces
 from methods.fe.wall_model import WallModel, point_strains
 
 MANY = 24
@@ -104,12 +104,7 @@ def _way(old: int, new: int) -> tuple[int, ...]:
 
 def _change(model: WallModel, factor: Factor, point: int, old: int, new: int) -> bool:
     """One rank-one update; False when it would cost digits."""
-    k, x = model.interface[point], model.position[point]
-    rows = model.rows[k]
-    a, b = np.empty(6), np.empty(6)
-    row_n = (1.0 - x) * rows[0] + x * rows[1]
-    flip_vectors(row_n, rows[2], model.kn[point], model.kt[point], model.mu[point], old, new, a, b)
-    index = model.unknown[k]
+    index, a, b = model.change(point, old, new)
     y = factor.solve_sparse(index, a)
     denominator = 1.0 + float(b @ y[index])
     if not 1.0 / SAFE < abs(denominator) < SAFE:

@@ -16,8 +16,8 @@ import numpy as np
 from harness.model.assembly import FloatArray, IntArray
 from methods.fe.exact_rates import exact_gap_rates
 from methods.fe.factor import Factor, SingularTangent
-from methods.fe.gap_law import OPEN, SLIP_PLUS, STICK, flip_vectors, gap_forces
-from methods.fe.kinks import advance, live_rate, next_kink
+from methods.fe.gap_law import OPEN, SLIP_PLUS, STICK, gap_forces
+from methods.fe.kinks import advance, live_rate, next_kink, strain_rates
 from methods.fe.newton import load_scale
 from methods.fe.path_record import PathEnd, PathRecord, Snapshot
 from methods.fe.tolerances import (
@@ -187,13 +187,8 @@ class Tracer:
 
     def is_mechanism(self) -> bool:
         """Whether no force changes along the present piece (rates as last measured)."""
-        closed, stick = self.state != OPEN, self.state == STICK
-        strain = max(np.abs(self.opening_rate).max(), np.abs(self.trial_rate / self.model.kt).max())
-        elastic = max(
-            np.abs(self.opening_rate[closed]).max(initial=0.0),
-            np.abs((self.trial_rate / self.model.kt)[stick]).max(initial=0.0),
-        )
-        return bool(elastic <= ELASTIC * strain)
+        strain, elastic = strain_rates(self.opening_rate, self.trial_rate, self.model.kt, self.state)
+        return elastic <= ELASTIC * strain
 
     def run(
         self, record: PathRecord, max_events: int, target: float = np.inf, turn: float = np.inf, note: int = 1
@@ -291,15 +286,8 @@ class Tracer:
 
     def _flip(self, point: int, new: int) -> None:
         """Change one state, and turn the direction onto the next piece."""
-        model = self.model
         old = int(self.state[point])
-        k = model.interface[point]
-        x = model.position[point]
-        rows = model.rows[k]
-        row_n = (1.0 - x) * rows[0] + x * rows[1]
-        a, b = np.empty(6), np.empty(6)
-        flip_vectors(row_n, rows[2], model.kn[point], model.kt[point], model.mu[point], old, new, a, b)
-        index = model.unknown[k]
+        index, a, b = self.model.change(point, old, new)
         crossing = float(b @ self.along()[index])
         self.state[point] = new
         self.n_open += (new == OPEN) - (old == OPEN)

@@ -136,3 +136,19 @@ def live_rate(load: FloatArray, u: FloatArray) -> float:
     for i in range(len(u)):
         total += load[i] * u[i]
     return total
+
+
+@compiled
+def strain_rates(
+    opening_rate: FloatArray, trial_rate: FloatArray, kt: FloatArray, state: IntArray
+) -> tuple[float, float]:
+    """The fastest rate of any gap, and the fastest of those that change a force elastically."""
+    fastest = elastic = 0.0
+    for p in range(len(state)):
+        opening, slip = abs(opening_rate[p]), abs(trial_rate[p] / kt[p])
+        fastest = max(fastest, opening, slip)
+        if state[p] != OPEN:
+            elastic = max(elastic, opening)
+        if state[p] == STICK:
+            elastic = max(elastic, slip)
+    return fastest, elastic

@@ -6,10 +6,15 @@ up the elimination tree, which leaves the backward pass as the cost of a solve.
 
 from __future__ import annotations
 
+from typing import cast
+
 from scipy.sparse.linalg import SuperLU
 
 from harness.model.assembly import FloatArray, IntArray
 from methods.fe.compiled import compiled
+
+Columns = tuple[IntArray, IntArray, FloatArray]
+"""Start of each column, rows and values of its entries."""
 
 
 class Triangles:
@@ -17,8 +22,8 @@ class Triangles:
 
     def __init__(self, lu: SuperLU) -> None:
         lower, upper = lu.L, lu.U
-        self.lower = lower.indptr, lower.indices, lower.data
-        self.upper = upper.indptr, upper.indices, upper.data
+        self.lower: Columns = cast(Columns, (lower.indptr, lower.indices, lower.data))
+        self.upper: Columns = cast(Columns, (upper.indptr, upper.indices, upper.data))
         self.rows, self.columns = lu.perm_r, lu.perm_c
 
     def solve(self, right: FloatArray, work: FloatArray, out: FloatArray) -> None:

@@ -17,7 +17,7 @@ from scipy.sparse.linalg import splu
 from harness.model.assembly import Assembly, FloatArray, IntArray
 from methods.fe.compiled import compiled
 from methods.fe.exact_rates import tangent_defect
-from methods.fe.gap_law import OPEN, classify, gap_forces, tangent_coefficients
+from methods.fe.gap_law import OPEN, classify, flip_vectors, gap_forces, tangent_coefficients
 from methods.fe.points import gap_points
 from methods.fe.settings import GapSettings
 
@@ -116,6 +116,15 @@ class WallModel:
         if shift:
             matrix.setdiag(matrix.diagonal() + shift * self.inertia)
         return matrix
+
+    def change(self, point: int, old: int, new: int) -> tuple[IntArray, FloatArray, FloatArray]:
+        """The rank-one change a b' of the tangent when a point changes its state: (unknowns, a, b), all (6,)."""
+        k, x = self.interface[point], self.position[point]
+        rows = self.rows[k]
+        a, b = np.empty(6), np.empty(6)
+        row_n = (1.0 - x) * rows[0] + x * rows[1]
+        flip_vectors(row_n, rows[2], self.kn[point], self.kt[point], self.mu[point], old, new, a, b)
+        return self.unknown[k], a, b
 
     def block_displacements(self, u: FloatArray) -> FloatArray:
         """(n, 3) displacements of all blocks [length, length, rad] from the dimensionless unknowns (N,)."""

@@ -9,7 +9,7 @@ from methods.fe.exact_rates import exact_gap_rates
 from methods.fe.factor import SparseFactor
 from methods.fe.gap_law import STICK, neighbour_states
 from methods.fe.histories import gravity_state, trace_history
-from methods.fe.kinks import live_rate
+from methods.fe.kinks import live_rate, strain_rates
 from methods.fe.patterns import block_on_halves
 from methods.fe.settings import GapSpringsSettings
 from methods.fe.wall_model import build_model
@@ -24,6 +24,7 @@ def load_kernels() -> None:
     rates = np.empty(model.n_points), np.empty(model.n_points)
     kinematics = model.unknown, model.rows, model.interface, model.position
     exact_gap_rates(*kinematics, model.kt, gravity.u, np.zeros(model.n_unknowns), *rates)
+    strain_rates(*rates, model.kt, gravity.state)
     live_rate(model.live, gravity.u)
     for new in neighbour_states(STICK):
         state = np.full(model.n_points, STICK)
