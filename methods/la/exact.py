@@ -18,6 +18,8 @@ RIGID = 1e40
 """Weight of a slack that may not change."""
 PENALTY = 1e13
 """Stiffness of contacts that may not move, against a unit stiffness of the velocities; near-singular sets need it."""
+DIVERGED = 1e100
+"""Velocities above this come from a matrix singular to rounding; their products would overflow."""
 
 
 def close_tight(problem: Problem, tight: BoolArray) -> BoolArray:
@@ -81,6 +83,8 @@ def exact_forces(
             velocity = factor.solve(residual)
             change = -float(problem.live @ velocity) / stiffness if stiffness > 0.0 else 0.0
             velocity = velocity + change * by_live
+            if not float(abs(velocity).max(initial=0.0)) < DIVERGED:
+                break
             shift = -compliance.forces(problem.strains(velocity))
             current, multiplier = snap(problem, current + shift, tight), multiplier + change
         forces = current
@@ -105,15 +109,15 @@ def exact_mechanism(
     factor = newton.factorise(stiff * PENALTY, 0.0, 0.0, shift=1.0)
     least = np.inf
     for _ in range(30):
+        if not float(abs(velocities).max(initial=0.0)) < DIVERGED:
+            raise RuntimeError("the kinematic matrix is singular to rounding")
         strain = np.einsum("pij,pj->pi", stiff, problem.strains(velocities))
         size = float(abs(strain).max(initial=0.0))
         if size > 0.5 * least and size < 1e-14 * float(abs(velocities).max(initial=0.0)):
             break
-        if not np.isfinite(size):
-            raise RuntimeError("the kinematic matrix is singular to rounding")
         least = min(least, size)
         velocities = velocities - factor.solve(PENALTY * np.asarray(problem.statics @ strain.ravel()))
-    if not np.all(np.isfinite(velocities)):
+    if not float(abs(velocities).max(initial=0.0)) < DIVERGED:
         raise RuntimeError("the kinematic matrix is singular to rounding")
     work = float(problem.live @ velocities)
     if work <= 1e-6 * problem.live_work:

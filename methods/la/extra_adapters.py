@@ -165,7 +165,14 @@ class FromFiniteElements:
         if first is None or warm_end is None:
             return not_converged("No collapse state lies near the finite-element forces.")
         unit = problem.unit_multiplier
-        state = polished(problem, newton, warm_end)
+        plateau = given.multiplier * (1.0 + 1e-9)
+        ends = [end for end in (warm_end, cold_end) if end is not None and end.multiplier * unit <= plateau]
+        if not ends:
+            return not_converged(
+                f"The descent from the finite-element state ends at {warm_end.multiplier * unit:.7g}, above the "
+                f"plateau {given.multiplier:.7g} it started from."
+            )
+        state = polished(problem, newton, ends[0])
         details: dict[str, Any] = {
             "fe_multiplier": given.multiplier,
             "projected": projected,

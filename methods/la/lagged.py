@@ -22,8 +22,8 @@ from methods.la.problem import Problem
 
 LEAST_BOUND = 1e-4
 """Least friction bound, in mean block weights, where a joint carries nothing."""
-FOLLOW = 0.3
-"""Part of the way to mu N that a bound moves in a step."""
+SHORTEST = 1e-4
+"""Length of a step below which the path is stuck."""
 FALL = 0.8
 """Factor on y o g in a step that is not blocked."""
 START_GAP = 1e-2
@@ -40,8 +40,14 @@ def with_bounds(problem: Problem, bound: FloatArray) -> Problem:
     return replace(problem, friction=np.zeros(len(bound)), cohesion=cohesion)
 
 
-def lagged_mechanism(problem: Problem, newton: NewtonMatrix, steps: int) -> tuple[PathResult, int]:
-    """The exact mechanism of the programme with the bounds reached after `steps`, and the Newton steps in all.
+def lagged_mechanism(problem: Problem, newton: NewtonMatrix, steps: int, follow: float) -> tuple[PathResult, int]:
+    """The exact mechanism of the programme with the bounds reached, and the Newton steps in all.
+
+    Args:
+        problem: the scaled wall.
+        newton: its Newton matrix.
+        steps: Newton steps with lagged bounds at most.
+        follow: part of the way to mu N that a bound moves in a step.
 
     Raises:
         RuntimeError: a Newton matrix is singular to rounding.
@@ -60,9 +66,11 @@ def lagged_mechanism(problem: Problem, newton: NewtonMatrix, steps: int) -> tupl
         except (RuntimeError, FloatingPointError):
             break
         taken += 1
-        wanted = bound + FOLLOW * (_strength(problem, point) - bound)
+        wanted = bound + follow * (_strength(problem, point) - bound)
         point, length = _step(step, point, wanted - bound, mean)
         bound = 0.5 * point.slack[:, 2:].sum(axis=1)
+        if length < SHORTEST:
+            break
         if length > 0.3:
             mean = max(FALL * mean, least)
     held = with_bounds(problem, bound)

@@ -23,8 +23,8 @@ from methods.la.state import CollapseState, residuals
 LINEAR = PathSettings(dilatancy=1.0, gap=1e-13, residual=1e-3, max_iterations=150, patience=8)
 EXACT_ENOUGH = 1e-10
 """Largest residual of a state that is kept."""
-LAGGED_STEPS = (80, 160)
-"""Newton steps with lagged bounds, tried in order."""
+ATTEMPTS = ((80, 0.3), (120, 0.15), (100, 0.6))
+"""Newton steps with lagged bounds and how fast the bounds follow, tried in order."""
 MOST_INTERFACES = 10000
 """Interfaces above which one attempt must do."""
 
@@ -118,21 +118,33 @@ def _at_rest_elsewhere(problem: Problem, newton: NewtonMatrix, state: CollapseSt
         return state
 
 
+def lagged_state(
+    problem: Problem, newton: NewtonMatrix, attempts: tuple[tuple[int, float], ...] = ATTEMPTS
+) -> tuple[CollapseState | None, int, float]:
+    """The exact state at the end of a path with lagged friction bounds, the Newton steps spent, the gap at the end."""
+    steps, gap = 0, float("inf")
+    state: CollapseState | None = None
+    for count, follow in attempts if problem.n_interfaces <= MOST_INTERFACES else ((60, 0.3),):
+        try:
+            path, spent = lagged_mechanism(problem, newton, count, follow)
+        except RuntimeError:
+            continue
+        state, more = mechanism_states(problem, newton, path, (0.0, 1e-9))
+        steps, gap = steps + spent + more, path.gap
+        if state is not None:
+            break
+    return state, steps, gap
+
+
 def large_search(problem: Problem, newton: NewtonMatrix, seed: int) -> tuple[list[CollapseState], int, float]:
     """Exact collapse states of a large wall, the Newton steps spent, the gap of the path that led there.
 
     First the path with lagged friction bounds and its mechanism; where no forces fit that, the end of Newton's path
     for zero-dilatancy flow and the mechanism of least work on its slacks.
     """
-    steps = 0
-    for count in LAGGED_STEPS:
-        path, spent = lagged_mechanism(problem, newton, count)
-        state, more = mechanism_states(problem, newton, path, (0.0, 1e-9, 1e-8))
-        steps += spent + more
-        if state is not None:
-            return [state], steps, path.gap
-        if problem.n_interfaces > MOST_INTERFACES:
-            return [], steps, path.gap
+    state, steps, gap = lagged_state(problem, newton)
+    if state is not None or problem.n_interfaces > MOST_INTERFACES:
+        return [] if state is None else [state], steps, gap
     path = follow_path(problem, newton, start_point(problem), PathSettings(gap=1e-8, residual=1e-3, max_iterations=150))
     mechanism = cheapest_mechanism(problem, newton, path.point.slack, np.random.default_rng(seed))
     state, spent = mechanism_states(problem, newton, mechanism, (0.0, 1e-9))

@@ -11,7 +11,7 @@ from harness.model.method import Answer
 from methods.la.answers import collapse_answer, not_converged, unbounded_answer
 from methods.la.associated import AssociatedResult, solve_associated
 from methods.la.continuation import POOL, climb, descend_from
-from methods.la.large import large_search
+from methods.la.large import lagged_state, large_search
 from methods.la.newton_matrix import NewtonMatrix
 from methods.la.problem import Problem
 from methods.la.rational import confirm
@@ -46,7 +46,7 @@ def plan_of(settings: SearchSettings, n_free: int) -> Plan:
         "deep": Plan(20, 40, FINE_LADDER, 8),
     }[settings.effort]
     if settings.effort == "normal" and n_free > 60:
-        plan = Plan(1, 40, (), 1)
+        plan = Plan(1 if n_free <= 150 else 0, 40, (), 1)
     return Plan(
         plan.starts if settings.starts is None else settings.starts,
         plan.failures if settings.failures is None else settings.failures,
@@ -93,8 +93,8 @@ def _large(
         details["associated"] = associated.state.multiplier * problem.unit_multiplier
     if not states:
         return not_converged(
-            f"The path of zero-dilatancy flow stalled at a relative gap of {gap:.2g}, and no forces fit the mechanism "
-            "nearest to its end.",
+            "No contact forces fit the mechanism at the end of the path with lagged friction bounds, "
+            "so no collapse state is known.",
             steps,
             details,
         )
@@ -111,6 +111,10 @@ def _starting_states(search: Search, associated: AssociatedResult, starts: int) 
     few = search.problem.n_interfaces <= FEW_INTERFACES
     if associated.state is not None and (few or states[0] is None):
         states.append(search.nearest_mechanism(associated.state.forces))
+    if not few or not any(states):
+        state, steps, _ = lagged_state(search.problem, search.newton, ((100, 0.6),))
+        search.newton_steps += steps
+        states.append(state)
     states += [search.interior(spread=2.0) for _ in range(starts)]
     return [state for state in states if state is not None]
 
