@@ -28,6 +28,11 @@ from methods.fe.warm_up import load_kernels
 
 load_kernels()
 
+LOST_ABOVE = (500, 4)
+"""Once a history reached its plateau, the next are given up above this number of events and multiple of its own."""
+THREE_UP_TO = 1200
+"""Blocks up to which three histories are run by default."""
+
 
 class GapSprings:
     """Gap-spring finite elements with the path traced exactly, kink by kink (`fe`)."""
@@ -67,6 +72,7 @@ class GapSprings:
                 break
             if result.state is not None:
                 scale = abs(result.state.multiplier) or 1.0
+                limit = min(limit, LOST_ABOVE[0] + LOST_ABOVE[1] * result.record.events)
         return collapse_answer(model, results, factor.factorisations)
 
 
@@ -74,7 +80,7 @@ def chosen_histories(model: WallModel, settings: GapSpringsSettings) -> tuple[fl
     """The commit intervals to run: as set, or by the size of the wall."""
     if settings.histories is not None:
         return settings.histories
-    return (0.0, 0.01, 0.002) if model.assembly.n_free <= 1200 else (0.0,)
+    return (0.0, 0.01, 0.002) if model.assembly.n_free <= THREE_UP_TO else (0.0,)
 
 
 class IncrementalNewton:

@@ -126,7 +126,7 @@ def collapse_answer(model: WallModel, results: list[HistoryResult], factorisatio
         "first_limit": best.record.first_limit if best.record.first_limit is not None else best.record.peak,
         "peak": best.record.peak,
         "plateau": best.state.multiplier,
-        "spread": spread,
+        "spread": spread if len(reached) > 1 else None,
         "moving_blocks": moving_blocks(model, best.state.mechanism),
         "residuals": best.state.residuals,
         "work_multiplier": best.state.work_multiplier,
@@ -139,6 +139,8 @@ def collapse_answer(model: WallModel, results: list[HistoryResult], factorisatio
             f"; friction histories that nobody can know differ by {100.0 * spread:.1f} %, "
             f"from {min(plateaus):.6g} to {max(plateaus):.6g}"
         )
+    if len(results) == 1:
+        sentence += "; one friction history, so the spread over histories was not measured"
     lost = len(results) - len(reached)
     if lost:
         sentence += f"; {lost} of {len(results)} histories reached no plateau"
