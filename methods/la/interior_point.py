@@ -133,7 +133,7 @@ def follow_path(
                 best_at = iteration
             best = PathResult(point, merit <= 1.0, iteration, gap, statics, kinematics, history)
             best_merit = merit
-        if merit <= 1.0 or iteration - best_at > settings.patience or not np.isfinite(merit):
+        if not product.any() or merit <= 1.0 or iteration - best_at > settings.patience or not np.isfinite(merit):
             break
         point = _centred_step(step, point, product, pairs, tight, dilatancy)
     if best is None:

@@ -1,0 +1,76 @@
+"""Limit analysis on walls of other kinds than brickwork: arches, openings, cut joints, and starts from FE."""
+
+from __future__ import annotations
+
+import warnings
+from pathlib import Path
+
+import pytest
+
+from harness.model.assembly import Assembly
+from harness.model.case import read_case
+from harness.model.method import Finding, Status
+from methods.la.adapter import AssociatedLimitAnalysis, FromFiniteElements, LimitAnalysis
+from methods.la.settings import AssociatedSettings, FromFeSettings, SearchSettings
+from tests.la.bodies import column, running_bond
+
+CASES = Path(__file__).parents[2] / "cases"
+
+
+def wall_of(case: str) -> Assembly:
+    return read_case(CASES / case).assembly
+
+
+@pytest.mark.parametrize("case", ["borri-arch-13", "opening-lintel", "column-point-push", "irregular-wall"])
+def test_least_state_known_is_exact_and_never_above_the_greatest_multiplier(case: str) -> None:
+    wall = wall_of(case)
+    answer = LimitAnalysis().solve(wall, SearchSettings(effort="quick"))
+    greatest = AssociatedLimitAnalysis().solve(wall, AssociatedSettings()).multiplier
+    assert answer.finding is Finding.COLLAPSES
+    assert answer.multiplier is not None
+    assert greatest is not None
+    assert answer.multiplier <= greatest * (1.0 + 1e-9)
+    assert max(answer.details["residuals"].values()) <= 1e-11
+    assert "not proved to be the least" in answer.sentence
+
+
+def test_joints_cut_into_several_interfaces_give_the_multiplier_of_whole_joints() -> None:
+    # Contact at both ends of a joint decides rocking and sliding, so cuts between add no strength and take none.
+    sizes = ([0.3, 0.4, 0.3], [0.2, 0.2, 0.2])
+    whole, cut = (
+        LimitAnalysis().solve(column(*sizes, 0.45, halves), SearchSettings(effort="quick")) for halves in (1, 3)
+    )
+    assert cut.multiplier == pytest.approx(whole.multiplier, rel=1e-9)
+
+
+@pytest.mark.parametrize("case", ["ferris-tin-loi-4-inset", "ferris-tin-loi-2-inset", "running-bond-overturns"])
+def test_start_from_finite_elements_never_answers_above_their_plateau(case: str) -> None:
+    answer = FromFiniteElements().solve(wall_of(case), FromFeSettings())
+    assert answer.status is Status.OK
+    assert answer.multiplier is not None
+    assert answer.multiplier <= answer.details["fe_multiplier"] * (1.0 + 1e-9)
+
+
+def test_wall_on_which_newtons_path_finds_nothing_is_solved_with_lagged_friction_bounds() -> None:
+    with warnings.catch_warnings():
+        warnings.simplefilter("error", RuntimeWarning)
+        answer = LimitAnalysis().solve(wall_of("ferris-tin-loi-2-inset"), SearchSettings())
+    assert answer.multiplier is not None
+    # The finite elements reach the same state by their own way.
+    assert answer.multiplier <= 0.5244053414388556 + 1e-9
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(
+    ("courses", "bricks", "greatest", "known"),
+    # Known: the figures of the prototypes, within 5e-5 for the first.
+    [(20, 11, 0.503216, 0.48445), (28, 16, 0.474130, 0.4622), (40, 30, 0.452420, 0.4463)],
+)
+def test_walls_of_hundreds_of_blocks_reach_the_values_of_the_prototypes(
+    courses: int, bricks: int, greatest: float, known: float
+) -> None:
+    answer = LimitAnalysis().solve(running_bond(courses, bricks, 0.175, 0.65), SearchSettings())
+    assert answer.multiplier is not None
+    assert answer.multiplier <= known
+    assert answer.details["associated"] == pytest.approx(greatest, abs=2e-6)
+    assert max(answer.details["residuals"].values()) <= 1e-11
