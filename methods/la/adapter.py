@@ -6,12 +6,13 @@ from typing import Any, ClassVar
 
 from harness.model.assembly import Assembly
 from harness.model.method import Answer, Settings
-from methods.la.answers import collapse_answer, dead_load_answer, not_converged, unbounded_answer
+from methods.la.answers import collapse_answer, not_converged, unbounded_answer
 from methods.la.associated import AssociatedResult, solve_associated, solve_with_cvxpy, with_mechanism
 from methods.la.extra_adapters import FromFiniteElements, PaperProgramme, TrescaSequence
+from methods.la.family import LimitAnalysisFamily
 from methods.la.least import least_known
 from methods.la.newton_matrix import NewtonMatrix
-from methods.la.problem import Problem, make_problem
+from methods.la.problem import Problem
 from methods.la.settings import AssociatedSettings, CvxpySettings, SearchSettings
 
 __all__ = [
@@ -24,62 +25,46 @@ __all__ = [
 ]
 
 
-class AssociatedLimitAnalysis:
+class AssociatedLimitAnalysis(LimitAnalysisFamily):
     """Greatest multiplier of statics, the linear programme of associated limit analysis (`la-associated`)."""
 
     name: ClassVar[str] = "la-associated"
-    family: ClassVar[str] = "la"
     title: ClassVar[str] = "LA, associated (greatest)"
     tolerance: ClassVar[float] = 1e-9
     Settings: ClassVar[type[Settings]] = AssociatedSettings
 
-    def solve(self, assembly: Assembly, settings: Any) -> Answer:
+    def answer(self, assembly: Assembly, problem: Problem, newton: NewtonMatrix, settings: Any) -> Answer:
         """The linear programme on HiGHS or on the own interior point."""
-        problem = make_problem(assembly)
-        newton = NewtonMatrix(problem)
-        early = dead_load_answer(problem, newton, assembly.has_live_load)
-        if early is not None:
-            return early
         return associated_answer(problem, solve_associated(problem, newton, settings.solver), 1e-9)
 
 
-class AssociatedLimitAnalysisCvxpy:
+class AssociatedLimitAnalysisCvxpy(LimitAnalysisFamily):
     """The same linear programme written in cvxpy, to be read beside the formulas (`la-associated-cvxpy`)."""
 
     name: ClassVar[str] = "la-associated-cvxpy"
-    family: ClassVar[str] = "la"
     title: ClassVar[str] = "LA, associated (cvxpy)"
     tolerance: ClassVar[float] = 1e-9
     Settings: ClassVar[type[Settings]] = CvxpySettings
 
-    def solve(self, assembly: Assembly, settings: Any) -> Answer:
+    def answer(self, assembly: Assembly, problem: Problem, newton: NewtonMatrix, settings: Any) -> Answer:
         """The linear programme through cvxpy; its mechanism is found as for `la-associated`."""
-        problem = make_problem(assembly)
-        newton = NewtonMatrix(problem)
-        early = dead_load_answer(problem, newton, assembly.has_live_load)
-        if early is not None:
-            return early
         outcome, forces, multiplier = solve_with_cvxpy(problem, settings.solver)
         if forces is None:
             return associated_answer(problem, AssociatedResult(outcome), 1e-9)
         return associated_answer(problem, with_mechanism(problem, newton, forces, multiplier, 0), 1e-9)
 
 
-class LimitAnalysis:
+class LimitAnalysis(LimitAnalysisFamily):
     """Least collapse state known, under zero dilatancy (`la`): the method to use."""
 
     name: ClassVar[str] = "la"
-    family: ClassVar[str] = "la"
     title: ClassVar[str] = "LA, least known"
     tolerance: ClassVar[float] = 1e-10
     Settings: ClassVar[type[Settings]] = SearchSettings
 
-    def solve(self, assembly: Assembly, settings: Any) -> Answer:
+    def answer(self, assembly: Assembly, problem: Problem, newton: NewtonMatrix, settings: Any) -> Answer:
         """Interior point, exact programme, ray descent, restarts and continuation, as the settings say."""
-        problem = make_problem(assembly)
-        newton = NewtonMatrix(problem)
-        early = dead_load_answer(problem, newton, assembly.has_live_load)
-        return early if early is not None else least_known(problem, newton, settings, self.tolerance)
+        return least_known(problem, newton, settings, self.tolerance)
 
 
 def associated_answer(problem: Problem, result: AssociatedResult, tolerance: float) -> Answer:

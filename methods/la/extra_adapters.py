@@ -8,12 +8,13 @@ import numpy as np
 
 from harness.model.assembly import Assembly
 from harness.model.method import Answer, Finding, Settings, Status, load_method
-from methods.la.answers import collapse_answer, dead_load_answer, not_converged
+from methods.la.answers import collapse_answer, not_converged
 from methods.la.associated import solve_associated
 from methods.la.cooperation import project_forces
+from methods.la.family import LimitAnalysisFamily
 from methods.la.newton_matrix import NewtonMatrix
 from methods.la.paper_programme import PaperResult, solve_paper_programme
-from methods.la.problem import Problem, make_problem
+from methods.la.problem import Problem
 from methods.la.search import Effort, Search
 from methods.la.settings import FromFeSettings, PaperSettings, TrescaSettings
 from methods.la.state import CollapseState, moving_contacts, polished, tight_contacts
@@ -28,22 +29,16 @@ def finite_element_answer(assembly: Assembly, name: str) -> Answer | None:
     return answer if usable else None
 
 
-class PaperProgramme:
+class PaperProgramme(LimitAnalysisFamily):
     """The paper's own programme (8)-(11) in reduced unknowns, by Ipopt (`la-paper`)."""
 
     name: ClassVar[str] = "la-paper"
-    family: ClassVar[str] = "la"
     title: ClassVar[str] = "LA, programme of 1995"
     tolerance: ClassVar[float] = 1e-9
     Settings: ClassVar[type[Settings]] = PaperSettings
 
-    def solve(self, assembly: Assembly, settings: Any) -> Answer:
+    def answer(self, assembly: Assembly, problem: Problem, newton: NewtonMatrix, settings: Any) -> Answer:
         """A local solution of the programme, made exact on the mechanism it ends at."""
-        problem = make_problem(assembly)
-        newton = NewtonMatrix(problem)
-        early = dead_load_answer(problem, newton, assembly.has_live_load)
-        if early is not None:
-            return early
         if assembly.n_free > settings.max_blocks:
             return Answer(
                 Status.REFUSED,
@@ -53,10 +48,10 @@ class PaperProgramme:
             )
         start = None
         if settings.start == "fe":
-            answer = finite_element_answer(assembly, "fe")
-            if answer is None or answer.forces is None:
+            given = finite_element_answer(assembly, "fe")
+            if given is None or given.forces is None:
                 return not_converged("The finite-element run gave no collapse state to start from.")
-            start = answer.forces / problem.unit_force
+            start = given.forces / problem.unit_force
         try:
             result = solve_paper_programme(problem, start, settings.max_iterations, settings.epsilons)
         except (ValueError, RuntimeError) as error:
@@ -90,22 +85,16 @@ def paper_answer(problem: Problem, newton: NewtonMatrix, result: PaperResult, st
     )
 
 
-class TrescaSequence:
+class TrescaSequence(LimitAnalysisFamily):
     """Sequence of programmes with the friction bound of the previous iterate: a baseline (`la-tresca`)."""
 
     name: ClassVar[str] = "la-tresca"
-    family: ClassVar[str] = "la"
     title: ClassVar[str] = "LA, friction-bound sequence"
     tolerance: ClassVar[float] = 1e-8
     Settings: ClassVar[type[Settings]] = TrescaSettings
 
-    def solve(self, assembly: Assembly, settings: Any) -> Answer:
+    def answer(self, assembly: Assembly, problem: Problem, newton: NewtonMatrix, settings: Any) -> Answer:
         """The sequence from the associated solution; its fixed point is a collapse state, not the least one."""
-        problem = make_problem(assembly)
-        newton = NewtonMatrix(problem)
-        early = dead_load_answer(problem, newton, assembly.has_live_load)
-        if early is not None:
-            return early
         associated = solve_associated(problem, newton)
         if associated.state is None:
             return not_converged(f"The associated programme that starts the sequence ended as {associated.outcome}.")
@@ -133,22 +122,16 @@ class TrescaSequence:
         )
 
 
-class FromFiniteElements:
+class FromFiniteElements(LimitAnalysisFamily):
     """Ray descent from the finite-element collapse state, against a cold start (`la-from-fe`)."""
 
     name: ClassVar[str] = "la-from-fe"
-    family: ClassVar[str] = "la"
     title: ClassVar[str] = "LA started from FE"
     tolerance: ClassVar[float] = 1e-10
     Settings: ClassVar[type[Settings]] = FromFeSettings
 
-    def solve(self, assembly: Assembly, settings: Any) -> Answer:
+    def answer(self, assembly: Assembly, problem: Problem, newton: NewtonMatrix, settings: Any) -> Answer:
         """FE forces projected onto equilibrium and yield, nearest mechanism, descent; and the same from cold."""
-        problem = make_problem(assembly)
-        newton = NewtonMatrix(problem)
-        early = dead_load_answer(problem, newton, assembly.has_live_load)
-        if early is not None:
-            return early
         given = finite_element_answer(assembly, settings.fe_method)
         if given is None or given.forces is None or given.multiplier is None:
             return not_converged("The finite-element run gave no collapse state to start from.")

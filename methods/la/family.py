@@ -1,0 +1,29 @@
+"""What every method of limit analysis does first: scale the wall, and answer at once where the dead load decides."""
+
+from __future__ import annotations
+
+from abc import ABC, abstractmethod
+from typing import Any, ClassVar
+
+from harness.model.assembly import Assembly
+from harness.model.method import Answer
+from methods.la.answers import dead_load_answer
+from methods.la.newton_matrix import NewtonMatrix
+from methods.la.problem import Problem, make_problem
+
+
+class LimitAnalysisFamily(ABC):
+    """Base of the adapters: a wall that falls under its dead load, or has no live load, is answered here."""
+
+    family: ClassVar[str] = "la"
+
+    def solve(self, assembly: Assembly, settings: Any) -> Answer:
+        """The answer of the dead load where it decides, else that of `answer`."""
+        problem = make_problem(assembly)
+        newton = NewtonMatrix(problem)
+        early = dead_load_answer(problem, newton, assembly.has_live_load)
+        return early if early is not None else self.answer(assembly, problem, newton, settings)
+
+    @abstractmethod
+    def answer(self, assembly: Assembly, problem: Problem, newton: NewtonMatrix, settings: Any) -> Answer:
+        """The answer for a wall that stands under its dead load and carries a live load."""
