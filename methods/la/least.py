@@ -10,7 +10,7 @@ import numpy as np
 from harness.model.method import Answer
 from methods.la.answers import collapse_answer, not_converged, unbounded_answer
 from methods.la.associated import AssociatedResult, solve_associated
-from methods.la.continuation import POOL, climb, descend_from
+from methods.la.continuation import POOL, climb, descend_from, smooth_joints_search
 from methods.la.large import lagged_state, large_search
 from methods.la.newton_matrix import NewtonMatrix
 from methods.la.problem import Problem
@@ -35,6 +35,8 @@ SIMPLEX_SEARCH = 1000
 FEW_INTERFACES = 400
 """Interfaces up to which the associated solution is one more start; on larger walls it led to high states only."""
 LADDER = (0.55, 0.65, 0.75, 0.85, 0.925)
+SMOOTH = (0.3, 0.0)
+"""Factors on the friction of the joints that the dead load leaves unloaded, each one more start."""
 FINE_LADDER = (1.3, 1.15, 1.0, 0.9, 0.8, 0.7, 0.6, 0.5, 0.55, 0.6, 0.65, 0.7, 0.75, 0.8, 0.85, 0.9, 0.95)
 
 
@@ -70,9 +72,14 @@ def least_known(problem: Problem, newton: NewtonMatrix, settings: SearchSettings
     plan = plan_of(settings, problem.n_velocities // 3)
     effort = Effort(failures=plan.failures)
     below = climb(problem, newton, settings.seed, plan.ladder, effort, plan.descents) if plan.ladder else None
-    search = Search(problem, newton, settings.seed, below)
+    rungs = [below] if below is not None else []
+    for factor in SMOOTH:
+        rung = smooth_joints_search(problem, newton, settings.seed, factor, rungs[-1] if rungs else None)
+        rungs += [rung] if rung is not None else []
+    search = Search(problem, newton, settings.seed, rungs[-1] if rungs else None)
+    carried = [state for rung in rungs for state in search.adopt(rung, POOL)]
+    climbed = descend_from(carried, search, effort, plan.descents)
     found = [search.descend(state, effort) for state in _starting_states(search, associated, plan.starts)]
-    climbed = descend_from(search.adopt(below, POOL), search, effort, plan.descents) if below is not None else []
     if not found and not climbed:
         return _nothing_found(search, associated)
     best = polished(problem, newton, min(found + climbed, key=lambda state: state.multiplier))
