@@ -24,8 +24,8 @@ from methods.la.state import CollapseState
 
 POOL = 24
 """Mechanisms carried from one rung to the next."""
-UNLOADED = 1e-2
-"""Share of the largest normal force below which a joint counts as unloaded."""
+UNLOADED = 0.05
+"""Share of the largest normal force on both its blocks below which a joint counts as unloaded."""
 
 
 def climb(
@@ -69,7 +69,7 @@ def descend_from(states: list[CollapseState], search: Search, effort: Effort, mo
 def smooth_joints_search(
     problem: Problem, newton: NewtonMatrix, seed: int, factor: float, parent: Search | None
 ) -> Search | None:
-    """The search of the wall whose unloaded joints have `factor` times their friction; None if all joints are loaded."""
+    """The search of the wall whose unloaded joints have `factor` times their friction; None if all are loaded."""
     unloaded = unloaded_joints(problem)
     if not unloaded.any():
         return None
@@ -80,9 +80,17 @@ def smooth_joints_search(
 
 
 def unloaded_joints(problem: Problem) -> BoolArray:
-    """Interfaces (m,) that do not press under dead load, by the forces of least norm that balance it."""
+    """Interfaces (m,) that hardly press under dead load, by the forces of least norm that balance it.
+
+    What counts is the largest normal force on either block, so that the light beds of a top course are not among them.
+    """
     matrix = sparse.csc_matrix(problem.statics)
     stiffness = (matrix @ matrix.T + 1e-12 * sparse.eye(matrix.shape[0])).tocsc()
-    forces = -matrix.T @ linalg.spsolve(stiffness, problem.dead.ravel())
+    forces = -matrix.T @ linalg.spsolve(stiffness, problem.dead)
     normal = forces.reshape(-1, 3)[:, :2].sum(axis=1)
-    return np.asarray(normal < UNLOADED * np.abs(normal).max(initial=0.0))
+    assembly = problem.assembly
+    largest = np.zeros(assembly.n_blocks)
+    for blocks in (assembly.block_a, assembly.block_b):
+        np.maximum.at(largest, blocks, normal)
+    largest[assembly.fixed] = np.inf
+    return np.asarray(normal < UNLOADED * np.minimum(largest[assembly.block_a], largest[assembly.block_b]))
