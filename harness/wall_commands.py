@@ -117,14 +117,18 @@ def schema() -> None:
 @click.command()
 @click.argument("case")
 @click.option("-o", "--output", type=click.Path(path_type=Path), default=Path("wall.svg"), show_default=True)
+@click.option("--window", is_flag=True, help="Draw in a window instead of to a file.")
 @cases_option
 @catching
-def show(case: str, output: Path, folders: tuple[Path, ...]) -> None:
-    """Draw CASE (an id or a WALL.json) to a file (.svg, .pdf, .png), before anything is run."""
-    from reports.figures import show_wall
+def show(case: str, output: Path, window: bool, folders: tuple[Path, ...]) -> None:
+    """Draw CASE (an id or a WALL.json) to a file (.svg, .pdf, .png) or in a window, before anything is run."""
+    from reports.figures import show_wall, show_window
 
     (found,) = find_cases([case], None, folders)
     warn(found)
+    if window:
+        show_window(found.built, found.file.title)
+        return
     show_wall(found.built, output)
     click.echo(str(output))
 

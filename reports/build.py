@@ -10,13 +10,13 @@ from importlib.resources import files
 from pathlib import Path
 from typing import Any
 
-from jinja2 import Environment, PackageLoader, StrictUndefined
 from markupsafe import Markup
 
 from harness.model.comparison import CaseResults, ComparisonRun
 from reports import agreement, numbers, paper, shapes, tables, words
 from reports.curves import curves
 from reports.drawing import case_data, fields_drawn, force_unit, result_data, wall_svg
+from reports.environment import environment
 from reports.export import export
 from reports.limits import KNOWN_LIMITS
 from reports.sections import CaseSection, case_section
@@ -56,7 +56,7 @@ def render(run: ComparisonRun, *, data_folder: str) -> str:
     """
     rows = tables.run_rows(run)
     fields = fields_drawn(run, DRAWING_BUDGET)
-    template = _environment().get_template("report.html.j2")
+    template = environment().get_template("report.html.j2")
     return template.render(
         run=run,
         created=_date(run.created),
@@ -81,16 +81,6 @@ def render(run: ComparisonRun, *, data_folder: str) -> str:
         style=Markup(_static("report.css")),
         scripts=[Markup(_static(name)) for name in ("table.js", "draw.js")],
         numbers=numbers,
-    )
-
-
-def _environment() -> Environment:
-    return Environment(
-        loader=PackageLoader("reports"),
-        autoescape=True,
-        undefined=StrictUndefined,
-        trim_blocks=True,
-        lstrip_blocks=True,
     )
 
 

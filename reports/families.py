@@ -5,8 +5,8 @@ from __future__ import annotations
 import hashlib
 import itertools
 from collections import defaultdict
-from collections.abc import Callable
-from dataclasses import dataclass
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass, field
 
 import numpy as np
 from markupsafe import Markup
@@ -19,15 +19,25 @@ from reports import charts, numbers, shapes, words
 
 SMALLEST_FAMILY = 3
 
+Members = list[tuple[float, CaseResults]]
+"""Cases of one family, each with its value of the parameter."""
+
 
 @dataclass(frozen=True)
 class Study:
-    """A chart with the sentence that introduces it and how to read it."""
+    """Charts or a table with the sentence that introduces them and how to read them.
+
+    Attributes:
+        title, sentence, read: heading, what it says, how to read it.
+        charts: drawings side by side, each with its caption, which is empty for a single one.
+        table: a table in place of charts, or nothing.
+    """
 
     title: str
     sentence: str
     read: str
-    drawing: Markup
+    charts: list[tuple[str, Markup]] = field(default_factory=list)
+    table: Markup = field(default_factory=Markup)
 
 
 def solved(result: Result) -> bool:
@@ -67,24 +77,25 @@ def families(run: ComparisonRun) -> list[Study]:
     return [study for parameter in PARAMETERS for study in _families(run, sound, parameter)]
 
 
-def _families(run: ComparisonRun, items: list[CaseResults], parameter: Parameter) -> list[Study]:
-    groups: dict[str, list[tuple[float, CaseResults]]] = defaultdict(list)
+def _families(run: ComparisonRun, items: list[CaseResults], parameter: Parameter) -> Iterator[Study]:
+    """Families over one parameter; those of one kind of wall, which the other parameter tells apart, stand together."""
+    groups: dict[str, Members] = defaultdict(list)
     for item in items:
         value = parameter.value(item.case.assembly)
         if value is not None:
             groups[parameter.key(item.case.assembly)].append((value, item))
-    found = []
+    kinds: dict[str, list[Members]] = defaultdict(list)
     for members in groups.values():
-        if len({value for value, _ in members}) < SMALLEST_FAMILY:
-            continue
-        members.sort(key=lambda pair: pair[0])
-        series = _series(members, methods_of(run))
-        if series:
-            found.append(_study(members, series, parameter))
-    return found
+        if len({value for value, _ in members}) >= SMALLEST_FAMILY:
+            members.sort(key=lambda pair: pair[0])
+            kinds[same_but_both(members[0][1].case.assembly)].append(members)
+    for kin in kinds.values():
+        drawn = [(members, series) for members in kin if (series := _series(members, methods_of(run)))]
+        if drawn:
+            yield _study(drawn, parameter)
 
 
-def _series(members: list[tuple[float, CaseResults]], methods: list[str]) -> list[charts.Series]:
+def _series(members: Members, methods: list[str]) -> list[charts.Series]:
     series = []
     for method in methods:
         points = [
@@ -108,20 +119,26 @@ def _series(members: list[tuple[float, CaseResults]], methods: list[str]) -> lis
     return series
 
 
-def _study(members: list[tuple[float, CaseResults]], series: list[charts.Series], parameter: Parameter) -> Study:
-    title = members[0][1].case.file.title
-    chart = charts.Chart(f"Multiplier against {parameter.name}, {title}", parameter.label, "multiplier", series)
+def _study(drawn: list[tuple[Members, list[charts.Series]]], parameter: Parameter) -> Study:
+    first = drawn[0][0]
+    found = []
+    for members, series in drawn:
+        title = members[0][1].case.file.title
+        chart = charts.Chart(f"Multiplier against {parameter.name}, {title}", parameter.label, "multiplier", series)
+        found.append((f"{title} and its kin. {_changes(members)}" if len(drawn) > 1 else "", charts.svg(chart)))
+    how_many = (
+        f"The same wall with {len({value for value, _ in first})} values of {parameter.name}, all methods in one plot"
+    )
     return Study(
-        f"Multiplier against {parameter.name}: {title} and its kin",
-        f"The same wall with {len({value for value, _ in members})} values of {parameter.name}, all methods in one "
-        f"plot. {_changes(members)}",
+        f"Multiplier against {parameter.name}: {first[0][1].case.file.title} and its kin",
+        f"{how_many}. {_changes(first)}" if len(drawn) == 1 else f"{how_many}; {len(drawn)} walls side by side.",
         "A bar is a bracket. Where a line bends, another mechanism takes over; where the lines part, the answer "
         "depends on the flow rule or on the path, and the least one known is the one to trust.",
-        charts.svg(chart),
+        found,
     )
 
 
-def _changes(members: list[tuple[float, CaseResults]]) -> str:
+def _changes(members: Members) -> str:
     """Between which values the set of slipping, rocking and open interfaces changes, of LA or else of FE."""
     seen: list[tuple[float, str]] = []
     for value, item in members:
@@ -143,7 +160,8 @@ def _digest(*arrays: np.ndarray) -> str:
     return digest.hexdigest()
 
 
-def _friction(assembly: Assembly) -> float | None:
+def friction_of(assembly: Assembly) -> float | None:
+    """The friction of all interfaces, if they have one."""
     values = {round(float(mu), 9) for mu in assembly.friction}
     return values.pop() if len(values) == 1 else None
 
@@ -152,7 +170,7 @@ def _same_but_friction(assembly: Assembly) -> str:
     return _digest(*assembly.polygons, assembly.end1, assembly.end2, assembly.dead, assembly.live)
 
 
-def _proportion(assembly: Assembly) -> float | None:
+def proportion_of(assembly: Assembly) -> float | None:
     """Width over height of the middle block, if the free blocks are upright rectangles."""
     ratios = []
     for block in assembly.free:
@@ -165,17 +183,25 @@ def _proportion(assembly: Assembly) -> float | None:
 
 
 def _same_but_proportion(assembly: Assembly) -> str:
-    """Polygons stretched to the unit square, who touches whom, and friction; loads as multiples of the weights."""
+    return _digest(*_stretched(assembly), assembly.friction)
+
+
+def same_but_both(assembly: Assembly) -> str:
+    """A key that is equal for walls which differ in friction and proportion alone."""
+    return _digest(*_stretched(assembly))
+
+
+def _stretched(assembly: Assembly) -> list[np.ndarray]:
+    """Polygons stretched to the unit square, who touches whom, and loads as multiples of the weights."""
     extent = shapes.extent(assembly)
     low, size = np.array([extent.left, extent.bottom]), np.array([extent.width, extent.height])
     polygons = [(polygon - low) / size for polygon in assembly.polygons]
     weight = np.where(assembly.weight > 0.0, assembly.weight, 1.0)[:, None]
     loads = [assembly.dead[:, :2] / weight, assembly.live[:, :2] / weight]
-    contacts = [np.asarray(assembly.block_a), np.asarray(assembly.block_b), assembly.friction]
-    return _digest(*polygons, *contacts, *loads)
+    return [*polygons, np.asarray(assembly.block_a), np.asarray(assembly.block_b), *loads]
 
 
 PARAMETERS = (
-    Parameter("friction", "friction tan φ", _friction, _same_but_friction),
-    Parameter("proportion", "width of a block over its height", _proportion, _same_but_proportion),
+    Parameter("friction", "friction tan φ", friction_of, _same_but_friction),
+    Parameter("proportion", "width of a block over its height", proportion_of, _same_but_proportion),
 )

@@ -26,6 +26,7 @@ from reports.drawing import LABELLED_BLOCKS, block_labels
 
 COLUMN, PAGE = 88 / 25.4, 180 / 25.4
 """Width of one and of two columns [inch]."""
+WINDOW_DPI = 220
 KINDS = ("mechanism", "forces", "thrust", "wall", "comparison")
 FORMATS = (".pdf", ".svg", ".png")
 INK, GREY, BLUE, RUST, PLUM = "#14202b", "#8a96a1", "#17508c", "#a63c06", "#6d2077"
@@ -86,15 +87,47 @@ def show_wall(built: Built, path: Path) -> None:
         InputError: another ending.
     """
     target = _checked(path)
-    assembly = built.assembly
     with style():
-        page, axes = blank(assembly, 1, 1)
-        draw_blocks(axes[0][0], assembly, list(assembly.polygons))
-        draw_joints(axes[0][0], assembly)
-        _labels(axes[0][0], assembly)
-        _loads(axes[0][0], assembly, shapes.extra_dead_load(assembly), RUST, "dead")
-        _loads(axes[0][0], assembly, assembly.live, BLUE, "live")
-        page.savefig(target, metadata=_metadata(path))
+        _wall(built.assembly).savefig(target, metadata=_metadata(path))
+
+
+def show_window(built: Built, title: str) -> None:
+    """Draw a wall in a window, where it can be zoomed, and wait until the user closes it.
+
+    Raises:
+        InputError: no window can be opened here.
+    """
+    with style(), mpl.rc_context({"figure.dpi": WINDOW_DPI}):
+        page = _wall(built.assembly)
+        try:
+            from tkinter import TclError
+
+            from matplotlib.backends.backend_tkagg import FigureCanvasTkAgg
+        except ImportError as error:
+            raise _no_window(error) from error
+        try:
+            manager: Any = FigureCanvasTkAgg.new_manager(page, 1)
+        except TclError as error:
+            raise _no_window(error) from error
+        manager.set_window_title(title)
+        manager.show()
+        manager.window.mainloop()
+
+
+def _no_window(error: Exception) -> InputError:
+    return InputError(
+        f"no window can be opened here ({error})", "Draw to a file instead: -o wall.svg", source="--window"
+    )
+
+
+def _wall(assembly: Assembly) -> Figure:
+    page, axes = blank(assembly, 1, 1)
+    draw_blocks(axes[0][0], assembly, list(assembly.polygons))
+    draw_joints(axes[0][0], assembly)
+    _labels(axes[0][0], assembly)
+    _loads(axes[0][0], assembly, shapes.extra_dead_load(assembly), RUST, "dead")
+    _loads(axes[0][0], assembly, assembly.live, BLUE, "live")
+    return page
 
 
 @contextmanager

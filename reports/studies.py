@@ -1,4 +1,4 @@
-"""Studies over all cases of a comparison: cost against size, a performance profile, walls that differ in one parameter.
+"""Studies over all cases of a comparison: cost against size, a performance profile, walls of one kind.
 
 A comparison may bring further studies in `provenance["studies"]`, a list of objects with `title`, `sentence`, `read`,
 `x_label`, `y_label`, `series` (each `name`, `x`, `y` and perhaps `low`, `high`) and perhaps `log_x`, `log_y`.
@@ -14,12 +14,13 @@ import numpy as np
 from harness.model.comparison import ComparisonRun
 from reports import charts, numbers
 from reports.families import Study, families, methods_of, solved
+from reports.grid import grids
 
 
 def studies(run: ComparisonRun) -> list[Study]:
     """All studies the results allow, then those the comparison brought."""
     found = [study for study in (cost_against_size(run), performance_profile(run)) if study is not None]
-    found = [*families(run), *found]
+    found = [*grids(run), *families(run), *found]
     given = run.provenance.get("studies", [])
     return found + [_given(item) for item in given if isinstance(item, dict)]
 
@@ -51,7 +52,7 @@ def cost_against_size(run: ComparisonRun) -> Study | None:
         "What a wall costs grows with its number of blocks, differently for every method." + fitted,
         "Both axes are logarithmic: a slope of 1 means that twice the blocks cost twice the time. Only runs that "
         "ended with an accepted answer are drawn; time to start the process is not counted.",
-        charts.svg(chart),
+        [("", charts.svg(chart))],
     )
 
 
@@ -116,7 +117,7 @@ def performance_profile(run: ComparisonRun) -> Study | None:
         "contradicts a reference is not solved, however fast it was; a case that nobody solved counts for nobody. "
         "A case that a method was not asked about is not solved by it. The associated maximum is left out: it "
         "answers an easier question.",
-        charts.svg(chart),
+        [("", charts.svg(chart))],
     )
 
 
@@ -141,4 +142,4 @@ def _given(item: dict[str, Any]) -> Study:
         log_x=bool(item.get("log_x", False)),
         log_y=bool(item.get("log_y", False)),
     )
-    return Study(title, str(item.get("sentence", "")), str(item.get("read", "")), charts.svg(chart))
+    return Study(title, str(item.get("sentence", "")), str(item.get("read", "")), [("", charts.svg(chart))])

@@ -80,3 +80,9 @@ def test_animation_shows_a_collapse_that_was_followed(tmp_path: Path):
     animate(case, result, tmp_path / "a.gif")
     with Image.open(tmp_path / "a.gif") as image:
         assert getattr(image, "n_frames", 1) == 5
+
+
+def test_without_a_display_the_window_is_refused_with_the_way_out(monkeypatch: pytest.MonkeyPatch):
+    monkeypatch.delenv("DISPLAY", raising=False)
+    with pytest.raises(InputError, match=r"no window.*-o wall\.svg"):
+        figures.show_window(CASE.built, "wall")

@@ -10,7 +10,7 @@ import pytest
 from harness.model.comparison import CaseResults, ComparisonRun
 from harness.model.method import Status
 from harness.model.result import Verdict
-from reports import agreement, charts, curves, drawing, families, numbers, paper, shapes, studies, tables
+from reports import agreement, charts, curves, drawing, families, grid, numbers, paper, shapes, studies, tables
 from tests.reports import samples
 
 
@@ -199,7 +199,7 @@ def test_given_study_is_drawn():
     given = {"title": "Imperfections", "sentence": "It falls.", "read": "Down.", "x_label": "eps", "series": [line]}
     (study,) = studies.studies(ComparisonRun("", "", "", [], {"studies": [given]}))
     assert study.title == "Imperfections"
-    assert str(study.drawing).count('class="bar') == 3
+    assert str(study.charts[0][1]).count('class="bar') == 3
 
 
 def test_ratios_need_no_method_that_is_missing():
@@ -247,3 +247,44 @@ def test_frames_of_another_wall_are_not_drawn():
     case = samples.bond()
     result = samples.solved(case, "de-tilt", 0.5, details={"release": {"frames": [[[0.0, 0.0, 0.0]]] * 3}})
     assert shapes.released(result, case.assembly.n_blocks) is None
+
+
+def grid_of(values: dict[tuple[float, float], tuple[float, float, float]]) -> families.Study:
+    """The grid study of walls (length of a brick, friction) with multipliers of FE, LA and DE."""
+    items = []
+    for (length, friction), found in values.items():
+        case = samples.bond(f"wall-{len(items)}", length=length, friction=friction)
+        items.append(
+            CaseResults(case, [samples.solved(case, name, value) for name, value in zip(grid.MAIN, found, strict=True)])
+        )
+    (study,) = grid.grids(ComparisonRun("", "", "", items))
+    return study
+
+
+def test_grid_names_who_stands_apart_and_how_far():
+    study = grid_of(
+        {
+            (0.4, 0.5): (0.5, 0.5, 0.501),
+            (0.4, 0.8): (0.56, 0.53, 0.5601),
+            (0.6, 0.5): (0.5, 0.5, 0.5),
+            (0.6, 0.8): (0.8, 0.8, 0.88),
+        }
+    )
+    assert "agree within 1 % on 2 of 4 walls" in study.sentence
+    assert "LA low 5 %" in study.table
+    assert "DE high 10 %" in study.table
+    assert "In 1 of the 2 where they part, LA is low" in study.sentence
+
+
+def test_grid_says_where_the_least_known_falls_as_friction_grows():
+    values = {(length, mu): (0.6, 0.6, 0.6) for length in (0.4, 0.6) for mu in (0.6, 0.8)}
+    values[0.4, 0.8] = (0.6, 0.55, 0.6)
+    assert "falls at" in grid_of(values).sentence
+    values[0.4, 0.8] = (0.6, 0.65, 0.6)
+    assert "falls at" not in grid_of(values).sentence
+
+
+def test_walls_of_one_proportion_make_no_grid():
+    cases = [samples.bond(f"wall-{k}", friction=friction) for k, friction in enumerate((0.4, 0.6, 0.8))]
+    items = [CaseResults(case, [samples.solved(case, name, 0.5) for name in grid.MAIN]) for case in cases]
+    assert grid.grids(ComparisonRun("", "", "", items)) == []
