@@ -16,8 +16,7 @@ import numpy as np
 import scipy.sparse as sparse
 import scipy.sparse.linalg as linalg
 
-from harness.model.assembly import BoolArray
-from methods.la.newton_matrix import NewtonMatrix
+from harness.model.assembly import BoolArray, FloatArray
 from methods.la.problem import Problem
 from methods.la.search import Effort, Search
 from methods.la.state import CollapseState
@@ -28,29 +27,24 @@ UNLOADED = 0.05
 """Share of the largest normal force on both its blocks below which a joint counts as unloaded."""
 
 
-def climb(
-    problem: Problem, newton: NewtonMatrix, seed: int, ladder: tuple[float, ...], effort: Effort, descents: int
-) -> Search:
-    """The search at the last rung of the ladder below the wall's own friction, with all it knows.
+def climb(search: Search, ladder: tuple[float, ...], effort: Effort, descents: int) -> Search | None:
+    """The search at the last rung of the ladder below the wall's own friction, with all it knows; None without rungs.
 
     Args:
-        problem: the scaled wall.
-        newton: its Newton matrix, which does not depend on friction.
-        seed: of the random draws.
+        search: of the wall itself.
         ladder: factors on all friction coefficients, in order.
         effort: of each ray descent.
         descents: lowest states a rung descends from.
     """
-    search: Search | None = None
+    below: Search | None = None
     for factor in ladder:
-        rung = Search(replace(problem, friction=problem.friction * factor), newton, seed, search)
+        rung = _with_friction(search, search.problem.friction * factor)
         states = [rung.interior()]
-        if search is not None:
-            states += rung.adopt(search, POOL)
+        if below is not None:
+            states += rung.adopt(below, POOL)
         descend_from([state for state in states if state is not None], rung, effort, descents)
-        search = rung
-    assert search is not None
-    return search
+        below = rung
+    return below
 
 
 def descend_from(states: list[CollapseState], search: Search, effort: Effort, most: int) -> list[CollapseState]:
@@ -66,17 +60,24 @@ def descend_from(states: list[CollapseState], search: Search, effort: Effort, mo
     return reached
 
 
-def smooth_joints_search(
-    problem: Problem, newton: NewtonMatrix, seed: int, factor: float, parent: Search | None
-) -> Search | None:
+def smooth_joints(search: Search, factor: float) -> Search | None:
     """The search of the wall whose unloaded joints have `factor` times their friction; None if all are loaded."""
-    unloaded = unloaded_joints(problem)
-    if not unloaded.any():
+    friction = smooth_friction(search.problem, factor)
+    if friction is None:
         return None
-    friction = np.where(unloaded, factor * problem.friction, problem.friction)
-    search = Search(replace(problem, friction=friction), newton, seed, parent)
-    search.interior()
-    return search
+    smooth = _with_friction(search, friction)
+    smooth.interior()
+    return smooth
+
+
+def smooth_friction(problem: Problem, factor: float) -> FloatArray | None:
+    """Friction (m,) with that of the unloaded joints multiplied by `factor`; None if all joints are loaded."""
+    unloaded = unloaded_joints(problem)
+    return np.where(unloaded, factor * problem.friction, problem.friction) if unloaded.any() else None
+
+
+def _with_friction(search: Search, friction: FloatArray) -> Search:
+    return Search(replace(search.problem, friction=friction), search.newton, parent=search)
 
 
 def unloaded_joints(problem: Problem) -> BoolArray:

@@ -160,11 +160,11 @@ class FromFiniteElements(LimitAnalysisFamily):
             "fe_multiplier": given.multiplier,
             "projected": projected,
             "first_multiplier": first.multiplier * unit,
-            "iterations": {"from_fe": warm.programmes, "cold": cold.programmes + cold.newton_steps},
+            "iterations": {"from_fe": warm.tally.programmes, "cold": cold.tally.programmes + cold.tally.newton_steps},
             "cold_first_multiplier": None if second is None else second.multiplier * unit,
             "cold_multiplier": None if cold_end is None else cold_end.multiplier * unit,
             "gain_in_value": None if cold_end is None else (cold_end.multiplier - warm_end.multiplier) * unit,
-            "gain_in_iterations": cold.programmes + cold.newton_steps - warm.programmes,
+            "gain_in_iterations": cold.tally.programmes + cold.tally.newton_steps - warm.tally.programmes,
         }
         return collapse_answer(
             problem,
@@ -172,7 +172,7 @@ class FromFiniteElements(LimitAnalysisFamily):
             f"From the finite-element state at {given.multiplier:.6g} the descent leads to a collapse state at "
             f"{state.multiplier * unit:.7g}.",
             self.tolerance,
-            warm.programmes,
+            warm.tally.programmes,
             details,
         )
 

@@ -8,11 +8,13 @@ with the live load reversed and the slacks J held at zero.
 
 from __future__ import annotations
 
-from dataclasses import replace
+import time
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
 from harness.model.assembly import BoolArray, FloatArray
+from methods.la.continuation import smooth_friction
 from methods.la.exact import close_tight, exact_forces, exact_mechanism
 from methods.la.interior_point import PathResult, PathSettings, follow_path, start_point
 from methods.la.lagged import SHARP, lagged_mechanism
@@ -25,8 +27,15 @@ EXACT_ENOUGH = 1e-10
 """Largest residual of a state that is kept."""
 ATTEMPTS = ((80, 0.3), (120, 0.15), (100, 0.6))
 """Newton steps with lagged bounds and how fast the bounds follow, tried in order."""
-MOST_INTERFACES = 10000
+FEW_INTERFACES = 2000
+"""Interfaces up to which every factor of `SMOOTH` is tried, instead of the first that leads to a state."""
+MOST_INTERFACES = 6000
 """Interfaces above which one attempt must do."""
+SMOOTH = (0.3, 0.6, 0.0)
+"""Factors on the friction of the joints that the dead load leaves unloaded, each the guide of one attempt."""
+PATH = PathSettings(gap=1e-8, residual=1e-3, max_iterations=150)
+WIDEST_GAP = 1e-2
+"""Relative gap at the end of a path above which its slacks do not tell a mechanism."""
 
 
 def cheapest_mechanism(
@@ -124,7 +133,7 @@ def lagged_state(
     """The exact state at the end of a path with lagged friction bounds, the Newton steps spent, the gap at the end."""
     steps, gap = 0, float("inf")
     state: CollapseState | None = None
-    for count, follow in attempts if problem.n_interfaces <= MOST_INTERFACES else ((60, 0.3),):
+    for count, follow in attempts:
         try:
             path, spent = lagged_mechanism(problem, newton, count, follow)
         except RuntimeError:
@@ -136,17 +145,57 @@ def lagged_state(
     return state, steps, gap
 
 
-def large_search(problem: Problem, newton: NewtonMatrix, seed: int) -> tuple[list[CollapseState], int, float]:
-    """Exact collapse states of a large wall, the Newton steps spent, the gap of the path that led there.
+@dataclass
+class LargeSearch:
+    """What the search of a large wall found and spent.
 
-    First the path with lagged friction bounds and its mechanism; where no forces fit that, the end of Newton's path
-    for zero-dilatancy flow and the mechanism of least work on its slacks.
+    Attributes:
+        states: exact collapse states in the order found.
+        seconds: CPU time of the process when each was found [s].
+        steps: Newton steps.
+        gap: relative gap at the end of the path that led to the last state, or of the last path.
     """
-    state, steps, gap = lagged_state(problem, newton)
-    if state is not None or problem.n_interfaces > MOST_INTERFACES:
-        return [] if state is None else [state], steps, gap
-    path = follow_path(problem, newton, start_point(problem), PathSettings(gap=1e-8, residual=1e-3, max_iterations=150))
-    mechanism = cheapest_mechanism(problem, newton, path.point.slack, np.random.default_rng(seed))
+
+    states: list[CollapseState] = field(default_factory=list)
+    seconds: list[float] = field(default_factory=list)
+    steps: int = 0
+    gap: float = float("inf")
+
+    def add(self, state: CollapseState | None, steps: int, gap: float) -> None:
+        """Count an attempt and keep its state if it led to one."""
+        self.steps, self.gap = self.steps + steps, gap
+        if state is not None:
+            self.states.append(state)
+            self.seconds.append(time.process_time())
+
+
+def large_search(problem: Problem, newton: NewtonMatrix, seed: int) -> LargeSearch:
+    """Exact collapse states of a large wall.
+
+    First from the wall with smoother unloaded joints; where no forces fit those mechanisms, from the wall itself with
+    lagged friction bounds.
+    """
+    found = LargeSearch()
+    for factor in SMOOTH:
+        friction = smooth_friction(problem, factor)
+        if friction is not None:
+            found.add(*_path_state(problem, replace(problem, friction=friction), newton, seed))
+        if problem.n_interfaces > MOST_INTERFACES or (found.states and problem.n_interfaces > FEW_INTERFACES):
+            break
+    if not found.states and problem.n_interfaces <= MOST_INTERFACES:
+        found.add(*lagged_state(problem, newton))
+    if not found.states and problem.n_interfaces <= MOST_INTERFACES:
+        found.add(*_path_state(problem, problem, newton, seed))
+    return found
+
+
+def _path_state(
+    problem: Problem, guide: Problem, newton: NewtonMatrix, seed: int
+) -> tuple[CollapseState | None, int, float]:
+    """The exact state of the mechanism of least work at the end of a guide's path, the steps spent, the path's gap."""
+    path = follow_path(guide, newton, start_point(guide), PATH)
+    if path.gap > WIDEST_GAP:
+        return None, path.iterations, path.gap
+    mechanism = cheapest_mechanism(guide, newton, path.point.slack, np.random.default_rng(seed))
     state, spent = mechanism_states(problem, newton, mechanism, (0.0, 1e-9))
-    steps += path.iterations + mechanism.iterations + spent
-    return [] if state is None else [state], steps, path.gap
+    return state, path.iterations + mechanism.iterations + spent, path.gap

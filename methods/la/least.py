@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+import time
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -10,7 +11,7 @@ import numpy as np
 from harness.model.method import Answer
 from methods.la.answers import collapse_answer, not_converged, unbounded_answer
 from methods.la.associated import AssociatedResult, solve_associated
-from methods.la.continuation import POOL, climb, descend_from, smooth_joints_search
+from methods.la.continuation import POOL, climb, descend_from, smooth_joints
 from methods.la.large import lagged_state, large_search
 from methods.la.newton_matrix import NewtonMatrix
 from methods.la.problem import Problem
@@ -35,7 +36,7 @@ SIMPLEX_SEARCH = 1000
 FEW_INTERFACES = 400
 """Interfaces up to which the associated solution is one more start; on larger walls it led to high states only."""
 LADDER = (0.55, 0.65, 0.75, 0.85, 0.925)
-SMOOTH = (0.3, 0.0)
+SMOOTH = (0.5, 0.3, 0.0)
 """Factors on the friction of the joints that the dead load leaves unloaded, each one more start."""
 FINE_LADDER = (1.3, 1.15, 1.0, 0.9, 0.8, 0.7, 0.6, 0.5, 0.55, 0.6, 0.65, 0.7, 0.75, 0.8, 0.85, 0.9, 0.95)
 
@@ -66,61 +67,76 @@ def least_known(problem: Problem, newton: NewtonMatrix, settings: SearchSettings
         settings: effort and seed.
         tolerance: largest residual of a state that is returned.
     """
-    associated = solve_associated(problem, newton)
+    began = time.process_time()
     if problem.n_interfaces > SIMPLEX_SEARCH:
-        return _large(problem, newton, settings, associated, tolerance)
+        return _large(problem, newton, settings, tolerance)
     plan = plan_of(settings, problem.n_velocities // 3)
     effort = Effort(failures=plan.failures)
-    below = climb(problem, newton, settings.seed, plan.ladder, effort, plan.descents) if plan.ladder else None
-    rungs = [below] if below is not None else []
-    for factor in SMOOTH:
-        rung = smooth_joints_search(problem, newton, settings.seed, factor, rungs[-1] if rungs else None)
-        rungs += [rung] if rung is not None else []
-    search = Search(problem, newton, settings.seed, rungs[-1] if rungs else None)
-    carried = [state for rung in rungs for state in search.adopt(rung, POOL)]
+    search = Search(problem, newton, settings.seed)
+    first = search.interior()
+    associated = solve_associated(problem, newton)
+    found = [search.descend(state, effort) for state in _starting_states(search, first, associated, plan.starts)]
+    rungs = [smooth_joints(search, factor) for factor in SMOOTH]
+    rungs.append(climb(search, plan.ladder, effort, plan.descents))
+    carried = [state for rung in rungs if rung is not None for state in search.adopt(rung, POOL)]
     climbed = descend_from(carried, search, effort, plan.descents)
-    found = [search.descend(state, effort) for state in _starting_states(search, associated, plan.starts)]
     if not found and not climbed:
         return _nothing_found(search, associated)
     best = polished(problem, newton, min(found + climbed, key=lambda state: state.multiplier))
-    return _answer(problem, search, best, (found, climbed), associated, tolerance, settings.rational_interfaces)
+    answer = _answer(problem, search, best, (found, climbed), associated, tolerance, settings.rational_interfaces)
+    return replace(answer, path=_path(search, began))
 
 
-def _large(
-    problem: Problem, newton: NewtonMatrix, settings: SearchSettings, associated: AssociatedResult, tolerance: float
-) -> Answer:
-    states, steps, gap = large_search(problem, newton, settings.seed)
+def _path(search: Search, began: float) -> dict[str, list[float]]:
+    """When which multiplier was the least known; CPU time since the search began."""
+    seconds, multipliers = np.array(search.history).T
+    multipliers = multipliers * search.problem.unit_multiplier
+    return {"cpu_seconds": (seconds - began).tolist(), "multiplier": multipliers.tolist()}
+
+
+def _large(problem: Problem, newton: NewtonMatrix, settings: SearchSettings, tolerance: float) -> Answer:
+    began = time.process_time()
+    found = large_search(problem, newton, settings.seed)
     details: dict[str, Any] = {
-        "starts": 1,
-        "newton_steps": steps,
-        "path_gap": gap,
+        "starts": len(found.states),
+        "newton_steps": found.steps,
+        "path_gap": found.gap,
         "unknowns": 7 * problem.n_interfaces + problem.n_velocities + 1,
     }
+    associated = solve_associated(problem, newton)
     if associated.state is not None:
         details["associated"] = associated.state.multiplier * problem.unit_multiplier
-    if not states:
+    if not found.states:
         return not_converged(
-            "No contact forces fit the mechanism at the end of the path with lagged friction bounds, "
-            "so no collapse state is known.",
-            steps,
+            "No contact forces fit the mechanisms at the ends of the paths, so no collapse state is known.",
+            found.steps,
             details,
         )
-    multiplier = states[0].multiplier * problem.unit_multiplier
+    values = [state.multiplier * problem.unit_multiplier for state in found.states]
+    details["start_values"] = values
+    best = min(found.states, key=lambda state: state.multiplier)
     sentence = (
-        f"The least collapse multiplier known is {multiplier:.7g}, from one start without descent because of the size "
-        "of the wall. It is not proved to be the least."
+        f"The least collapse multiplier known is {min(values):.7g}, without descent because of the size of the wall. "
+        "It is not proved to be the least."
     )
-    return collapse_answer(problem, states[0], sentence, tolerance, steps, details)
+    answer = collapse_answer(problem, best, sentence, tolerance, found.steps, details)
+    path = {
+        "cpu_seconds": [second - began for second in found.seconds],
+        "multiplier": np.minimum.accumulate(values).tolist(),
+    }
+    return replace(answer, path=path)
 
 
-def _starting_states(search: Search, associated: AssociatedResult, starts: int) -> list[CollapseState]:
-    states = [search.interior()]
+def _starting_states(
+    search: Search, first: CollapseState | None, associated: AssociatedResult, starts: int
+) -> list[CollapseState]:
+    states = [first]
     few = search.problem.n_interfaces <= FEW_INTERFACES
     if associated.state is not None and (few or states[0] is None):
         states.append(search.nearest_mechanism(associated.state.forces))
     if not few or not any(states):
         state, steps, _ = lagged_state(search.problem, search.newton, ((100, 0.6),))
-        search.newton_steps += steps
+        search.tally.newton_steps += steps
         states.append(state)
     states += [search.interior(spread=2.0) for _ in range(starts)]
     return [state for state in states if state is not None]
@@ -134,7 +150,7 @@ def _nothing_found(search: Search, associated: AssociatedResult) -> Answer:
         return unbounded_answer(
             "Statics allows any live load, and the search found no collapse state under zero dilatancy either."
         )
-    return not_converged("The search found no collapse state.", search.newton_steps)
+    return not_converged("The search found no collapse state.", search.tally.newton_steps)
 
 
 def _answer(
@@ -155,8 +171,8 @@ def _answer(
         "starts_at_least_known": agreeing,
         "start_values": values,
         "continuation_values": climbed,
-        "newton_steps": search.newton_steps,
-        "programmes": search.programmes,
+        "newton_steps": search.tally.newton_steps,
+        "programmes": search.tally.programmes,
         "unknowns": 7 * problem.n_interfaces + problem.n_velocities + 1,
     }
     if problem.n_interfaces <= rational_interfaces:
@@ -169,6 +185,6 @@ def _answer(
         f"The least collapse multiplier known is {best.multiplier * unit:.7g}; {agreeing} of {len(values)} starts "
         "lead to it. It is not proved to be the least.",
         tolerance,
-        search.newton_steps,
+        search.tally.newton_steps,
         details,
     )

@@ -8,6 +8,7 @@ it if lower. Every draw comes from a seeded generator, and effort is counted in 
 
 from __future__ import annotations
 
+import time
 from dataclasses import dataclass
 
 import numpy as np
@@ -37,8 +38,19 @@ class Effort:
     draws: int = 200
 
 
+@dataclass
+class Tally:
+    """What a search and those of other friction that serve it have spent: Newton steps and linear programmes."""
+
+    newton_steps: int = 0
+    programmes: int = 0
+
+
 class Search:
-    """Everything that a wall's search shares: programmes, known mechanisms, counters."""
+    """Everything that a wall's search shares: programmes, known mechanisms, counters.
+
+    `history` holds every lower multiplier (scaled) with the CPU time of the process at which it was found [s].
+    """
 
     def __init__(self, problem: Problem, newton: NewtonMatrix, seed: int = 0, parent: Search | None = None) -> None:
         self.problem, self.newton = problem, newton
@@ -46,10 +58,8 @@ class Search:
         self.kinematic: KinematicProgramme = KinematicProgramme(problem) if parent is None else parent.kinematic
         self.generator: np.random.Generator = np.random.default_rng(seed) if parent is None else parent.generator
         self.known: dict[bytes, CollapseState | None] = {}
-        self.newton_steps = 0
-        self.programmes = 0
-        if parent is not None:
-            self.newton_steps, self.programmes = parent.newton_steps, parent.programmes
+        self.tally: Tally = Tally() if parent is None else parent.tally
+        self.history: list[tuple[float, float]] = []
 
     def adopt(self, other: Search, most: int) -> list[CollapseState]:
         """The states here of the mechanisms that were lowest in another search, whose friction may differ.
@@ -67,20 +77,24 @@ class Search:
     def _best_of(self, velocities: FloatArray, moving: BoolArray) -> CollapseState | None:
         key = np.packbits(moving).tobytes()
         if key not in self.known:
-            self.programmes += 1
+            self.tally.programmes += 1
             solution = self.static.solve(moving)
-            self.known[key] = (
-                None
-                if isinstance(solution, str)
-                else CollapseState(solution.forces, solution.multiplier, velocities, moving)
-            )
+            if isinstance(solution, str):
+                self.known[key] = None
+            else:
+                self.known[key] = CollapseState(solution.forces, solution.multiplier, velocities, moving)
+                self._record(solution.multiplier)
         return self.known[key]
+
+    def _record(self, multiplier: float) -> None:
+        if not self.history or multiplier < self.history[-1][1] - LOWER:
+            self.history.append((time.process_time(), multiplier))
 
     def nearest_mechanism(self, forces: FloatArray, rates: FloatArray | None = None) -> CollapseState | None:
         """The collapse state of the extreme mechanism that does least work y.g on the slacks of given forces."""
         slack = np.maximum(self.problem.slacks(forces), 0.0)
         for allowed in self._allowed(slack, rates):
-            self.programmes += 1
+            self.tally.programmes += 1
             mechanism = self.kinematic.solve(allowed, slack)
             if mechanism is not None:
                 state = self.state_of(mechanism.velocities, mechanism.rates)
@@ -97,7 +111,7 @@ class Search:
     def follow(self, start: Point, settings: PathSettings) -> PathResult:
         """Interior point from a start; counts its steps."""
         result = follow_path(self.problem, self.newton, start, settings)
-        self.newton_steps += result.iterations
+        self.tally.newton_steps += result.iterations
         return result
 
     def interior(self, spread: float = 0.0, settings: PathSettings | None = None) -> CollapseState | None:
@@ -116,7 +130,7 @@ class Search:
                 break
             tight = tight_contacts(self.problem, state.forces)
             cost = self.generator.exponential(size=tight.shape) ** 2
-            self.programmes += 1
+            self.tally.programmes += 1
             mechanism = self.kinematic.solve(tight, cost)
             other = None if mechanism is None else self.state_of(mechanism.velocities, mechanism.rates)
             if other is not None and other.multiplier < state.multiplier - LOWER:
