@@ -12,17 +12,20 @@ from dataclasses import dataclass
 
 import numpy as np
 import scipy.sparse as sp
-from scipy.sparse.linalg import splu
+from scipy.sparse.linalg import SuperLU, splu
 
-from harness.model.assembly import Assembly, FloatArray, IntArray
+from harness.model.assembly import Assembly, BoolArray, FloatArray, IntArray
 from methods.fe.continuation import Tracer
 from methods.fe.factor import SingularTangent
-from methods.fe.gap_law import equivalent_end_forces, gap_forces
+from methods.fe.gap_law import classify, equivalent_end_forces, gap_forces
 from methods.fe.path_record import Snapshot
-from methods.fe.wall_model import point_strains
+from methods.fe.wall_model import WallModel, point_strains
 
 CERTIFICATE = 1e-8
 """Largest relative residual at which a final state counts as an exact collapse state."""
+LANDINGS = 10
+"""Changes of states allowed while the last piece is solved for."""
+NOT_UNIQUE = "the plateau is not unique: more than one mechanism moves at once"
 
 
 @dataclass(frozen=True)
@@ -93,31 +96,65 @@ def _collapse_state(
 
 
 def _solve_last_piece(tracer: Tracer, shot: Snapshot) -> CollapseState:
-    """Solve for the state and the mechanism of the singular piece. Raises SingularTangent when it is not unique."""
+    """Solve for the state and the mechanism of the singular piece. Raises SingularTangent when it is not unique.
+
+    Points that rounding carried a hair across their kink change state, and the piece is solved for again.
+    """
     model = tracer.model
-    multiplier = shot.multiplier
+    multiplier, state = shot.multiplier, shot.state.copy()
     opening, trial = shot.opening.copy(), shot.trial.copy()
-    opening_rate, slip_rate = np.empty_like(opening), np.empty_like(trial)
     fastest = int(np.argmax(np.abs(shot.velocity)))
-    tangent = model.tangent(shot.state)
-    column = tangent[:, [fastest]].toarray().ravel()
+    landed = np.empty_like(state)
+    for _ in range(LANDINGS):
+        tangent = model.tangent(state)
+        factor = _bordered(tangent, fastest, model.live)
+        multiplier = _corrected(model, factor, fastest, opening, trial, state, multiplier)
+        beyond = _beyond_yield(model, opening, trial, state)
+        if not beyond.any():
+            break
+        classify(opening, trial, model.kn, model.mu, landed, False)
+        state[beyond] = landed[beyond]
+    mechanism = factor.solve(-tangent[:, [fastest]].toarray().ravel())
+    mechanism[fastest] = 1.0
+    mechanism *= np.sign(shot.velocity[fastest])
+    return _collapse_state(tracer, multiplier, opening, trial, state, mechanism)
+
+
+def _beyond_yield(model: WallModel, opening: FloatArray, trial: FloatArray, state: IntArray) -> BoolArray:
+    """(P,) points whose forces in these states are tensile or exceed friction."""
+    normal, shear = np.empty_like(opening), np.empty_like(opening)
+    gap_forces(opening, trial, model.kn, model.mu, state, normal, shear)
+    return np.asarray((normal < -CERTIFICATE) | (np.abs(shear) > model.mu * normal + CERTIFICATE))
+
+
+def _bordered(tangent: sp.csc_matrix, fastest: int, live: FloatArray) -> SuperLU:
     try:
-        factor = splu(_with_column(tangent, fastest, -model.live))
+        return splu(_with_column(tangent, fastest, -live))
     except RuntimeError as error:
-        raise SingularTangent("the plateau is not unique: more than one mechanism moves at once") from error
+        raise SingularTangent(NOT_UNIQUE) from error
+
+
+def _corrected(
+    model: WallModel,
+    factor: SuperLU,
+    fastest: int,
+    opening: FloatArray,
+    trial: FloatArray,
+    state: IntArray,
+    multiplier: float,
+) -> float:
+    """Bring the gaps (changed in place) and the multiplier into equilibrium, the fastest displacement held."""
+    opening_rate, slip_rate = np.empty_like(opening), np.empty_like(trial)
     for _ in range(4):
-        answer = factor.solve(model.out_of_balance(opening, trial, shot.state, multiplier))
+        answer = factor.solve(model.out_of_balance(opening, trial, state, multiplier))
         if not np.isfinite(answer).all():
-            raise SingularTangent("the plateau is not unique: more than one mechanism moves at once")
+            raise SingularTangent(NOT_UNIQUE)
         multiplier += float(answer[fastest])
         answer[fastest] = 0.0
         point_strains(model.unknown, model.rows, model.interface, model.position, answer, opening_rate, slip_rate)
         opening += opening_rate
         trial += model.kt * slip_rate
-    mechanism = factor.solve(-column)
-    mechanism[fastest] = 1.0
-    mechanism *= np.sign(shot.velocity[fastest])
-    return _collapse_state(tracer, multiplier, opening, trial, shot.state, mechanism)
+    return multiplier
 
 
 def _with_column(matrix: sp.csc_matrix, k: int, column: FloatArray) -> sp.csc_matrix:
@@ -131,6 +168,10 @@ def _with_column(matrix: sp.csc_matrix, k: int, column: FloatArray) -> sp.csc_ma
 
 def check(assembly: Assembly, multiplier: float, forces: FloatArray, mechanism: FloatArray) -> CollapseState:
     """Measure how exactly forces and mechanism form a non-associated collapse state (zero dilatancy).
+
+    Forces are relative to a mean block weight, rates to the fastest block. Complementarity is the work of contact
+    forces on the motion they ought to have none in, and direction what slip gains instead of dissipating, both as
+    shares of the live work.
 
     Args:
         multiplier: of the live load; forces: (m, 3) end forces [force]; mechanism: (n, 3) block velocities.
@@ -146,15 +187,14 @@ def check(assembly: Assembly, multiplier: float, forces: FloatArray, mechanism: 
     total = forces[:, 0] + forces[:, 1]
     slack = assembly.friction * total - np.abs(forces[:, 2])
     power = float(live @ velocity)
+    idle = float(np.abs(forces[:, :2] * rates[:, :2]).sum() + np.abs(slack * rates[:, 2]).sum())
+    gained = float(np.maximum(forces[:, 2] * rates[:, 2], 0.0).sum())
     residuals = {
         "equilibrium": float(np.abs(balance).max()) / scale,
         "yield": max(0.0, -float(forces[:, :2].min()), -float(slack.min())) / scale,
         "dilatancy": max(0.0, -float(rates[:, :2].min())) / speed,
-        "complementarity": max(
-            float(np.abs(forces[:, :2] * rates[:, :2]).max()), float(np.abs(slack * rates[:, 2]).max())
-        )
-        / (scale * speed),
-        "direction": max(0.0, float((forces[:, 2] * rates[:, 2]).max())) / (scale * speed),
+        "complementarity": idle / power if power > 0.0 else np.inf,
+        "direction": gained / power if power > 0.0 else np.inf,
     }
     # power of the contact forces is friction only: n . opening = 0, s slip = -mu (n1 + n2) |slip|
     friction_work = float(np.sum(assembly.friction * total * np.abs(rates[:, 2])))
