@@ -227,13 +227,13 @@ def _self_stress(parted: list[Cell]) -> Iterable[str]:
     sentence = f"The associated maximum lies up to {100.0 * max(above):.0f} % above FE there"
     medians = {
         name: float(np.median([cell.head_thrust[name] for cell in parted if name in cell.head_thrust]))
-        for name in ("fe", "la", "la-associated")
+        for name in ("la-associated", "fe", "la", "de")
         if any(name in cell.head_thrust for cell in parted)
     }
-    if len(medians) == 3:
+    if len(medians) == 4:
         sentence += (
-            ": its forces press on the head joints with "
-            f"{medians['la-associated']:.2g} of the wall's weight in the median, the least known state's with "
-            f"{medians['la']:.2g}, FE's with {medians['fe']:.2g}; that self-stress carries shear across the head joints"
+            f": its forces press on the head joints with {medians['la-associated']:.2g} of the wall's weight in the "
+            f"median, FE's with {medians['fe']:.2g}, the least known state's with {medians['la']:.2g} and the state "
+            f"that DE held with {medians['de']:.2g}; loading from the dead load does not build up such self-stress"
         )
     yield sentence + "."
