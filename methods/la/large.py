@@ -14,15 +14,17 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from harness.model.assembly import BoolArray, FloatArray
+from methods.la.arc import ArcSettings, follow_arc
 from methods.la.continuation import smooth_friction
 from methods.la.exact import close_tight, exact_forces, exact_mechanism
 from methods.la.interior_point import PathResult, PathSettings, follow_path, start_point
 from methods.la.lagged import SHARP, lagged_mechanism
 from methods.la.newton_matrix import NewtonMatrix
 from methods.la.problem import Problem
+from methods.la.region import in_whole, moving_region
 from methods.la.state import CollapseState, residuals
 
-LINEAR = PathSettings(dilatancy=1.0, gap=1e-13, residual=1e-3, max_iterations=150, patience=8)
+LINEAR = PathSettings(dilatancy=1.0, gap=1e-13, residual=1e-3, max_iterations=150, patience=20)
 EXACT_ENOUGH = 1e-10
 """Largest residual of a state that is kept."""
 ATTEMPTS = ((80, 0.3), (120, 0.15), (100, 0.6))
@@ -30,10 +32,14 @@ ATTEMPTS = ((80, 0.3), (120, 0.15), (100, 0.6))
 FEW_INTERFACES = 2000
 """Interfaces up to which every factor of `SMOOTH` is tried, instead of the first that leads to a state."""
 MOST_INTERFACES = 6000
-"""Interfaces above which one attempt must do."""
+"""Interfaces above which the search is in the part that an associated mechanism moves."""
 SMOOTH = (0.3, 0.6, 0.0)
 """Factors on the friction of the joints that the dead load leaves unloaded, each the guide of one attempt."""
 PATH = PathSettings(gap=1e-8, residual=1e-3, max_iterations=150)
+NEAR = PathSettings(dilatancy=1.0, gap=0.05, residual=float("inf"))
+"""How far the associated path leads before dilatancy is taken away."""
+ARC_GAPS = (1e-5, 3e-6, 1e-6, 1e-7)
+"""Relative gaps of the path by arc length at which its mechanism is tried."""
 WIDEST_GAP = 1e-2
 """Relative gap at the end of a path above which its slacks do not tell a mechanism."""
 
@@ -180,12 +186,42 @@ def large_search(problem: Problem, newton: NewtonMatrix, seed: int) -> LargeSear
         friction = smooth_friction(problem, factor)
         if friction is not None:
             found.add(*_path_state(problem, replace(problem, friction=friction), newton, seed))
-        if problem.n_interfaces > MOST_INTERFACES or (found.states and problem.n_interfaces > FEW_INTERFACES):
+        if found.states and problem.n_interfaces > FEW_INTERFACES:
             break
-    if not found.states and problem.n_interfaces <= MOST_INTERFACES:
+    if not found.states:
         found.add(*lagged_state(problem, newton))
-    if not found.states and problem.n_interfaces <= MOST_INTERFACES:
+    if not found.states:
         found.add(*_path_state(problem, problem, newton, seed))
+    return found
+
+
+def region_search(problem: Problem, newton: NewtonMatrix, seed: int, velocities: FloatArray) -> LargeSearch:
+    """Exact collapse states of a wall too large for a search of the whole.
+
+    The search is in the part that an associated mechanism with velocities (3n,) moves, with smoother unloaded joints:
+    Newton's path from the part's own associated path, and where it stalls the same path by arc length.
+    """
+    found = LargeSearch()
+    region = moving_region(problem, velocities)
+    friction = smooth_friction(region.problem, SMOOTH[0])
+    guide = region.problem if friction is None else replace(region.problem, friction=friction)
+    start = follow_path(guide, region.newton, start_point(guide), NEAR)
+    path = follow_path(guide, region.newton, start.point, replace(PATH, patience=5))
+    found.steps += start.iterations + path.iterations
+    for gap in ARC_GAPS:
+        path = follow_arc(guide, region.newton, path.point, ArcSettings(gap))
+        found.add(None, path.iterations, path.gap)
+        if not path.converged:
+            break
+        mechanism = cheapest_mechanism(guide, region.newton, path.point.slack, np.random.default_rng(seed))
+        state, steps = mechanism_states(region.problem, region.newton, mechanism, (0.0, 1e-9))
+        found.steps += mechanism.iterations + steps
+        if state is None:
+            continue
+        state, steps = mechanism_states(problem, newton, in_whole(problem, region, mechanism), (0.0, 1e-9))
+        found.add(state, steps, path.gap)
+        if state is not None:
+            break
     return found
 
 

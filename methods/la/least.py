@@ -12,7 +12,7 @@ from harness.model.method import Answer
 from methods.la.answers import collapse_answer, not_converged, unbounded_answer
 from methods.la.associated import AssociatedResult, solve_associated
 from methods.la.continuation import POOL, climb, descend_from, smooth_joints
-from methods.la.large import lagged_state, large_search
+from methods.la.large import MOST_INTERFACES, lagged_state, large_search, region_search
 from methods.la.newton_matrix import NewtonMatrix
 from methods.la.problem import Problem
 from methods.la.rational import confirm
@@ -96,14 +96,20 @@ def _path(search: Search, began: float) -> dict[str, list[float]]:
 
 def _large(problem: Problem, newton: NewtonMatrix, settings: SearchSettings, tolerance: float) -> Answer:
     began = time.process_time()
-    found = large_search(problem, newton, settings.seed)
+    associated = solve_associated(problem, newton) if problem.n_interfaces > MOST_INTERFACES else None
+    if associated is None:
+        found = large_search(problem, newton, settings.seed)
+        associated = solve_associated(problem, newton)
+    elif associated.state is None:
+        return not_converged(f"The associated programme that shows the moving part ended as {associated.outcome}.")
+    else:
+        found = region_search(problem, newton, settings.seed, associated.state.velocities)
     details: dict[str, Any] = {
         "starts": len(found.states),
         "newton_steps": found.steps,
         "path_gap": found.gap,
         "unknowns": 7 * problem.n_interfaces + problem.n_velocities + 1,
     }
-    associated = solve_associated(problem, newton)
     if associated.state is not None:
         details["associated"] = associated.state.multiplier * problem.unit_multiplier
     if not found.states:

@@ -39,6 +39,15 @@ class Direction:
     velocities: FloatArray
     rates: FloatArray
 
+    def plus(self, factor: float, other: Direction) -> Direction:
+        """This change and `factor` times another."""
+        return Direction(
+            self.slack + factor * other.slack,
+            self.multiplier + factor * other.multiplier,
+            self.velocities + factor * other.velocities,
+            self.rates + factor * other.rates,
+        )
+
 
 class NewtonStep:
     """The factorised Newton system at a point.
