@@ -18,6 +18,9 @@ from harness.model.method import Finding, Method, Status, load_method
 from harness.model.result import Judgement, Result, result_of
 from harness.model.wall import Wall
 
+WIDEST_BRACKET = 0.01
+"""Relative width of the widest bracket around a closed form with which a method conforms."""
+
 Check = Callable[[Method], str]
 """Returns an empty string if the method conforms, else what is wrong."""
 
@@ -68,7 +71,10 @@ def answered(method: Method, assembly: Assembly, **settings: Any) -> tuple[Resul
 
 
 def slack_of(method: Method) -> float:
-    """Relative error a multiplier may have: 0.5 % for a measuring method with a bracket, rounding for the others."""
+    """Relative error a multiplier may have: 0.5 % for distinct elements, which measure, rounding for the others.
+
+    A calculating method with a bracket conforms if that holds the value within the method's tolerance.
+    """
     return 5e-3 if method.family == "de" else 1e-8
 
 
@@ -86,6 +92,11 @@ def _fault(result: Result, judgement: Judgement, expected: float, slack: float) 
     if not judgement.accepted:
         return judgement.sentence
     assert result.multiplier is not None
+    if result.bracket is not None and result.family != "de":
+        low, high = result.bracket
+        wider = judgement.tolerance * abs(expected)
+        if low - wider <= expected <= high + wider and high - low <= WIDEST_BRACKET * abs(expected):
+            return ""
     if abs(result.multiplier / expected - 1.0) > slack:
         return f"multiplier {result.multiplier!r} instead of {expected!r}"
     return ""

@@ -78,7 +78,7 @@ class ConvexSettings(GapSettings):
     """
 
     first_step: float = Field(0.05, gt=0.0)
-    resolution: float = Field(0.005, gt=0.0)
+    resolution: float = Field(0.001, gt=0.0)
     fixed_points: int = Field(60, ge=1)
     max_blocks: int = Field(60, ge=1)
     friction_cap: float = Field(4.0, gt=0.0)
