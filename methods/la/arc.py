@@ -18,9 +18,9 @@ from methods.la.newton_matrix import NewtonMatrix
 from methods.la.newton_step import Direction, NewtonStep, Point
 from methods.la.problem import Problem
 
-STRIDE = 2.0
+STRIDE = 4.0
 """Largest relative change of a slack or rate that a step along the tangent aims at."""
-FAR = 3.0
+FAR = 4.0
 """Largest logarithm of y g / tau at which a step goes along the path; beyond, it only leads back to it."""
 ASTRAY = 0.5
 """Root mean square of the relative changes back to the path beyond which a step only leads back."""
@@ -34,10 +34,12 @@ class ArcSettings:
 
     Attributes:
         gap: complementarity y.g relative to the live work at which it stops.
+        residual: scaled equilibrium and compatibility residuals at which it may stop.
         max_iterations: Newton steps at most.
     """
 
     gap: float = 1e-7
+    residual: float = 1e-3
     max_iterations: int = 1000
 
 
@@ -66,8 +68,9 @@ def follow_arc(problem: Problem, newton: NewtonMatrix, start: Point, settings: A
         history.append(point.multiplier)
         gap = float((point.slack * point.rates).sum()) / problem.live_work
         statics, kinematics = float(abs(step.statics).max()), float(abs(step.kinematics).max())
-        result = PathResult(point, gap <= settings.gap, iteration, gap, statics, kinematics, history)
-        if result.converged:
+        converged = gap <= settings.gap and max(statics, kinematics) <= settings.residual
+        result = PathResult(point, converged, iteration, gap, statics, kinematics, history)
+        if converged:
             break
         change, growth, before = _change(step, point, mean, before, tight)
         length = min(step_lengths(point, change, tight, SHORT, 0.0))

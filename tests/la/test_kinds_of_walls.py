@@ -64,7 +64,7 @@ def test_wall_on_which_newtons_path_finds_nothing_is_solved_with_lagged_friction
 @pytest.mark.parametrize(
     ("courses", "bricks", "greatest", "known"),
     # Known: the figures of the prototypes, within 5e-5 for the first.
-    [(20, 11, 0.503216, 0.48445), (28, 16, 0.474130, 0.4622), (40, 30, 0.452420, 0.4463)],
+    [(20, 11, 0.503216, 0.48445), (28, 16, 0.474130, 0.4622), (40, 30, 0.452420, 0.4463), (60, 42, 0.437352, 0.43431)],
 )
 def test_walls_of_hundreds_of_blocks_reach_the_values_of_the_prototypes(
     courses: int, bricks: int, greatest: float, known: float

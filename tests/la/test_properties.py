@@ -13,11 +13,8 @@ from harness.model.assembly import Assembly
 from harness.model.method import Finding, Status
 from methods.la.adapter import AssociatedLimitAnalysis, LimitAnalysis
 from methods.la.flexibility import Compliance
-from methods.la.problem import make_problem
-from methods.la.programmes import KinematicProgramme, StaticProgramme
 from methods.la.settings import AssociatedSettings, SearchSettings
-from methods.la.state import moving_contacts
-from tests.la.bodies import VIEWS, block_on_halves, column, running_bond
+from tests.la.bodies import VIEWS, column, running_bond
 
 QUICK = SearchSettings(effort="quick")
 
@@ -43,36 +40,6 @@ def test_same_seed_gives_the_same_answer() -> None:
     assert first.forces is not None
     assert second.forces is not None
     np.testing.assert_array_equal(first.forces, second.forces)
-
-
-def enumerated_least(wall: Assembly) -> float:
-    """Least multiplier over all sets of moving contacts of a tiny wall, each set's extreme mechanisms tried."""
-    problem = make_problem(wall)
-    static, kinematic = StaticProgramme(problem), KinematicProgramme(problem)
-    shape = (problem.n_interfaces, 4)
-    size = int(np.prod(shape))
-    best = np.inf
-    for code in range(1, 2**size):
-        allowed = np.array([(code >> bit) & 1 for bit in range(size)], dtype=bool).reshape(shape)
-        mechanism = kinematic.solve(allowed, np.ones(shape))
-        if mechanism is None:
-            continue
-        solution = static.solve(moving_contacts(mechanism.rates))
-        if not isinstance(solution, str):
-            best = min(best, solution.multiplier)
-    return float(best * problem.unit_multiplier)
-
-
-@settings(max_examples=5, deadline=None, derandomize=True)
-@given(st.floats(0.1, 1.5), st.floats(0.1, 1.5), st.floats(0.2, 2.0))
-def test_search_finds_what_enumeration_of_all_mechanisms_finds(first: float, second: float, height: float) -> None:
-    wall = replace(block_on_halves(), friction=np.array([first, second]))
-    wall = replace(wall, live=wall.live * height)
-    expected = enumerated_least(wall)
-    found = LimitAnalysis().solve(wall, SearchSettings()).multiplier
-    assert found == pytest.approx(expected, rel=1e-9)
-    assert found is not None
-    assert found <= (greatest(wall) or np.inf) + 1e-9
 
 
 @settings(max_examples=15, deadline=None, derandomize=True)

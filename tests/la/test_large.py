@@ -1,0 +1,47 @@
+"""What the search of large walls is made of, on walls small enough to know the outcome."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from methods.la.arc import ArcSettings, follow_arc
+from methods.la.associated import solve_associated
+from methods.la.interior_point import PathSettings, follow_path, start_point
+from methods.la.large import region_search
+from methods.la.newton_matrix import NewtonMatrix
+from methods.la.problem import make_problem
+from methods.la.region import with_all_above
+from methods.la.state import residuals
+from tests.la.bodies import running_bond
+
+
+def test_path_by_arc_length_leads_from_the_middle_to_complementarity() -> None:
+    problem = make_problem(running_bond(28, 16, 0.175, 0.65))
+    newton = NewtonMatrix(problem)
+    middle = follow_path(problem, newton, start_point(problem), PathSettings(gap=1e-1, residual=1e-3))
+    end = follow_arc(problem, newton, middle.point, ArcSettings(gap=1e-6))
+    assert end.converged
+    assert end.gap <= 1e-6
+    # What the search asks of a path before it reads a mechanism from it; the state itself is made exact afterwards.
+    assert max(end.statics, end.kinematics) <= ArcSettings().residual
+
+
+def test_what_rests_on_a_moving_block_moves() -> None:
+    wall = running_bond(3, 2, 0.2, 0.65)
+    lowest = int(np.flatnonzero(~wall.fixed)[np.argmin(wall.centroid[~wall.fixed, 1])])
+    moves = with_all_above(wall, np.arange(wall.n_blocks) == lowest)
+    above = wall.centroid[moves, 1] > wall.centroid[lowest, 1]
+    assert above.sum() == moves.sum() - 1 > 0
+    assert not moves[wall.fixed].any()
+
+
+def test_search_of_the_part_that_collapses_gives_a_state_of_the_whole_wall() -> None:
+    problem = make_problem(running_bond(14, 7, 0.175, 0.65))
+    newton = NewtonMatrix(problem)
+    associated = solve_associated(problem, newton)
+    assert associated.state is not None
+    found = region_search(problem, newton, 0, associated.state.velocities)
+    assert len(found.states) == 1
+    state = found.states[0]
+    assert state.multiplier <= associated.state.multiplier
+    assert max(residuals(problem, state).values()) <= 1e-10
