@@ -17,9 +17,13 @@ from methods.la.interior_point import PathSettings, follow_path, start_point
 from methods.la.newton_matrix import NewtonMatrix
 from methods.la.newton_step import Point
 from methods.la.problem import Problem
-from methods.la.programmes import SIMPLEX_INTERFACES, KinematicProgramme, StaticProgramme
+from methods.la.programmes import KinematicProgramme, StaticProgramme
 from methods.la.state import CollapseState, moving_contacts, polished, residuals, tight_contacts
 
+SIMPLEX_INTERFACES = 400
+"""Interfaces above which the interior point is quicker, and closes a gap that simplex leaves at 5e-9."""
+MOST_SIMPLEX_INTERFACES = 8000
+"""Interfaces above which simplex is not tried either where the interior point ends early."""
 MANY_INTERFACES = 5000
 """Interfaces above which the path ends earlier: there rounding of the forces grows faster than the gap falls."""
 
@@ -53,7 +57,7 @@ def solve_associated(problem: Problem, newton: NewtonMatrix, solver: str = "auto
         result = _by_interior_point(problem, newton)
         if result.outcome == "optimal" and result.gap <= 1e-9:
             return result
-        if solver == "interior" or problem.n_interfaces > 10 * SIMPLEX_INTERFACES:
+        if solver == "interior" or problem.n_interfaces > MOST_SIMPLEX_INTERFACES:
             return result
     return _by_highs(problem, newton)
 

@@ -60,6 +60,15 @@ def measured(answer: Answer) -> str:
     return f"{answer.multiplier:.7f}" if answer.multiplier is not None else answer.status.value
 
 
+def first_within(answer: Answer, share: float) -> float:
+    """CPU seconds of the search after which the least known was within a share of the final one; NaN without any."""
+    if answer.multiplier is None:
+        return float("nan")
+    pairs = zip(answer.path["cpu_seconds"], answer.path["multiplier"], strict=True)
+    near = (1.0 + share) * answer.multiplier
+    return next((second for second, multiplier in pairs if multiplier <= near), float("nan"))
+
+
 def main() -> None:
     """Print the table."""
     walls = WALLS + (LARGE if "--full" in sys.argv[1:] else ())
@@ -75,7 +84,8 @@ def main() -> None:
         print(
             f"n {assembly.n_free:5d}  m {assembly.n_interfaces:6d}  mu {friction:.2f}  "
             f"associated {measured(associated)} ({associated_known}) {middle - start:7.2f} s  "
-            f"least known {measured(least)} ({least_known}) {end - middle:7.2f} s  "
+            f"least known {measured(least)} ({least_known}) {end - middle:7.2f} s, "
+            f"within 1 % after {first_within(least, 0.01):6.2f} s  "
             f"largest residual {max(residuals.values(), default=float('nan')):.0e}",
             flush=True,
         )
