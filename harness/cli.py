@@ -16,7 +16,7 @@ from harness import terminal
 from harness.engine import baseline as recording
 from harness.engine import compare as comparing
 from harness.engine import regression
-from harness.engine.imperfection import imperfection_runs, imperfection_study
+from harness.engine.imperfection import SEEDS, imperfection_runs, imperfection_study
 from harness.engine.plan import Limits, Run, check_methods, find_cases, gated_runs, plan_case
 from harness.engine.store import open_store
 from harness.model.case import Case, shipped_cases
@@ -121,6 +121,13 @@ def _settings(method: str, pairs: tuple[str, ...]) -> dict[str, Any]:
 @click.option(
     "--methods", help="Names of methods, separated by commas.  [default: fe,la,la-associated,de and those gated]"
 )
+@click.option(
+    "--imperfection",
+    "seeds",
+    type=click.IntRange(1, 100),
+    metavar="SEEDS",
+    help="Also load the paper's wall of uneven blocks, so many of them for each size of defect.",
+)
 @click.option("--seconds", type=float, default=Limits().seconds, show_default=True, help="Wall-clock limit of one run.")
 @memory_option
 @jobs_option
@@ -134,6 +141,7 @@ def compare(
     cases: tuple[str, ...],
     suite: str | None,
     methods: str | None,
+    seeds: int | None,
     seconds: float,
     memory: int,
     jobs: int,
@@ -152,7 +160,8 @@ def compare(
     for case in chosen:
         warn(case)
     title = ", ".join(cases) if cases else f"suite {suite or 'small'}"
-    compared = _compare(title, chosen, names, limits, jobs, report, store, fresh, quiet=as_json)
+    study = None if seeds is None else _imperfection(limits, seeds, jobs, store, fresh, quiet=as_json)[1]
+    compared = _compare(title, chosen, names, limits, jobs, report, store, fresh, quiet=as_json, study=study)
     if as_json:
         print_json(terminal.comparison_json(compared, report))
     else:
@@ -206,17 +215,24 @@ def study(name: str | None, jobs: int, report: Path | None, store: Path, fresh: 
         raise InputError(f'no study is called "{name}"', f"There are: {', '.join([*STUDIES, IMPERFECTION])}", "study")
     path = report or REPORT.with_name(f"{name}.html")
     if name == IMPERFECTION:
-        chosen = find_cases(["wall-21"], None, ())
-        runs = imperfection_runs(chosen[0], Limits())
-        with open_store(store) as opened, terminal.progress(len(runs)) as told:
-            found = imperfection_study(runs, comparing.execute(runs, opened, jobs, fresh=fresh, told=told))
-        compared = _compare(f"study {name}", chosen, None, Limits(), jobs, path, store, fresh, quiet=False, study=found)
+        case, found = _imperfection(Limits(), None, jobs, store, fresh, quiet=False)
+        compared = _compare(f"study {name}", [case], None, Limits(), jobs, path, store, fresh, quiet=False, study=found)
         click.echo(found["sentence"])
     else:
         chosen = list(STUDIES[name]())
         compared = _compare(f"study {name}", chosen, None, Limits(), jobs, path, store, fresh, quiet=False)
         terminal.print_agreement(compared)
     click.echo(f"Report: {path}")
+
+
+def _imperfection(
+    limits: Limits, seeds: int | None, jobs: int, store: Path, fresh: bool, *, quiet: bool
+) -> tuple[Case, dict[str, Any]]:
+    """The paper's wall, and the study of it made of uneven blocks: `seeds` walls a size; None: all the study has."""
+    (case,) = find_cases(["wall-21"], None, ())
+    runs = imperfection_runs(case, limits, seeds=SEEDS if seeds is None else range(seeds))
+    with open_store(store) as opened, terminal.progress(len(runs), quiet=quiet) as told:
+        return case, imperfection_study(runs, comparing.execute(runs, opened, jobs, fresh=fresh, told=told))
 
 
 def _command_line() -> str:

@@ -50,6 +50,7 @@ class Paper:
     cost: list[CostRow]
     ratio_ours: str
     experiment: str
+    imperfection: str
     block_case: int | None
     wall_case: int | None
 
@@ -79,6 +80,7 @@ def paper_comparison(run: ComparisonRun) -> Paper | None:
         cost=cost,
         ratio_ours=ratio,
         experiment="" if wall is None else _experiment(wall[1]),
+        imperfection=_imperfection(run),
         block_case=None if block is None else block[0],
         wall_case=None if wall is None else wall[0],
     )
@@ -141,6 +143,12 @@ def _cost(number: int, item: CaseResults) -> list[CostRow]:
             )
         )
     return rows
+
+
+def _imperfection(run: ComparisonRun) -> str:
+    """What the study of uneven blocks found, if the comparison brought it."""
+    studies = run.provenance.get("studies", [])
+    return next((str(study["sentence"]) for study in studies if "unevenness" in str(study.get("title", ""))), "")
 
 
 def _experiment(item: CaseResults) -> str:

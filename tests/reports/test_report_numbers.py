@@ -288,3 +288,14 @@ def test_walls_of_one_proportion_make_no_grid():
     cases = [samples.bond(f"wall-{k}", friction=friction) for k, friction in enumerate((0.4, 0.6, 0.8))]
     items = [CaseResults(case, [samples.solved(case, name, 0.5) for name in grid.MAIN]) for case in cases]
     assert grid.grids(ComparisonRun("", "", "", items)) == []
+
+
+def test_paper_section_tells_what_uneven_blocks_cost():
+    case = samples.bond("wall-21")
+    item = CaseResults(case, [samples.solved(case, "la", 0.5)])
+    study = {"title": "Multiplier against unevenness of the blocks", "sentence": "It falls by 15 %."}
+    told = paper.paper_comparison(ComparisonRun("", "", "", [item], {"studies": [study]}))
+    untold = paper.paper_comparison(ComparisonRun("", "", "", [item]))
+    assert told is not None
+    assert untold is not None
+    assert (told.imperfection, untold.imperfection) == ("It falls by 15 %.", "")
