@@ -228,8 +228,14 @@ class MujocoWall:
         """
         self._mujoco.mj_step(self._model, self._data, nstep=steps)
         self.steps += steps
-        if not float(np.abs(self._data.qvel).max(initial=0.0)) * self._drag < EXPLODED:
+        if self._was_reset() or not float(np.abs(self._data.qvel).max(initial=0.0)) * self._drag < EXPLODED:
             raise SolverFailed("MuJoCo's contact solver did not converge: blocks were thrown apart")
+
+    def _was_reset(self) -> bool:
+        """Whether MuJoCo met numbers it cannot go on from: it then starts again at rest, without an error."""
+        kind = self._mujoco.mjtWarning
+        bad = (kind.mjWARN_BADQPOS, kind.mjWARN_BADQVEL, kind.mjWARN_BADQACC)
+        return any(self._data.warning[int(warning)].number > 0 for warning in bad)
 
     def velocity(self) -> FloatArray:
         """(n, 3) velocities as out-of-balance accelerations, see `Engine.velocity`.

@@ -12,6 +12,8 @@ from harness.engine.judge import equilibrium_residual, yield_violation
 from harness.model.errors import InputError
 from harness.model.method import Finding, Status
 from methods.de.adapter import MujocoHolds
+from methods.de.mujoco_wall import WALL as MUJOCO_WALL
+from methods.de.mujoco_wall import MujocoWall, SolverFailed
 from methods.de.settings import MujocoSettings
 from tests.de.answers import run
 from tests.de.test_damped_holds import two_friction_block
@@ -80,6 +82,24 @@ def test_wall_of_21_bricks_agrees_with_the_other_engine(friction):
     answer = run_mujoco(wall, orders=1)
     assert answer.multiplier == pytest.approx(min(friction, 13 / 23), rel=5e-3)
     assert equilibrium_residual(wall, answer.forces, answer.forces_multiplier) < MujocoHolds.tolerance
+
+
+@needs_mujoco
+@pytest.mark.parametrize("iterations", [1, 2, 5])
+def test_a_contact_solver_cut_short_is_undecided_and_never_a_number(iterations):
+    # So few Newton iterations throw the blocks apart.
+    answer = run_mujoco(assembly(running_bond(6, 3), 0.65), orders=1, iterations=iterations)
+    assert (answer.status, answer.finding, answer.multiplier) == (Status.NOT_CONVERGED, Finding.NONE, None)
+    assert "did not converge" in answer.sentence
+
+
+@needs_mujoco
+def test_mujoco_starting_again_by_itself_is_not_taken_for_rest():
+    wall = assembly(stack(1, 0.2, 0.4), 0.7)
+    engine = MujocoWall(wall, wall.free, np.arange(wall.n_interfaces), 100, *MUJOCO_WALL, 1e3)
+    engine.restore(np.concatenate([np.full(3, 1e12), np.zeros(6)]))
+    with pytest.raises(SolverFailed):
+        engine.advance(100)
 
 
 def test_without_the_extra_the_user_is_told_what_to_install(monkeypatch):
