@@ -55,7 +55,7 @@ def imperfection_study(runs: Sequence[Run], results: Sequence[Result]) -> dict[s
         sizes = sorted(found)
         change = [100.0 * (np.array(found[size]) / perfect - 1.0) for size in sizes]
         mean = [float(values.mean()) for values in change]
-        name = "beds and heads" if faces == "both" else "beds only"
+        name = "beds and heads" if faces == "both" else "beds alone"
         series.append(
             {
                 "name": name,
@@ -67,21 +67,26 @@ def imperfection_study(runs: Sequence[Run], results: Sequence[Result]) -> dict[s
         )
         reached = _where(sizes, mean, 100.0 * EXPERIMENT)
         sentences.append(
-            f"{name}: {mean[-1]:+.1f} % at {sizes[-1]:g} of the block height, "
-            + (f"-20 % at about {reached:.3f}" if reached is not None else f"-20 % is not reached up to {sizes[-1]:g}")
+            f"with {name} uneven, by {mean[-1]:+.1f} % at {sizes[-1]:g} of the block height, and by -20 % "
+            + (f"at about {reached:.3f}" if reached is not None else "nowhere up to that")
             + (f" ({lost} walls did not answer)" if lost else "")
         )
     return {
         "title": "Multiplier against unevenness of the blocks",
-        "sentence": "Corners cut back by U(0, size x block height), loaded until the wall no longer comes to rest. "
-        + "; ".join(sentences)
-        + ".",
-        "read": "Points are means over seeds, bars reach from the least to the greatest. The experiment of 1995 lay "
+        "sentence": (
+            "Corners are cut back by U(0, size × block height), the wall is loaded until it no longer comes to rest, "
+            f"{_walls_a_size(runs)} walls a size. The mean multiplier changes, {'; '.join(sentences)}."
+        ).replace("-", "−"),
+        "read": "Points are means over walls, bars reach from the least to the greatest. The experiment of 1995 lay "
         "about 20 % below the computed load.",
-        "x_label": "greatest cut / block height",
+        "x_label": "greatest cut over block height",
         "y_label": "change of the multiplier [%]",
         "series": series,
     }
+
+
+def _walls_a_size(runs: Sequence[Run]) -> int:
+    return len({run.settings["seed"] for run in runs})
 
 
 def _where(x: Sequence[float], y: Sequence[float], level: float) -> float | None:
