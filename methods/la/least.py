@@ -82,7 +82,11 @@ def least_known(problem: Problem, newton: NewtonMatrix, settings: SearchSettings
     climbed = descend_from(carried, search, effort, plan.descents)
     if not found and not climbed:
         return _nothing_found(search, associated)
-    best = polished(problem, newton, min(found + climbed, key=lambda state: state.multiplier))
+    best = min(found + climbed, key=lambda state: state.multiplier)
+    joined = search.as_one_block(best)
+    if joined is not None and joined.multiplier < best.multiplier:
+        best = search.descend(joined, effort)
+    best = polished(problem, newton, best)
     answer = _answer(problem, search, best, (found, climbed), associated, tolerance, settings.rational_interfaces)
     return replace(answer, path=_path(search, began))
 

@@ -23,6 +23,8 @@ from methods.la.state import CollapseState, moving_contacts, tight_contacts
 
 LOWER = 1e-10
 """A multiplier is lower if it is lower by this much (scaled)."""
+STILL = 1e-9
+"""Blocks slower than this share of the fastest count as still."""
 
 
 @dataclass(frozen=True)
@@ -121,6 +123,21 @@ class Search:
         if result.gap > 1e-2:
             return None
         return self.nearest_mechanism(self.problem.forces_of_slacks(result.point.slack), result.point.rates)
+
+    def as_one_block(self, state: CollapseState) -> CollapseState | None:
+        """The best state in which all blocks that move in `state` move as one rigid body; None if they cannot.
+
+        Descent splits blocks up and seldom joins them again, while the joined ones may bear less.
+        """
+        assembly = self.problem.assembly
+        speed = np.abs(state.velocities.reshape(-1, 3)).max(axis=1)
+        moves = np.zeros(assembly.n_blocks, dtype=bool)
+        moves[assembly.free] = speed > STILL * speed.max(initial=0.0)
+        edge = moves[assembly.block_a] != moves[assembly.block_b]
+        slack = np.maximum(self.problem.slacks(state.forces), 0.0)
+        self.tally.programmes += 1
+        mechanism = self.kinematic.solve(np.repeat(edge[:, None], 4, axis=1), slack)
+        return None if mechanism is None else self.state_of(mechanism.velocities, mechanism.rates)
 
     def descend(self, state: CollapseState, effort: Effort) -> CollapseState:
         """Ray descent from a state."""

@@ -7,7 +7,9 @@ from pathlib import Path
 
 import pytest
 
+from cases.families import wall_21
 from harness.model.assembly import Assembly
+from harness.model.build import build
 from harness.model.case import read_case
 from harness.model.method import Finding, Status
 from methods.la.adapter import AssociatedLimitAnalysis, FromFiniteElements, LimitAnalysis
@@ -58,6 +60,32 @@ def test_wall_on_which_newtons_path_finds_nothing_is_solved_with_lagged_friction
     assert answer.multiplier is not None
     # The finite elements reach the same state by their own way.
     assert answer.multiplier <= 0.5244053414388556 + 1e-9
+
+
+def test_blocks_that_move_together_are_joined_where_that_bears_less() -> None:
+    answer = LimitAnalysis().solve(wall_of("ferris-tin-loi-4-inset"), SearchSettings())
+    # The finite elements collapse with one rigid body of 18 blocks at 16/65; descent alone stays above.
+    assert answer.multiplier is not None
+    assert answer.multiplier <= 16 / 65 + 1e-9
+
+
+@pytest.mark.parametrize(("proportion", "friction", "plateau"), [(3.0, 1.1, 0.8478261), (4.0, 1.2, 1.1304348)])
+def test_wide_bricks_at_high_friction_are_no_longer_left_above_the_plateau_of_fe(
+    proportion: float, friction: float, plateau: float
+) -> None:
+    answer = LimitAnalysis().solve(build(wall_21(proportion, friction)).assembly, SearchSettings(effort="quick"))
+    assert answer.multiplier is not None
+    assert answer.multiplier <= plateau + 1e-6
+
+
+def test_path_of_an_answer_is_the_least_known_over_search_time() -> None:
+    answer = LimitAnalysis().solve(wall_of("wall-21-friction-085"), SearchSettings())
+    seconds, multipliers = answer.path["cpu_seconds"], answer.path["multiplier"]
+    assert len(seconds) == len(multipliers) > 1
+    assert seconds[0] > 0.0
+    assert sorted(seconds) == seconds
+    assert sorted(multipliers, reverse=True) == multipliers
+    assert multipliers[-1] == pytest.approx(answer.multiplier, rel=1e-9)
 
 
 @pytest.mark.slow
