@@ -74,12 +74,14 @@ def least_known(problem: Problem, newton: NewtonMatrix, settings: SearchSettings
     effort = Effort(failures=plan.failures)
     search = Search(problem, newton, settings.seed)
     first = search.interior()
+    smooth = [rung for factor in SMOOTH if (rung := smooth_joints(search, factor)) is not None]
+    carried = [state for rung in smooth for state in search.adopt(rung, POOL)]
+    climbed = descend_from(carried, search, effort, plan.descents)
     associated = solve_associated(problem, newton)
     found = [search.descend(state, effort) for state in _starting_states(search, first, associated, plan.starts)]
-    rungs = [smooth_joints(search, factor) for factor in SMOOTH]
-    rungs.append(climb(search, plan.ladder, effort, plan.descents))
-    carried = [state for rung in rungs if rung is not None for state in search.adopt(rung, POOL)]
-    climbed = descend_from(carried, search, effort, plan.descents)
+    below = climb(search, plan.ladder, effort, plan.descents)
+    if below is not None:
+        climbed += descend_from(search.adopt(below, POOL), search, effort, plan.descents)
     if not found and not climbed:
         return _nothing_found(search, associated)
     best = min(found + climbed, key=lambda state: state.multiplier)
