@@ -50,7 +50,7 @@ class ClosedContacts:
             "interfaces": {"perfect": assembly.n_interfaces, "closed": settled.assembly.n_interfaces},
             "single_points": settled.single_points,
         }
-        wall = f"The wall with corners cut by up to {settings.size:g} of the block height (seed {settings.seed})"
+        wall = settings.wall
         if not settled.at_rest:
             sentence = f"{wall} did not come to rest under its dead load, so its closed contacts are not known."
             return Answer(Status.NOT_CONVERGED, Finding.NONE, sentence, details=details)

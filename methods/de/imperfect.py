@@ -29,6 +29,11 @@ class UnevenSettings(Settings):
     accuracy: float = Field(default=0.005, gt=0.0, le=0.1)
     greatest: float = Field(default=2.0, gt=0.0)
 
+    @property
+    def wall(self) -> str:
+        """What a sentence calls the wall with these defects."""
+        return f"The wall with corners cut by up to {self.size:g} of the block height (seed {self.seed})"
+
 
 class UnevenBlocks:
     """Distinct elements on a wall with seeded defects of planarity (C. Baggio and P. Trovalusci 1995, section 4)."""
@@ -46,7 +51,7 @@ class UnevenBlocks:
         found = load_uneven(
             assembly, settings.size, settings.faces, settings.seed, settings.greatest, accuracy=settings.accuracy
         )
-        wall = f"The wall with corners cut by up to {settings.size:g} of the block height (seed {settings.seed})"
+        wall = settings.wall
         if found.stood is None:
             return Answer(
                 Status.OK, Finding.FALLS, f"{wall} does not come to rest under its dead load.", flow="approximate"

@@ -13,18 +13,14 @@ from __future__ import annotations
 from dataclasses import replace
 
 import numpy as np
-import scipy.sparse as sparse
-import scipy.sparse.linalg as linalg
 
-from harness.model.assembly import BoolArray, FloatArray
+from harness.model.assembly import FloatArray
 from methods.la.problem import Problem
 from methods.la.search import Effort, Search
 from methods.la.state import CollapseState
 
 POOL = 24
 """Mechanisms carried from one rung to the next."""
-UNLOADED = 0.05
-"""Share of the largest normal force on both its blocks below which a joint counts as unloaded."""
 
 
 def climb(search: Search, ladder: tuple[float, ...], effort: Effort, descents: int) -> Search | None:
@@ -72,26 +68,9 @@ def smooth_joints(search: Search, factor: float) -> Search | None:
 
 def smooth_friction(problem: Problem, factor: float) -> FloatArray | None:
     """Friction (m,) with that of the unloaded joints multiplied by `factor`; None if all joints are loaded."""
-    unloaded = unloaded_joints(problem)
+    unloaded = problem.unloaded_joints
     return np.where(unloaded, factor * problem.friction, problem.friction) if unloaded.any() else None
 
 
 def _with_friction(search: Search, friction: FloatArray) -> Search:
     return Search(replace(search.problem, friction=friction), search.newton, parent=search)
-
-
-def unloaded_joints(problem: Problem) -> BoolArray:
-    """Interfaces (m,) that hardly press under dead load, by the forces of least norm that balance it.
-
-    What counts is the largest normal force on either block, so that the light beds of a top course are not among them.
-    """
-    matrix = sparse.csc_matrix(problem.statics)
-    stiffness = (matrix @ matrix.T + 1e-12 * sparse.eye(matrix.shape[0])).tocsc()
-    forces = -matrix.T @ linalg.spsolve(stiffness, problem.dead)
-    normal = forces.reshape(-1, 3)[:, :2].sum(axis=1)
-    assembly = problem.assembly
-    largest = np.zeros(assembly.n_blocks)
-    for blocks in (assembly.block_a, assembly.block_b):
-        np.maximum.at(largest, blocks, normal)
-    largest[assembly.fixed] = np.inf
-    return np.asarray(normal < UNLOADED * np.minimum(largest[assembly.block_a], largest[assembly.block_b]))

@@ -13,11 +13,14 @@ from functools import cached_property
 
 import numpy as np
 import scipy.sparse as sp
+from scipy.sparse.linalg import spsolve
 
 from harness.model.assembly import Assembly, BoolArray, FloatArray
 
 FRICTIONLESS = 1e-12
 """Friction coefficients below this are zero to rounding."""
+UNLOADED = 0.05
+"""Share of the largest normal force on both its blocks below which a joint counts as unloaded."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -61,6 +64,24 @@ class Problem:
     def statics(self) -> sp.csr_matrix:
         """(3n, 3m) transposed kinematic matrix C'."""
         return self.kinematic.T.tocsr()
+
+    @cached_property
+    def unloaded_joints(self) -> BoolArray:
+        """Interfaces (m,) that hardly press under dead load, by the forces of least norm that balance it.
+
+        What counts is the largest normal force on either block, so that the light beds of a top course are not among
+        them.
+        """
+        matrix = sp.csc_matrix(self.statics)
+        stiffness = (matrix @ matrix.T + 1e-12 * sp.eye(matrix.shape[0])).tocsc()
+        forces = -matrix.T @ spsolve(stiffness, self.dead)
+        normal = forces.reshape(-1, 3)[:, :2].sum(axis=1)
+        assembly = self.assembly
+        largest = np.zeros(assembly.n_blocks)
+        for blocks in (assembly.block_a, assembly.block_b):
+            np.maximum.at(largest, blocks, normal)
+        largest[assembly.fixed] = np.inf
+        return np.asarray(normal < UNLOADED * np.minimum(largest[assembly.block_a], largest[assembly.block_b]))
 
     @cached_property
     def live_work(self) -> float:
