@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import os
 import sys
 import time
@@ -10,14 +11,14 @@ from typing import ClassVar, Literal
 import numpy as np
 
 from harness.model.assembly import Assembly
-from harness.model.method import Answer, Finding, Settings, Status
+from harness.model.method import Answer, Finding, OutOfTime, Settings, Status
 
 
 class DummySettings(Settings):
     """What it shall do."""
 
     does: Literal[
-        "answer", "nan", "nan_forces", "bad_shape", "raise", "abort", "exit", "hang", "spawn", "eat", "print"
+        "answer", "nan", "nan_forces", "bad_shape", "raise", "abort", "exit", "hang", "spawn", "tell", "eat", "print"
     ] = "answer"
 
 
@@ -42,11 +43,17 @@ class Dummy:
                 os._exit(3)
             case "hang":
                 while True:
-                    time.sleep(0.1)
+                    with contextlib.suppress(OutOfTime):
+                        time.sleep(3600)
             case "spawn":
                 if os.fork() == 0:
                     time.sleep(3600)
                 time.sleep(3600)
+            case "tell":
+                try:
+                    time.sleep(3600)
+                except OutOfTime:
+                    return Answer(Status.NOT_CONVERGED, Finding.NONE, "It slept until its time was over.")
             case "eat":
                 hoard = []
                 while True:

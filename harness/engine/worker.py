@@ -15,6 +15,7 @@ import signal
 import sys
 import time
 import traceback
+from collections.abc import Iterator
 from dataclasses import dataclass, fields
 from pathlib import Path
 from typing import Any
@@ -24,7 +25,10 @@ import scipy.sparse.linalg  # noqa: F401  (preloaded for the methods)
 from pydantic import ValidationError
 
 from harness.model.assembly import Assembly
-from harness.model.method import Answer, Finding, Status, load_method
+from harness.model.method import Answer, Finding, OutOfTime, Status, load_method
+
+LAST_WORDS = (0.05, 5.0)
+"""Share of the time limit, and at most so many seconds, that are left to a method to say how far it came."""
 
 
 @dataclass(frozen=True)
@@ -54,8 +58,8 @@ def run_task(task: Task, folder: str) -> None:
     _send_output_to(Path(folder) / "output.txt")
     resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
     _limit_address_space(task.memory_bytes)
-    before = time.process_time()
-    started = time.perf_counter()
+    begun = started = time.perf_counter()
+    before = _cpu_seconds()
     settings: dict[str, Any] = {}
     family, tolerance = "", 0.0
     try:
@@ -65,7 +69,11 @@ def run_task(task: Task, folder: str) -> None:
         settings = chosen.model_dump(mode="json")
         before = _cpu_seconds()
         started = time.perf_counter()
-        answer = _checked(method.solve(task.assembly, chosen), task.assembly)
+        with _warned_of_the_limit(task.seconds, begun):
+            answer = method.solve(task.assembly, chosen)
+        answer = _checked(answer, task.assembly)
+    except OutOfTime:
+        answer = _failure(Status.TIMEOUT, f"It was stopped at the limit of {task.seconds:g} s.")
     except ValidationError as error:
         fault = error.errors()[0]
         place = ".".join(str(part) for part in fault["loc"])
@@ -90,6 +98,23 @@ def run_task(task: Task, folder: str) -> None:
     sys.stdout.flush()
     sys.stderr.flush()
     os._exit(0)
+
+
+@contextlib.contextmanager
+def _warned_of_the_limit(seconds: float, begun: float) -> Iterator[None]:
+    """Raise OutOfTime shortly before the limit of a run begun then, in Python or when a library call returns to it."""
+
+    def stop(*_: object) -> None:
+        raise OutOfTime
+
+    share, most = LAST_WORDS
+    signal.signal(signal.SIGALRM, stop)
+    left = begun + seconds - min(share * seconds, most) - time.perf_counter()
+    signal.setitimer(signal.ITIMER_REAL, max(left, 1e-6))
+    try:
+        yield
+    finally:
+        signal.setitimer(signal.ITIMER_REAL, 0.0)
 
 
 def _cpu_seconds() -> float:

@@ -13,6 +13,14 @@ from harness.model.assembly import Assembly, FloatArray
 from harness.model.errors import InputError
 
 
+class OutOfTime(Exception):
+    """Raised inside `solve` shortly before the time limit of a run.
+
+    A method that catches it can still say how far it came, with status `not_converged`; the engine waits for that
+    answer until the limit. A method that lets it pass is listed as `timeout`.
+    """
+
+
 class Status(StrEnum):
     """How a run ended. It says nothing about whether the value is right: that is the verdict."""
 

@@ -68,7 +68,7 @@ class GapSprings:
         for step in chosen_histories(model, settings):
             result = trace_history(model, factor, gravity, step, scale, limit)
             results.append(result)
-            if result.end == PathEnd.UNBOUNDED:
+            if result.end in (PathEnd.UNBOUNDED, PathEnd.TIME):
                 break
             if result.state is not None:
                 scale = abs(result.state.multiplier) or 1.0

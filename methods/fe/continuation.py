@@ -114,12 +114,15 @@ class Tracer:
             raise SingularTangent("the path was lost to rounding")
         self.direction = self.factor.solve(self.model.live)
         self.resting = self.fragile = False
-        if not self._straighten() and float(np.abs(self.direction).max()) > BLIND * self.first_size:
-            self._rest_blindly(self.sign)
+        if not self._straighten():
+            self._rest_blindly()
 
-    def _rest_blindly(self, sign: float) -> None:
+    def _rest_blindly(self) -> None:
         """Take a direction beyond the reach of double precision for the null vector that it is close to."""
-        velocity = self.direction * (sign / np.abs(self.direction).max())
+        size = float(np.abs(self.direction).max())
+        if size <= BLIND * self.first_size:
+            return
+        velocity = self.direction * (self.sign / size)
         rates = self.opening_rate.copy(), self.trial_rate.copy()
         self._rates(velocity)
         if self.is_mechanism():
@@ -304,9 +307,9 @@ class Tracer:
         along = float(b @ y[index])
         denominator = 1.0 + along
         if abs(denominator) < ILL:
-            y, along = self._refine(point, old, index, a, b)
+            y = self._hold(index, a, b)
+            along = float(b @ y[index])
             denominator = 1.0 + along
-            self.a, self.b, self.index, self.held = a, b, index, True
             if abs(denominator) < ILL and self._rests(y, along, crossing, abs(denominator)):
                 return
         self.sign *= 1.0 if denominator > 0.0 else -1.0
@@ -324,19 +327,22 @@ class Tracer:
         else:
             self.direction -= y * (float(b @ self.direction[index]) / denominator)
             self.factor.update(y, index, b, denominator)
-            if not self._straighten() and self.factor.count > 1:
-                self.refresh()
+            if not self._straighten():
+                if self.factor.count > 1:
+                    self.refresh()
+                else:
+                    self._rest_blindly()
                 self._orient(index, b, crossing)
 
-    def _refine(self, point: int, old: int, index: IntArray, a: FloatArray, b: FloatArray) -> tuple[FloatArray, float]:
-        """y = K^-1 a and b'y again, from a fresh factor of the tangent before the change, and the direction with it."""
-        new = int(self.state[point])
-        self.state[point] = old
+    def _hold(self, index: IntArray, a: FloatArray, b: FloatArray) -> FloatArray:
+        """y = K^-1 a again, from a fresh factor of the tangent before the change just made, which is held apart."""
+        new = int(self.state[self.last_point])
+        self.state[self.last_point] = self.last_old
         self.factor.refactor(self.state)
-        self.state[point] = new
+        self.state[self.last_point] = new
         self.direction = self.factor.solve(self.model.live)
-        y = self.factor.solve_sparse(index, a)
-        return y, float(b @ y[index])
+        self.a, self.b, self.index, self.held = a, b, index, True
+        return self.factor.solve_sparse(index, a)
 
     def _drifted(self) -> bool:
         """Whether the out-of-balance force has grown enough to factorise afresh (looked at every few changes)."""
@@ -391,5 +397,28 @@ class Tracer:
                 self._rest(velocity)
                 self.factor.update(y, index, b, denominator)
                 return
-        self.refresh()
+        if abs(denominator) < ILL and abs(reach) < ILL:
+            y = self._hold(index, a, b)
+            along = float(b @ y[index])
+            if self._rests(y, along, crossing, abs(1.0 + along)):
+                return
+            self.refresh()
+        elif not self._change_both(index, b, y, first, denominator, back):
+            self.refresh()
         self._orient(index, b, crossing)
+
+    def _change_both(
+        self, index: IntArray, b: FloatArray, y: FloatArray, first: FloatArray, denominator: float, back: float
+    ) -> bool:
+        """Update the factor by the change (a, b) and then by the held one; False where that would cost digits."""
+        if self.factor.count > self.factor.capacity - 3 or not 1.0 / STEEP < abs(denominator) < STEEP:
+            return False
+        held = first - y * (back / denominator)
+        remaining = 1.0 + float(self.b @ held[self.index])
+        if not 1.0 / STEEP < abs(remaining) < STEEP:
+            return False
+        self.factor.update(y, index, b, denominator)
+        self.factor.update(held, self.index, self.b, remaining)
+        self.direction = self.factor.solve(self.model.live)
+        self.resting = self.fragile = False
+        return self._straighten()

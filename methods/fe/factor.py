@@ -1,6 +1,6 @@
 """Solves with a tangent that changes by one rank-one term at a time.
 
-Small walls keep the dense inverse and correct it by Sherman-Morrison (1950). Larger ones keep a sparse LU of an
+Small walls keep the dense inverse and correct it by Sherman-Morrison (1950). Larger ones keep a block LU of an
 earlier tangent and the product form of the changes since then: with K_{j+1} = K_j + a_j b_j', y_j = K_j^-1 a_j,
 
     K_k^-1 x = K_0^-1 x - sum_j y_j alpha_j,   alpha_j = (b_j' K_0^-1 x - sum_{i<j} (b_j' y_i) alpha_i) / (1 + b_j' y_j)
@@ -12,12 +12,12 @@ from typing import Protocol
 
 import numpy as np
 import scipy.linalg as sla
-from scipy.sparse.linalg import splu
+from scipy.sparse.linalg import SuperLU, splu
 
 from harness.model.assembly import FloatArray, IntArray
+from methods.fe.block_lu import BlockPattern
 from methods.fe.compiled import compiled
-from methods.fe.triangular import Triangles
-from methods.fe.wall_model import WallModel
+from methods.fe.wall_model import WallModel, add_tangent
 
 DENSE_LIMIT = 70
 """Unknowns up to which the dense inverse is faster than the sparse product form."""
@@ -91,7 +91,7 @@ class DenseFactor:
 
 
 class SparseFactor:
-    """A sparse LU and the product form of the changes since."""
+    """A block LU, with row exchanges where its pivots cannot be trusted, and the product form of the changes since."""
 
     def __init__(self, model: WallModel) -> None:
         self.model = model
@@ -99,8 +99,10 @@ class SparseFactor:
         self.count = 0
         self.factorisations = 0
         n = model.n_unknowns
-        self._triangles: Triangles | None = None
-        self._work = np.empty(n)
+        self._pattern = BlockPattern(model.unknown[:, 0] // 3, model.unknown[:, 3] // 3, n // 3)
+        self._slot = self._pattern.slot(model.unknown)
+        self._values = np.zeros((self._pattern.n_values, 3, 3))
+        self._exchanged: SuperLU | None = None
         self._y = np.empty((self.capacity, n))
         self._coupling = np.zeros((self.capacity, self.capacity))
         self._denominator = np.empty(self.capacity)
@@ -111,24 +113,38 @@ class SparseFactor:
         """Factorise afresh. Raises SingularTangent."""
         self.count = 0
         self.factorisations += 1
+        model = self.model
+        self._values[:] = 0.0
+        springs = model.interface, model.position, model.kn, model.kt, model.mu
+        add_tangent(self._slot, model.rows, *springs, state, self._values.reshape(-1))
+        if shift:
+            self._values[: self._pattern.n, range(3), range(3)] += shift * model.inertia.reshape(-1, 3)
+        self._exchanged = None
+        if not self._pattern.factorise(self._values):
+            self._exchanged = self._with_row_exchanges(state, shift)
+
+    def _with_row_exchanges(self, state: IntArray, shift: float) -> SuperLU:
+        options = {"SymmetricMode": True}
         try:
-            lu = splu(
-                self.model.tangent(state, shift),
-                permc_spec="NATURAL",
-                diag_pivot_thresh=1e-3,
-                panel_size=1,
-                relax=1,
-                options={"SymmetricMode": True},
-            )
-            self._triangles = Triangles(lu)
+            return splu(self.model.tangent(state, shift), "NATURAL", 1e-3, relax=1, panel_size=1, options=options)
         except RuntimeError as error:
             raise SingularTangent(str(error)) from error
 
     def solve(self, right: FloatArray) -> FloatArray:
         """K^-1 right (N,). Raises SingularTangent when the result is not finite."""
-        assert self._triangles is not None
-        x = np.empty_like(right)
-        self._triangles.solve(right, self._work, x)
+        if self._exchanged is not None:
+            return self._corrected(self._exchanged.solve(right))
+        x = right.copy()
+        self._pattern.solve(self._values, 0, x.reshape(-1, 3))
+        return self._corrected(x)
+
+    def solve_sparse(self, index: IntArray, value: FloatArray) -> FloatArray:
+        """K^-1 times the vector with `value` (6,) at `index` (6,)."""
+        x = np.zeros(self.model.n_unknowns)
+        np.add.at(x, index, value)
+        if self._exchanged is not None:
+            return self._corrected(self._exchanged.solve(x))
+        self._pattern.solve(self._values, int(index.min()) // 3, x.reshape(-1, 3))
         return self._corrected(x)
 
     def _corrected(self, x: FloatArray) -> FloatArray:
@@ -141,13 +157,6 @@ class SparseFactor:
         if not np.isfinite(x).all():
             raise SingularTangent("the tangent is singular in these states")
         return x
-
-    def solve_sparse(self, index: IntArray, value: FloatArray) -> FloatArray:
-        """K^-1 times the vector with `value` (6,) at `index` (6,)."""
-        assert self._triangles is not None
-        x = np.empty_like(self._work)
-        self._triangles.solve_sparse(index, value, self._work, x)
-        return self._corrected(x)
 
     def update(self, y: FloatArray, index: IntArray, b: FloatArray, denominator: float) -> None:
         """Append one term to the product form."""

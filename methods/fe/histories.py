@@ -12,6 +12,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from harness.model.assembly import FloatArray
+from harness.model.method import OutOfTime
 from methods.fe.commits import committed_step
 from methods.fe.continuation import Tracer
 from methods.fe.factor import Factor
@@ -45,6 +46,7 @@ SENTENCES = {
     PathEnd.BREAKDOWN: "the path was lost",
     PathEnd.TARGET: "the path was left at its target",
     PathEnd.TURNED_DOWN: "the path turned down",
+    PathEnd.TIME: "the path was left at the time limit",
 }
 
 
@@ -84,7 +86,7 @@ def trace_history(
     """
     result = _trace(model, factor, gravity.u, model.history, step, scale, max_events, 0.0)
     for disturbance in DISTURBANCES if step == 0.0 else DISTURBANCES[1:2]:
-        if result.state is not None or result.end == PathEnd.UNBOUNDED:
+        if result.state is not None or result.end in (PathEnd.UNBOUNDED, PathEnd.TIME):
             break
         noise = np.random.default_rng(1995).uniform(-disturbance, disturbance, model.n_points)
         start = equilibrium(model, factor, gravity.u, 0.0, model.history + noise)
@@ -103,8 +105,29 @@ def _trace(
     max_events: int,
     disturbance: float,
 ) -> HistoryResult:
-    """Trace one history from displacements u with the initial history h."""
+    """Trace one history from displacements u with the initial history h, as far as the time allows."""
     record = PathRecord()
+    try:
+        return _trace_in_time(model, factor, u, history, step, scale, max_events, disturbance, record)
+    except OutOfTime:
+        sentence = SENTENCES[PathEnd.TIME]
+        if record.multiplier:
+            sentence += f", at {record.multiplier[-1]:.4g} times the live load (greatest so far {record.peak:.4g})"
+        return HistoryResult(step, PathEnd.TIME, sentence, record, None, 0, 0.0, disturbance)
+
+
+def _trace_in_time(
+    model: WallModel,
+    factor: Factor,
+    u: FloatArray,
+    history: FloatArray,
+    step: float,
+    scale: float,
+    max_events: int,
+    disturbance: float,
+    record: PathRecord,
+) -> HistoryResult:
+    """Trace one history into the record. Raises OutOfTime."""
     commits, worst, jumps = 0, 0.0, 0
     start = START * min(1.0, scale)
     first = equilibrium(model, factor, u, start, history)

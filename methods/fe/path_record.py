@@ -20,6 +20,7 @@ class PathEnd(StrEnum):
     TURNED_DOWN = "turned_down"
     EVENTS = "events"
     BREAKDOWN = "breakdown"
+    TIME = "time"
 
 
 @dataclass

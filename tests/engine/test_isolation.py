@@ -74,6 +74,14 @@ def test_run_over_its_time_is_killed_with_everything_it_started(does: str):
     assert not left
 
 
+def test_a_method_may_say_how_far_it_came_before_its_time_is_over():
+    result = run("tell", seconds=2.0)
+    assert result.status is Status.NOT_CONVERGED
+    assert result.sentence == "It slept until its time was over."
+    assert result.wall_seconds is not None
+    assert result.wall_seconds < 2.0
+
+
 def test_output_of_a_method_does_not_reach_ours(capfd: pytest.CaptureFixture[str]):
     assert run("print").status is Status.OK
     captured = capfd.readouterr()

@@ -8,6 +8,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from harness.engine.isolate import run_isolated
+from harness.engine.worker import Task
 from harness.model.assembly import Assembly
 from harness.model.method import Answer, Finding, Status
 from methods.fe.adapter import GapSprings
@@ -133,3 +135,11 @@ def test_fe_210_bricks_within_a_thousandth() -> None:
     answer = solve(running_bond(20, 10, 0.65))
     assert answer.multiplier == pytest.approx(0.4484, rel=1e-3)
     assert answer.details["spread"] < 0.025
+
+
+def test_a_path_left_at_the_time_limit_says_where_it_was() -> None:
+    wall = running_bond(60, 30, 0.65)
+    result = run_isolated(Task("fe", wall, {}, 6.0, 2**31), "large").result
+    assert result.status is Status.NOT_CONVERGED
+    assert result.multiplier is None
+    assert "left at the time limit, at 0." in result.sentence

@@ -1,0 +1,93 @@
+"""Solves with the tangent, judged by the tangent itself."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from methods.fe import block_lu
+from methods.fe.factor import DenseFactor, Factor, SingularTangent, SparseFactor
+from methods.fe.gap_law import OPEN, STICK, neighbour_states
+from methods.fe.patterns import running_bond
+from methods.fe.settings import GapSpringsSettings
+from methods.fe.wall_model import WallModel, build_model
+
+
+@pytest.fixture(scope="module")
+def model() -> WallModel:
+    return build_model(running_bond(6, 3, 0.6), GapSpringsSettings())
+
+
+@pytest.fixture(params=[DenseFactor, SparseFactor])
+def factor(request: pytest.FixtureRequest, model: WallModel) -> Factor:
+    made: Factor = request.param(model)
+    return made
+
+
+def sliding_states(model: WallModel, seed: int) -> np.ndarray:
+    """States of which one in five slides: the tangent is unsymmetric and regular."""
+    rng = np.random.default_rng(seed)
+    state = np.full(model.n_points, STICK)
+    slides = rng.random(model.n_points) < 0.2
+    state[slides] = rng.choice(neighbour_states(STICK), int(slides.sum()))
+    return state
+
+
+@pytest.mark.parametrize("seed", range(5))
+@pytest.mark.parametrize("shift", [0.0, 0.3])
+def test_a_fresh_factor_solves_with_the_tangent(model: WallModel, factor: Factor, seed: int, shift: float) -> None:
+    state = sliding_states(model, seed)
+    right = np.random.default_rng(seed + 100).normal(size=model.n_unknowns)
+    factor.refactor(state, shift)
+    x = factor.solve(right)
+    assert np.abs(model.tangent(state, shift) @ x - right).max() < 1e-11 * max(1.0, np.abs(x).max())
+
+
+def test_a_few_entries_on_the_right_are_solved_for_as_a_full_vector_is(model: WallModel, factor: Factor) -> None:
+    state = sliding_states(model, 1)
+    factor.refactor(state)
+    value = np.arange(1.0, 7.0)
+    for index in model.unknown:
+        right = np.zeros(model.n_unknowns)
+        np.add.at(right, index, value)
+        np.testing.assert_allclose(factor.solve_sparse(index, value), factor.solve(right), rtol=1e-12, atol=1e-12)
+
+
+def test_changes_of_state_follow_by_updates(model: WallModel, factor: Factor) -> None:
+    state = sliding_states(model, 2)
+    factor.refactor(state)
+    for point in range(0, model.n_points, 3):
+        new = neighbour_states(int(state[point]))[0]
+        index, a, b = model.change(point, int(state[point]), new)
+        y = factor.solve_sparse(index, a)
+        denominator = 1.0 + float(b @ y[index])
+        if abs(denominator) < 1e-3:
+            continue
+        factor.update(y, index, b, denominator)
+        state[point] = new
+    x = factor.solve(model.live)
+    assert np.abs(model.tangent(state) @ x - model.live).max() < 1e-9 * max(1.0, np.abs(x).max())
+
+
+def test_rows_are_exchanged_where_block_pivots_are_not_trusted(
+    model: WallModel, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    factor, state = SparseFactor(model), sliding_states(model, 3)
+    monkeypatch.setattr(block_lu, "GROWTH", 0.0)
+    factor.refactor(state, 0.1)
+    assert factor._exchanged is not None
+    tangent = model.tangent(state, 0.1)
+    np.testing.assert_allclose(tangent @ factor.solve(model.live), model.live, atol=1e-10)
+    right = np.zeros(model.n_unknowns)
+    np.add.at(right, model.unknown[0], 1.0)
+    np.testing.assert_allclose(tangent @ factor.solve_sparse(model.unknown[0], np.ones(6)), right, atol=1e-10)
+
+
+def test_a_wall_in_the_air_has_no_inverse(model: WallModel, factor: Factor) -> None:
+    with pytest.raises(SingularTangent):
+        _solve_with_all_open(model, factor)
+
+
+def _solve_with_all_open(model: WallModel, factor: Factor) -> None:
+    factor.refactor(np.full(model.n_points, OPEN))
+    factor.solve(model.live)
