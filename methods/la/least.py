@@ -74,8 +74,8 @@ def least_known(problem: Problem, newton: NewtonMatrix, settings: SearchSettings
     effort = Effort(failures=plan.failures)
     search = Search(problem, newton, settings.seed)
     first = search.interior()
-    smooth = [rung for factor in SMOOTH if (rung := smooth_joints(search, factor)) is not None]
-    carried = [state for rung in smooth for state in search.adopt(rung, POOL)]
+    rungs = (smooth_joints(search, factor) for factor in SMOOTH)
+    carried = [state for rung in rungs if rung is not None for state in search.adopt(rung, POOL)]
     climbed = descend_from(carried, search, effort, plan.descents)
     associated = solve_associated(problem, newton)
     found = [search.descend(state, effort) for state in _starting_states(search, first, associated, plan.starts)]
