@@ -58,8 +58,12 @@ class BlockPattern:
         out: IntArray = 9 * place + 3 * (row % 3) + column % 3
         return out
 
-    def factorise(self, values: FloatArray) -> bool:
-        """Factorise in place; the diagonal becomes its inverse. False: the pivots are not to be trusted."""
+    def factorise(self, values: FloatArray) -> int:
+        """Factorise in place; the diagonal becomes its inverse.
+
+        Returns:
+            The sign of the determinant, or 0 when the pivots are not to be trusted.
+        """
         return _factorise(self.low_start, self.low_row, self.up_start, self.up_row, values, GROWTH)
 
     def solve(self, values: FloatArray, first: int, x: FloatArray) -> None:
@@ -68,16 +72,19 @@ class BlockPattern:
 
 
 @compiled
-def _invert(d: FloatArray) -> bool:
-    """Invert a 3 x 3 matrix in place by Gauss-Jordan elimination with row exchanges. False: singular."""
+def _invert(d: FloatArray) -> int:
+    """Invert a 3 x 3 matrix in place by Gauss-Jordan elimination; the sign of its determinant, 0 if singular."""
     swapped = np.zeros(3, dtype=np.int64)
+    sign = 1
     for k in range(3):
         best = k
         for i in range(k + 1, 3):
             if abs(d[i, k]) > abs(d[best, k]):
                 best = i
         if not abs(d[best, k]) > 0.0:
-            return False
+            return 0
+        if (d[best, k] < 0.0) != (best != k):
+            sign = -sign
         swapped[k] = best
         for j in range(3):
             d[k, j], d[best, j] = d[best, j], d[k, j]
@@ -94,17 +101,18 @@ def _invert(d: FloatArray) -> bool:
     for k in range(2, -1, -1):
         for i in range(3):
             d[i, k], d[i, swapped[k]] = d[i, swapped[k]], d[i, k]
-    return True
+    return sign
 
 
 @compiled
 def _factorise(
     low_start: IntArray, low_row: IntArray, up_start: IntArray, up_row: IntArray, values: FloatArray, growth: float
-) -> bool:
+) -> int:
     """Column by column: subtract what the columns before it reach, invert its pivot, divide what lies below."""
     n, e = len(low_start) - 1, len(low_row)
     work = np.zeros((n, 3, 3))
     greatest = 0.0
+    sign = 1
     for j in range(n):
         work[j] = values[j]
         for p in range(low_start[j], low_start[j + 1]):
@@ -127,8 +135,9 @@ def _factorise(
                     out[r, 2] -= l0 * u02 + l1 * u12 + l2 * u22
         inverse = values[j]
         inverse[:] = work[j]
-        if not _invert(inverse):
-            return False
+        sign *= _invert(inverse)
+        if sign == 0:
+            return 0
         for p in range(low_start[j], low_start[j + 1]):
             column, out = work[low_row[p]], values[n + p]
             for r in range(3):
@@ -136,7 +145,7 @@ def _factorise(
                     entry = column[r, 0] * inverse[0, c] + column[r, 1] * inverse[1, c] + column[r, 2] * inverse[2, c]
                     out[r, c] = entry
                     greatest = max(greatest, abs(entry))
-    return greatest < growth
+    return sign if greatest < growth else 0
 
 
 @compiled

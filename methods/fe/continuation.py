@@ -5,8 +5,9 @@ pieces; at each kink one gap point changes state, the tangent changes by a rank-
 
     d' = d - y (b'd) / (1 + b'y),   y = K^-1 a,   dlambda' = dlambda sign(1 + b'y),
 
-which keeps the crossed kink function moving into the new cell (Katzenelson, 1965; Eaves and Scarf, 1976). A tangent
-that turns singular gives the null direction y; when nothing stops the motion along it, it is the collapse mechanism.
+which keeps the crossed kink function moving into the new cell (Katzenelson, 1965; Eaves and Scarf, 1976): dlambda has
+the sign of det K, up to one sign for the whole path, so a path cannot turn back on itself by rounding. A tangent that
+turns singular gives the null direction y; when nothing stops the motion along it, it is the collapse mechanism.
 """
 
 from __future__ import annotations
@@ -33,6 +34,8 @@ from methods.fe.tolerances import (
     LOOK,
     LOST,
     NEARLY_FREE,
+    NOISE,
+    RIGID,
     SINGULAR,
     STEEP,
     TIE,
@@ -45,7 +48,8 @@ class Tracer:
 
     Attributes:
         u, multiplier, state: where the path is; history: (P,) frozen-in shears h.
-        direction: (N,) du/dlambda of the present piece; sign: whether lambda grows (+1), falls (-1) or rests (0).
+        direction: (N,) du/dlambda of the present piece; sign: whether lambda grows (+1) or falls (-1) along it.
+        orientation: sign times that of the determinant, the same along the whole path.
         a, b, index: the change of state, with which the tangent turned singular at a plateau.
     """
 
@@ -83,8 +87,10 @@ class Tracer:
         self.trial += history
         self.n_open = int(np.count_nonzero(state == OPEN))
         self.n_slip = int(np.count_nonzero(state >= SLIP_PLUS))
+        self.orientation = 0.0
         if factorised:
             self.direction = factor.solve(model.live)
+            self.orientation = factor.sign
             self._straighten()
         else:
             self.refresh()
@@ -94,7 +100,18 @@ class Tracer:
 
     def refresh(self) -> None:
         """Factorise afresh, remove the drift of the gaps and recompute the direction (which keeps its sign)."""
-        self.factor.refactor(self.state)
+        self._refactor(careful=False)
+        if not self._straighten():
+            if not self.factor.careful:
+                self._refactor(careful=True)
+                if self._straighten():
+                    return
+            self._rest_blindly()
+
+    def _refactor(self, careful: bool) -> None:
+        self.factor.refactor(self.state, careful=careful)
+        self.orientation = self.orientation or self.factor.sign
+        self.sign = self.orientation * self.factor.sign
         residual = self._out_of_balance()
         worst = float(np.abs(residual).max()) / self.scale
         self.worst_residual = max(self.worst_residual, worst)
@@ -114,8 +131,6 @@ class Tracer:
             raise SingularTangent("the path was lost to rounding")
         self.direction = self.factor.solve(self.model.live)
         self.resting = self.fragile = False
-        if not self._straighten():
-            self._rest_blindly()
 
     def _rest_blindly(self) -> None:
         """Take a direction beyond the reach of double precision for the null vector that it is close to."""
@@ -188,10 +203,10 @@ class Tracer:
         gap_forces(self.opening, self.trial, model.kn, model.mu, self.state, normal, shear)
         return shear - (self.trial - self.history)
 
-    def is_mechanism(self) -> bool:
-        """Whether no force changes along the present piece (rates as last measured)."""
+    def is_mechanism(self, share: float = ELASTIC) -> bool:
+        """Whether no force changes along the present piece (rates as last measured, within a share of the fastest)."""
         strain, elastic = strain_rates(self.opening_rate, self.trial_rate, self.model.kt, self.state)
-        return elastic <= ELASTIC * strain
+        return elastic <= share * strain
 
     def run(
         self, record: PathRecord, max_events: int, target: float = np.inf, turn: float = np.inf, note: int = 1
@@ -233,6 +248,7 @@ class Tracer:
             self.state,
             TIE * self.scale,
             1e-8 if self.resting else 1e-11,
+            np.inf if self.easy or self.resting else NOISE * self.live_size,
             self.last_point,
             self.last_old,
         )
@@ -291,7 +307,7 @@ class Tracer:
         """Change one state, and turn the direction onto the next piece."""
         old = int(self.state[point])
         index, a, b = self.model.change(point, old, new)
-        crossing = float(b @ self.along()[index])
+        crossing = self._kink_rate(point, old, new)
         self.state[point] = new
         self.n_open += (new == OPEN) - (old == OPEN)
         self.n_slip += (new >= SLIP_PLUS) - (old >= SLIP_PLUS)
@@ -312,10 +328,10 @@ class Tracer:
             denominator = 1.0 + along
             if abs(denominator) < ILL and self._rests(y, along, crossing, abs(denominator)):
                 return
-        self.sign *= 1.0 if denominator > 0.0 else -1.0
         self.fragile = abs(denominator) < ILL
         if self.fragile:
-            self.direction -= y * (float(b @ self.direction[index]) / denominator)
+            self.direction -= y * (self.sign * crossing / denominator)
+            self.sign *= float(np.sign(denominator))
             self.tail[:] = 0.0
             self._rates(self.direction, self.tail)
             return
@@ -325,10 +341,11 @@ class Tracer:
         elif self.factor.count >= self.factor.capacity - 1 or self._drifted():
             self.refresh()
         else:
-            self.direction -= y * (float(b @ self.direction[index]) / denominator)
+            self.direction -= y * (self.sign * crossing / denominator)
             self.factor.update(y, index, b, denominator)
+            self.sign = self.orientation * self.factor.sign
             if not self._straighten():
-                if self.factor.count > 1:
+                if self.factor.count > 1 or not self.factor.careful:
                     self.refresh()
                 else:
                     self._rest_blindly()
@@ -350,24 +367,39 @@ class Tracer:
             return False
         return float(np.abs(self._out_of_balance()).max()) > DRIFT * self.scale
 
+    def _kink_rate(self, point: int, old: int, new: int) -> float:
+        """b'v of a change of state and the velocity v whose gap rates were last measured."""
+        model = self.model
+        pressed = model.kn[point] * self.opening_rate[point]
+        if OPEN in (old, new):
+            return float(pressed)
+        slip = new if old == STICK else old
+        return float(self.trial_rate[point] + (1.0 if slip == SLIP_PLUS else -1.0) * model.mu[point] * pressed)
+
     def _orient(self, index: IntArray, b: FloatArray, crossing: float) -> None:
-        """Give the direction the sign that moves the kink function just crossed on into the new cell."""
-        if self.resting:
-            if float(b @ self.direction[index]) * crossing < 0.0:
-                self.direction = -self.direction
-                np.negative(self.opening_rate, out=self.opening_rate)
-                np.negative(self.trial_rate, out=self.trial_rate)
-            return
-        self.sign = 1.0 if float(b @ self.direction[index]) * crossing > 0.0 else -1.0
+        """Turn a null vector to where it moves the kink function just crossed on into the new cell."""
+        if self.resting and float(b @ self.direction[index]) * crossing < 0.0:
+            self.direction = -self.direction
+            np.negative(self.opening_rate, out=self.opening_rate)
+            np.negative(self.trial_rate, out=self.trial_rate)
 
     def _rests(self, y: FloatArray, along: float, crossing: float, denominator: float) -> bool:
         """Turn onto the null vector y when the new tangent is singular: the multiplier rests while the wall moves."""
         velocity = y * (np.sign(crossing) * np.sign(along) / np.abs(y).max())
-        self._rates(velocity)
-        if denominator > SINGULAR and not self.is_mechanism():
+        self._null_rates(velocity)
+        if denominator > SINGULAR and not self.is_mechanism(RIGID):
             return False
         self._rest(velocity)
         return True
+
+    def _null_rates(self, velocity: FloatArray) -> None:
+        """Gap rates along a null vector in doubled precision, refined by the regular tangent that the factor holds."""
+        self.tail[:] = 0.0
+        self._rates(velocity, self.tail)
+        for _ in range(2):
+            defect = self.model.out_of_balance(self.opening_rate, self.trial_rate, self.state, 0.0, 0.0)
+            self.tail += self.factor.solve(defect)
+            self._rates(velocity, self.tail)
 
     def _rest(self, velocity: FloatArray) -> None:
         """Move along a null vector whose gap rates have just been measured; a mechanism changes no force at all."""
@@ -392,8 +424,8 @@ class Tracer:
         if determinant < 1e-8 * bound and abs(denominator) > ILL and abs(back) > ILL:
             null = first * (denominator / back) - y
             velocity = null * (np.sign(crossing) / np.abs(null).max())
-            self._rates(velocity)
-            if determinant < SINGULAR * bound or self.is_mechanism():
+            self._null_rates(velocity)
+            if determinant < SINGULAR * bound or self.is_mechanism(RIGID):
                 self._rest(velocity)
                 self.factor.update(y, index, b, denominator)
                 return
@@ -420,5 +452,6 @@ class Tracer:
         self.factor.update(y, index, b, denominator)
         self.factor.update(held, self.index, self.b, remaining)
         self.direction = self.factor.solve(self.model.live)
+        self.sign = self.orientation * self.factor.sign
         self.resting = self.fragile = False
         return self._straighten()

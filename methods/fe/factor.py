@@ -12,6 +12,8 @@ from typing import Protocol
 
 import numpy as np
 import scipy.linalg as sla
+import scipy.sparse as sp
+from scipy.sparse.csgraph import connected_components
 from scipy.sparse.linalg import SuperLU, splu
 
 from harness.model.assembly import FloatArray, IntArray
@@ -28,14 +30,25 @@ class SingularTangent(ArithmeticError):
 
 
 class Factor(Protocol):
-    """What the continuation needs of a factorised tangent."""
+    """What the continuation needs of a factorised tangent.
+
+    Attributes:
+        count: changes since the last factorisation; capacity: how many there may be.
+        factorisations: in all; careful: whether the last one chose its pivots among all rows.
+        sign: of the determinant.
+    """
 
     count: int
     capacity: int
     factorisations: int
+    careful: bool
+    sign: float
 
-    def refactor(self, state: IntArray, shift: float = 0.0) -> None:
-        """Factorise the tangent in these states afresh, with `shift` times the inertia added."""
+    def refactor(self, state: IntArray, shift: float = 0.0, careful: bool = False) -> None:
+        """Factorise the tangent in these states afresh, with `shift` times the inertia added.
+
+        `careful` asks for pivots among all rows, which keep more digits near a limit point and cost more.
+        """
 
     def solve(self, right: FloatArray) -> FloatArray:
         """K^-1 right (N,)."""
@@ -60,18 +73,22 @@ class DenseFactor:
         self.capacity = 64
         self.count = 0
         self.factorisations = 0
+        self.careful = True
+        self.sign = 1.0
         self.inverse = np.empty((0, 0))
 
-    def refactor(self, state: IntArray, shift: float = 0.0) -> None:
+    def refactor(self, state: IntArray, shift: float = 0.0, careful: bool = True) -> None:
         """Invert afresh. Raises SingularTangent."""
         self.count = 0
         self.factorisations += 1
         matrix = self.model.tangent(state, shift).toarray()
         lu, pivots, info = sla.lapack.dgetrf(matrix, overwrite_a=True)
+        determinant = float(np.prod(np.sign(lu.diagonal()))) * (-1.0) ** np.count_nonzero(pivots != np.arange(len(lu)))
         if info == 0:
             self.inverse, info = sla.lapack.dgetri(lu, pivots, overwrite_lu=True)
         if info != 0 or not np.isfinite(self.inverse).all():
             raise SingularTangent("the tangent is singular in these states")
+        self.sign = determinant
 
     def solve(self, right: FloatArray) -> FloatArray:
         """K^-1 right (N,)."""
@@ -87,6 +104,7 @@ class DenseFactor:
         """Sherman-Morrison."""
         row = b @ self.inverse[index]
         self.inverse = sla.blas.dger(-1.0 / denominator, y, row, a=self.inverse, overwrite_a=1)
+        self.sign *= float(np.sign(denominator))
         self.count += 1
 
 
@@ -102,6 +120,8 @@ class SparseFactor:
         self._pattern = BlockPattern(model.unknown[:, 0] // 3, model.unknown[:, 3] // 3, n // 3)
         self._slot = self._pattern.slot(model.unknown)
         self._values = np.zeros((self._pattern.n_values, 3, 3))
+        self.careful = False
+        self.sign = 1.0
         self._exchanged: SuperLU | None = None
         self._y = np.empty((self.capacity, n))
         self._coupling = np.zeros((self.capacity, self.capacity))
@@ -109,19 +129,26 @@ class SparseFactor:
         self._index = np.empty((self.capacity, 6), dtype=np.int64)
         self._b = np.empty((self.capacity, 6))
 
-    def refactor(self, state: IntArray, shift: float = 0.0) -> None:
+    def refactor(self, state: IntArray, shift: float = 0.0, careful: bool = False) -> None:
         """Factorise afresh. Raises SingularTangent."""
         self.count = 0
         self.factorisations += 1
+        self._exchanged = None
+        self.sign = 0.0 if careful else float(self._factorise_blocks(state, shift))
+        if self.sign == 0.0:
+            self._exchanged = self._with_row_exchanges(state, shift)
+            exchanges = _parity(self._exchanged.perm_r) * _parity(self._exchanged.perm_c)
+            self.sign = exchanges * float(np.prod(np.sign(self._exchanged.U.diagonal())))
+        self.careful = self._exchanged is not None
+
+    def _factorise_blocks(self, state: IntArray, shift: float) -> int:
         model = self.model
         self._values[:] = 0.0
         springs = model.interface, model.position, model.kn, model.kt, model.mu
         add_tangent(self._slot, model.rows, *springs, state, self._values.reshape(-1))
         if shift:
             self._values[: self._pattern.n, range(3), range(3)] += shift * model.inertia.reshape(-1, 3)
-        self._exchanged = None
-        if not self._pattern.factorise(self._values):
-            self._exchanged = self._with_row_exchanges(state, shift)
+        return self._pattern.factorise(self._values)
 
     def _with_row_exchanges(self, state: IntArray, shift: float) -> SuperLU:
         options = {"SymmetricMode": True}
@@ -166,7 +193,15 @@ class SparseFactor:
         self._b[k] = b
         self._denominator[k] = denominator
         _couple(self._y, index, b, k, self._coupling)
+        self.sign *= float(np.sign(denominator))
         self.count = k + 1
+
+
+def _parity(permutation: IntArray) -> float:
+    """+1 for an even permutation, -1 for an odd one: with c cycles it takes n - c exchanges."""
+    n = len(permutation)
+    cycles, _ = connected_components(sp.csr_matrix((np.ones(n), (np.arange(n), permutation)), shape=(n, n)))
+    return 1.0 if (n - cycles) % 2 == 0 else -1.0
 
 
 @compiled

@@ -58,6 +58,7 @@ def next_kink(
     state: IntArray,
     tolerance: float,
     noise: float,
+    floor: float,
     barred_point: int,
     barred_state: int,
 ) -> tuple[float, int, int]:
@@ -67,7 +68,7 @@ def next_kink(
         opening, trial: (P,) g and tau now; opening_rate, trial_rate: (P,) their rates.
         kn, mu: (P,) of the points; state: (P,) states.
         tolerance: how far (dimensionless force) a kink may be overrun by the choice among near ties.
-        noise: rates of kink functions below this share of the fastest gap rate count as zero.
+        noise: rates of kink functions below this share of the fastest gap rate count as zero, if below `floor` too.
         barred_point, barred_state: the change just made the other way round, which is not taken back at once.
 
     Returns:
@@ -77,7 +78,7 @@ def next_kink(
     fastest = 0.0
     for p in range(count):
         fastest = max(fastest, abs(opening_rate[p]), abs(trial_rate[p]))
-    least = noise * fastest
+    least = min(noise * fastest, floor)
     best = np.inf
     for p in range(count):
         v0, r0, v1, r1 = kink_functions(opening[p], trial[p], opening_rate[p], trial_rate[p], kn[p], mu[p], state[p])

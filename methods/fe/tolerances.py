@@ -4,7 +4,7 @@ from __future__ import annotations
 
 ILL = 1e-6
 """|1 + b'y| below which the tangent is nearly singular: the piece is followed, then factorised afresh."""
-SINGULAR = 1e-11
+SINGULAR = 1e-13
 """|1 + b'y| below which the tangent is singular: the multiplier rests while the wall moves along y."""
 DRIFT = 1e-9
 """Out-of-balance force (share of the load scale) above which the tangent is factorised afresh."""
@@ -26,9 +26,13 @@ LARGE = 1e13
 """Displacements, in multiples of the first ones, beyond which the path is not followed."""
 LOST = 1e-5
 """Out-of-balance force (share of the load scale) at which the path counts as lost."""
+NOISE = 1e-4
+"""Force rates (share of the live load) below this count as zero on pieces measured in doubled precision."""
 LOOK = 8
 """Changes of state between two looks at the out-of-balance force."""
 TIE = 1e-12
 """How far a kink may be overrun by the choice among near ties (share of the load scale)."""
+RIGID = 1e-12
+"""The same share where rates were refined in doubled precision: there a null vector is told from a soft piece."""
 ELASTIC = 1e-8
 """Elastic force rates below this share of the strain rates count as zero: the direction is a mechanism."""

@@ -24,23 +24,43 @@ def factor(request: pytest.FixtureRequest, model: WallModel) -> Factor:
     return made
 
 
-def sliding_states(model: WallModel, seed: int) -> np.ndarray:
-    """States of which one in five slides: the tangent is unsymmetric and regular."""
+def sliding_states(model: WallModel, seed: int, share: float = 0.2) -> np.ndarray:
+    """States of which a share slides: the tangent is unsymmetric, and regular while the share is small."""
     rng = np.random.default_rng(seed)
     state = np.full(model.n_points, STICK)
-    slides = rng.random(model.n_points) < 0.2
+    slides = rng.random(model.n_points) < share
     state[slides] = rng.choice(neighbour_states(STICK), int(slides.sum()))
     return state
 
 
 @pytest.mark.parametrize("seed", range(5))
 @pytest.mark.parametrize("shift", [0.0, 0.3])
-def test_a_fresh_factor_solves_with_the_tangent(model: WallModel, factor: Factor, seed: int, shift: float) -> None:
+@pytest.mark.parametrize("careful", [False, True])
+def test_a_fresh_factor_solves_with_the_tangent_and_knows_the_sign_of_its_determinant(
+    model: WallModel, factor: Factor, seed: int, shift: float, careful: bool
+) -> None:
     state = sliding_states(model, seed)
     right = np.random.default_rng(seed + 100).normal(size=model.n_unknowns)
-    factor.refactor(state, shift)
+    factor.refactor(state, shift, careful)
     x = factor.solve(right)
+    assert factor.sign == np.linalg.slogdet(model.tangent(state, shift).toarray())[0]
     assert np.abs(model.tangent(state, shift) @ x - right).max() < 1e-11 * max(1.0, np.abs(x).max())
+
+
+@pytest.mark.parametrize("careful", [False, True])
+def test_the_sign_of_the_determinant_is_known_where_much_slides(
+    model: WallModel, factor: Factor, careful: bool
+) -> None:
+    signs = set()
+    for seed in range(40):
+        state = sliding_states(model, seed, 0.8)
+        expected = np.linalg.slogdet(model.tangent(state).toarray())[0]
+        if np.linalg.cond(model.tangent(state).toarray()) > 1e10:
+            continue
+        factor.refactor(state, 0.0, careful)
+        assert factor.sign == expected
+        signs.add(expected)
+    assert signs == {-1.0, 1.0}
 
 
 def test_a_few_entries_on_the_right_are_solved_for_as_a_full_vector_is(model: WallModel, factor: Factor) -> None:
@@ -67,6 +87,7 @@ def test_changes_of_state_follow_by_updates(model: WallModel, factor: Factor) ->
         state[point] = new
     x = factor.solve(model.live)
     assert np.abs(model.tangent(state) @ x - model.live).max() < 1e-9 * max(1.0, np.abs(x).max())
+    assert factor.sign == np.linalg.slogdet(model.tangent(state).toarray())[0]
 
 
 def test_rows_are_exchanged_where_block_pivots_are_not_trusted(
