@@ -25,7 +25,7 @@ def factor(request: pytest.FixtureRequest, model: WallModel) -> Factor:
 
 
 def sliding_states(model: WallModel, seed: int, share: float = 0.2) -> np.ndarray:
-    """States of which a share slides: the tangent is unsymmetric, and regular while the share is small."""
+    """States of which a share slides: the tangent is unsymmetric and, for the seeds used here, regular."""
     rng = np.random.default_rng(seed)
     state = np.full(model.n_points, STICK)
     slides = rng.random(model.n_points) < share
@@ -48,18 +48,18 @@ def test_a_fresh_factor_solves_with_the_tangent_and_knows_the_sign_of_its_determ
 
 
 @pytest.mark.parametrize("careful", [False, True])
-def test_the_sign_of_the_determinant_is_known_where_much_slides(
-    model: WallModel, factor: Factor, careful: bool
+@pytest.mark.parametrize("kind", [DenseFactor, SparseFactor])
+def test_the_sign_of_the_determinant_is_known_where_sliding_on_rough_joints_makes_it_negative(
+    kind: type[DenseFactor] | type[SparseFactor], careful: bool
 ) -> None:
+    rough = build_model(running_bond(6, 3, 2.0), GapSpringsSettings())
+    factor = kind(rough)
     signs = set()
-    for seed in range(40):
-        state = sliding_states(model, seed, 0.8)
-        expected = np.linalg.slogdet(model.tangent(state).toarray())[0]
-        if np.linalg.cond(model.tangent(state).toarray()) > 1e10:
-            continue
+    for seed in range(10):
+        state = sliding_states(rough, seed, 0.3)
         factor.refactor(state, 0.0, careful)
-        assert factor.sign == expected
-        signs.add(expected)
+        assert factor.sign == np.linalg.slogdet(rough.tangent(state).toarray())[0]
+        signs.add(factor.sign)
     assert signs == {-1.0, 1.0}
 
 
