@@ -16,6 +16,13 @@ from methods.fe.factor import Factor, SingularTangent
 from methods.fe.wall_model import WallModel
 
 
+SETTLED = 1e-11
+"""Out-of-balance force (share of the load scale) at which pseudo-transient steps have come to rest.
+
+Newton then need not confirm it: in a statically determinate state the tangent is singular, and its step is noise.
+"""
+
+
 @dataclass(frozen=True)
 class Equilibrium:
     """A state of equilibrium, or the best that was reached.
@@ -119,6 +126,9 @@ def pseudo_transient(
             final = newton(model, factor, u, multiplier, history, 12)
             if final.found:
                 return final
+            residual = float(np.abs(model.residual(u, multiplier, history, state)).max()) / scale
+            if residual < SETTLED:
+                return Equilibrium(True, u, state, residual, np.zeros_like(u), iterations)
         if np.abs(u).max() > 1e8 * scale * len(u):
             break
         sigma *= 0.25 if inner <= 4 else 0.7
