@@ -15,7 +15,7 @@ from collections.abc import Sequence
 from harness.model.assembly import Assembly
 from harness.model.case import read_case, shipped_cases
 from methods.fe.adapter import GapSprings
-from methods.fe.patterns import block_on_halves, running_bond
+from methods.fe.patterns import arch, block_on_halves, running_bond
 from methods.fe.settings import GapSpringsSettings
 
 WALLS: tuple[tuple[int, int, float, float], ...] = (
@@ -29,6 +29,10 @@ WALLS: tuple[tuple[int, int, float, float], ...] = (
     (9870, 70, float("nan"), 1800.0),
 )
 """(bricks, bricks of a course, plateau at mu 0.65 to reach, CPU seconds to reach)."""
+
+ARCH = ((0.5, 0.183154), (0.7, 0.239316), (1.0, 0.239316))
+ARCH_POINT_LOAD = ((0.5, 0.918185), (0.55, 1.195236), (0.7, 1.430092))
+"""(friction, plateau to reach) of the arch under its weight sideways and under a point load."""
 
 PUBLISHED = (("ferris-tin-loi-1", 0.641), ("ferris-tin-loi-2", 0.564), ("ferris-tin-loi-4", 0.264))
 """Cases with the value of a public gap-spring code, to be met within 0.3 %."""
@@ -50,6 +54,10 @@ def main(arguments: Sequence[str] | None = None) -> int:
     for friction in (0.3, 0.4, 0.5, 0.75, 1.0):
         value = friction if friction < 0.6 else 13 / 23
         _line(f"21 bricks mu {friction:g}", running_bond(6, 3, friction), GapSpringsSettings(), value, 0.1)
+    for friction, value in ARCH:
+        _line(f"arch of 27 mu {friction:g}", arch(friction), GapSpringsSettings(), value, 0.3)
+    for friction, value in ARCH_POINT_LOAD:
+        _line(f"arch, point load mu {friction:g}", arch(friction, True), GapSpringsSettings(), value, 0.3)
     for name, value in PUBLISHED:
         _line(name, read_case(shipped_cases() / name).assembly, GapSpringsSettings(), value, 0.3)
     for bricks, course, value, seconds in WALLS:

@@ -15,7 +15,6 @@ from harness.model.assembly import FloatArray, IntArray
 from methods.fe.factor import Factor, SingularTangent
 from methods.fe.wall_model import WallModel
 
-
 SETTLED = 1e-11
 """Out-of-balance force (share of the load scale) at which pseudo-transient steps have come to rest.
 

@@ -12,6 +12,7 @@ from harness.model.build import build
 from harness.model.method import Finding
 from harness.model.wall import Wall
 from methods.fe.adapter import GapSprings
+from methods.fe.patterns import arch
 from methods.fe.settings import GapSpringsSettings
 
 CLOSED_FORM = 1e-8  # what issue 5 asks of slide, overturn, incline and the arches under acceleration
@@ -37,12 +38,6 @@ def block_on_ground(friction: float, loads: dict[str, Any]) -> Assembly:
     base = {"id": "base", "polygon": [[-1, -1], [3, -1], [3, 0], [-1, 0]], "fixed": True}
     block = {"id": "block", "polygon": [[0, 0], [2, 0], [2, 3], [0, 3]]}
     return wall_of(friction, loads, blocks=[base, block])
-
-
-def arch(friction: float, live: dict[str, Any]) -> Assembly:
-    """27 voussoirs, radii 1 and 1.2, between fixed abutments."""
-    ring = {"type": "ring", "inner_radius": 1.0, "outer_radius": 1.2, "count": 27}
-    return wall_of(friction, {"live": live}, pattern=ring)
 
 
 HORIZONTAL: dict[str, Any] = {"body": [{"per_weight": [1.0, 0.0]}]}
@@ -80,13 +75,9 @@ def test_fe_block_on_an_incline_under_a_load_along_the_slope_and_off_it(friction
 
 @pytest.mark.parametrize(("friction", "value"), [(0.5, 0.183154244724), (0.7, 0.239316002346), (1.0, 0.239316002346)])
 def test_fe_arch_under_horizontal_acceleration(friction: float, value: float) -> None:
-    assert multiplier(arch(friction, HORIZONTAL)) == pytest.approx(value, rel=CLOSED_FORM)
+    assert multiplier(arch(friction)) == pytest.approx(value, rel=CLOSED_FORM)
 
 
 @pytest.mark.parametrize(("friction", "value"), [(0.5, 0.918185), (0.55, 1.195236), (0.7, 1.430092)])
 def test_fe_arch_under_a_point_load_in_weights_of_the_arch(friction: float, value: float) -> None:
-    half, angle = math.pi / 54.0, math.pi * (1.0 - 6.5 / 27.0)
-    weight = 27 * 0.5 * (1.2**2 - 1.0) * math.sin(2.0 * half)
-    chord = 1.2 * math.cos(half)
-    point = {"block": "v7", "at": [chord * math.cos(angle), chord * math.sin(angle)], "force": [0.0, -weight]}
-    assert multiplier(arch(friction, {"points": [point]})) == pytest.approx(value, rel=POINT_LOAD)
+    assert multiplier(arch(friction, point_load=True)) == pytest.approx(value, rel=POINT_LOAD)
