@@ -28,6 +28,8 @@ START = 1e-3
 
 DISTURBANCES = (1e-9, 1e-7, 1e-5)
 """Random initial shears, in weights of a block, tried in turn where exact ties lead a path astray."""
+LONGER = 1.5
+"""By how much the commit interval of a lost history is lengthened when it is traced again."""
 COMMIT_WITHIN = 300.0
 """Displacements, in multiples of the first, up to which the history is still committed."""
 TURN = 0.1
@@ -75,9 +77,9 @@ def trace_history(
 ) -> HistoryResult:
     """Trace one history from the gravity state.
 
-    Where exact ties lead the path astray it is traced again with the initial shears disturbed by 1e-9, 1e-7 and 1e-5
-    of a block's weight (a history with commits once, by 1e-7): data nobody knows, and the end is an exact collapse
-    state all the same.
+    Where exact ties lead a path without commits astray it is traced again with the initial shears disturbed by 1e-9,
+    1e-7 and 1e-5 of a block's weight: data nobody knows, and the end is an exact collapse state all the same. A lost
+    history with commits is traced once more with intervals half as long again, which the result then names.
 
     Args:
         model: the wall; factor: its tangent; gravity: equilibrium under the dead load.
@@ -85,14 +87,22 @@ def trace_history(
         max_events: changes of state after which the history is given up.
     """
     result = _trace(model, factor, gravity.u, model.history, step, scale, max_events, 0.0)
-    for disturbance in DISTURBANCES if step == 0.0 else DISTURBANCES[1:2]:
-        if result.state is not None or result.end in (PathEnd.UNBOUNDED, PathEnd.TIME):
+    if step > 0.0:
+        if _lost(result):
+            return _trace(model, factor, gravity.u, model.history, LONGER * step, scale, max_events, 0.0)
+        return result
+    for disturbance in DISTURBANCES:
+        if not _lost(result):
             break
         noise = np.random.default_rng(1995).uniform(-disturbance, disturbance, model.n_points)
         start = equilibrium(model, factor, gravity.u, 0.0, model.history + noise)
         if start.found:
             result = _trace(model, factor, start.u, model.history + noise, step, scale, max_events, disturbance)
     return result
+
+
+def _lost(result: HistoryResult) -> bool:
+    return result.state is None and result.end not in (PathEnd.UNBOUNDED, PathEnd.TIME)
 
 
 def _trace(
@@ -141,7 +151,18 @@ def _trace_in_time(
     large = COMMIT_WITHIN * tracer.first_displacement
     turn = TURN
     while True:
-        end = tracer.run(record, max_events, tracer.multiplier + interval, turn)
+        follow = None
+        if step > 0.0 and tracer.multiplier >= record.peak and float(np.abs(tracer.u).max()) < large:
+            follow = committed_step(tracer, interval)
+            if follow is None:
+                tracer.refresh()
+            else:
+                commits += 1
+                follow.first_size, follow.first_displacement = tracer.first_size, tracer.first_displacement
+                tracer = follow
+                record.peak = max(record.peak, tracer.multiplier)
+                record.add(tracer.multiplier, float(model.live @ tracer.u), tracer.n_slip, tracer.n_open)
+        end = PathEnd.TARGET if follow is not None else tracer.run(record, max_events, tracer.multiplier + interval, turn)
         worst = max(worst, tracer.worst_residual)
         if end == PathEnd.TURNED_DOWN:
             turn = np.inf
@@ -156,20 +177,6 @@ def _trace_in_time(
         if step > 0.0 and tracer.multiplier > ASTRAY * scale:
             end = PathEnd.BREAKDOWN
             break
-        follow = None
-        if tracer.multiplier >= record.peak and float(np.abs(tracer.u).max()) < large:
-            follow = committed_step(tracer, interval)
-            if follow is None:
-                tracer.refresh()
-                follow = committed_step(tracer, 0.1 * interval)
-            if follow is None:
-                tracer.refresh()
-        if follow is not None:
-            commits += 1
-            follow.first_size, follow.first_displacement = tracer.first_size, tracer.first_displacement
-            tracer = follow
-            record.peak = max(record.peak, tracer.multiplier)
-            record.add(tracer.multiplier, float(model.live @ tracer.u), tracer.n_slip, tracer.n_open)
     state = finish(tracer) if end in (PathEnd.PLATEAU, PathEnd.BREAKDOWN, PathEnd.EVENTS) else None
     sentence = SENTENCES[end]
     if state is None and end == PathEnd.PLATEAU:
