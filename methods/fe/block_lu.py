@@ -1,8 +1,10 @@
-"""LU of the tangent in blocks of 3 x 3, one for each block of the wall, in a pattern that is found once.
+"""LU of the tangent in dense blocks, in a pattern that is found once for the wall.
 
 The pattern of the tangent is that of the contact graph whatever the states are, so the fill of its factors is known
-from the wall alone (George and Liu, 1981). Pivots are the 3 x 3 diagonal blocks. They cannot fail while the tangent
-is symmetric; sliding makes it unsymmetric, and where the multipliers of L then grow, `factorise` says so.
+from the wall alone (George and Liu, 1981). Neighbouring columns with nearly the same fill form supernodes, which are
+kept and multiplied as dense matrices (Ng and Peyton, 1993). Rows are exchanged inside a supernode only. That cannot
+fail while the tangent is symmetric; sliding makes it unsymmetric, and where the multipliers of L then grow,
+`factorise` says so.
 """
 
 from __future__ import annotations
@@ -10,75 +12,144 @@ from __future__ import annotations
 import numpy as np
 
 from harness.model.assembly import FloatArray, IntArray
-from methods.fe.compiled import compiled
+from methods.fe.compiled import compiled, compiled_loosely
 
 GROWTH = 1e5
 """Entries of L above this cost too many digits; a factorisation with row exchanges is called for."""
+WIDEST = 8
+"""Blocks of unknowns in a supernode at most: wider ones spend their time inside the diagonal."""
+PADDING = 0.3
+"""Share of zeros that a supernode may hold for the sake of being wider."""
+MANY = 8
+"""Right-hand sides that are solved for at once: reading the factors from memory costs more than the sums."""
+LITTLE = 100
+"""Matrices of fewer entries than this are multiplied with MANY columns by our own loops, for the same reason."""
+SMALL = 4000
+"""Products of fewer multiplications than this are spelt out: a library call would cost more."""
 
 
 class BlockPattern:
-    """Where the blocks of L, U and the diagonal lie; n blocks of unknowns, e blocks in L and as many in U.
+    """Where the supernodes lie; each has w blocks of unknowns, three unknowns a block, and r blocks below them.
 
-    Values are kept as (n + 2 e, 3, 3): the diagonal, L by columns, U by columns.
+    Its values are D (3w, 3w), whose own LU replaces it, then L below it (3r, 3w), then U right of it, transposed
+    (3r, 3w).
 
     Attributes:
-        low_start, low_row: rows below the diagonal of each column of L, ascending.
-        up_start, up_row: rows above the diagonal of each column of U, ascending.
+        n: blocks of unknowns; n_values: numbers to keep for the factors.
+        start: (k + 1,) first block of each supernode; owner: (n,) the supernode of each block.
+        row_start: (k + 1,) where the rows of each supernode start in `row`; row: blocks below it, ascending.
+        offset: (k + 1,) where its values start.
     """
 
     def __init__(self, first: IntArray, second: IntArray, n: int) -> None:
-        """Find the fill of n blocks of unknowns that are in contact in the pairs (first, second), each (m,)."""
-        below: list[set[int]] = [set() for _ in range(n)]
-        for i, j in zip(np.minimum(first, second).tolist(), np.maximum(first, second).tolist(), strict=True):
-            if i != j:
-                below[i].add(j)
-        for rows in below:
-            if rows:
-                parent = min(rows)
-                below[parent] |= rows - {parent}
+        """Find the fill of n blocks of unknowns in contact in the pairs (first, second), each (m,), in postorder."""
+        below, _ = _fill(first, second, n)
+        start, rows = _supernodes(below)
         self.n = n
-        self.low_start = np.cumsum([0, *map(len, below)])
-        self.low_row = np.array([i for rows in below for i in sorted(rows)], dtype=np.int64)
-        column = np.repeat(np.arange(n), np.diff(self.low_start))
-        by_row = np.argsort(self.low_row, kind="stable")
-        self.up_row = column[by_row]
-        self.up_start = np.concatenate([[0], np.cumsum(np.bincount(self.low_row, minlength=n))])
-        e = len(self.low_row)
-        self.n_values = n + 2 * e
-        self._keys = np.concatenate([np.arange(n) * (n + 1), column * n + self.low_row, self.low_row * n + column])
-        order = np.concatenate([np.arange(n), n + np.arange(e), n + e + np.argsort(by_row)])
-        sort = np.argsort(self._keys)
-        self._keys, self._place = self._keys[sort], order[sort]
+        self.start = np.array(start)
+        width = np.diff(self.start)
+        self.owner = np.repeat(np.arange(len(width)), width)
+        self.row_start = np.cumsum([0, *map(len, rows)])
+        self.row = np.array([i for below in rows for i in below], dtype=np.int64)
+        self.offset = np.cumsum(np.concatenate([[0], 9 * width * (width + 2 * np.diff(self.row_start))]))
+        self.n_values = int(self.offset[-1])
+        self._swapped = np.zeros(3 * n, dtype=np.int64)
+        self._keys = np.repeat(np.arange(len(width)), np.diff(self.row_start)) * n + self.row
 
     def slot(self, unknown: IntArray) -> IntArray:
-        """(m, 36) places in the flat values of the products of two rows of each interface with unknowns (m, 6)."""
+        """(m, 36) places in the values of the products of two rows of each interface with unknowns (m, 6)."""
         row, column = np.repeat(unknown, 6, axis=1), np.tile(unknown, (1, 6))
-        key = column // 3 * self.n + row // 3
-        place = self._place[np.searchsorted(self._keys, key)]
-        out: IntArray = 9 * place + 3 * (row % 3) + column % 3
+        return self.place(row, column)
+
+    def place(self, row: IntArray, column: IntArray) -> IntArray:
+        """Places in the values of entries (row, column) of the tangent, which must lie in its pattern."""
+        first = np.minimum(row, column) // 3
+        owner = self.owner[first]
+        start, width = self.start[owner], self.start[owner + 1] - self.start[owner]
+        inside = np.maximum(row, column) // 3 < start + width
+        count = self.row_start[owner + 1] - self.row_start[owner]
+        below = np.searchsorted(self._keys, owner * self.n + np.maximum(row, column) // 3) - self.row_start[owner]
+        lower = 9 * width**2 + (3 * below + row % 3) * 3 * width + column - 3 * start
+        upper = 9 * width * (width + count) + (3 * below + column % 3) * 3 * width + row - 3 * start
+        diagonal = (row - 3 * start) * 3 * width + column - 3 * start
+        out: IntArray = self.offset[owner] + np.where(inside, diagonal, np.where(row > column, lower, upper))
         return out
 
     def factorise(self, values: FloatArray) -> int:
-        """Factorise in place; the diagonal becomes its inverse.
+        """Factorise the values (n_values,) in place.
 
         Returns:
             The sign of the determinant, or 0 when the pivots are not to be trusted.
         """
-        return _factorise(self.low_start, self.low_row, self.up_start, self.up_row, values, GROWTH)
+        return _factorise(self.start, self.owner, self.row_start, self.row, self.offset, values, self._swapped, GROWTH)
 
     def solve(self, values: FloatArray, first: int, x: FloatArray) -> None:
-        """Solve in place; entries of x (n, 3) before block `first` are zero."""
-        _substitute(self.low_start, self.low_row, self.up_start, self.up_row, values, first, x)
+        """Solve in place; entries of x (3 n,) before block `first` are zero."""
+        _substitute(self.start, self.row_start, self.row, self.offset, values, self._swapped, int(self.owner[first]), x)
+
+    def solve_many(self, values: FloatArray, first: int, x: FloatArray) -> None:
+        """Solve for MANY right-hand sides at once, in place in x (3 n, MANY), whose rows before `first` are zero."""
+        _substitute_many(
+            self.start, self.row_start, self.row, self.offset, values, self._swapped, int(self.owner[first]), x
+        )
+
+
+def postorder(first: IntArray, second: IntArray, n: int) -> IntArray:
+    """Blocks in an order with the same fill in which those that are eliminated into each other stand together."""
+    below, parent = _fill(first, second, n)
+    children: list[list[int]] = [[] for _ in range(n)]
+    for j in sorted(range(n), key=lambda j: len(below[j])):
+        if parent[j] >= 0:
+            children[parent[j]].append(j)
+    order: list[int] = []
+    stack = [j for j in range(n) if parent[j] < 0]
+    while stack:
+        j = stack.pop()
+        order.append(j)
+        stack.extend(children[j])
+    return np.array(order[::-1])
+
+
+def _fill(first: IntArray, second: IntArray, n: int) -> tuple[list[set[int]], list[int]]:
+    """Rows below the diagonal of each column of L, and the column each is eliminated into (-1 for none)."""
+    below: list[set[int]] = [set() for _ in range(n)]
+    for i, j in zip(np.minimum(first, second).tolist(), np.maximum(first, second).tolist(), strict=True):
+        if i != j:
+            below[i].add(j)
+    parent = [-1] * n
+    for j, rows in enumerate(below):
+        if rows:
+            parent[j] = min(rows)
+            below[parent[j]] |= rows - {parent[j]}
+    return below, parent
+
+
+def _supernodes(below: list[set[int]]) -> tuple[list[int], list[list[int]]]:
+    """Gather columns (whose rows are given) into supernodes: the first column of each and its end, and its rows."""
+    start, rows, true = [0], [below[0]], [len(below[0])]
+    for j in range(1, len(below)):
+        width = j - start[-1]
+        merged = (rows[-1] | below[j]) - {j}
+        entries = true[-1] + len(below[j]) + width
+        size = (width + 1) * len(merged) + width * (width + 1) // 2
+        if j in rows[-1] and width < WIDEST and size <= (1.0 + PADDING) * entries:
+            rows[-1] = merged
+            true[-1] = entries
+        else:
+            start.append(j)
+            rows.append(below[j])
+            true.append(len(below[j]))
+    return [*start, len(below)], [sorted(r) for r in rows]
 
 
 @compiled
-def _invert(d: FloatArray) -> int:
-    """Invert a 3 x 3 matrix in place by Gauss-Jordan elimination; the sign of its determinant, 0 if singular."""
-    swapped = np.zeros(3, dtype=np.int64)
+def _eliminate(d: FloatArray, swapped: IntArray) -> int:
+    """LU of a matrix in place with rows swapped; the sign of its determinant, 0 if singular."""
+    n = len(d)
     sign = 1
-    for k in range(3):
+    for k in range(n):
         best = k
-        for i in range(k + 1, 3):
+        for i in range(k + 1, n):
             if abs(d[i, k]) > abs(d[best, k]):
                 best = i
         if not abs(d[best, k]) > 0.0:
@@ -86,97 +157,302 @@ def _invert(d: FloatArray) -> int:
         if (d[best, k] < 0.0) != (best != k):
             sign = -sign
         swapped[k] = best
-        for j in range(3):
-            d[k, j], d[best, j] = d[best, j], d[k, j]
-        pivot = 1.0 / d[k, k]
-        d[k, k] = 1.0
-        for j in range(3):
-            d[k, j] *= pivot
-        for i in range(3):
-            if i != k:
-                share = d[i, k]
-                d[i, k] = 0.0
-                for j in range(3):
+        if best != k:
+            for j in range(n):
+                d[k, j], d[best, j] = d[best, j], d[k, j]
+        for i in range(k + 1, n):
+            share = d[i, k] / d[k, k]
+            d[i, k] = share
+            if share != 0.0:
+                for j in range(k + 1, n):
                     d[i, j] -= share * d[k, j]
-    for k in range(2, -1, -1):
-        for i in range(3):
-            d[i, k], d[i, swapped[k]] = d[i, swapped[k]], d[i, k]
     return sign
 
 
 @compiled
-def _factorise(
-    low_start: IntArray, low_row: IntArray, up_start: IntArray, up_row: IntArray, values: FloatArray, growth: float
-) -> int:
-    """Column by column: subtract what the columns before it reach, invert its pivot, divide what lies below."""
-    n, e = len(low_start) - 1, len(low_row)
-    work = np.zeros((n, 3, 3))
+def _divide(rows: FloatArray, lu: FloatArray, swapped: IntArray) -> float:
+    """Rows (r, w) times the inverse of a matrix given by its LU, in place; the greatest entry."""
     greatest = 0.0
-    sign = 1
-    for j in range(n):
-        work[j] = values[j]
-        for p in range(low_start[j], low_start[j + 1]):
-            work[low_row[p]] = values[n + p]
-        for q in range(up_start[j], up_start[j + 1]):
-            work[up_row[q]] = values[n + e + q]
-        for q in range(up_start[j], up_start[j + 1]):
-            k = up_row[q]
-            u = work[k]
-            u00, u01, u02 = u[0, 0], u[0, 1], u[0, 2]
-            u10, u11, u12 = u[1, 0], u[1, 1], u[1, 2]
-            u20, u21, u22 = u[2, 0], u[2, 1], u[2, 2]
-            values[n + e + q] = u
-            for p in range(low_start[k], low_start[k + 1]):
-                left, out = values[n + p], work[low_row[p]]
-                for r in range(3):
-                    l0, l1, l2 = left[r, 0], left[r, 1], left[r, 2]
-                    out[r, 0] -= l0 * u00 + l1 * u10 + l2 * u20
-                    out[r, 1] -= l0 * u01 + l1 * u11 + l2 * u21
-                    out[r, 2] -= l0 * u02 + l1 * u12 + l2 * u22
-        inverse = values[j]
-        inverse[:] = work[j]
-        sign *= _invert(inverse)
+    n = len(lu)
+    for i in range(len(rows)):
+        row = rows[i]
+        for k in range(n):
+            row[k] /= lu[k, k]
+            entry = row[k]
+            if entry != 0.0:
+                for j in range(k + 1, n):
+                    row[j] -= entry * lu[k, j]
+        for k in range(n - 1, -1, -1):
+            entry = row[k]
+            for j in range(k):
+                row[j] -= entry * lu[k, j]
+        for k in range(n - 1, -1, -1):
+            row[k], row[swapped[k]] = row[swapped[k]], row[k]
+        for k in range(n):
+            greatest = max(greatest, abs(row[k]))
+    return greatest
+
+
+@compiled
+def _solve_columns(lu: FloatArray, swapped: IntArray, x: FloatArray) -> None:
+    """Solve in place for the columns of x (w, c) with a matrix given by its LU."""
+    n, columns = x.shape
+    for k in range(n):
+        other = swapped[k]
+        if other != k:
+            for c in range(columns):
+                x[k, c], x[other, c] = x[other, c], x[k, c]
+    for i in range(n):
+        for k in range(i):
+            entry = lu[i, k]
+            for c in range(columns):
+                x[i, c] -= entry * x[k, c]
+    for i in range(n - 1, -1, -1):
+        for k in range(i + 1, n):
+            entry = lu[i, k]
+            for c in range(columns):
+                x[i, c] -= entry * x[k, c]
+        pivot = lu[i, i]
+        for c in range(columns):
+            x[i, c] /= pivot
+
+
+@compiled_loosely
+def _product(a: FloatArray, b: FloatArray, out: FloatArray) -> None:
+    """out = a b' for row-major a (3 p, q), b (3 s, q)."""
+    p, q, s = a.shape[0], a.shape[1], b.shape[0]
+    if p * q * s >= SMALL:
+        np.dot(a, b.T, out)
+        return
+    for i in range(p):
+        for j in range(0, s, 3):
+            t0 = t1 = t2 = 0.0
+            for k in range(q):
+                entry = a[i, k]
+                t0 += entry * b[j, k]
+                t1 += entry * b[j + 1, k]
+                t2 += entry * b[j + 2, k]
+            out[i, j], out[i, j + 1], out[i, j + 2] = t0, t1, t2
+
+
+@compiled
+def _factorise(
+    start: IntArray,
+    owner: IntArray,
+    row_start: IntArray,
+    row: IntArray,
+    offset: IntArray,
+    values: FloatArray,
+    swapped: IntArray,
+    growth: float,
+) -> int:
+    """Supernode by supernode: subtract what those before it reach, eliminate its diagonal, divide what lies below."""
+    count = len(start) - 1
+    head, following = np.full(count, -1), np.full(count, -1)
+    reached = np.zeros(count, dtype=np.int64)
+    position = np.zeros(start[-1], dtype=np.int64)
+    most = 3 * max(1, np.diff(row_start).max())
+    widest = 3 * np.diff(start).max()
+    buffer = np.empty(most * widest)
+    sign, greatest = 1, 0.0
+    for s in range(count):
+        c0, c1 = start[s], start[s + 1]
+        w, r = 3 * (c1 - c0), 3 * (row_start[s + 1] - row_start[s])
+        at = offset[s]
+        diagonal = values[at : at + w * w].reshape(w, w)
+        low = values[at + w * w : at + w * (w + r)].reshape(r, w)
+        up = values[at + w * (w + r) : at + w * (w + 2 * r)].reshape(r, w)
+        rows = row[row_start[s] : row_start[s + 1]]
+        for i in range(len(rows)):
+            position[rows[i]] = i
+        d = head[s]
+        while d >= 0:
+            after = following[d]
+            their = row[row_start[d] : row_start[d + 1]]
+            n = len(their)
+            v = 3 * (start[d + 1] - start[d])
+            base = offset[d] + v * v
+            left = values[base : base + 3 * n * v].reshape(3 * n, v)
+            right = values[base + 3 * n * v : base + 6 * n * v].reshape(3 * n, v)
+            p1 = reached[d]
+            p2 = p1
+            while p2 < n and their[p2] < c1:
+                p2 += 1
+            k = 3 * (p2 - p1)
+            work = buffer[: 3 * (n - p1) * k].reshape(3 * (n - p1), k)
+            _product(left[3 * p1 :], right[3 * p1 : 3 * p2], work)
+            for i in range(p1, n):
+                if their[i] < c1:
+                    _subtract(diagonal, 3 * (their[i] - c0), work, 3 * (i - p1), their, p1, p2, c0)
+                else:
+                    _subtract(low, 3 * position[their[i]], work, 3 * (i - p1), their, p1, p2, c0)
+            if p2 < n:
+                work = buffer[: 3 * (n - p2) * k].reshape(3 * (n - p2), k)
+                _product(right[3 * p2 :], left[3 * p1 : 3 * p2], work)
+                for i in range(p2, n):
+                    _subtract(up, 3 * position[their[i]], work, 3 * (i - p2), their, p1, p2, c0)
+                t = owner[their[p2]]
+                following[d] = head[t]
+                head[t] = d
+            reached[d] = p2
+            d = after
+        sign *= _eliminate(diagonal, swapped[3 * c0 : 3 * c0 + w])
         if sign == 0:
             return 0
-        for p in range(low_start[j], low_start[j + 1]):
-            column, out = work[low_row[p]], values[n + p]
-            for r in range(3):
-                for c in range(3):
-                    entry = column[r, 0] * inverse[0, c] + column[r, 1] * inverse[1, c] + column[r, 2] * inverse[2, c]
-                    out[r, c] = entry
-                    greatest = max(greatest, abs(entry))
+        if r:
+            greatest = max(greatest, _divide(low, diagonal, swapped[3 * c0 : 3 * c0 + w]))
+            t = owner[rows[0]]
+            following[s] = head[t]
+            head[t] = s
     return sign if greatest < growth else 0
 
 
 @compiled
+def _subtract(out: FloatArray, i: int, work: FloatArray, k: int, columns: IntArray, p1: int, p2: int, c0: int) -> None:
+    """Subtract three rows of `work`, from k on, from those of `out`, from i on, at the columns of blocks p1 to p2."""
+    for p in range(p1, p2):
+        j, m = 3 * (columns[p] - c0), 3 * (p - p1)
+        for a in range(3):
+            out[i + a, j] -= work[k + a, m]
+            out[i + a, j + 1] -= work[k + a, m + 1]
+            out[i + a, j + 2] -= work[k + a, m + 2]
+
+
+@compiled_loosely
 def _substitute(
-    low_start: IntArray,
-    low_row: IntArray,
-    up_start: IntArray,
-    up_row: IntArray,
+    start: IntArray,
+    row_start: IntArray,
+    row: IntArray,
+    offset: IntArray,
     values: FloatArray,
+    swapped: IntArray,
     first: int,
     x: FloatArray,
 ) -> None:
-    """Forward pass from block `first`, then the backward pass with the inverted pivots."""
-    n, e = len(low_start) - 1, len(low_row)
-    for k in range(first, n):
-        x0, x1, x2 = x[k, 0], x[k, 1], x[k, 2]
-        if x0 != 0.0 or x1 != 0.0 or x2 != 0.0:
-            for p in range(low_start[k], low_start[k + 1]):
-                left, i = values[n + p], low_row[p]
-                x[i, 0] -= left[0, 0] * x0 + left[0, 1] * x1 + left[0, 2] * x2
-                x[i, 1] -= left[1, 0] * x0 + left[1, 1] * x1 + left[1, 2] * x2
-                x[i, 2] -= left[2, 0] * x0 + left[2, 1] * x1 + left[2, 2] * x2
-    for j in range(n - 1, -1, -1):
-        r0, r1, r2 = x[j, 0], x[j, 1], x[j, 2]
-        inverse = values[j]
-        x0 = inverse[0, 0] * r0 + inverse[0, 1] * r1 + inverse[0, 2] * r2
-        x1 = inverse[1, 0] * r0 + inverse[1, 1] * r1 + inverse[1, 2] * r2
-        x2 = inverse[2, 0] * r0 + inverse[2, 1] * r1 + inverse[2, 2] * r2
-        x[j, 0], x[j, 1], x[j, 2] = x0, x1, x2
-        for q in range(up_start[j], up_start[j + 1]):
-            right, k = values[n + e + q], up_row[q]
-            x[k, 0] -= right[0, 0] * x0 + right[0, 1] * x1 + right[0, 2] * x2
-            x[k, 1] -= right[1, 0] * x0 + right[1, 1] * x1 + right[1, 2] * x2
-            x[k, 2] -= right[2, 0] * x0 + right[2, 1] * x1 + right[2, 2] * x2
+    """Forward pass from supernode `first`, then the backward pass with the factorised diagonals."""
+    count = len(start) - 1
+    for s in range(first, count):
+        c0, w = 3 * start[s], 3 * (start[s + 1] - start[s])
+        some = False
+        for i in range(c0, c0 + w):
+            some |= x[i] != 0.0
+        if not some:
+            continue
+        q0, q1 = row_start[s], row_start[s + 1]
+        at = offset[s] + w * w
+        low = values[at : at + 3 * (q1 - q0) * w].reshape(3 * (q1 - q0), w)
+        for q in range(q1 - q0):
+            i = 3 * q
+            t0 = t1 = t2 = 0.0
+            for k in range(w):
+                entry = x[c0 + k]
+                t0 += low[i, k] * entry
+                t1 += low[i + 1, k] * entry
+                t2 += low[i + 2, k] * entry
+            j = 3 * row[q0 + q]
+            x[j] -= t0
+            x[j + 1] -= t1
+            x[j + 2] -= t2
+    part = np.empty(3 * np.diff(start).max())
+    for s in range(count - 1, -1, -1):
+        c0, w = 3 * start[s], 3 * (start[s + 1] - start[s])
+        q0, q1 = row_start[s], row_start[s + 1]
+        r = 3 * (q1 - q0)
+        at = offset[s]
+        lu = values[at : at + w * w].reshape(w, w)
+        up = values[at + w * (w + r) : at + w * (w + 2 * r)].reshape(r, w)
+        for k in range(w):
+            part[k] = x[c0 + k]
+        for q in range(q1 - q0):
+            i, j = 3 * q, 3 * row[q0 + q]
+            y0, y1, y2 = x[j], x[j + 1], x[j + 2]
+            for k in range(w):
+                part[k] -= up[i, k] * y0 + up[i + 1, k] * y1 + up[i + 2, k] * y2
+        for k in range(w):
+            other = swapped[c0 + k]
+            part[k], part[other] = part[other], part[k]
+        for i in range(w):
+            total = part[i]
+            for k in range(i):
+                total -= lu[i, k] * part[k]
+            part[i] = total
+        for i in range(w - 1, -1, -1):
+            total = part[i]
+            for k in range(i + 1, w):
+                total -= lu[i, k] * x[c0 + k]
+            x[c0 + i] = total / lu[i, i]
+
+
+@compiled_loosely
+def _substitute_many(
+    start: IntArray,
+    row_start: IntArray,
+    row: IntArray,
+    offset: IntArray,
+    values: FloatArray,
+    swapped: IntArray,
+    first: int,
+    x: FloatArray,
+) -> None:
+    """As `_substitute`, for MANY columns at once."""
+    count = len(start) - 1
+    pieces = np.empty((3 * np.diff(row_start).max() + 3, MANY))
+    products = np.empty((3 * np.diff(start).max(), MANY))
+    for s in range(first, count):
+        c0, w = 3 * start[s], 3 * (start[s + 1] - start[s])
+        ours = x[c0 : c0 + w]
+        some = False
+        for i in range(w):
+            for c in range(MANY):
+                some |= ours[i, c] != 0.0
+        q0, r = row_start[s], 3 * (row_start[s + 1] - row_start[s])
+        if not some or not r:
+            continue
+        at = offset[s] + w * w
+        low = values[at : at + r * w].reshape(r, w)
+        part = pieces[:r]
+        _times(low, ours, part)
+        for i in range(r):
+            j = 3 * row[q0 + i // 3] + i % 3
+            for c in range(MANY):
+                x[j, c] -= part[i, c]
+    for s in range(count - 1, -1, -1):
+        c0, w = 3 * start[s], 3 * (start[s + 1] - start[s])
+        q0, r = row_start[s], 3 * (row_start[s + 1] - row_start[s])
+        at = offset[s]
+        lu = values[at : at + w * w].reshape(w, w)
+        up = values[at + w * (w + r) : at + w * (w + 2 * r)].reshape(r, w)
+        ours, product = x[c0 : c0 + w], products[:w]
+        if r:
+            part = pieces[:r]
+            for i in range(r):
+                j = 3 * row[q0 + i // 3] + i % 3
+                for c in range(MANY):
+                    part[i, c] = x[j, c]
+            if r * w >= LITTLE:
+                np.dot(up.T, part, product)
+                for i in range(w):
+                    for c in range(MANY):
+                        ours[i, c] -= product[i, c]
+            else:
+                for i in range(r):
+                    for k in range(w):
+                        entry = up[i, k]
+                        for c in range(MANY):
+                            ours[k, c] -= entry * part[i, c]
+        _solve_columns(lu, swapped[c0 : c0 + w], ours)
+
+
+@compiled_loosely
+def _times(a: FloatArray, x: FloatArray, out: FloatArray) -> None:
+    """out = a x for x (q, MANY)."""
+    if a.size >= LITTLE:
+        np.dot(a, x, out)
+        return
+    for i in range(a.shape[0]):
+        for c in range(MANY):
+            out[i, c] = 0.0
+        for k in range(a.shape[1]):
+            entry = a[i, k]
+            for c in range(MANY):
+                out[i, c] += entry * x[k, c]

@@ -15,10 +15,11 @@ from __future__ import annotations
 import numpy as np
 
 from harness.model.assembly import FloatArray, IntArray
+from methods.fe.block_lu import MANY
 from methods.fe.exact_rates import exact_gap_rates
-from methods.fe.factor import Factor, SingularTangent
+from methods.fe.factor import Change, Factor, SingularTangent
 from methods.fe.gap_law import OPEN, SLIP_PLUS, STICK, gap_forces
-from methods.fe.kinks import advance, live_rate, next_kink, strain_rates
+from methods.fe.kinks import advance, coming_kinks, live_rate, next_kink, strain_rates
 from methods.fe.newton import load_scale
 from methods.fe.path_record import PathEnd, PathRecord, Snapshot
 from methods.fe.tolerances import (
@@ -29,6 +30,7 @@ from methods.fe.tolerances import (
     ELASTIC,
     FAR,
     FREE,
+    GLANCE,
     ILL,
     LARGE,
     LOOK,
@@ -159,12 +161,17 @@ class Tracer:
         point_strains(*kinematics, direction, self.opening_rate, self.trial_rate)
         self.trial_rate *= model.kt
 
-    def _straighten(self) -> bool:
-        """Measure the gap rates of the direction, and refine it while K d = live is not met. False: it stays bent."""
+    def _straighten(self, look: bool = True) -> bool:
+        """Measure the gap rates of the direction, and refine it while K d = live is not met. False: it stays bent.
+
+        Without `look` a direction of moderate size is taken to be straight.
+        """
         size = float(np.abs(self.direction).max())
         self.easy = size < FREE * self.first_size
         if self.easy:
             self._rates(self.direction)
+            if not look:
+                return True
         else:
             self.tail[:] = 0.0
             self._rates(self.direction, self.tail)
@@ -308,6 +315,8 @@ class Tracer:
         old = int(self.state[point])
         index, a, b = self.model.change(point, old, new)
         crossing = self._kink_rate(point, old, new)
+        if not self.factor.foresees((point, old, new)):
+            self.factor.foresee(self._coming((point, old, new)))
         self.state[point] = new
         self.n_open += (new == OPEN) - (old == OPEN)
         self.n_slip += (new >= SLIP_PLUS) - (old >= SLIP_PLUS)
@@ -319,7 +328,7 @@ class Tracer:
         if self.resting or self.fragile:
             self._leave_held(index, a, b, crossing)
             return
-        y = self.factor.solve_sparse(index, a)
+        y = self.factor.solve_change((point, old, new))
         along = float(b @ y[index])
         denominator = 1.0 + along
         if abs(denominator) < ILL:
@@ -344,12 +353,21 @@ class Tracer:
             self.direction -= y * (self.sign * crossing / denominator)
             self.factor.update(y, index, b, denominator)
             self.sign = self.orientation * self.factor.sign
-            if not self._straighten():
+            if not self._straighten(look=self.factor.count % GLANCE == 0):
                 if self.factor.count > 1 or not self.factor.careful:
                     self.refresh()
                 else:
                     self._rest_blindly()
                 self._orient(index, b, crossing)
+
+    def _coming(self, change: Change) -> list[Change]:
+        """A change of state, then those that would follow it first if the direction stayed as it is."""
+        model = self.model
+        points, targets = np.empty(MANY - 1, dtype=np.int64), np.empty(MANY - 1, dtype=np.int64)
+        gaps = self.opening, self.trial, self.opening_rate, self.trial_rate
+        found = coming_kinks(*gaps, model.kn, model.mu, self.state, points, targets)
+        coming = zip(points[:found].tolist(), targets[:found].tolist(), strict=True)
+        return [change, *((p, int(self.state[p]), new) for p, new in coming if p != change[0])]
 
     def _hold(self, index: IntArray, a: FloatArray, b: FloatArray) -> FloatArray:
         """y = K^-1 a again, from a fresh factor of the tangent before the change just made, which is held apart."""

@@ -17,12 +17,16 @@ from scipy.sparse.csgraph import connected_components
 from scipy.sparse.linalg import SuperLU, splu
 
 from harness.model.assembly import FloatArray, IntArray
-from methods.fe.block_lu import BlockPattern
+from methods.fe.block_lu import MANY, BlockPattern
 from methods.fe.compiled import compiled
 from methods.fe.wall_model import WallModel, add_tangent
 
 DENSE_LIMIT = 70
 """Unknowns up to which the dense inverse is faster than the sparse product form."""
+
+
+Change = tuple[int, int, int]
+"""A point, its state and the state that it turns to."""
 
 
 class SingularTangent(ArithmeticError):
@@ -55,6 +59,15 @@ class Factor(Protocol):
 
     def solve_sparse(self, index: IntArray, value: FloatArray) -> FloatArray:
         """K^-1 times the vector with `value` (6,) at `index` (6,)."""
+
+    def foresees(self, change: Change) -> bool:
+        """Whether `solve_change` costs little."""
+
+    def foresee(self, changes: list[Change]) -> None:
+        """Solve for up to MANY changes at once, which `solve_change` is likely to be asked for."""
+
+    def solve_change(self, change: Change) -> FloatArray:
+        """K^-1 a (N,) for a change a b' of the tangent that is foreseen."""
 
     def update(self, y: FloatArray, index: IntArray, b: FloatArray, denominator: float) -> None:
         """Turn K into K + a b' where y = K^-1 a and denominator = 1 + b'y."""
@@ -100,6 +113,18 @@ class DenseFactor:
         out: FloatArray = self.inverse[:, index] @ value
         return out
 
+    def foresees(self, change: Change) -> bool:
+        """The inverse is at hand."""
+        return True
+
+    def foresee(self, changes: list[Change]) -> None:
+        """Nothing to do."""
+
+    def solve_change(self, change: Change) -> FloatArray:
+        """K^-1 a (N,)."""
+        index, a, _ = self.model.change(*change)
+        return self.solve_sparse(index, a)
+
     def update(self, y: FloatArray, index: IntArray, b: FloatArray, denominator: float) -> None:
         """Sherman-Morrison."""
         row = b @ self.inverse[index]
@@ -119,10 +144,12 @@ class SparseFactor:
         n = model.n_unknowns
         self._pattern = BlockPattern(model.unknown[:, 0] // 3, model.unknown[:, 3] // 3, n // 3)
         self._slot = self._pattern.slot(model.unknown)
-        self._values = np.zeros((self._pattern.n_values, 3, 3))
+        self._diagonal = self._pattern.place(np.arange(n), np.arange(n))
+        self._values = np.zeros(self._pattern.n_values)
         self.careful = False
         self.sign = 1.0
         self._exchanged: SuperLU | None = None
+        self._foreseen: dict[Change, FloatArray] = {}
         self._y = np.empty((self.capacity, n))
         self._coupling = np.zeros((self.capacity, self.capacity))
         self._denominator = np.empty(self.capacity)
@@ -134,6 +161,7 @@ class SparseFactor:
         self.count = 0
         self.factorisations += 1
         self._exchanged = None
+        self._foreseen.clear()
         self.sign = 0.0 if careful else float(self._factorise_blocks(state, shift))
         if self.sign == 0.0:
             self._exchanged = self._with_row_exchanges(state, shift)
@@ -145,9 +173,9 @@ class SparseFactor:
         model = self.model
         self._values[:] = 0.0
         springs = model.interface, model.position, model.kn, model.kt, model.mu
-        add_tangent(self._slot, model.rows, *springs, state, self._values.reshape(-1))
+        add_tangent(self._slot, model.rows, *springs, state, self._values)
         if shift:
-            self._values[: self._pattern.n, range(3), range(3)] += shift * model.inertia.reshape(-1, 3)
+            self._values[self._diagonal] += shift * model.inertia
         return self._pattern.factorise(self._values)
 
     def _with_row_exchanges(self, state: IntArray, shift: float) -> SuperLU:
@@ -162,7 +190,7 @@ class SparseFactor:
         if self._exchanged is not None:
             return self._corrected(self._exchanged.solve(right))
         x = right.copy()
-        self._pattern.solve(self._values, 0, x.reshape(-1, 3))
+        self._pattern.solve(self._values, 0, x)
         return self._corrected(x)
 
     def solve_sparse(self, index: IntArray, value: FloatArray) -> FloatArray:
@@ -171,8 +199,31 @@ class SparseFactor:
         np.add.at(x, index, value)
         if self._exchanged is not None:
             return self._corrected(self._exchanged.solve(x))
-        self._pattern.solve(self._values, int(index.min()) // 3, x.reshape(-1, 3))
+        self._pattern.solve(self._values, int(index.min()) // 3, x)
         return self._corrected(x)
+
+    def foresees(self, change: Change) -> bool:
+        """Whether the factorised tangent has been solved for this change."""
+        return change in self._foreseen
+
+    def foresee(self, changes: list[Change]) -> None:
+        """Solve the factorised tangent for up to MANY changes at once."""
+        right = np.zeros((self.model.n_unknowns, MANY))
+        first = self.model.n_unknowns
+        for j, change in enumerate(changes[:MANY]):
+            index, a, _ = self.model.change(*change)
+            np.add.at(right[:, j], index, a)
+            first = min(first, int(index.min()))
+        if self._exchanged is not None:
+            right = self._exchanged.solve(right)
+        else:
+            self._pattern.solve_many(self._values, first // 3, right)
+        for change, x in zip(changes, np.ascontiguousarray(right.T), strict=False):
+            self._foreseen[change] = x
+
+    def solve_change(self, change: Change) -> FloatArray:
+        """K^-1 a (N,) from what was foreseen."""
+        return self._corrected(self._foreseen[change].copy())
 
     def _corrected(self, x: FloatArray) -> FloatArray:
         """K^-1 right from the solution x (N,) of the factorised tangent, which is overwritten."""

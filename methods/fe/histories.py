@@ -162,7 +162,9 @@ def _trace_in_time(
                 tracer = follow
                 record.peak = max(record.peak, tracer.multiplier)
                 record.add(tracer.multiplier, float(model.live @ tracer.u), tracer.n_slip, tracer.n_open)
-        end = PathEnd.TARGET if follow is not None else tracer.run(record, max_events, tracer.multiplier + interval, turn)
+        end = (
+            PathEnd.TARGET if follow is not None else tracer.run(record, max_events, tracer.multiplier + interval, turn)
+        )
         worst = max(worst, tracer.worst_residual)
         if end == PathEnd.TURNED_DOWN:
             turn = np.inf

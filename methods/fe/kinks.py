@@ -80,25 +80,31 @@ def next_kink(
         fastest = max(fastest, abs(opening_rate[p]), abs(trial_rate[p]))
     least = min(noise * fastest, floor)
     best = np.inf
+    within = np.empty(count, dtype=np.int64)
+    found = 0
     for p in range(count):
         v0, r0, v1, r1 = kink_functions(opening[p], trial[p], opening_rate[p], trial_rate[p], kn[p], mu[p], state[p])
-        if (
-            r0 < -least
-            and max(v0, 0.0) + tolerance < -r0 * best
-            and (p != barred_point or target_state(state[p], 0, trial[p]) != barred_state)
-        ):
-            best = (max(v0, 0.0) + tolerance) / -r0
-        if (
-            r1 < -least
-            and max(v1, 0.0) + tolerance < -r1 * best
-            and (p != barred_point or target_state(state[p], 1, trial[p]) != barred_state)
-        ):
-            best = (max(v1, 0.0) + tolerance) / -r1
+        near = False
+        if r0 < -least and max(v0, 0.0) <= -r0 * best:
+            near = True
+            if max(v0, 0.0) + tolerance < -r0 * best and (
+                p != barred_point or target_state(state[p], 0, trial[p]) != barred_state
+            ):
+                best = (max(v0, 0.0) + tolerance) / -r0
+        if r1 < -least and max(v1, 0.0) <= -r1 * best:
+            near = True
+            if max(v1, 0.0) + tolerance < -r1 * best and (
+                p != barred_point or target_state(state[p], 1, trial[p]) != barred_state
+            ):
+                best = (max(v1, 0.0) + tolerance) / -r1
+        if near:
+            within[found] = p
+            found += 1
     step, point, target, speed = np.inf, -1, 0, 0.0
     if best == np.inf:
         return step, point, target
     best *= 1.0 + 1e-14
-    for p in range(count):
+    for p in within[:found]:
         v0, r0, v1, r1 = kink_functions(opening[p], trial[p], opening_rate[p], trial_rate[p], kn[p], mu[p], state[p])
         if r0 < -least and -r0 > speed and max(v0, 0.0) <= -r0 * best:
             at = max(v0, 0.0) / -r0
@@ -110,6 +116,46 @@ def next_kink(
             if p != barred_point or new != barred_state:
                 step, point, target, speed = max(v1, 0.0) / -r1, p, new, -r1
     return step, point, target
+
+
+@compiled
+def coming_kinks(
+    opening: FloatArray,
+    trial: FloatArray,
+    opening_rate: FloatArray,
+    trial_rate: FloatArray,
+    kn: FloatArray,
+    mu: FloatArray,
+    state: IntArray,
+    points: IntArray,
+    targets: IntArray,
+) -> int:
+    """The next kinks along a piece if no state changed, one a point at most; the arguments as in `next_kink`.
+
+    Args:
+        points, targets: (k,) receive the points and the states behind their kinks, nearest first.
+
+    Returns:
+        How many were found, at most k.
+    """
+    limit, found = len(points), 0
+    steps = np.empty(limit)
+    for p in range(len(state)):
+        v0, r0, v1, r1 = kink_functions(opening[p], trial[p], opening_rate[p], trial_rate[p], kn[p], mu[p], state[p])
+        at, which = np.inf, 0
+        if r0 < 0.0:
+            at = max(v0, 0.0) / -r0
+        if r1 < 0.0 and max(v1, 0.0) < -r1 * at:
+            at, which = max(v1, 0.0) / -r1, 1
+        if at == np.inf or (found == limit and at >= steps[found - 1]):
+            continue
+        i = min(found, limit - 1)
+        while i > 0 and steps[i - 1] > at:
+            steps[i], points[i], targets[i] = steps[i - 1], points[i - 1], targets[i - 1]
+            i -= 1
+        steps[i], points[i], targets[i] = at, p, target_state(state[p], which, trial[p] + at * trial_rate[p])
+        found = min(found + 1, limit)
+    return found
 
 
 @compiled

@@ -28,6 +28,8 @@ LOST = 1e-5
 """Out-of-balance force (share of the load scale) at which the path counts as lost."""
 NOISE = 1e-4
 """Force rates (share of the live load) below this count as zero on pieces measured in doubled precision."""
+GLANCE = 4
+"""Changes of state between two looks at how straight the direction is, while it is not FREE."""
 LOOK = 8
 """Changes of state between two looks at the out-of-balance force."""
 TIE = 1e-12

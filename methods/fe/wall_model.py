@@ -15,6 +15,7 @@ import scipy.sparse as sp
 from scipy.sparse.linalg import splu
 
 from harness.model.assembly import Assembly, FloatArray, IntArray
+from methods.fe.block_lu import postorder
 from methods.fe.compiled import compiled
 from methods.fe.exact_rates import tangent_defect
 from methods.fe.gap_law import OPEN, classify, flip_vectors, gap_forces, tangent_coefficients
@@ -207,15 +208,17 @@ def _kinematic_rows(assembly: Assembly, place: IntArray, length: float) -> tuple
 
 
 def _elimination_order(assembly: Assembly) -> IntArray:
-    """Free blocks in a minimum-degree order of the contact graph: the tangent is factorised in that order."""
+    """Free blocks in a minimum-degree order of the contact graph, postordered: the tangent is factorised in it."""
     n = assembly.n_blocks
     ones = np.ones(assembly.n_interfaces)
     graph = sp.csr_matrix((ones, (assembly.block_a, assembly.block_b)), shape=(n, n))[assembly.free][:, assembly.free]
     graph = graph + graph.T
     degree = np.asarray(graph.sum(axis=1)).ravel()
     lu = splu((graph + sp.diags(degree + 1.0)).tocsc(), permc_spec="MMD_AT_PLUS_A", options={"SymmetricMode": True})
-    order: IntArray = assembly.free[np.argsort(lu.perm_c)]
-    return order
+    order = np.argsort(lu.perm_c)
+    pairs = np.asarray(sp.triu(graph[order][:, order]).nonzero(), dtype=np.int64)
+    out: IntArray = assembly.free[order[postorder(pairs[0], pairs[1], len(order))]]
+    return out
 
 
 def _pattern(unknown: IntArray, rows: FloatArray, n: int) -> tuple[IntArray, IntArray, IntArray]:

@@ -112,3 +112,16 @@ def test_a_wall_in_the_air_has_no_inverse(model: WallModel, factor: Factor) -> N
 def _solve_with_all_open(model: WallModel, factor: Factor) -> None:
     factor.refactor(np.full(model.n_points, OPEN))
     factor.solve(model.live)
+
+
+def test_changes_that_were_foreseen_are_solved_for_like_any_other(model: WallModel, factor: Factor) -> None:
+    state = sliding_states(model, 1)
+    factor.refactor(state)
+    changes = [(p, int(state[p]), neighbour_states(int(state[p]))[0]) for p in range(0, model.n_points, 5)][:5]
+    factor.foresee(changes)
+    for change in changes:
+        assert factor.foresees(change)
+        index, a, b = model.change(*change)
+        y = factor.solve_sparse(index, a)
+        np.testing.assert_allclose(factor.solve_change(change), y, rtol=1e-11, atol=1e-12)
+        factor.update(y, index, b, 1.0 + float(b @ y[index]))
