@@ -152,7 +152,7 @@ def _trace_in_time(
     turn = TURN
     while True:
         follow = None
-        if step > 0.0 and tracer.multiplier >= record.peak and float(np.abs(tracer.u).max()) < large:
+        if step > 0.0 and tracer.n_slip and tracer.multiplier >= record.peak and float(np.abs(tracer.u).max()) < large:
             follow = committed_step(tracer, interval)
             if follow is None:
                 tracer.refresh()
