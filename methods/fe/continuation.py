@@ -315,7 +315,7 @@ class Tracer:
         old = int(self.state[point])
         index, a, b = self.model.change(point, old, new)
         crossing = self._kink_rate(point, old, new)
-        if not self.factor.foresees((point, old, new)):
+        if not (self.resting or self.fragile or self.factor.foresees((point, old, new))):
             self.factor.foresee(self._coming((point, old, new)))
         self.state[point] = new
         self.n_open += (new == OPEN) - (old == OPEN)

@@ -153,18 +153,11 @@ def _trace_in_time(
     while True:
         follow = None
         if step > 0.0 and tracer.n_slip and tracer.multiplier >= record.peak and float(np.abs(tracer.u).max()) < large:
-            follow = committed_step(tracer, interval)
-            if follow is None:
-                tracer.refresh()
-            else:
-                commits += 1
-                follow.first_size, follow.first_displacement = tracer.first_size, tracer.first_displacement
-                tracer = follow
-                record.peak = max(record.peak, tracer.multiplier)
-                record.add(tracer.multiplier, float(model.live @ tracer.u), tracer.n_slip, tracer.n_open)
-        end = (
-            PathEnd.TARGET if follow is not None else tracer.run(record, max_events, tracer.multiplier + interval, turn)
-        )
+            follow = _commit(tracer, interval, record)
+        if follow is not None:
+            commits, tracer, end = commits + 1, follow, PathEnd.TARGET
+        else:
+            end = tracer.run(record, max_events, tracer.multiplier + interval, turn)
         worst = max(worst, tracer.worst_residual)
         if end == PathEnd.TURNED_DOWN:
             turn = np.inf
@@ -184,6 +177,17 @@ def _trace_in_time(
     if state is None and end == PathEnd.PLATEAU:
         sentence = "the last piece is a mechanism, but its forces do not pass the check of an exact collapse state"
     return HistoryResult(step, end, sentence, record, state, commits, worst, disturbance)
+
+
+def _commit(tracer: Tracer, interval: float, record: PathRecord) -> Tracer | None:
+    """The tracer one interval after a commit, by a finite Newton step; None where that does not settle."""
+    follow = committed_step(tracer, interval)
+    if follow is None:
+        tracer.refresh()
+        return None
+    record.peak = max(record.peak, follow.multiplier)
+    record.add(follow.multiplier, float(tracer.model.live @ follow.u), follow.n_slip, follow.n_open)
+    return _successor(follow, tracer)
 
 
 def _doubled(
@@ -206,7 +210,11 @@ def _jump(model: WallModel, factor: Factor, tracer: Tracer, record: PathRecord) 
     answer = equilibrium(model, factor, tracer.u, above, tracer.history)
     if not answer.found:
         return None
-    follow = Tracer(model, factor, answer.u, above, tracer.history, answer.state)
+    return _successor(Tracer(model, factor, answer.u, above, tracer.history, answer.state), tracer)
+
+
+def _successor(follow: Tracer, tracer: Tracer) -> Tracer:
+    """A tracer further along the path, which keeps the scales of the one it follows."""
     follow.first_size, follow.first_displacement = tracer.first_size, tracer.first_displacement
     return follow
 
