@@ -169,28 +169,43 @@ def _eliminate(d: FloatArray, swapped: IntArray) -> int:
     return sign
 
 
-@compiled
-def _divide(rows: FloatArray, lu: FloatArray, swapped: IntArray) -> float:
-    """Rows (r, w) times the inverse of a matrix given by its LU, in place; the greatest entry."""
+@compiled_loosely
+def _divide(rows: FloatArray, lu: FloatArray, swapped: IntArray, columns: FloatArray) -> float:
+    """Rows (r, w) times the inverse of a matrix given by its LU, in place; the greatest entry.
+
+    The sums run down the columns (w, r), of which there are more than of rows.
+    """
     greatest = 0.0
     n = len(lu)
     for i in range(len(rows)):
-        row = rows[i]
         for k in range(n):
-            row[k] /= lu[k, k]
-            entry = row[k]
-            if entry != 0.0:
-                for j in range(k + 1, n):
-                    row[j] -= entry * lu[k, j]
-        for k in range(n - 1, -1, -1):
-            entry = row[k]
-            for j in range(k):
-                row[j] -= entry * lu[k, j]
-        for k in range(n - 1, -1, -1):
-            row[k], row[swapped[k]] = row[swapped[k]], row[k]
+            columns[k, i] = rows[i, k]
+    for k in range(n):
+        share = 1.0 / lu[k, k]
+        for i in range(len(rows)):
+            columns[k, i] *= share
+        for j in range(k + 1, n):
+            _subtract_times(columns[j], lu[k, j], columns[k])
+    for k in range(n - 1, -1, -1):
+        for j in range(k):
+            _subtract_times(columns[j], lu[k, j], columns[k])
+    for k in range(n - 1, -1, -1):
+        other = swapped[k]
+        if other != k:
+            for i in range(len(rows)):
+                columns[k, i], columns[other, i] = columns[other, i], columns[k, i]
+    for i in range(len(rows)):
         for k in range(n):
-            greatest = max(greatest, abs(row[k]))
+            rows[i, k] = columns[k, i]
+            greatest = max(greatest, abs(columns[k, i]))
     return greatest
+
+
+@compiled_loosely
+def _subtract_times(x: FloatArray, factor: float, y: FloatArray) -> None:
+    """x -= factor y."""
+    for i in range(len(x)):
+        x[i] -= factor * y[i]
 
 
 @compiled
@@ -300,7 +315,8 @@ def _factorise(
         if sign == 0:
             return 0
         if r:
-            greatest = max(greatest, _divide(low, diagonal, swapped[3 * c0 : 3 * c0 + w]))
+            columns = buffer[: w * r].reshape(w, r)
+            greatest = max(greatest, _divide(low, diagonal, swapped[3 * c0 : 3 * c0 + w], columns))
             t = owner[rows[0]]
             following[s] = head[t]
             head[t] = s

@@ -9,6 +9,8 @@ from collections.abc import Callable
 from typing import Any, TypeVar, cast
 
 import numba
+from numba.core import types
+from numba.extending import intrinsic
 
 AnyFunction = TypeVar("AnyFunction", bound=Callable[..., Any])
 
@@ -35,3 +37,14 @@ def _compile(function: AnyFunction, fastmath: bool | set[str]) -> AnyFunction:
         return cast(AnyFunction, numba.njit(cache=True, fastmath=fastmath)(function))
     except RuntimeError:
         return cast(AnyFunction, numba.njit(fastmath=fastmath)(function))
+
+
+@intrinsic  # type: ignore[untyped-decorator]
+def fused(_context: Any, _a: Any, _b: Any, _c: Any) -> Any:
+    """A product of floats and a sum, a b + c, rounded once (IEEE 754-2008), inside compiled functions."""
+    signature = types.float64(types.float64, types.float64, types.float64)
+
+    def generate(_target: Any, builder: Any, _signature: Any, arguments: Any) -> Any:
+        return builder.fma(*arguments)
+
+    return signature, generate

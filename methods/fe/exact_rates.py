@@ -1,14 +1,14 @@
 """Gap rates with twice the working precision, for the pieces on which the wall moves almost freely.
 
 Close to a plateau displacements are 1e10 times the elastic ones. The elastic part of a gap rate is then the small
-difference of large terms, and double precision would leave noise in the contact forces. Products are split exactly
-(Dekker, 1971) and summed with the error carried along (Ogita, Rump and Oishi, 2005).
+difference of large terms, and double precision would leave noise in the contact forces. The rounding of
+each product (a fused multiply and add gives it) and of each sum is carried along (Ogita, Rump and Oishi, 2005).
 """
 
 from __future__ import annotations
 
 from harness.model.assembly import FloatArray, IntArray
-from methods.fe.compiled import compiled
+from methods.fe.compiled import compiled, fused
 from methods.fe.gap_law import OPEN, SLIP_PLUS, STICK
 
 
@@ -16,13 +16,7 @@ from methods.fe.gap_law import OPEN, SLIP_PLUS, STICK
 def add_product(high: float, low: float, a: float, b: float) -> tuple[float, float]:
     """(high + low) + a b, as a leading part and its error."""
     product = a * b
-    cut = 134217729.0 * a
-    a_high = cut - (cut - a)
-    a_low = a - a_high
-    cut = 134217729.0 * b
-    b_high = cut - (cut - b)
-    b_low = b - b_high
-    error = ((a_high * b_high - product) + a_high * b_low + a_low * b_high) + a_low * b_low
+    error = fused(a, b, -product)
     total = high + product
     part = total - high
     error += (high - (total - part)) + (product - part)
