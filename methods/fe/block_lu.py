@@ -75,12 +75,8 @@ class BlockPattern:
         out: IntArray = self.offset[owner] + np.where(inside, diagonal, np.where(row > column, lower, upper))
         return out
 
-    def factorise(self, values: FloatArray) -> int:
-        """Factorise the values (n_values,) in place.
-
-        Returns:
-            The sign of the determinant, or 0 when the pivots are not to be trusted.
-        """
+    def factorise(self, values: FloatArray) -> bool:
+        """Factorise the values (n_values,) in place; False when the pivots are not to be trusted."""
         return _factorise(self.start, self.owner, self.row_start, self.row, self.offset, values, self._swapped, GROWTH)
 
     def solve(self, values: FloatArray, first: int, x: FloatArray) -> None:
@@ -143,19 +139,16 @@ def _supernodes(below: list[set[int]]) -> tuple[list[int], list[list[int]]]:
 
 
 @compiled
-def _eliminate(d: FloatArray, swapped: IntArray) -> int:
-    """LU of a matrix in place with rows swapped; the sign of its determinant, 0 if singular."""
+def _eliminate(d: FloatArray, swapped: IntArray) -> bool:
+    """LU of a matrix in place with rows swapped; False if it is singular."""
     n = len(d)
-    sign = 1
     for k in range(n):
         best = k
         for i in range(k + 1, n):
             if abs(d[i, k]) > abs(d[best, k]):
                 best = i
         if not abs(d[best, k]) > 0.0:
-            return 0
-        if (d[best, k] < 0.0) != (best != k):
-            sign = -sign
+            return False
         swapped[k] = best
         if best != k:
             for j in range(n):
@@ -166,7 +159,7 @@ def _eliminate(d: FloatArray, swapped: IntArray) -> int:
             if share != 0.0:
                 for j in range(k + 1, n):
                     d[i, j] -= share * d[k, j]
-    return sign
+    return True
 
 
 @compiled_loosely
@@ -260,7 +253,7 @@ def _factorise(
     values: FloatArray,
     swapped: IntArray,
     growth: float,
-) -> int:
+) -> bool:
     """Supernode by supernode: subtract what those before it reach, eliminate its diagonal, divide what lies below."""
     count = len(start) - 1
     head, following = np.full(count, -1), np.full(count, -1)
@@ -269,7 +262,7 @@ def _factorise(
     most = 3 * max(1, np.diff(row_start).max())
     widest = 3 * np.diff(start).max()
     buffer = np.empty(most * widest)
-    sign, greatest = 1, 0.0
+    greatest = 0.0
     for s in range(count):
         c0, c1 = start[s], start[s + 1]
         w, r = 3 * (c1 - c0), 3 * (row_start[s + 1] - row_start[s])
@@ -311,16 +304,15 @@ def _factorise(
                 head[t] = d
             reached[d] = p2
             d = after
-        sign *= _eliminate(diagonal, swapped[3 * c0 : 3 * c0 + w])
-        if sign == 0:
-            return 0
+        if not _eliminate(diagonal, swapped[3 * c0 : 3 * c0 + w]):
+            return False
         if r:
             columns = buffer[: w * r].reshape(w, r)
             greatest = max(greatest, _divide(low, diagonal, swapped[3 * c0 : 3 * c0 + w], columns))
             t = owner[rows[0]]
             following[s] = head[t]
             head[t] = s
-    return sign if greatest < growth else 0
+    return greatest < growth
 
 
 @compiled

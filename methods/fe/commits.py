@@ -62,7 +62,7 @@ def committed_step(tracer: Tracer, ahead: float, limit: int = 12) -> Tracer | No
 def _near(tracer: Tracer, u: FloatArray, ahead: float) -> bool:
     """Whether a step stays on its branch: the live load works forwards, not much further than the tangent predicts."""
     moved = u - tracer.u
-    predicted = float(np.abs(tracer.direction).max()) * ahead
+    predicted = float(np.abs(tracer.direction.velocity).max()) * ahead
     return float(tracer.model.live @ moved) > 0.0 and float(np.abs(moved).max()) <= NEAR * predicted
 
 

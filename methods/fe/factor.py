@@ -12,8 +12,6 @@ from typing import Protocol
 
 import numpy as np
 import scipy.linalg as sla
-import scipy.sparse as sp
-from scipy.sparse.csgraph import connected_components
 from scipy.sparse.linalg import SuperLU, splu
 
 from harness.model.assembly import FloatArray, IntArray
@@ -39,18 +37,17 @@ class Factor(Protocol):
     Attributes:
         count: changes since the last factorisation; capacity: how many there may be.
         factorisations: in all; careful: whether the last one chose its pivots among all rows.
-        sign: of the determinant.
     """
 
     count: int
     capacity: int
     factorisations: int
     careful: bool
-    sign: float
 
-    def refactor(self, state: IntArray, shift: float = 0.0, careful: bool = False) -> None:
+    def refactor(self, state: IntArray, shift: float = 0.0, careful: bool = False, pin: int = -1) -> None:
         """Factorise the tangent in these states afresh, with `shift` times the inertia added.
 
+        `pin` is a displacement that a spring of unit stiffness is added to, if not negative.
         `careful` asks for pivots among all rows, which keep more digits near a limit point and cost more.
         """
 
@@ -87,21 +84,20 @@ class DenseFactor:
         self.count = 0
         self.factorisations = 0
         self.careful = True
-        self.sign = 1.0
         self.inverse = np.empty((0, 0))
 
-    def refactor(self, state: IntArray, shift: float = 0.0, careful: bool = True) -> None:
+    def refactor(self, state: IntArray, shift: float = 0.0, careful: bool = True, pin: int = -1) -> None:
         """Invert afresh. Raises SingularTangent."""
         self.count = 0
         self.factorisations += 1
         matrix = self.model.tangent(state, shift).toarray()
+        if pin >= 0:
+            matrix[pin, pin] += 1.0
         lu, pivots, info = sla.lapack.dgetrf(matrix, overwrite_a=True)
-        determinant = float(np.prod(np.sign(lu.diagonal()))) * (-1.0) ** np.count_nonzero(pivots != np.arange(len(lu)))
         if info == 0:
             self.inverse, info = sla.lapack.dgetri(lu, pivots, overwrite_lu=True)
         if info != 0 or not np.isfinite(self.inverse).all():
             raise SingularTangent("the tangent is singular in these states")
-        self.sign = determinant
 
     def solve(self, right: FloatArray) -> FloatArray:
         """K^-1 right (N,)."""
@@ -129,7 +125,6 @@ class DenseFactor:
         """Sherman-Morrison."""
         row = b @ self.inverse[index]
         self.inverse = sla.blas.dger(-1.0 / denominator, y, row, a=self.inverse, overwrite_a=1)
-        self.sign *= float(np.sign(denominator))
         self.count += 1
 
 
@@ -147,7 +142,6 @@ class SparseFactor:
         self._diagonal = self._pattern.place(np.arange(n), np.arange(n))
         self._values = np.zeros(self._pattern.n_values)
         self.careful = False
-        self.sign = 1.0
         self._exchanged: SuperLU | None = None
         self._foreseen: dict[Change, FloatArray] = {}
         self._y = np.empty((self.capacity, n))
@@ -156,32 +150,34 @@ class SparseFactor:
         self._index = np.empty((self.capacity, 6), dtype=np.int64)
         self._b = np.empty((self.capacity, 6))
 
-    def refactor(self, state: IntArray, shift: float = 0.0, careful: bool = False) -> None:
+    def refactor(self, state: IntArray, shift: float = 0.0, careful: bool = False, pin: int = -1) -> None:
         """Factorise afresh. Raises SingularTangent."""
         self.count = 0
         self.factorisations += 1
         self._exchanged = None
         self._foreseen.clear()
-        self.sign = 0.0 if careful else float(self._factorise_blocks(state, shift))
-        if self.sign == 0.0:
-            self._exchanged = self._with_row_exchanges(state, shift)
-            exchanges = _parity(self._exchanged.perm_r) * _parity(self._exchanged.perm_c)
-            self.sign = exchanges * float(np.prod(np.sign(self._exchanged.U.diagonal())))
+        if careful or not self._factorise_blocks(state, shift, pin):
+            self._exchanged = self._with_row_exchanges(state, shift, pin)
         self.careful = self._exchanged is not None
 
-    def _factorise_blocks(self, state: IntArray, shift: float) -> int:
+    def _factorise_blocks(self, state: IntArray, shift: float, pin: int) -> bool:
         model = self.model
         self._values[:] = 0.0
         springs = model.interface, model.position, model.kn, model.kt, model.mu
         add_tangent(self._slot, model.rows, *springs, state, self._values)
         if shift:
             self._values[self._diagonal] += shift * model.inertia
+        if pin >= 0:
+            self._values[self._diagonal[pin]] += 1.0
         return self._pattern.factorise(self._values)
 
-    def _with_row_exchanges(self, state: IntArray, shift: float) -> SuperLU:
+    def _with_row_exchanges(self, state: IntArray, shift: float, pin: int) -> SuperLU:
         options = {"SymmetricMode": True}
+        matrix = self.model.tangent(state, shift)
+        if pin >= 0:
+            matrix[pin, pin] += 1.0
         try:
-            return splu(self.model.tangent(state, shift), "NATURAL", 1e-3, relax=1, panel_size=1, options=options)
+            return splu(matrix, "NATURAL", 1e-3, relax=1, panel_size=1, options=options)
         except RuntimeError as error:
             raise SingularTangent(str(error)) from error
 
@@ -244,15 +240,7 @@ class SparseFactor:
         self._b[k] = b
         self._denominator[k] = denominator
         _couple(self._y, index, b, k, self._coupling)
-        self.sign *= float(np.sign(denominator))
         self.count = k + 1
-
-
-def _parity(permutation: IntArray) -> float:
-    """+1 for an even permutation, -1 for an odd one: with c cycles it takes n - c exchanges."""
-    n = len(permutation)
-    cycles, _ = connected_components(sp.csr_matrix((np.ones(n), (np.arange(n), permutation)), shape=(n, n)))
-    return 1.0 if (n - cycles) % 2 == 0 else -1.0
 
 
 @compiled

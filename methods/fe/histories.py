@@ -152,7 +152,7 @@ def _trace_in_time(
     turn = TURN
     while True:
         follow = None
-        if step > 0.0 and tracer.n_slip and tracer.multiplier >= record.peak and float(np.abs(tracer.u).max()) < large:
+        if step > 0.0 and tracer.may_commit() and tracer.multiplier >= record.peak and tracer.extent < large:
             follow = _commit(tracer, interval, record)
         if follow is not None:
             commits, tracer, end = commits + 1, follow, PathEnd.TARGET
@@ -172,7 +172,11 @@ def _trace_in_time(
         if step > 0.0 and tracer.multiplier > ASTRAY * scale:
             end = PathEnd.BREAKDOWN
             break
-    state = finish(tracer) if end in (PathEnd.PLATEAU, PathEnd.BREAKDOWN, PathEnd.EVENTS) else None
+    state = (
+        finish(model, tracer.present(), tracer.kept)
+        if end in (PathEnd.PLATEAU, PathEnd.BREAKDOWN, PathEnd.EVENTS)
+        else None
+    )
     sentence = SENTENCES[end]
     if state is None and end == PathEnd.PLATEAU:
         sentence = "the last piece is a mechanism, but its forces do not pass the check of an exact collapse state"
@@ -215,7 +219,7 @@ def _jump(model: WallModel, factor: Factor, tracer: Tracer, record: PathRecord) 
 
 def _successor(follow: Tracer, tracer: Tracer) -> Tracer:
     """A tracer further along the path, which keeps the scales of the one it follows."""
-    follow.first_size, follow.first_displacement = tracer.first_size, tracer.first_displacement
+    follow.direction.elastic, follow.first_displacement = tracer.direction.elastic, tracer.first_displacement
     return follow
 
 

@@ -14,11 +14,10 @@ from dataclasses import dataclass
 import numpy as np
 
 from harness.model.assembly import FloatArray, IntArray
-from methods.fe.continuation import Tracer
 from methods.fe.factor import Factor, SingularTangent, make_factor
 from methods.fe.histories import START
 from methods.fe.newton import Equilibrium, load_scale, newton
-from methods.fe.path_record import PathRecord
+from methods.fe.path_record import PathRecord, Snapshot
 from methods.fe.plateau import CollapseState, finish
 from methods.fe.wall_model import WallModel
 
@@ -135,7 +134,6 @@ def _collapse(
     model: WallModel, factor: Factor, u: FloatArray, multiplier: float, state: IntArray, direction: FloatArray
 ) -> CollapseState | None:
     """The collapse state of a wall that moves at constant multiplier, or None when it fails its check."""
-    factor.refactor(state, 1e-6)
-    tracer = Tracer(model, factor, u, multiplier, model.history, state, factorised=True)
-    tracer.settle_on(direction)
-    return finish(tracer)
+    opening, slip = model.strains(u)
+    velocity = direction / np.abs(direction).max()
+    return finish(model, Snapshot(multiplier, opening, model.kt * slip + model.history, state, velocity))

@@ -15,7 +15,6 @@ import scipy.sparse as sp
 from scipy.sparse.linalg import SuperLU, splu
 
 from harness.model.assembly import Assembly, BoolArray, FloatArray, IntArray
-from methods.fe.continuation import Tracer
 from methods.fe.factor import SingularTangent
 from methods.fe.gap_law import classify, equivalent_end_forces, gap_forces
 from methods.fe.path_record import Snapshot
@@ -50,42 +49,40 @@ class CollapseState:
         return max(self.residuals.values())
 
 
-def finish(tracer: Tracer) -> CollapseState | None:
-    """The best collapse state of a tracer that has come to a plateau, or broke off after a mechanism; None if none.
+def finish(model: WallModel, present: Snapshot, kept: Snapshot | None = None) -> CollapseState | None:
+    """The best collapse state of a path that has come to a plateau, or broke off after a mechanism; None if none.
 
     The state on the last piece is solved for exactly; where that overshoots a kink, the state as traced and the last
     mechanism kept on the way are tried. Which one holds is decided by their residuals alone.
     """
-    present = Snapshot(tracer.multiplier, tracer.opening, tracer.trial, tracer.state, tracer.along())
     candidates: list[CollapseState] = []
     with suppress(SingularTangent):
-        candidates.append(_solve_last_piece(tracer, present))
-    candidates.append(_as_traced(tracer, present))
-    if tracer.kept is not None:
-        candidates.append(_as_traced(tracer, tracer.kept))
+        candidates.append(_solve_last_piece(model, present))
+    candidates.append(_as_traced(model, present))
+    if kept is not None:
+        candidates.append(_as_traced(model, kept))
         if candidates[-1].worst > CERTIFICATE:
             with suppress(SingularTangent):
-                candidates.append(_solve_last_piece(tracer, tracer.kept))
+                candidates.append(_solve_last_piece(model, kept))
     for state in candidates:
         if state.worst <= CERTIFICATE:
             return state
     return None
 
 
-def _as_traced(tracer: Tracer, shot: Snapshot) -> CollapseState:
+def _as_traced(model: WallModel, shot: Snapshot) -> CollapseState:
     """Forces and velocity of a snapshot as they are."""
-    return _collapse_state(tracer, shot.multiplier, shot.opening, shot.trial, shot.state, shot.velocity)
+    return _collapse_state(model, shot.multiplier, shot.opening, shot.trial, shot.state, shot.velocity)
 
 
 def _collapse_state(
-    tracer: Tracer,
+    model: WallModel,
     multiplier: float,
     opening: FloatArray,
     trial: FloatArray,
     state: IntArray,
     velocity: FloatArray,
 ) -> CollapseState:
-    model = tracer.model
     normal, shear = np.empty_like(opening), np.empty_like(opening)
     gap_forces(opening, trial, model.kn, model.mu, state, normal, shear)
     assembly = model.assembly
@@ -95,12 +92,11 @@ def _collapse_state(
     return check(assembly, multiplier, forces, field / (abs(live) or 1.0))
 
 
-def _solve_last_piece(tracer: Tracer, shot: Snapshot) -> CollapseState:
+def _solve_last_piece(model: WallModel, shot: Snapshot) -> CollapseState:
     """Solve for the state and the mechanism of the singular piece. Raises SingularTangent when it is not unique.
 
     Points that rounding carried a hair across their kink change state, and the piece is solved for again.
     """
-    model = tracer.model
     multiplier, state = shot.multiplier, shot.state.copy()
     opening, trial = shot.opening.copy(), shot.trial.copy()
     fastest = int(np.argmax(np.abs(shot.velocity)))
@@ -109,15 +105,19 @@ def _solve_last_piece(tracer: Tracer, shot: Snapshot) -> CollapseState:
         tangent = model.tangent(state)
         factor = _bordered(tangent, fastest, model.live)
         multiplier = _corrected(model, factor, fastest, opening, trial, state, multiplier)
+        if not np.isfinite(opening + trial).all():
+            raise SingularTangent(NOT_UNIQUE)
         beyond = _beyond_yield(model, opening, trial, state)
         if not beyond.any():
             break
         classify(opening, trial, model.kn, model.mu, landed, False)
         state[beyond] = landed[beyond]
     mechanism = factor.solve(-tangent[:, [fastest]].toarray().ravel())
+    if not np.isfinite(mechanism).all():
+        raise SingularTangent(NOT_UNIQUE)
     mechanism[fastest] = 1.0
     mechanism *= np.sign(shot.velocity[fastest])
-    return _collapse_state(tracer, multiplier, opening, trial, state, mechanism)
+    return _collapse_state(model, multiplier, opening, trial, state, mechanism)
 
 
 def _beyond_yield(model: WallModel, opening: FloatArray, trial: FloatArray, state: IntArray) -> BoolArray:

@@ -36,31 +36,18 @@ def sliding_states(model: WallModel, seed: int, share: float = 0.2) -> np.ndarra
 @pytest.mark.parametrize("seed", range(5))
 @pytest.mark.parametrize("shift", [0.0, 0.3])
 @pytest.mark.parametrize("careful", [False, True])
-def test_a_fresh_factor_solves_with_the_tangent_and_knows_the_sign_of_its_determinant(
-    model: WallModel, factor: Factor, seed: int, shift: float, careful: bool
+@pytest.mark.parametrize("pin", [-1, 4])
+def test_a_fresh_factor_solves_with_the_tangent(
+    model: WallModel, factor: Factor, seed: int, shift: float, careful: bool, pin: int
 ) -> None:
     state = sliding_states(model, seed)
     right = np.random.default_rng(seed + 100).normal(size=model.n_unknowns)
-    factor.refactor(state, shift, careful)
+    factor.refactor(state, shift, careful, pin)
     x = factor.solve(right)
-    assert factor.sign == np.linalg.slogdet(model.tangent(state, shift).toarray())[0]
-    assert np.abs(model.tangent(state, shift) @ x - right).max() < 1e-11 * max(1.0, np.abs(x).max())
-
-
-@pytest.mark.parametrize("careful", [False, True])
-@pytest.mark.parametrize("kind", [DenseFactor, SparseFactor])
-def test_the_sign_of_the_determinant_is_known_where_sliding_on_rough_joints_makes_it_negative(
-    kind: type[DenseFactor] | type[SparseFactor], careful: bool
-) -> None:
-    rough = build_model(running_bond(6, 3, 2.0), GapSpringsSettings())
-    factor = kind(rough)
-    signs = set()
-    for seed in range(10):
-        state = sliding_states(rough, seed, 0.3)
-        factor.refactor(state, 0.0, careful)
-        assert factor.sign == np.linalg.slogdet(rough.tangent(state).toarray())[0]
-        signs.add(factor.sign)
-    assert signs == {-1.0, 1.0}
+    tangent = model.tangent(state, shift).toarray()
+    if pin >= 0:
+        tangent[pin, pin] += 1.0
+    assert np.abs(tangent @ x - right).max() < 1e-11 * max(1.0, np.abs(x).max())
 
 
 def test_a_few_entries_on_the_right_are_solved_for_as_a_full_vector_is(model: WallModel, factor: Factor) -> None:
@@ -87,7 +74,6 @@ def test_changes_of_state_follow_by_updates(model: WallModel, factor: Factor) ->
         state[point] = new
     x = factor.solve(model.live)
     assert np.abs(model.tangent(state) @ x - model.live).max() < 1e-9 * max(1.0, np.abs(x).max())
-    assert factor.sign == np.linalg.slogdet(model.tangent(state).toarray())[0]
 
 
 def test_rows_are_exchanged_where_block_pivots_are_not_trusted(

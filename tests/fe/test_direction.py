@@ -1,0 +1,90 @@
+"""The direction of the path, judged by the dense tangent."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from harness.model.assembly import FloatArray, IntArray
+from methods.fe.direction import FREELY, Direction
+from methods.fe.factor import DenseFactor, SparseFactor
+from methods.fe.gap_law import SLIP_PLUS, STICK, neighbour_states
+from methods.fe.patterns import block_on_halves, running_bond
+from methods.fe.settings import GapSpringsSettings
+from methods.fe.wall_model import WallModel, build_model
+
+Kind = type[DenseFactor] | type[SparseFactor]
+EXTENT = 100.0
+
+
+@pytest.fixture(scope="module")
+def rough() -> WallModel:
+    """A wall on whose joints sliding turns the sign of the determinant."""
+    return build_model(running_bond(6, 3, 2.0), GapSpringsSettings())
+
+
+def sticking(model: WallModel) -> IntArray:
+    return np.full(model.n_points, STICK)
+
+
+def defect(model: WallModel, state: IntArray, way: Direction) -> float:
+    tangent = model.tangent(state).toarray()
+    return float(np.abs(tangent @ (way.velocity + way.tail) - way.speed * model.live).max())
+
+
+def change(way: Direction, state: IntArray, point: int, new: int, look: bool = True) -> tuple[FloatArray, float]:
+    """Turn at a change of state; the gradient b of its kink function in full length, and its rate before."""
+    model = way.model
+    old = int(state[point])
+    index, _, b = model.change(point, old, new)
+    gradient = np.zeros(model.n_unknowns)
+    np.add.at(gradient, index, b)
+    crossing = float(gradient @ way.velocity)
+    way.factor.foresee([(point, old, new)])
+    state[point] = new
+    if not way.turn((point, old, new), crossing, state, EXTENT, look):
+        way.solve_anew(state, EXTENT)
+    return gradient, crossing
+
+
+@pytest.mark.parametrize("kind", [DenseFactor, SparseFactor])
+@pytest.mark.parametrize("pinned", [False, True])
+@pytest.mark.parametrize("seed", range(4))
+def test_each_piece_is_in_equilibrium_and_leads_on_into_the_new_cell(
+    rough: WallModel, kind: Kind, pinned: bool, seed: int
+) -> None:
+    state, generator = sticking(rough), np.random.default_rng(seed)
+    way = Direction(rough, kind(rough))
+    way.solve_anew(state, EXTENT)
+    if pinned:
+        way.elastic *= 1e-6
+        way.solve_anew(state, EXTENT)
+    assert (way.pin != FREELY) == pinned
+    for point in generator.permutation(rough.n_points)[:40]:
+        before = way.speed
+        gradient, crossing = change(way, state, int(point), neighbour_states(STICK)[int(generator.integers(2))])
+        assert defect(rough, state, way) < 1e-9 * np.abs(way.velocity).max()
+        assert float(gradient @ way.velocity) * crossing > 0.0
+        determinants = [np.linalg.slogdet(rough.tangent(s).toarray())[0] for s in (state, with_sticking(state, point))]
+        assert np.sign(way.speed * before) == determinants[0] * determinants[1]
+
+
+def with_sticking(state: IntArray, point: int) -> IntArray:
+    other = state.copy()
+    other[point] = STICK
+    return other
+
+
+@pytest.mark.parametrize("kind", [DenseFactor, SparseFactor])
+def test_where_the_tangent_is_singular_the_velocity_is_its_null_vector(kind: Kind) -> None:
+    model = build_model(block_on_halves((0.6, 0.4)), GapSpringsSettings())
+    state = sticking(model)
+    way = Direction(model, kind(model))
+    way.solve_anew(state, EXTENT)
+    for point in range(model.n_points):
+        change(way, state, point, SLIP_PLUS)
+    tangent = model.tangent(state).toarray()
+    assert np.linalg.matrix_rank(tangent) == len(tangent) - 1
+    assert way.pin != FREELY
+    assert abs(way.speed) < 1e-25
+    assert np.abs(tangent @ way.velocity).max() < 1e-14 * np.abs(way.velocity).max()
