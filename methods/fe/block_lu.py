@@ -79,9 +79,9 @@ class BlockPattern:
         """Factorise the values (n_values,) in place; False when the pivots are not to be trusted."""
         return _factorise(self.start, self.owner, self.row_start, self.row, self.offset, values, self._swapped, GROWTH)
 
-    def solve(self, values: FloatArray, first: int, x: FloatArray) -> None:
-        """Solve in place; entries of x (3 n,) before block `first` are zero."""
-        _substitute(self.start, self.row_start, self.row, self.offset, values, self._swapped, int(self.owner[first]), x)
+    def solve(self, values: FloatArray, x: FloatArray) -> None:
+        """Solve in place in x (3 n,)."""
+        _substitute(self.start, self.row_start, self.row, self.offset, values, self._swapped, x)
 
     def solve_many(self, values: FloatArray, first: int, x: FloatArray) -> None:
         """Solve for MANY right-hand sides at once, in place in x (3 n, MANY), whose rows before `first` are zero."""
@@ -334,12 +334,11 @@ def _substitute(
     offset: IntArray,
     values: FloatArray,
     swapped: IntArray,
-    first: int,
     x: FloatArray,
 ) -> None:
-    """Forward pass from supernode `first`, then the backward pass with the factorised diagonals."""
+    """Forward pass, then the backward pass with the factorised diagonals."""
     count = len(start) - 1
-    for s in range(first, count):
+    for s in range(count):
         c0, w = 3 * start[s], 3 * (start[s + 1] - start[s])
         some = False
         for i in range(c0, c0 + w):

@@ -9,8 +9,9 @@ from __future__ import annotations
 import numpy as np
 
 from harness.model.assembly import FloatArray, IntArray
+from methods.fe.block_lu import MANY as AT_ONCE
 from methods.fe.continuation import Tracer
-from methods.fe.factor import Factor, SingularTangent
+from methods.fe.factor import Change, Factor, SingularTangent
 from methods.fe.gap_law import OPEN, SLIP_MINUS, SLIP_PLUS, STICK, classify, gap_forces
 from methods.fe.wall_model import WallModel, point_strains
 
@@ -79,33 +80,35 @@ def _same_forces(
 
 def change_states(model: WallModel, factor: Factor, state: IntArray, wanted: IntArray) -> None:
     """Bring a factor from one set of states (changed in place) to another. Raises SingularTangent."""
-    points = np.flatnonzero(state != wanted)
-    if len(points) <= MANY and factor.count + 2 * len(points) < factor.capacity:
-        for point in points:
-            for new in _way(int(state[point]), int(wanted[point])):
-                if not _change(model, factor, int(point), int(state[point]), new):
-                    state[:] = wanted
-                    factor.refactor(state)
-                    return
-                state[point] = new
-        return
+    points = np.flatnonzero(state != wanted).tolist()
+    changes = [change for p in points for change in _way(p, int(state[p]), int(wanted[p]))]
+    if len(points) <= MANY and factor.count + len(changes) < factor.capacity:
+        for k, change in enumerate(changes):
+            if k % AT_ONCE == 0:
+                factor.foresee(changes[k : k + AT_ONCE])
+            if not _change(model, factor, change):
+                break
+        else:
+            state[:] = wanted
+            return
     state[:] = wanted
     factor.refactor(state)
 
 
-def _way(old: int, new: int) -> tuple[int, ...]:
-    """The neighbouring states to pass from one state to another."""
+def _way(point: int, old: int, new: int) -> tuple[Change, ...]:
+    """The changes between neighbouring states that lead a point from one state to another."""
+    between = old
     if {old, new} == {OPEN, STICK}:
-        return (SLIP_PLUS, new)
-    if {old, new} == {SLIP_PLUS, SLIP_MINUS}:
-        return (STICK, new)
-    return (new,)
+        between = SLIP_PLUS
+    elif {old, new} == {SLIP_PLUS, SLIP_MINUS}:
+        between = STICK
+    return ((point, old, new),) if between == old else ((point, old, between), (point, between, new))
 
 
-def _change(model: WallModel, factor: Factor, point: int, old: int, new: int) -> bool:
+def _change(model: WallModel, factor: Factor, change: Change) -> bool:
     """One rank-one update; False when it would cost digits."""
-    index, a, b = model.change(point, old, new)
-    y = factor.solve_sparse(index, a)
+    index, _, b = model.change(*change)
+    y = factor.solve_change(change)
     denominator = 1.0 + float(b @ y[index])
     if not 1.0 / SAFE < abs(denominator) < SAFE:
         return False

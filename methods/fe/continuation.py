@@ -11,7 +11,7 @@ import numpy as np
 
 from harness.model.assembly import FloatArray, IntArray
 from methods.fe.block_lu import MANY
-from methods.fe.direction import FREELY, Direction
+from methods.fe.direction import Direction
 from methods.fe.factor import Change, Factor, SingularTangent
 from methods.fe.gap_law import OPEN, SLIP_PLUS, STICK, gap_forces
 from methods.fe.kinks import advance, coming_kinks, live_rate, next_kink, strain_rates
@@ -86,7 +86,7 @@ class Tracer:
 
     def may_commit(self) -> bool:
         """Whether a commit changes anything, and the factor is that of the tangent itself."""
-        return self.n_slip > 0 and self.direction.pin == FREELY
+        return self.n_slip > 0 and not self.direction.pins
 
     def refresh(self) -> None:
         """Factorise afresh, solve for the direction again and remove the drift of the gaps."""
@@ -168,7 +168,7 @@ class Tracer:
             self.state,
             TIE * self.scale,
             1e-11,
-            np.inf if way.pin == FREELY else NOISE * self.scale / self.extent,
+            NOISE * self.scale / self.extent if way.pins else np.inf,
             self.last_point,
             self.last_old,
         )
@@ -210,7 +210,7 @@ class Tracer:
         stands for the plateau when rounding ends the path among displacements of 1e13 times the elastic ones.
         """
         way = self.direction
-        if way.pin == FREELY:
+        if not way.pins:
             return False
         size, ahead = self.extent, step * float(np.abs(way.velocity).max())
         if ahead < 1e-3 * size or not self.is_mechanism() or live_rate(self.model.live, way.velocity) <= 0.0:

@@ -7,23 +7,32 @@ When a gap point changes state at a kink, K turns into K + a b' and, with K w = 
 
 which keeps b'v' = b'v: the kink function that was crossed moves on into the new cell (Katzenelson, 1965; Eaves and
 Scarf, 1976), so that a path cannot turn back on itself, and nothing is divided by 1 - b'w, which vanishes at limit
-points. On soft pieces the tangent itself is nearly singular. There the fastest displacement is pinned by a spring,
-K + e e', whose factor is used to solve K v = l live with v_e held (bordering; Keller, 1977), and velocities, rates of
-the multiplier and of the gaps are refined to twice the working precision.
+points. On soft pieces the tangent itself is nearly singular. There the fastest displacement is pinned by a spring, and
+one more for each further soft motion, K + sum e e', and the factor of that is used to solve K v = l live with the first
+of them held (bordering; Keller, 1977). Velocities, rates of the multiplier and of the gaps are then refined to twice
+the working precision.
 """
 
 from __future__ import annotations
+
+from dataclasses import dataclass
 
 import numpy as np
 
 from harness.model.assembly import FloatArray, IntArray
 from methods.fe.exact_rates import exact_gap_rates
 from methods.fe.factor import Change, Factor, SingularTangent
-from methods.fe.tolerances import BENT, CAREFUL, CROOKED, FREE, SOFT, STEEP, STRAIGHT, WEAK
+from methods.fe.tolerances import BEARABLE, BENT, CAREFUL, COARSE, CROOKED, FREE, MOST, SOFT, STEEP, STRAIGHT, WEAK
 from methods.fe.wall_model import WallModel, point_strains
 
-FREELY = -1
-"""The pin of a tangent that is not pinned."""
+
+@dataclass
+class Shape:
+    """The displacements value + tail (N,) that a unit force at a pin causes in the pinned wall."""
+
+    pin: int
+    value: FloatArray
+    tail: FloatArray
 
 
 class Direction:
@@ -32,7 +41,8 @@ class Direction:
     Attributes:
         velocity: (N,) v; tail: (N,) its small part beyond working precision; speed: rate l of the multiplier.
         opening_rate, trial_rate: (P,) rates of g and tau.
-        pin: the displacement that is pinned in the factor, or FREELY.
+        pins: the displacements that are pinned in the factor, the fastest first.
+        fine: whether rates are measured in doubled precision.
         elastic: size of v / l on the first piece of the path, with which soft pieces are compared.
     """
 
@@ -40,8 +50,10 @@ class Direction:
         self.model, self.factor = model, factor
         self.velocity, self.tail, self.speed = np.zeros(model.n_unknowns), np.zeros(model.n_unknowns), 1.0
         self.opening_rate, self.trial_rate = np.empty(model.n_points), np.empty(model.n_points)
-        self.pin = FREELY
+        self.pins: list[int] = []
         self.response = self.velocity
+        self.shapes: list[Shape] = []
+        self.fine = False
         self.elastic = elastic
         self.live_size = float(np.abs(model.live).max())
 
@@ -61,9 +73,9 @@ class Direction:
             SingularTangent: the tangent is singular, or the velocity cannot be refined.
         """
         before, rising = self.velocity, self.speed
-        self.pin = int(np.argmax(np.abs(before))) if self.size > FREE else FREELY
+        self.pins = [int(np.argmax(np.abs(before)))] if self.size > FREE else []
         for careful in (False, True):
-            self.factor.refactor(state, pin=self.pin, careful=careful)
+            self._factorise(state, careful)
             self._solve(before, rising)
             if self.straighten(state, extent):
                 return
@@ -71,9 +83,25 @@ class Direction:
                 break
         raise SingularTangent("the direction of the path was lost to rounding")
 
+    def _factorise(self, state: IntArray, careful: bool) -> None:
+        """Factorise the tangent, and where a pinned one is still soft, pin the softest motion as well."""
+        while True:
+            self.factor.refactor(state, pins=self.pins, careful=careful)
+            self.response = self.factor.solve(self.model.live)
+            softest = int(np.argmax(np.abs(self.response)))
+            if not self.pins or not self._is_soft() or softest in self.pins or len(self.pins) == MOST:
+                break
+            self.pins.append(softest)
+        self.shapes = [self._shape(pin, state) for pin in self.pins[1:]]
+
+    def _is_soft(self) -> bool:
+        """Whether the response to the live load shows a soft motion that is not pinned."""
+        return float(np.abs(self.response).max()) > SOFT * self.elastic
+
     def solve_first(self, state: IntArray) -> None:
         """Solve for the velocity with the factor as it stands, the multiplier rising."""
-        self.pin = FREELY
+        self.pins, self.shapes = [], []
+        self.response = self.factor.solve(self.model.live)
         self._solve(self.velocity, 1.0)
         if not self.straighten(state, 0.0):
             raise SingularTangent("the direction of the path was lost to rounding")
@@ -81,39 +109,65 @@ class Direction:
     def _solve(self, before: FloatArray, rising: float) -> None:
         """v and l from the factor: l = 1, or v_e = 1 at the pin, with the sense of the velocity before."""
         self.tail = np.zeros_like(before)
-        self.response = self.factor.solve(self.model.live)
-        if self.pin == FREELY:
-            self.velocity, self.speed = self.response.copy(), 1.0
+        if not self.pins:
+            self.velocity, self.speed, sense = self.response.copy(), 1.0, rising
             if not self.elastic:
                 self.elastic = float(np.abs(self.velocity).max())
-            sense = rising
         else:
             one = np.zeros_like(before)
-            one[self.pin] = 1.0
-            held = self.factor.solve(one)
-            reach = float(self.response[self.pin])
-            if reach == 0.0:
-                raise SingularTangent("the live load does not act on the motion")
-            self.speed = (1.0 - float(held[self.pin])) / reach
-            self.velocity = self.speed * self.response + held
-            sense = float(before[self.pin])
+            one[self.pins[0]] = 1.0
+            self.velocity, self.speed = self._hold(self.factor.solve(one), 1.0)
+            sense = float(before[self.pins[0]])
         if sense < 0.0:
             self.velocity, self.speed = -self.velocity, -self.speed
 
-    def balance(self, right: FloatArray) -> tuple[FloatArray, float]:
-        """x (N,) and m with K x - m live = right: m = 0, or x_e = 0 at the pin."""
-        x = self.factor.solve(right)
-        if self.pin == FREELY:
+    def _hold(self, x: FloatArray, held: float = 0.0) -> tuple[FloatArray, float]:
+        """Add m responses to the live load and shapes of the pins to x, so that the springs of the pins carry nothing.
+
+        Returns:
+            The sum (N,), whose displacement at the first pin is `held`, and m.
+        """
+        if not self.pins:
             return x, 0.0
-        share = -float(x[self.pin] / self.response[self.pin])
-        return x + share * self.response, share
+        basis = np.array([self.response, *(shape.value for shape in self.shapes)])
+        system = basis[:, self.pins].T.copy()
+        for j, shape in enumerate(self.shapes, start=1):
+            system[:, j] += shape.tail[self.pins]
+            system[j, j] = (shape.value[self.pins[j]] - 1.0) + shape.tail[self.pins[j]]
+        right = -x[self.pins]
+        right[0] += held
+        share = right / system[0] if len(right) == 1 else np.linalg.solve(system, right)
+        if not np.isfinite(share).all():
+            raise SingularTangent("the live load does not act on the motion")
+        return x + share @ basis, float(share[0])
+
+    def balance(self, right: FloatArray) -> tuple[FloatArray, float]:
+        """x (N,) and m with K x - m live = right: m = 0, or x = 0 at the first pin."""
+        return self._hold(self.factor.solve(right))
+
+    def _shape(self, pin: int, state: IntArray) -> Shape:
+        """The displacements that a unit force at a pin causes."""
+        one = np.zeros(self.model.n_unknowns)
+        one[pin] = 1.0
+        shape = Shape(pin, self.factor.solve(one), np.zeros_like(one))
+        self._refine(shape, state)
+        return shape
+
+    def _refine(self, shape: Shape, state: IntArray) -> None:
+        """Refine a shape, whose pin's spring carries all but a tiny share of the force, to twice working precision."""
+        for _ in range(2):
+            self.rates(shape.value, shape.tail)
+            defect = self.model.out_of_balance(self.opening_rate, self.trial_rate, state, 0.0, 0.0)
+            for pin in self.pins:
+                defect[pin] += (float(pin == shape.pin) - shape.value[pin]) - shape.tail[pin]
+            shape.value, shape.tail = _sum(shape.value, shape.tail + self.factor.solve(defect))
 
     def turn(self, change: Change, crossing: float, state: IntArray, extent: float, look: bool) -> bool:
         """Turn onto the next piece.
 
         Args:
             change: the point that changes state, already changed in `state`; crossing: rate b'v of its kink function.
-            look: whether straightness is looked at while it is not pinned.
+            look: whether straightness is looked at while rates are measured in working precision.
 
         Returns:
             False where the tangent must be factorised afresh; velocity and rate of the multiplier are near then.
@@ -121,39 +175,47 @@ class Direction:
         index, _, b = self.model.change(*change)
         y = self.factor.solve_change(change)
         along = float(b @ y[index])
-        if self.pin == FREELY:
-            w, rate = -y, 0.0
-        else:
-            rate = float(y[self.pin] / self.response[self.pin])
-            w = rate * self.response - y
+        w, rate = self._hold(-y)
         keep = 1.0 - float(b @ w[index])
         self.velocity = keep * self.velocity + crossing * w
         self.speed = keep * self.speed + crossing * rate
         self.tail *= keep
-        unit = abs(self.speed) if self.pin == FREELY else float(np.abs(self.velocity).max())
+        unit = float(np.abs(self.velocity).max()) if self.pins else abs(self.speed)
         if unit > 0.0:
             self.velocity /= unit
             self.tail /= unit
             self.speed /= unit
         if self.factor.count >= self.factor.capacity - 1 or not 1.0 / STEEP < abs(1.0 + along) < STEEP:
             return False
-        if self.size > FREE if self.pin == FREELY else abs(self.velocity[self.pin]) < WEAK:
+        if abs(self.velocity[self.pins[0]]) < WEAK if self.pins else self.size > FREE:
             return False
         self.factor.update(y, index, b, 1.0 + along)
-        if self.pin != FREELY:
+        if self.pins:
             self.response -= y * (float(b @ self.response[index]) / (1.0 + along))
-        elif not look:
-            self.measure()
-            return True
-        return self.straighten(state, extent)
+            if self._is_soft() and len(self.pins) < MOST:
+                return False
+            for shape in self.shapes:
+                shape.value -= y * (float(b @ shape.value[index]) / (1.0 + along))
+                shape.tail -= y * (float(b @ shape.tail[index]) / (1.0 + along))
+                self._refine(shape, state)
+        if look or self._is_fine(extent):
+            return self.straighten(state, extent)
+        self.measure()
+        return True
+
+    def _is_fine(self, extent: float) -> bool:
+        """Whether a motion as long as the displacements so far needs rates in doubled precision."""
+        self.fine = bool(self.shapes) or (bool(self.pins) and extent > COARSE)
+        return self.fine
 
     def straighten(self, state: IntArray, extent: float) -> bool:
         """Measure the gap rates, and refine the velocity while K v = l live is not met. False: it stays bent."""
+        self._is_fine(extent)
         self.measure()
-        if self.pin == FREELY:
-            enough, bearable = BENT * self.live_size * abs(self.speed), CROOKED * self.live_size * abs(self.speed)
+        if self.pins:
+            enough, bearable = STRAIGHT / extent, BEARABLE / extent
         else:
-            enough, bearable = STRAIGHT / extent, SOFT / extent
+            enough, bearable = BENT * self.live_size * abs(self.speed), CROOKED * self.live_size * abs(self.speed)
         previous = np.inf
         for _ in range(CAREFUL):
             defect = self.model.out_of_balance(self.opening_rate, self.trial_rate, state, self.speed, 0.0)
@@ -165,16 +227,16 @@ class Direction:
             previous = worst
             correction, rate = self.balance(defect)
             self.speed += rate
-            if self.pin == FREELY:
-                self.velocity += correction
+            if self.fine:
+                self.velocity, self.tail = _sum(self.velocity, self.tail + correction)
             else:
-                self.tail += correction
+                self.velocity += correction
             self.measure()
         return worst <= bearable
 
     def measure(self) -> None:
-        """The gap rates along the velocity, in doubled precision where it is pinned."""
-        self.rates(self.velocity, None if self.pin == FREELY else self.tail)
+        """The gap rates along the velocity."""
+        self.rates(self.velocity, self.tail if self.fine else None)
 
     def rates(self, velocity: FloatArray, tail: FloatArray | None = None) -> None:
         """The gap rates along a velocity (N,), in doubled precision when its small part `tail` is given."""
@@ -185,3 +247,9 @@ class Direction:
             return
         point_strains(*kinematics, velocity, self.opening_rate, self.trial_rate)
         self.trial_rate *= model.kt
+
+
+def _sum(value: FloatArray, tail: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """The sum rounded, and what the rounding left over where the tail is the smaller part (Dekker, 1971)."""
+    total = value + tail
+    return total, tail - (total - value)

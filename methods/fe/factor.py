@@ -8,6 +8,7 @@ earlier tangent and the product form of the changes since then: with K_{j+1} = K
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import Protocol
 
 import numpy as np
@@ -44,18 +45,15 @@ class Factor(Protocol):
     factorisations: int
     careful: bool
 
-    def refactor(self, state: IntArray, shift: float = 0.0, careful: bool = False, pin: int = -1) -> None:
+    def refactor(self, state: IntArray, shift: float = 0.0, careful: bool = False, pins: Sequence[int] = ()) -> None:
         """Factorise the tangent in these states afresh, with `shift` times the inertia added.
 
-        `pin` is a displacement that a spring of unit stiffness is added to, if not negative.
+        `pins` are displacements that springs of unit stiffness are added to.
         `careful` asks for pivots among all rows, which keep more digits near a limit point and cost more.
         """
 
     def solve(self, right: FloatArray) -> FloatArray:
         """K^-1 right (N,)."""
-
-    def solve_sparse(self, index: IntArray, value: FloatArray) -> FloatArray:
-        """K^-1 times the vector with `value` (6,) at `index` (6,)."""
 
     def foresees(self, change: Change) -> bool:
         """Whether `solve_change` costs little."""
@@ -86,12 +84,12 @@ class DenseFactor:
         self.careful = True
         self.inverse = np.empty((0, 0))
 
-    def refactor(self, state: IntArray, shift: float = 0.0, careful: bool = True, pin: int = -1) -> None:
+    def refactor(self, state: IntArray, shift: float = 0.0, careful: bool = True, pins: Sequence[int] = ()) -> None:
         """Invert afresh. Raises SingularTangent."""
         self.count = 0
         self.factorisations += 1
         matrix = self.model.tangent(state, shift).toarray()
-        if pin >= 0:
+        for pin in pins:
             matrix[pin, pin] += 1.0
         lu, pivots, info = sla.lapack.dgetrf(matrix, overwrite_a=True)
         if info == 0:
@@ -104,11 +102,6 @@ class DenseFactor:
         out: FloatArray = self.inverse @ right
         return out
 
-    def solve_sparse(self, index: IntArray, value: FloatArray) -> FloatArray:
-        """K^-1 times the vector with `value` (6,) at `index` (6,)."""
-        out: FloatArray = self.inverse[:, index] @ value
-        return out
-
     def foresees(self, change: Change) -> bool:
         """The inverse is at hand."""
         return True
@@ -119,7 +112,8 @@ class DenseFactor:
     def solve_change(self, change: Change) -> FloatArray:
         """K^-1 a (N,)."""
         index, a, _ = self.model.change(*change)
-        return self.solve_sparse(index, a)
+        out: FloatArray = self.inverse[:, index] @ a
+        return out
 
     def update(self, y: FloatArray, index: IntArray, b: FloatArray, denominator: float) -> None:
         """Sherman-Morrison."""
@@ -150,31 +144,31 @@ class SparseFactor:
         self._index = np.empty((self.capacity, 6), dtype=np.int64)
         self._b = np.empty((self.capacity, 6))
 
-    def refactor(self, state: IntArray, shift: float = 0.0, careful: bool = False, pin: int = -1) -> None:
+    def refactor(self, state: IntArray, shift: float = 0.0, careful: bool = False, pins: Sequence[int] = ()) -> None:
         """Factorise afresh. Raises SingularTangent."""
         self.count = 0
         self.factorisations += 1
         self._exchanged = None
         self._foreseen.clear()
-        if careful or not self._factorise_blocks(state, shift, pin):
-            self._exchanged = self._with_row_exchanges(state, shift, pin)
+        if careful or not self._factorise_blocks(state, shift, pins):
+            self._exchanged = self._with_row_exchanges(state, shift, pins)
         self.careful = self._exchanged is not None
 
-    def _factorise_blocks(self, state: IntArray, shift: float, pin: int) -> bool:
+    def _factorise_blocks(self, state: IntArray, shift: float, pins: Sequence[int]) -> bool:
         model = self.model
         self._values[:] = 0.0
         springs = model.interface, model.position, model.kn, model.kt, model.mu
         add_tangent(self._slot, model.rows, *springs, state, self._values)
         if shift:
             self._values[self._diagonal] += shift * model.inertia
-        if pin >= 0:
+        for pin in pins:
             self._values[self._diagonal[pin]] += 1.0
         return self._pattern.factorise(self._values)
 
-    def _with_row_exchanges(self, state: IntArray, shift: float, pin: int) -> SuperLU:
+    def _with_row_exchanges(self, state: IntArray, shift: float, pins: Sequence[int]) -> SuperLU:
         options = {"SymmetricMode": True}
         matrix = self.model.tangent(state, shift)
-        if pin >= 0:
+        for pin in pins:
             matrix[pin, pin] += 1.0
         try:
             return splu(matrix, "NATURAL", 1e-3, relax=1, panel_size=1, options=options)
@@ -186,16 +180,7 @@ class SparseFactor:
         if self._exchanged is not None:
             return self._corrected(self._exchanged.solve(right))
         x = right.copy()
-        self._pattern.solve(self._values, 0, x)
-        return self._corrected(x)
-
-    def solve_sparse(self, index: IntArray, value: FloatArray) -> FloatArray:
-        """K^-1 times the vector with `value` (6,) at `index` (6,)."""
-        x = np.zeros(self.model.n_unknowns)
-        np.add.at(x, index, value)
-        if self._exchanged is not None:
-            return self._corrected(self._exchanged.solve(x))
-        self._pattern.solve(self._values, int(index.min()) // 3, x)
+        self._pattern.solve(self._values, x)
         return self._corrected(x)
 
     def foresees(self, change: Change) -> bool:

@@ -10,14 +10,20 @@ FREE = 1e4
 """Velocities larger than this many times the first one, at the same rate of the multiplier, are pinned."""
 WEAK = 1e-3
 """Share of the fastest displacement below which the pin no longer holds the motion, and is moved."""
+COARSE = 1e6
+"""Dimensionless displacements up to which the rounding of gap rates changes no force by more than 1e-9."""
 BENT = 1e-7
 """Defect of K v = l live (share of the live load) above which a velocity is refined."""
 CROOKED = 1e-5
 """The same when refinement no longer helps, above which the tangent is factorised afresh."""
 STRAIGHT = 1e-8
 """Defect above which a pinned velocity is refined, as a force over a motion as long as the displacements so far."""
-SOFT = 1e-4
+BEARABLE = 1e-4
 """The same when refinement no longer helps, above which the tangent is factorised afresh."""
+SOFT = 1e8
+"""A response of the pinned wall to the live load this many times the first one is a soft motion to be pinned too."""
+MOST = 4
+"""Pins at most."""
 CAREFUL = 8
 """Refinements of a velocity at most."""
 NOISE = 1e-7
