@@ -1,9 +1,8 @@
-"""Walls and ways of looking at them that the tests of limit analysis share."""
+"""Walls that the tests of limit analysis share."""
 
 from __future__ import annotations
 
 import itertools
-from collections.abc import Callable
 from dataclasses import replace
 
 import numpy as np
@@ -11,7 +10,7 @@ import numpy as np
 from harness.model.assembly import Assembly
 from methods.la.bench import running_bond
 
-__all__ = ["VIEWS", "block_on_halves", "column", "running_bond", "with_friction"]
+__all__ = ["block_on_halves", "column", "running_bond", "with_friction"]
 
 
 def stack(widths: list[float], heights: list[float], friction: float, halves: int = 1) -> Assembly:
@@ -69,57 +68,3 @@ def column(widths: list[float], heights: list[float], friction: float, halves: i
 def with_friction(wall: Assembly, friction: float | np.ndarray) -> Assembly:
     """The wall with another friction on all its interfaces."""
     return replace(wall, friction=np.broadcast_to(friction, wall.friction.shape).astype(float).copy())
-
-
-def _moved(wall: Assembly, turn: np.ndarray, move: np.ndarray, scale: float = 1.0) -> Assembly:
-    def place(points: np.ndarray) -> np.ndarray:
-        return scale * points @ turn.T + move
-
-    sense = float(np.sign(np.linalg.det(turn)))
-
-    def load(values: np.ndarray) -> np.ndarray:
-        return np.column_stack([values[:, :2] @ turn.T, sense * scale * values[:, 2]])
-
-    return replace(
-        wall,
-        polygons=tuple(place(polygon)[:: int(sense)] for polygon in wall.polygons),
-        centroid=place(wall.centroid),
-        end1=place(wall.end1),
-        end2=place(wall.end2),
-        face1=place(wall.face1),
-        face2=place(wall.face2),
-        normal=wall.normal @ turn.T,
-        dead=load(wall.dead),
-        live=load(wall.live),
-    )
-
-
-def _renumbered(wall: Assembly) -> Assembly:
-    new = np.random.default_rng(3).permutation(wall.n_blocks)
-    rank = np.argsort(new)
-    joints = np.random.default_rng(4).permutation(wall.n_interfaces)
-    names = ("end1", "end2", "face1", "face2", "friction")
-    return replace(
-        wall,
-        block_ids=tuple(wall.block_ids[k] for k in new),
-        polygons=tuple(wall.polygons[k] for k in new),
-        joint=tuple(wall.joint[k] for k in joints),
-        block_a=rank[wall.block_b][joints],
-        block_b=rank[wall.block_a][joints],
-        normal=-wall.normal[joints],
-        **{name: getattr(wall, name)[new] for name in ("centroid", "weight", "fixed", "dead", "live")},
-        **{name: getattr(wall, name)[joints] for name in names},
-    )
-
-
-TURN = np.array([[np.cos(0.7), -np.sin(0.7)], [np.sin(0.7), np.cos(0.7)]])
-STAY, FLIP = np.eye(2), np.diag([-1.0, 1.0])
-NOWHERE = np.zeros(2)
-VIEWS: dict[str, Callable[[Assembly], Assembly]] = {
-    "translated": lambda wall: _moved(wall, STAY, np.array([31.0, -7.0])),
-    "rotated": lambda wall: _moved(wall, TURN, NOWHERE),
-    "mirrored": lambda wall: _moved(wall, FLIP, NOWHERE),
-    "scaled": lambda wall: _moved(wall, STAY, NOWHERE, 250.0),
-    "heavier": lambda wall: replace(wall, weight=1e4 * wall.weight, dead=1e4 * wall.dead, live=1e4 * wall.live),
-    "renumbered": _renumbered,
-}

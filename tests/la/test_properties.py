@@ -9,12 +9,13 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from harness.engine.symmetry import VIEWS
 from harness.model.assembly import Assembly
 from harness.model.method import Finding, Status
 from methods.la.adapter import AssociatedLimitAnalysis, LimitAnalysis
 from methods.la.flexibility import Compliance
 from methods.la.settings import AssociatedSettings, SearchSettings
-from tests.la.bodies import VIEWS, column, running_bond
+from tests.la.bodies import column, running_bond
 
 QUICK = SearchSettings(effort="quick")
 
