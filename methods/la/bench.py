@@ -64,13 +64,12 @@ def measured(answer: Answer) -> str:
     return f"{answer.multiplier:.7f}" if answer.multiplier is not None else answer.status.value
 
 
-def first_within(answer: Answer, share: float) -> float:
-    """CPU seconds of the search after which the least known was within a share of the final one; NaN without any."""
+def first_below(answer: Answer, multiplier: float) -> float:
+    """CPU seconds of the search after which the least known was at most this multiplier; NaN if it never was."""
     if answer.multiplier is None:
         return float("nan")
     pairs = zip(answer.path["cpu_seconds"], answer.path["multiplier"], strict=True)
-    near = (1.0 + share) * answer.multiplier
-    return next((second for second, multiplier in pairs if multiplier <= near), float("nan"))
+    return next((second for second, known in pairs if known <= multiplier), float("nan"))
 
 
 def main() -> None:
@@ -85,11 +84,14 @@ def main() -> None:
         least = LimitAnalysis().solve(assembly, SearchSettings())
         end = time.process_time()
         residuals = least.details.get("residuals", {})
+        value = float("nan") if least.multiplier is None else least.multiplier
+        asked = float("nan") if least_known == "none" else float(least_known)
         print(
             f"n {assembly.n_free:5d}  m {assembly.n_interfaces:6d}  mu {friction:.2f}  "
             f"associated {measured(associated)} ({associated_known}) {middle - start:7.2f} s  "
             f"least known {measured(least)} ({least_known}) {end - middle:7.2f} s, "
-            f"known after {first_within(least, SAME):6.2f} s, within 1 % after {first_within(least, 0.01):6.2f} s  "
+            f"known after {first_below(least, (1.0 + SAME) * value):6.2f} s, within 1 % of it after "
+            f"{first_below(least, 1.01 * value):6.2f} s, of the bracket {first_below(least, 1.01 * asked):6.2f} s  "
             f"largest residual {max(residuals.values(), default=float('nan')):.0e}",
             flush=True,
         )
