@@ -10,7 +10,6 @@ from __future__ import annotations
 import numpy as np
 
 from harness.model.assembly import FloatArray, IntArray
-from methods.fe.block_lu import MANY
 from methods.fe.direction import Direction
 from methods.fe.factor import Change, Factor, SingularTangent
 from methods.fe.gap_law import OPEN, SLIP_PLUS, STICK, gap_forces
@@ -29,6 +28,7 @@ from methods.fe.tolerances import (
     TIE,
 )
 from methods.fe.wall_model import WallModel, point_strains
+from methods.numerics.block_lu import MANY
 
 
 class Tracer:

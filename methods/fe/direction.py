@@ -167,7 +167,7 @@ class Direction:
 
         Args:
             change: the point that changes state, already changed in `state`; crossing: rate b'v of its kink function.
-            look: whether straightness is looked at while rates are measured in working precision.
+            look: whether straightness is looked at while nothing is pinned.
 
         Returns:
             False where the tangent must be factorised afresh; velocity and rate of the multiplier are near then.
@@ -198,19 +198,14 @@ class Direction:
                 shape.value -= y * (float(b @ shape.value[index]) / (1.0 + along))
                 shape.tail -= y * (float(b @ shape.tail[index]) / (1.0 + along))
                 self._refine(shape, state)
-        if look or self._is_fine(extent):
+        if self.pins or look:
             return self.straighten(state, extent)
         self.measure()
         return True
 
-    def _is_fine(self, extent: float) -> bool:
-        """Whether a motion as long as the displacements so far needs rates in doubled precision."""
-        self.fine = bool(self.shapes) or (bool(self.pins) and extent > COARSE)
-        return self.fine
-
     def straighten(self, state: IntArray, extent: float) -> bool:
         """Measure the gap rates, and refine the velocity while K v = l live is not met. False: it stays bent."""
-        self._is_fine(extent)
+        self.fine = bool(self.shapes) or (bool(self.pins) and extent > COARSE)
         self.measure()
         if self.pins:
             enough, bearable = STRAIGHT / extent, BEARABLE / extent

@@ -16,10 +16,12 @@ import scipy.linalg as sla
 from scipy.sparse.linalg import SuperLU, splu
 
 from harness.model.assembly import FloatArray, IntArray
-from methods.fe.block_lu import MANY, BlockPattern
-from methods.fe.compiled import compiled
 from methods.fe.wall_model import WallModel, add_tangent
+from methods.numerics.block_lu import MANY, BlockFactor, BlockPattern
+from methods.numerics.compiled import compiled
 
+GROWTH = 1e5
+"""Entries of L above this cost too many digits; a factorisation with row exchanges is called for."""
 DENSE_LIMIT = 70
 """Unknowns up to which the dense inverse is faster than the sparse product form."""
 
@@ -131,10 +133,10 @@ class SparseFactor:
         self.count = 0
         self.factorisations = 0
         n = model.n_unknowns
-        self._pattern = BlockPattern(model.unknown[:, 0] // 3, model.unknown[:, 3] // 3, n // 3)
-        self._slot = self._pattern.slot(model.unknown)
-        self._diagonal = self._pattern.place(np.arange(n), np.arange(n))
-        self._values = np.zeros(self._pattern.n_values)
+        pattern = BlockPattern(model.unknown[:, 0] // 3, model.unknown[:, 3] // 3, n // 3)
+        self._slot = pattern.slot(model.unknown)
+        self._diagonal = pattern.place(np.arange(n), np.arange(n))
+        self._lu = BlockFactor(pattern)
         self.careful = False
         self._exchanged: SuperLU | None = None
         self._foreseen: dict[Change, FloatArray] = {}
@@ -156,14 +158,14 @@ class SparseFactor:
 
     def _factorise_blocks(self, state: IntArray, shift: float, pins: Sequence[int]) -> bool:
         model = self.model
-        self._values[:] = 0.0
+        self._lu.values[:] = 0.0
         springs = model.interface, model.position, model.kn, model.kt, model.mu
-        add_tangent(self._slot, model.rows, *springs, state, self._values)
+        add_tangent(self._slot, model.rows, *springs, state, self._lu.values)
         if shift:
-            self._values[self._diagonal] += shift * model.inertia
+            self._lu.values[self._diagonal] += shift * model.inertia
         for pin in pins:
-            self._values[self._diagonal[pin]] += 1.0
-        return self._pattern.factorise(self._values)
+            self._lu.values[self._diagonal[pin]] += 1.0
+        return self._lu.factorise(GROWTH)
 
     def _with_row_exchanges(self, state: IntArray, shift: float, pins: Sequence[int]) -> SuperLU:
         options = {"SymmetricMode": True}
@@ -180,7 +182,7 @@ class SparseFactor:
         if self._exchanged is not None:
             return self._corrected(self._exchanged.solve(right))
         x = right.copy()
-        self._pattern.solve(self._values, x)
+        self._lu.solve(x)
         return self._corrected(x)
 
     def foresees(self, change: Change) -> bool:
@@ -198,7 +200,7 @@ class SparseFactor:
         if self._exchanged is not None:
             right = self._exchanged.solve(right)
         else:
-            self._pattern.solve_many(self._values, first // 3, right)
+            self._lu.solve_many(first // 3, right)
         for change, x in zip(changes, np.ascontiguousarray(right.T), strict=False):
             self._foreseen[change] = x
 

@@ -16,7 +16,7 @@ from __future__ import annotations
 import numpy as np
 
 from harness.model.assembly import FloatArray, IntArray
-from methods.fe.compiled import compiled
+from methods.numerics.compiled import compiled
 
 OPEN, STICK, SLIP_PLUS, SLIP_MINUS = 0, 1, 2, 3
 

@@ -11,8 +11,8 @@ from __future__ import annotations
 import numpy as np
 
 from harness.model.assembly import FloatArray, IntArray
-from methods.fe.compiled import compiled
 from methods.fe.gap_law import OPEN, SLIP_MINUS, SLIP_PLUS, STICK
+from methods.numerics.compiled import compiled
 
 
 @compiled

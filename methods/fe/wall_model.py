@@ -12,15 +12,14 @@ from typing import cast
 
 import numpy as np
 import scipy.sparse as sp
-from scipy.sparse.linalg import splu
 
 from harness.model.assembly import Assembly, FloatArray, IntArray
-from methods.fe.block_lu import postorder
-from methods.fe.compiled import compiled
 from methods.fe.exact_rates import tangent_defect
 from methods.fe.gap_law import OPEN, classify, flip_vectors, gap_forces, tangent_coefficients
 from methods.fe.points import gap_points
 from methods.fe.settings import GapSettings
+from methods.numerics.block_lu import elimination_order
+from methods.numerics.compiled import compiled
 
 
 @dataclass(frozen=True, eq=False)
@@ -208,16 +207,12 @@ def _kinematic_rows(assembly: Assembly, place: IntArray, length: float) -> tuple
 
 
 def _elimination_order(assembly: Assembly) -> IntArray:
-    """Free blocks in a minimum-degree order of the contact graph, postordered: the tangent is factorised in it."""
-    n = assembly.n_blocks
-    ones = np.ones(assembly.n_interfaces)
-    graph = sp.csr_matrix((ones, (assembly.block_a, assembly.block_b)), shape=(n, n))[assembly.free][:, assembly.free]
-    graph = graph + graph.T
-    degree = np.asarray(graph.sum(axis=1)).ravel()
-    lu = splu((graph + sp.diags(degree + 1.0)).tocsc(), permc_spec="MMD_AT_PLUS_A", options={"SymmetricMode": True})
-    order = np.argsort(lu.perm_c)
-    pairs = np.asarray(sp.triu(graph[order][:, order]).nonzero(), dtype=np.int64)
-    out: IntArray = assembly.free[order[postorder(pairs[0], pairs[1], len(order))]]
+    """Free blocks in the order in which the tangent is factorised."""
+    place = np.full(assembly.n_blocks, -1, dtype=np.int64)
+    place[assembly.free] = np.arange(assembly.n_free)
+    first, second = place[assembly.block_a], place[assembly.block_b]
+    both = (first >= 0) & (second >= 0)
+    out: IntArray = assembly.free[elimination_order(first[both], second[both], assembly.n_free)]
     return out
 
 

@@ -72,7 +72,7 @@ def exact_forces(
         least = floor * max(float(slack.max(initial=0.0)), 1e-9)
         weight = np.where(tight, RIGID, 1.0 / np.maximum(slack, least) ** 2)
         compliance = Compliance(problem.friction, weight, 1.0)
-        factor = newton.factorise(compliance.matrices, 0.0, 1e-13)
+        factor = newton.factorise(compliance.matrices, 1e-13)
         by_live = factor.solve(problem.live)
         stiffness = float(problem.live @ by_live)
         for _ in range(rounds):
@@ -106,7 +106,7 @@ def exact_mechanism(
         sense = np.where(moving[:, 2], 1.0, np.where(moving[:, 3], -1.0, 0.0)) * problem.friction
         transform[:, 0, 2] = transform[:, 1, 2] = -sense
     stiff = np.einsum("pki,pk,pkj->pij", transform, still, transform)
-    factor = newton.factorise(stiff * PENALTY, 0.0, 0.0, shift=1.0)
+    factor = newton.factorise(stiff * PENALTY, 0.0, shift=1.0)
     least = np.inf
     for _ in range(30):
         if not float(abs(velocities).max(initial=0.0)) < DIVERGED:

@@ -1,10 +1,14 @@
 """The Newton matrix K = C' D C of the interior point, assembled block by block and factorised in a fixed order.
 
 D holds one 3 x 3 flexibility per interface. The pattern of K is the adjacency of the blocks, so the order of
-elimination is found once, by nested dissection of the block centroids (George 1973), and kept.
+elimination is found once: for small walls by nested dissection of the block centroids (George 1973), and SuperLU
+factorises; for larger ones by minimum degree, with the factors in dense supernodes, which takes half the time but loads
+the compiled code.
 """
 
 from __future__ import annotations
+
+from typing import TYPE_CHECKING, Protocol
 
 import numpy as np
 import scipy.sparse as sp
@@ -13,6 +17,11 @@ from scipy.sparse.linalg import SuperLU, splu
 from harness.model.assembly import FloatArray, IntArray
 from methods.la.problem import Problem
 
+if TYPE_CHECKING:
+    from methods.numerics.block_lu import BlockFactor
+
+FEW = 300
+"""Blocks up to which SuperLU factorises."""
 LEAF = 24
 """Blocks below which a part is not divided further."""
 
@@ -60,14 +69,27 @@ class NewtonMatrix:
         column[assembly.free] = np.arange(n)
         block_a, block_b = column[assembly.block_a], column[assembly.block_b]
         both = (block_a >= 0) & (block_b >= 0)
-        order = dissection_order(assembly.centroid[assembly.free], block_a[both], block_b[both])
+        self.large = n > FEW
+        if self.large:
+            from methods.numerics.block_lu import elimination_order
+
+            order = elimination_order(block_a[both], block_b[both], n)
+        else:
+            order = dissection_order(assembly.centroid[assembly.free], block_a[both], block_b[both])
         place = np.empty(n, dtype=np.int64)
         place[order] = np.arange(n)
         self.order = (3 * order[:, None] + np.arange(3)).ravel()
         self.size = 3 * n
-        self._gather(problem, np.where(block_a >= 0, place[block_a], -1), np.where(block_b >= 0, place[block_b], -1))
+        index = self._gather(
+            problem, np.where(block_a >= 0, place[block_a], -1), np.where(block_b >= 0, place[block_b], -1)
+        )
+        if self.large:
+            self._place_in_blocks(index)
+        else:
+            self._place_in_columns(index)
 
-    def _gather(self, problem: Problem, place_a: IntArray, place_b: IntArray) -> None:
+    def _gather(self, problem: Problem, place_a: IntArray, place_b: IntArray) -> IntArray:
+        """Find the rows (m, 3, 6) of C of each interface; their columns (m, 6) in K, -1 for those of a fixed block."""
         m = problem.n_interfaces
         permuted = problem.kinematic.tocsc()[:, self.order].tocsr()
         self.rows = np.zeros((m, 3, 6))
@@ -80,6 +102,21 @@ class NewtonMatrix:
         for start, place in ((0, place_a), (3, place_b)):
             for j in range(3):
                 index[:, start + j] = np.where(place >= 0, 3 * place + j, -1)
+        return index
+
+    def _place_in_blocks(self, index: IntArray) -> None:
+        """Where the products of two rows go in the supernodes; a fixed block's are zero and go where the other's do."""
+        from methods.numerics.block_lu import BlockPattern
+
+        unknown = np.where(index >= 0, index, np.roll(index, 3, axis=1))
+        self.pattern = BlockPattern(unknown[:, 0] // 3, unknown[:, 3] // 3, self.size // 3)
+        self._slot = self.pattern.slot(unknown).ravel()
+        self._diagonal = self.pattern.place(np.arange(self.size), np.arange(self.size))
+        self._used = np.ones(self._slot.shape, dtype=bool)
+        self._n_values = self.pattern.n_values
+
+    def _place_in_columns(self, index: IntArray) -> None:
+        """Where the products of two rows go in a matrix by columns."""
         row = np.repeat(index[:, :, None], 6, axis=2)
         col = np.repeat(index[:, None, :], 6, axis=1)
         self._used = ((row >= 0) & (col >= 0)).ravel()
@@ -88,46 +125,69 @@ class NewtonMatrix:
         self._indices = (unique % self.size).astype(np.int32)
         counts = np.bincount(unique // self.size, minlength=self.size)
         self._pointers = np.concatenate([[0], np.cumsum(counts)]).astype(np.int32)
+        self._diagonal = np.flatnonzero(unique % self.size == unique // self.size)
+        self._n_values = len(unique)
 
-    def assemble(self, flexibility: FloatArray) -> sp.csc_matrix:
-        """K in the order of elimination, from flexibilities (m, 3, 3)."""
-        products = np.matmul(self.rows.transpose(0, 2, 1), np.matmul(flexibility, self.rows))
-        data = np.bincount(self._slot, weights=products.ravel()[self._used], minlength=len(self._indices))
-        return sp.csc_matrix((data, self._indices, self._pointers), shape=(self.size, self.size))
-
-    def factorise(self, flexibility: FloatArray, pivoting: float, relative: float, shift: float = 0.0) -> Factor:
-        """LU factors of K + relative * diag(K) + shift * I.
+    def factorise(self, flexibility: FloatArray, relative: float, shift: float = 0.0) -> Factor:
+        """LU factors of K + relative * diag(K) + shift * I, with pivots from the diagonal.
 
         Args:
             flexibility: (m, 3, 3).
-            pivoting: from 0 (diagonal) to 1 (partial pivoting).
             relative: regularisation relative to the diagonal.
             shift: regularisation by the unit matrix.
 
         Raises:
             RuntimeError: K is singular to rounding.
         """
-        matrix = self.assemble(flexibility)
-        diagonal = matrix.diagonal()
-        matrix = matrix + sp.diags(relative * np.maximum(abs(diagonal), 1e-30) + shift, format="csc")
-        factors = splu(
-            matrix,
-            permc_spec="NATURAL",
-            diag_pivot_thresh=pivoting,
-            options={"SymmetricMode": True},
+        products = np.matmul(self.rows.transpose(0, 2, 1), np.matmul(flexibility, self.rows)).ravel()
+        values: FloatArray = np.bincount(self._slot, weights=products[self._used], minlength=self._n_values).astype(
+            float
         )
-        return Factor(factors, self.order)
+        values[self._diagonal] += relative * np.maximum(abs(values[self._diagonal]), 1e-30) + shift
+        if self.large:
+            from methods.numerics.block_lu import BlockFactor
+
+            factors = BlockFactor(self.pattern, values)
+            if not factors.factorise():
+                raise RuntimeError("the Newton matrix is singular")
+            return SupernodeFactor(factors, self.order)
+        matrix = sp.csc_matrix((values, self._indices, self._pointers), shape=(self.size, self.size))
+        options = {"SymmetricMode": True}
+        return ColumnFactor(splu(matrix, permc_spec="NATURAL", diag_pivot_thresh=0.0, options=options), self.order)
 
 
-class Factor:
+class Factor(Protocol):
     """Factors of K that solve in the numbering of the problem."""
+
+    def solve(self, right: FloatArray) -> FloatArray:
+        """K^-1 b for b (3n,)."""
+
+
+class ColumnFactor:
+    """SuperLU's factors."""
 
     def __init__(self, factors: SuperLU, order: IntArray) -> None:
         self._factors = factors
         self._order = order
 
     def solve(self, right: FloatArray) -> FloatArray:
-        """K^-1 b for b (3n,) or (3n, k)."""
+        """K^-1 b for b (3n,)."""
         solution = np.empty_like(right)
         solution[self._order] = self._factors.solve(np.ascontiguousarray(right[self._order]))
+        return solution
+
+
+class SupernodeFactor:
+    """Factors in dense supernodes."""
+
+    def __init__(self, factors: BlockFactor, order: IntArray) -> None:
+        self._factors = factors
+        self._order = order
+
+    def solve(self, right: FloatArray) -> FloatArray:
+        """K^-1 b for b (3n,)."""
+        ordered = right[self._order]
+        self._factors.solve(ordered)
+        solution = np.empty_like(right)
+        solution[self._order] = ordered
         return solution

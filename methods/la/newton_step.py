@@ -69,7 +69,7 @@ class NewtonStep:
         self.statics = problem.imbalance(problem.forces_of_slacks(point.slack), point.multiplier)
         self.kinematics = problem.strains(point.velocities) - problem.strains_of_rates(point.rates, dilatancy)
         self.work = problem.live_work - float(problem.live @ point.velocities)
-        self.factor = newton.factorise(self.compliance.matrices, 0.0, 1e-15)
+        self.factor = newton.factorise(self.compliance.matrices, 1e-15)
         self.by_live = self.factor.solve(problem.live)
         self.live_compliance = float(problem.live @ self.by_live)
 

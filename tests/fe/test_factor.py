@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from methods.fe import block_lu
+from methods.fe import factor as factor_module
 from methods.fe.factor import DenseFactor, Factor, SingularTangent, SparseFactor
 from methods.fe.gap_law import OPEN, STICK, neighbour_states
 from methods.fe.patterns import running_bond
@@ -72,7 +72,7 @@ def test_rows_are_exchanged_where_block_pivots_are_not_trusted(
     model: WallModel, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     factor, state = SparseFactor(model), sliding_states(model, 3)
-    monkeypatch.setattr(block_lu, "GROWTH", 0.0)
+    monkeypatch.setattr(factor_module, "GROWTH", 0.0)
     factor.refactor(state, 0.1)
     assert factor._exchanged is not None
     tangent = model.tangent(state, 0.1)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 from numba.core.caching import CacheImpl
 
-from methods.fe.compiled import compiled
+from methods.numerics.compiled import compiled
 
 
 def doubled(value: float) -> float:

@@ -1,21 +1,21 @@
-"""LU of the tangent in dense blocks, in a pattern that is found once for the wall.
+"""LU of a wall's matrix in dense blocks, in a pattern that is found once for the wall.
 
-The pattern of the tangent is that of the contact graph whatever the states are, so the fill of its factors is known
-from the wall alone (George and Liu, 1981). Neighbouring columns with nearly the same fill form supernodes, which are
+The pattern of a tangent or a Newton matrix is that of the contact graph, so the fill of its factors is known from the
+wall alone (George and Liu, 1981). Neighbouring columns with nearly the same fill form supernodes, which are
 kept and multiplied as dense matrices (Ng and Peyton, 1993). Rows are exchanged inside a supernode only. That cannot
-fail while the tangent is symmetric; sliding makes it unsymmetric, and where the multipliers of L then grow,
+fail while the matrix is symmetric and definite; sliding makes it unsymmetric, and where the multipliers of L then grow,
 `factorise` says so.
 """
 
 from __future__ import annotations
 
 import numpy as np
+import scipy.sparse as sp
+from scipy.sparse.linalg import splu
 
 from harness.model.assembly import FloatArray, IntArray
-from methods.fe.compiled import compiled, compiled_loosely
+from methods.numerics.compiled import compiled, compiled_loosely
 
-GROWTH = 1e5
-"""Entries of L above this cost too many digits; a factorisation with row exchanges is called for."""
 WIDEST = 8
 """Blocks of unknowns in a supernode at most: wider ones spend their time inside the diagonal."""
 PADDING = 0.3
@@ -53,7 +53,6 @@ class BlockPattern:
         self.row = np.array([i for below in rows for i in below], dtype=np.int64)
         self.offset = np.cumsum(np.concatenate([[0], 9 * width * (width + 2 * np.diff(self.row_start))]))
         self.n_values = int(self.offset[-1])
-        self._swapped = np.zeros(3 * n, dtype=np.int64)
         self._keys = np.repeat(np.arange(len(width)), np.diff(self.row_start)) * n + self.row
 
     def slot(self, unknown: IntArray) -> IntArray:
@@ -75,19 +74,47 @@ class BlockPattern:
         out: IntArray = self.offset[owner] + np.where(inside, diagonal, np.where(row > column, lower, upper))
         return out
 
-    def factorise(self, values: FloatArray) -> bool:
-        """Factorise the values (n_values,) in place; False when the pivots are not to be trusted."""
-        return _factorise(self.start, self.owner, self.row_start, self.row, self.offset, values, self._swapped, GROWTH)
 
-    def solve(self, values: FloatArray, x: FloatArray) -> None:
+class BlockFactor:
+    """The factors of one matrix in a pattern.
+
+    Attributes:
+        values: (n_values,) the entries of the matrix at their places, which `factorise` replaces by the factors.
+    """
+
+    def __init__(self, pattern: BlockPattern, values: FloatArray | None = None) -> None:
+        self.pattern = pattern
+        self.values = np.zeros(pattern.n_values) if values is None else values
+        self._swapped = np.zeros(3 * pattern.n, dtype=np.int64)
+
+    def factorise(self, growth: float = np.inf) -> bool:
+        """Factorise the values in place; False when a pivot is zero or entries of L grow beyond `growth`."""
+        p = self.pattern
+        return _factorise(p.start, p.owner, p.row_start, p.row, p.offset, self.values, self._swapped, growth)
+
+    def solve(self, x: FloatArray) -> None:
         """Solve in place in x (3 n,)."""
-        _substitute(self.start, self.row_start, self.row, self.offset, values, self._swapped, x)
+        p = self.pattern
+        _substitute(p.start, p.row_start, p.row, p.offset, self.values, self._swapped, x)
 
-    def solve_many(self, values: FloatArray, first: int, x: FloatArray) -> None:
-        """Solve for MANY right-hand sides at once, in place in x (3 n, MANY), whose rows before `first` are zero."""
-        _substitute_many(
-            self.start, self.row_start, self.row, self.offset, values, self._swapped, int(self.owner[first]), x
-        )
+    def solve_many(self, first: int, x: FloatArray) -> None:
+        """Solve for MANY right-hand sides at once, in place in x (3 n, MANY), zero in rows before block `first`."""
+        p = self.pattern
+        begin = int(p.owner[first])
+        _substitute_many(p.start, p.row_start, p.row, p.offset, self.values, self._swapped, begin, x)
+
+
+def elimination_order(first: IntArray, second: IntArray, n: int) -> IntArray:
+    """Order of n blocks in contact in the pairs (first, second), each (k,): minimum degree, then postorder."""
+    ones = np.ones(len(first))
+    graph = sp.csr_matrix((ones, (first, second)), shape=(n, n))
+    graph = graph + graph.T
+    degree = np.asarray(graph.sum(axis=1)).ravel()
+    lu = splu((graph + sp.diags(degree + 1.0)).tocsc(), permc_spec="MMD_AT_PLUS_A", options={"SymmetricMode": True})
+    order = np.argsort(lu.perm_c)
+    pairs = np.asarray(sp.triu(graph[order][:, order]).nonzero(), dtype=np.int64)
+    out: IntArray = order[postorder(pairs[0], pairs[1], n)]
+    return out
 
 
 def postorder(first: IntArray, second: IntArray, n: int) -> IntArray:

@@ -1,0 +1,1 @@
+"""Linear algebra and compiled code that the method families share."""
