@@ -206,14 +206,17 @@ class Tracer:
     def _is_collapse(self, step: float) -> bool:
         """Whether the piece is a mechanism that goes on so far that the next kink is of no interest.
 
-        Mechanisms that stop earlier are kept: each is an exact collapse state at its multiplier, and the last one
+        No gap may close on it. Mechanisms that stop earlier are kept: each is an exact collapse state at its multiplier, and the last one
         stands for the plateau when rounding ends the path among displacements of 1e13 times the elastic ones.
         """
         way = self.direction
         if not way.pins:
             return False
-        size, ahead = self.extent, step * float(np.abs(way.velocity).max())
+        size, fastest = self.extent, float(np.abs(way.velocity).max())
+        ahead = step * fastest
         if ahead < 1e-3 * size or not self.is_mechanism() or live_rate(self.model.live, way.velocity) <= 0.0:
+            return False
+        if way.opening_rate[self.state == OPEN].min(initial=0.0) < -ELASTIC * fastest:
             return False
         self.kept = Snapshot(
             self.multiplier, self.opening.copy(), self.trial.copy(), self.state.copy(), way.velocity.copy()
