@@ -206,8 +206,9 @@ class Tracer:
     def _is_collapse(self, step: float) -> bool:
         """Whether the piece is a mechanism that goes on so far that the next kink is of no interest.
 
-        No gap may close on it. Mechanisms that stop earlier are kept: each is an exact collapse state at its multiplier, and the last one
-        stands for the plateau when rounding ends the path among displacements of 1e13 times the elastic ones.
+        No gap may close on it. Mechanisms that stop earlier are kept: each is an exact collapse state at its
+        multiplier, and the last one stands for the plateau when rounding ends the path among displacements of 1e13
+        times the elastic ones.
         """
         way = self.direction
         if not way.pins:

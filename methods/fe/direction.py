@@ -46,7 +46,7 @@ class Direction:
         elastic: size of v / l on the first piece of the path, with which soft pieces are compared.
     """
 
-    def __init__(self, model: WallModel, factor: Factor, elastic: float = 0.0) -> None:
+    def __init__(self, model: WallModel, factor: Factor) -> None:
         self.model, self.factor = model, factor
         self.velocity, self.tail, self.speed = np.zeros(model.n_unknowns), np.zeros(model.n_unknowns), 1.0
         self.opening_rate, self.trial_rate = np.empty(model.n_points), np.empty(model.n_points)
@@ -54,7 +54,7 @@ class Direction:
         self.response = self.velocity
         self.shapes: list[Shape] = []
         self.fine = False
-        self.elastic = elastic
+        self.elastic = 0.0
         self.live_size = float(np.abs(model.live).max())
 
     @property

@@ -15,6 +15,7 @@ from harness.model.method import Answer, Finding, Status
 from methods.fe.adapter import GapSprings
 from methods.fe.patterns import block_on_halves, running_bond
 from methods.fe.plateau import check
+from methods.fe.random_walls import random_wall
 from methods.fe.settings import GapSpringsSettings
 
 EXACT = 1e-9  # closed forms are met to rounding; this leaves room for other linear algebra libraries
@@ -143,3 +144,17 @@ def test_a_path_left_at_the_time_limit_says_where_it_was() -> None:
     assert result.status is Status.NOT_CONVERGED
     assert result.multiplier is None
     assert "left at the time limit, at 0." in result.sentence
+
+
+def test_fe_history_whose_path_runs_in_a_loop_is_taken_out_of_it() -> None:
+    answer = GapSprings().solve(random_wall(384), GapSpringsSettings())
+    ends = [history["end"] for history in answer.details["histories"]]
+    assert ends == ["plateau"] * 3
+    assert answer.details["spread"] < 1e-9
+
+
+@pytest.mark.slow
+def test_fe_990_bricks_end_in_an_exact_collapse_state_on_soft_pieces() -> None:
+    answer = solve(running_bond(44, 22, 0.65), histories=(0.0,))
+    assert answer.multiplier == pytest.approx(0.4158961784, abs=1e-9)
+    assert max(answer.details["residuals"].values()) < 1e-9
