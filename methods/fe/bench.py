@@ -1,7 +1,8 @@
 """The bench of the gap-spring method: measured values, CPU seconds and peak memory beside the figures to reach.
 
 Run as `python -m methods.fe.bench [--full] [bricks ...]`, with OPENBLAS_NUM_THREADS=1. Without arguments the walls of
-up to 990 bricks are run; `--full` adds 2,485 and 9,870; the largest has not been brought to a plateau.
+up to 990 bricks are run; `--full` adds 2,485 (minutes) and 9,870, which has been brought to a plateau at friction 0.4
+only, in an hour.
 Times are CPU seconds of one thread, start-up and compilation apart, with all histories of the default settings.
 """
 

@@ -150,12 +150,12 @@ class Direction:
         one = np.zeros(self.model.n_unknowns)
         one[pin] = 1.0
         shape = Shape(pin, self.factor.solve(one), np.zeros_like(one))
-        self._refine(shape, state)
+        self._refine(shape, state, 2)
         return shape
 
-    def _refine(self, shape: Shape, state: IntArray) -> None:
+    def _refine(self, shape: Shape, state: IntArray, rounds: int) -> None:
         """Refine a shape, whose pin's spring carries all but a tiny share of the force, to twice working precision."""
-        for _ in range(2):
+        for _ in range(rounds):
             self.rates(shape.value, shape.tail)
             defect = self.model.out_of_balance(self.opening_rate, self.trial_rate, state, 0.0, 0.0)
             for pin in self.pins:
@@ -197,7 +197,7 @@ class Direction:
             for shape in self.shapes:
                 shape.value -= y * (float(b @ shape.value[index]) / (1.0 + along))
                 shape.tail -= y * (float(b @ shape.tail[index]) / (1.0 + along))
-                self._refine(shape, state)
+                self._refine(shape, state, 1)
         if self.pins or look:
             return self.straighten(state, extent)
         self.measure()
