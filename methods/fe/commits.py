@@ -13,7 +13,7 @@ from methods.fe.continuation import Tracer
 from methods.fe.factor import Change, Factor, SingularTangent
 from methods.fe.gap_law import OPEN, SLIP_MINUS, SLIP_PLUS, STICK, classify, gap_forces
 from methods.fe.wall_model import WallModel, point_strains
-from methods.numerics.block_lu import MANY as AT_ONCE
+from methods.numerics.block_kernels import MANY as AT_ONCE
 
 MANY = 24
 """Changed points above which a fresh factor is cheaper than updates."""

@@ -28,7 +28,7 @@ from methods.fe.tolerances import (
     TIE,
 )
 from methods.fe.wall_model import WallModel, point_strains
-from methods.numerics.block_lu import MANY
+from methods.numerics.block_kernels import MANY
 
 
 class Tracer:
@@ -126,11 +126,11 @@ class Tracer:
         gap_forces(self.opening, self.trial, model.kn, model.mu, self.state, normal, shear)
         return shear - (self.trial - self.history)
 
-    def is_mechanism(self, share: float = ELASTIC) -> bool:
-        """Whether no force changes along the present piece (rates within a share of the fastest)."""
+    def is_mechanism(self) -> bool:
+        """Whether no force changes along the present piece (rates within ELASTIC of the fastest)."""
         way = self.direction
         strain, elastic = strain_rates(way.opening_rate, way.trial_rate, self.model.kt, self.state)
-        return elastic <= share * strain
+        return elastic <= ELASTIC * strain
 
     def run(
         self, record: PathRecord, max_events: int, target: float = np.inf, turn: float = np.inf, note: int = 1
@@ -144,7 +144,7 @@ class Tracer:
             turn: share of the peak by which the path may fall before it is reported as turned down.
 
         Returns:
-            Why the stretch ended. At PLATEAU the tracer holds the singular piece and `along` is the mechanism.
+            Why the stretch ended. At PLATEAU the velocity of `direction` is the mechanism.
         """
         try:
             while record.events < max_events:

@@ -17,7 +17,8 @@ from scipy.sparse.linalg import SuperLU, splu
 
 from harness.model.assembly import FloatArray, IntArray
 from methods.fe.wall_model import WallModel, add_tangent
-from methods.numerics.block_lu import MANY, BlockFactor, BlockPattern
+from methods.numerics.block_kernels import MANY
+from methods.numerics.block_lu import BlockFactor, BlockPattern
 from methods.numerics.compiled import compiled
 
 GROWTH = 1e5
@@ -179,11 +180,7 @@ class SparseFactor:
 
     def solve(self, right: FloatArray) -> FloatArray:
         """K^-1 right (N,). Raises SingularTangent when the result is not finite."""
-        if self._exchanged is not None:
-            return self._corrected(self._exchanged.solve(right))
-        x = right.copy()
-        self._lu.solve(x)
-        return self._corrected(x)
+        return self._corrected((self._exchanged or self._lu).solve(right))
 
     def foresees(self, change: Change) -> bool:
         """Whether the factorised tangent has been solved for this change."""

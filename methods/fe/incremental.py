@@ -87,7 +87,7 @@ def march(
         record.peak = max(record.peak, multiplier)
         push *= 1.3
         if flat:
-            collapse = _collapse(model, factor, u, multiplier, state, direction)
+            collapse = _collapse(model, u, multiplier, state, direction)
             if collapse is not None:
                 return IncrementalResult(
                     reached, record, collapse, "displacement control reached a plateau", iterations
@@ -131,7 +131,7 @@ def _controlled(
 
 
 def _collapse(
-    model: WallModel, factor: Factor, u: FloatArray, multiplier: float, state: IntArray, direction: FloatArray
+    model: WallModel, u: FloatArray, multiplier: float, state: IntArray, direction: FloatArray
 ) -> CollapseState | None:
     """The collapse state of a wall that moves at constant multiplier, or None when it fails its check."""
     opening, slip = model.strains(u)

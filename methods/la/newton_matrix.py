@@ -8,13 +8,13 @@ the compiled code.
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Protocol
+from typing import TYPE_CHECKING, cast
 
 import numpy as np
 import scipy.sparse as sp
 from scipy.sparse.linalg import SuperLU, splu
 
-from harness.model.assembly import FloatArray, IntArray
+from harness.model.assembly import BoolArray, FloatArray, IntArray
 from methods.la.problem import Problem
 
 if TYPE_CHECKING:
@@ -112,7 +112,7 @@ class NewtonMatrix:
         self.pattern = BlockPattern(unknown[:, 0] // 3, unknown[:, 3] // 3, self.size // 3)
         self._slot = self.pattern.slot(unknown).ravel()
         self._diagonal = self.pattern.place(np.arange(self.size), np.arange(self.size))
-        self._used = np.ones(self._slot.shape, dtype=bool)
+        self._used: BoolArray | slice = slice(None)
         self._n_values = self.pattern.n_values
 
     def _place_in_columns(self, index: IntArray) -> None:
@@ -140,9 +140,8 @@ class NewtonMatrix:
             RuntimeError: K is singular to rounding.
         """
         products = np.matmul(self.rows.transpose(0, 2, 1), np.matmul(flexibility, self.rows)).ravel()
-        values: FloatArray = np.bincount(self._slot, weights=products[self._used], minlength=self._n_values).astype(
-            float
-        )
+        sums = np.bincount(self._slot, weights=products[self._used], minlength=self._n_values)
+        values = cast(FloatArray, sums)
         values[self._diagonal] += relative * np.maximum(abs(values[self._diagonal]), 1e-30) + shift
         if self.large:
             from methods.numerics.block_lu import BlockFactor
@@ -150,44 +149,21 @@ class NewtonMatrix:
             factors = BlockFactor(self.pattern, values)
             if not factors.factorise():
                 raise RuntimeError("the Newton matrix is singular")
-            return SupernodeFactor(factors, self.order)
+            return Factor(factors, self.order)
         matrix = sp.csc_matrix((values, self._indices, self._pointers), shape=(self.size, self.size))
         options = {"SymmetricMode": True}
-        return ColumnFactor(splu(matrix, permc_spec="NATURAL", diag_pivot_thresh=0.0, options=options), self.order)
+        return Factor(splu(matrix, permc_spec="NATURAL", diag_pivot_thresh=0.0, options=options), self.order)
 
 
-class Factor(Protocol):
+class Factor:
     """Factors of K that solve in the numbering of the problem."""
 
-    def solve(self, right: FloatArray) -> FloatArray:
-        """K^-1 b for b (3n,)."""
-
-
-class ColumnFactor:
-    """SuperLU's factors."""
-
-    def __init__(self, factors: SuperLU, order: IntArray) -> None:
+    def __init__(self, factors: SuperLU | BlockFactor, order: IntArray) -> None:
         self._factors = factors
         self._order = order
 
     def solve(self, right: FloatArray) -> FloatArray:
         """K^-1 b for b (3n,)."""
         solution = np.empty_like(right)
-        solution[self._order] = self._factors.solve(np.ascontiguousarray(right[self._order]))
-        return solution
-
-
-class SupernodeFactor:
-    """Factors in dense supernodes."""
-
-    def __init__(self, factors: BlockFactor, order: IntArray) -> None:
-        self._factors = factors
-        self._order = order
-
-    def solve(self, right: FloatArray) -> FloatArray:
-        """K^-1 b for b (3n,)."""
-        ordered = right[self._order]
-        self._factors.solve(ordered)
-        solution = np.empty_like(right)
-        solution[self._order] = ordered
+        solution[self._order] = self._factors.solve(right[self._order])
         return solution
