@@ -11,9 +11,10 @@ import numpy as np
 from harness.model.assembly import FloatArray, IntArray
 from methods.fe.continuation import Tracer
 from methods.fe.factor import Change, Factor, SingularTangent
-from methods.fe.gap_law import OPEN, SLIP_MINUS, SLIP_PLUS, STICK, classify, gap_forces
+from methods.fe.gap_law import OPEN, SLIP_MINUS, SLIP_PLUS, STICK, TIED, classify, same_forces
 from methods.fe.wall_model import WallModel, point_strains
 from methods.numerics.block_kernels import MANY as AT_ONCE
+from methods.numerics.vectors import largest
 
 MANY = 24
 """Changed points above which a fresh factor is cheaper than updates."""
@@ -46,7 +47,7 @@ def committed_step(tracer: Tracer, ahead: float, limit: int = 12) -> Tracer | No
             opening += opening_rate
             trial += model.kt * slip_rate
             classify(opening, trial, model.kn, model.mu, landed, False)
-            if np.array_equal(landed, state) or _same_forces(model, opening, trial, state, landed, tracer.scale):
+            if same_forces(opening, trial, model.kn, model.mu, state, landed, TIED * tracer.scale):
                 if not _near(tracer, u, ahead):
                     return None
                 return Tracer(model, factor, u, multiplier, history, state, factorised=True)
@@ -63,19 +64,8 @@ def committed_step(tracer: Tracer, ahead: float, limit: int = 12) -> Tracer | No
 def _near(tracer: Tracer, u: FloatArray, ahead: float) -> bool:
     """Whether a step stays on its branch: the live load works forwards, not much further than the tangent predicts."""
     moved = u - tracer.u
-    predicted = float(np.abs(tracer.direction.velocity).max()) * ahead
-    return float(tracer.model.live @ moved) > 0.0 and float(np.abs(moved).max()) <= NEAR * predicted
-
-
-def _same_forces(
-    model: WallModel, opening: FloatArray, trial: FloatArray, state: IntArray, landed: IntArray, scale: float
-) -> bool:
-    """Whether two sets of states differ only at points that sit on their kink."""
-    normal, shear = np.empty_like(opening), np.empty_like(opening)
-    other_normal, other_shear = np.empty_like(opening), np.empty_like(opening)
-    gap_forces(opening, trial, model.kn, model.mu, state, normal, shear)
-    gap_forces(opening, trial, model.kn, model.mu, landed, other_normal, other_shear)
-    return bool(max(np.abs(normal - other_normal).max(), np.abs(shear - other_shear).max()) < 1e-12 * scale)
+    predicted = largest(tracer.direction.velocity) * ahead
+    return float(tracer.model.live @ moved) > 0.0 and largest(moved) <= NEAR * predicted
 
 
 def change_states(model: WallModel, factor: Factor, state: IntArray, wanted: IntArray) -> None:

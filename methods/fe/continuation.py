@@ -29,6 +29,7 @@ from methods.fe.tolerances import (
 )
 from methods.fe.wall_model import WallModel, point_strains
 from methods.numerics.block_kernels import MANY
+from methods.numerics.vectors import largest
 
 
 class Tracer:
@@ -36,7 +37,7 @@ class Tracer:
 
     Attributes:
         u, multiplier, state: where the path is; history: (P,) frozen-in shears h.
-        opening, trial: (P,) g and tau there.
+        opening, trial: (P,) g and tau there; largest: the largest displacement.
         direction: of the present piece.
         kept: the last mechanism on the way that is an exact collapse state but for rounding.
     """
@@ -66,7 +67,8 @@ class Tracer:
         self.trial += history
         self.n_open = int(np.count_nonzero(state == OPEN))
         self.n_slip = int(np.count_nonzero(state >= SLIP_PLUS))
-        self.first_displacement = float(np.abs(u).max()) + 1.0
+        self.largest = largest(self.u)
+        self.first_displacement = self.largest + 1.0
         self.kept: Snapshot | None = None
         self.turns: set[tuple[int, int, float]] = set()
         self.direction = Direction(model, factor)
@@ -78,7 +80,7 @@ class Tracer:
     @property
     def extent(self) -> float:
         """The largest displacement so far (dimensionless, never zero)."""
-        return max(float(np.abs(self.u).max()), self.first_displacement)
+        return max(self.largest, self.first_displacement)
 
     def present(self) -> Snapshot:
         """The point and the velocity along the present piece."""
@@ -96,7 +98,7 @@ class Tracer:
     def _remove_drift(self) -> None:
         """Bring the gaps back into equilibrium, along no soft piece; the rates are measured again where they move."""
         residual = self._out_of_balance()
-        worst = float(np.abs(residual).max()) / self.scale
+        worst = largest(residual) / self.scale
         self.worst_residual = max(self.worst_residual, worst)
         moved = False
         for _ in range(2):
@@ -107,7 +109,7 @@ class Tracer:
             moved = True
             self._advance(correction, rate, 1.0)
             residual = self._out_of_balance()
-            previous, worst = worst, float(np.abs(residual).max()) / self.scale
+            previous, worst = worst, largest(residual) / self.scale
             if worst >= previous:
                 self._advance(correction, rate, -1.0)
                 break
@@ -180,7 +182,7 @@ class Tracer:
             if self.is_mechanism():
                 return PathEnd.PLATEAU
             return PathEnd.UNBOUNDED if way.speed > 0.0 else PathEnd.RUNS_DOWN
-        if ahead * float(np.abs(way.velocity).max()) > LARGE * self.first_displacement:
+        if ahead * largest(way.velocity) > LARGE * self.first_displacement:
             return PathEnd.BREAKDOWN
         if reach <= step:
             self._advance(way.velocity, way.speed, reach)
@@ -213,7 +215,7 @@ class Tracer:
         way = self.direction
         if not way.pins:
             return False
-        size, fastest = self.extent, float(np.abs(way.velocity).max())
+        size, fastest = self.extent, largest(way.velocity)
         ahead = step * fastest
         if ahead < 1e-3 * size or not self.is_mechanism() or live_rate(self.model.live, way.velocity) <= 0.0:
             return False
@@ -226,7 +228,8 @@ class Tracer:
 
     def _advance(self, velocity: FloatArray, speed: float, step: float) -> None:
         way = self.direction
-        advance(self.u, self.opening, self.trial, velocity, way.opening_rate, way.trial_rate, step)
+        gaps = self.opening, self.trial, way.opening_rate, way.trial_rate
+        self.largest = advance(self.u, velocity, *gaps, step)
         self.multiplier += speed * step
 
     def _note(self, record: PathRecord, note: int) -> None:
@@ -266,7 +269,7 @@ class Tracer:
         """Whether the out-of-balance force has grown enough to factorise afresh (looked at every few changes)."""
         if self.factor.count % LOOK:
             return False
-        return float(np.abs(self._out_of_balance()).max()) > DRIFT * self.scale
+        return largest(self._out_of_balance()) > DRIFT * self.scale
 
     def _kink_rate(self, point: int, old: int, new: int) -> float:
         """b'v of a change of state and the velocity v of the present piece."""

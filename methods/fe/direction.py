@@ -24,6 +24,7 @@ from methods.fe.exact_rates import exact_gap_rates
 from methods.fe.factor import Change, Factor, SingularTangent
 from methods.fe.tolerances import BEARABLE, BENT, CAREFUL, COARSE, CROOKED, FREE, MOST, SOFT, STEEP, STRAIGHT, WEAK
 from methods.fe.wall_model import WallModel, point_strains
+from methods.numerics.vectors import combine, largest
 
 
 @dataclass
@@ -55,12 +56,12 @@ class Direction:
         self.shapes: list[Shape] = []
         self.fine = False
         self.elastic = 0.0
-        self.live_size = float(np.abs(model.live).max())
+        self.live_size = largest(model.live)
 
     @property
     def size(self) -> float:
         """The fastest velocity, in multiples of the first piece's at the same rate of the multiplier."""
-        fastest = float(np.abs(self.velocity).max())
+        fastest = largest(self.velocity)
         return fastest / max(abs(self.speed) * self.elastic, 1e-300) if self.elastic else 0.0
 
     def solve_anew(self, state: IntArray, extent: float) -> None:
@@ -96,7 +97,7 @@ class Direction:
 
     def _is_soft(self) -> bool:
         """Whether the response to the live load shows a soft motion that is not pinned."""
-        return float(np.abs(self.response).max()) > SOFT * self.elastic
+        return largest(self.response) > SOFT * self.elastic
 
     def solve_first(self, state: IntArray) -> None:
         """Solve for the velocity with the factor as it stands, the multiplier rising."""
@@ -112,7 +113,7 @@ class Direction:
         if not self.pins:
             self.velocity, self.speed, sense = self.response.copy(), 1.0, rising
             if not self.elastic:
-                self.elastic = float(np.abs(self.velocity).max())
+                self.elastic = largest(self.velocity)
         else:
             one = np.zeros_like(before)
             one[self.pins[0]] = 1.0
@@ -129,17 +130,26 @@ class Direction:
         """
         if not self.pins:
             return x, 0.0
-        basis = np.array([self.response, *(shape.value for shape in self.shapes)])
-        system = basis[:, self.pins].T.copy()
+        share = self._share(x, held)
+        if not np.isfinite(share).all():
+            raise SingularTangent("the live load does not act on the motion")
+        out = x + share[0] * self.response
+        for part, shape in zip(share[1:], self.shapes, strict=True):
+            out += part * shape.value
+        return out, float(share[0])
+
+    def _share(self, x: FloatArray, held: float) -> FloatArray:
+        """How much of the response and of each shape, (1 + shapes,), to add to x."""
+        if not self.shapes:
+            return np.array([(held - x[self.pins[0]]) / self.response[self.pins[0]]])
+        basis = [self.response, *(shape.value for shape in self.shapes)]
+        system = np.array([values[self.pins] for values in basis]).T
         for j, shape in enumerate(self.shapes, start=1):
             system[:, j] += shape.tail[self.pins]
             system[j, j] = (shape.value[self.pins[j]] - 1.0) + shape.tail[self.pins[j]]
         right = -x[self.pins]
         right[0] += held
-        share = right / system[0] if len(right) == 1 else np.linalg.solve(system, right)
-        if not np.isfinite(share).all():
-            raise SingularTangent("the live load does not act on the motion")
-        return x + share @ basis, float(share[0])
+        return np.linalg.solve(system, right)
 
     def balance(self, right: FloatArray) -> tuple[FloatArray, float]:
         """x (N,) and m with K x - m live = right: m = 0, or x = 0 at the first pin."""
@@ -177,10 +187,10 @@ class Direction:
         along = float(b @ y[index])
         w, rate = self._hold(-y)
         keep = 1.0 - float(b @ w[index])
-        self.velocity = keep * self.velocity + crossing * w
+        combine(self.velocity, keep, crossing, w)
         self.speed = keep * self.speed + crossing * rate
         self.tail *= keep
-        unit = float(np.abs(self.velocity).max()) if self.pins else abs(self.speed)
+        unit = largest(self.velocity) if self.pins else abs(self.speed)
         if unit > 0.0:
             self.velocity /= unit
             self.tail /= unit
@@ -214,7 +224,7 @@ class Direction:
         previous = np.inf
         for _ in range(CAREFUL):
             defect = self.model.out_of_balance(self.opening_rate, self.trial_rate, state, self.speed, 0.0)
-            worst = float(np.abs(defect).max())
+            worst = largest(defect)
             if worst <= enough:
                 return True
             if not worst < 0.5 * previous:

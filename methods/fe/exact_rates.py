@@ -8,7 +8,7 @@ each product (a fused multiply and add gives it) and of each sum is carried alon
 from __future__ import annotations
 
 from harness.model.assembly import FloatArray, IntArray
-from methods.fe.gap_law import OPEN, SLIP_PLUS, STICK
+from methods.fe.gap_law import point_forces
 from methods.numerics.compiled import compiled, fused
 
 
@@ -73,17 +73,17 @@ def tangent_defect(
     out: FloatArray,
 ) -> None:
     """Subtract from `out` (N,) the generalised internal forces of gaps g, tau (P,), or their rates likewise."""
-    for p in range(len(interface)):
-        if state[p] == OPEN:
-            continue
-        normal = kn[p] * opening[p]
-        shear = trial[p]
-        if state[p] == SLIP_PLUS:
-            shear = -mu[p] * normal
-        elif state[p] != STICK:
-            shear = mu[p] * normal
+    total = len(interface)
+    p = 0
+    while p < total:
         k = interface[p]
-        x = position[p]
-        for j in range(6):
-            row_n = (1.0 - x) * rows[k, 0, j] + x * rows[k, 1, j]
-            out[unknown[k, j]] -= row_n * normal + rows[k, 2, j] * shear
+        end1 = end2 = slip = 0.0
+        while p < total and interface[p] == k:
+            normal, shear = point_forces(opening[p], trial[p], kn[p], mu[p], state[p])
+            end1 -= (1.0 - position[p]) * normal
+            end2 -= position[p] * normal
+            slip += shear
+            p += 1
+        if end1 != 0.0 or end2 != 0.0 or slip != 0.0:
+            for j in range(6):
+                out[unknown[k, j]] -= rows[k, 0, j] * end1 + rows[k, 1, j] * end2 + rows[k, 2, j] * slip

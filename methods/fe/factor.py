@@ -20,6 +20,7 @@ from methods.fe.wall_model import WallModel, add_tangent
 from methods.numerics.block_kernels import MANY
 from methods.numerics.block_lu import BlockFactor, BlockPattern
 from methods.numerics.compiled import compiled
+from methods.numerics.vectors import largest
 
 GROWTH = 1e5
 """Entries of L above this cost too many digits; a factorisation with row exchanges is called for."""
@@ -189,11 +190,7 @@ class SparseFactor:
     def foresee(self, changes: list[Change]) -> None:
         """Solve the factorised tangent for up to MANY changes at once."""
         right = np.zeros((self.model.n_unknowns, MANY))
-        first = self.model.n_unknowns
-        for j, change in enumerate(changes[:MANY]):
-            index, a, _ = self.model.change(*change)
-            np.add.at(right[:, j], index, a)
-            first = min(first, int(index.min()))
+        first = self.model.add_changes(changes[:MANY], right)
         if self._exchanged is not None:
             right = self._exchanged.solve(right)
         else:
@@ -207,43 +204,62 @@ class SparseFactor:
 
     def _corrected(self, x: FloatArray) -> FloatArray:
         """K^-1 right from the solution x (N,) of the factorised tangent, which is overwritten."""
-        k = self.count
-        if k:
-            alpha = np.empty(k)
-            _product_form(x, self._coupling, self._denominator, self._index, self._b, alpha)
-            x -= alpha @ self._y[:k]
-        if not np.isfinite(x).all():
+        if not _product_form(x, self.count, self._y, self._coupling, self._denominator, self._index, self._b):
             raise SingularTangent("the tangent is singular in these states")
         return x
 
     def update(self, y: FloatArray, index: IntArray, b: FloatArray, denominator: float) -> None:
         """Append one term to the product form."""
-        k = self.count
-        self._y[k] = y
-        self._index[k] = index
-        self._b[k] = b
-        self._denominator[k] = denominator
-        _couple(self._y, index, b, k, self._coupling)
-        self.count = k + 1
+        form = self._y, self._coupling, self._denominator, self._index, self._b
+        _append(y, index, b, denominator, self.count, *form)
+        self.count += 1
 
 
 @compiled
 def _product_form(
-    x: FloatArray, coupling: FloatArray, denominator: FloatArray, index: IntArray, b: FloatArray, alpha: FloatArray
-) -> None:
-    for j in range(len(alpha)):
+    x: FloatArray,
+    count: int,
+    y: FloatArray,
+    coupling: FloatArray,
+    denominator: FloatArray,
+    index: IntArray,
+    b: FloatArray,
+) -> bool:
+    """Correct x (N,) in place for the first `count` changes; whether all of it is finite."""
+    alpha = np.empty(count)
+    for j in range(count):
         total = 0.0
         for i in range(6):
             total += b[j, i] * x[index[j, i]]
         for i in range(j):
             total -= coupling[j, i] * alpha[i]
         alpha[j] = total / denominator[j]
+    for j in range(count):
+        for i in range(len(x)):
+            x[i] -= alpha[j] * y[j, i]
+    return largest(x) < np.inf
 
 
 @compiled
-def _couple(y: FloatArray, index: IntArray, b: FloatArray, k: int, coupling: FloatArray) -> None:
-    for i in range(k):
+def _append(
+    new: FloatArray,
+    new_index: IntArray,
+    new_b: FloatArray,
+    new_denominator: float,
+    count: int,
+    y: FloatArray,
+    coupling: FloatArray,
+    denominator: FloatArray,
+    index: IntArray,
+    b: FloatArray,
+) -> None:
+    """Write a change behind the first `count` ones."""
+    for i in range(count):
         total = 0.0
         for j in range(6):
-            total += b[j] * y[i, index[j]]
-        coupling[k, i] = total
+            total += new_b[j] * y[i, new_index[j]]
+        coupling[count, i] = total
+    y[count] = new
+    index[count] = new_index
+    b[count] = new_b
+    denominator[count] = new_denominator

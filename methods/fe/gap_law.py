@@ -19,6 +19,8 @@ from harness.model.assembly import FloatArray, IntArray
 from methods.numerics.compiled import compiled
 
 OPEN, STICK, SLIP_PLUS, SLIP_MINUS = 0, 1, 2, 3
+TIED = 1e-12
+"""Forces that differ by less than this share of the load scale are the same: the point sits on its kink."""
 
 
 @compiled
@@ -38,6 +40,17 @@ def classify(
 
 
 @compiled
+def point_forces(opening: float, trial: float, kn: float, mu: float, state: int) -> tuple[float, float]:
+    """Compression N and internal shear T of one point held in a state."""
+    if state == OPEN:
+        return 0.0, 0.0
+    normal = -kn * opening
+    if state == STICK:
+        return normal, trial
+    return normal, mu * normal if state == SLIP_PLUS else -mu * normal
+
+
+@compiled
 def gap_forces(
     opening: FloatArray,
     trial: FloatArray,
@@ -49,17 +62,27 @@ def gap_forces(
 ) -> None:
     """Compression N and internal shear T of points held in the given states, all (P,), into `normal` and `shear`."""
     for p in range(len(opening)):
-        if state[p] == OPEN:
-            normal[p] = 0.0
-            shear[p] = 0.0
-            continue
-        normal[p] = -kn[p] * opening[p]
-        if state[p] == STICK:
-            shear[p] = trial[p]
-        elif state[p] == SLIP_PLUS:
-            shear[p] = mu[p] * normal[p]
-        else:
-            shear[p] = -mu[p] * normal[p]
+        normal[p], shear[p] = point_forces(opening[p], trial[p], kn[p], mu[p], state[p])
+
+
+@compiled
+def same_forces(
+    opening: FloatArray,
+    trial: FloatArray,
+    kn: FloatArray,
+    mu: FloatArray,
+    state: IntArray,
+    other: IntArray,
+    tolerance: float,
+) -> bool:
+    """Whether two sets of states (P,) give the same forces: they differ at most at points that sit on their kink."""
+    for p in range(len(opening)):
+        if state[p] != other[p]:
+            ours = point_forces(opening[p], trial[p], kn[p], mu[p], state[p])
+            theirs = point_forces(opening[p], trial[p], kn[p], mu[p], other[p])
+            if not max(abs(ours[0] - theirs[0]), abs(ours[1] - theirs[1])) < tolerance:
+                return False
+    return True
 
 
 @compiled

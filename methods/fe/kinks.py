@@ -13,6 +13,7 @@ import numpy as np
 from harness.model.assembly import FloatArray, IntArray
 from methods.fe.gap_law import OPEN, SLIP_MINUS, SLIP_PLUS, STICK
 from methods.numerics.compiled import compiled
+from methods.numerics.vectors import largest
 
 
 @compiled
@@ -75,10 +76,7 @@ def next_kink(
         (step, point, new state); step is infinite and point -1 when no kink follows.
     """
     count = len(state)
-    fastest = 0.0
-    for p in range(count):
-        fastest = max(fastest, abs(opening_rate[p]), abs(trial_rate[p]))
-    least = min(noise * fastest, floor)
+    least = min(noise * max(largest(opening_rate), largest(trial_rate)), floor)
     best = np.inf
     within = np.empty(count, dtype=np.int64)
     found = 0
@@ -161,19 +159,20 @@ def coming_kinks(
 @compiled
 def advance(
     u: FloatArray,
+    velocity: FloatArray,
     opening: FloatArray,
     trial: FloatArray,
-    velocity: FloatArray,
     opening_rate: FloatArray,
     trial_rate: FloatArray,
     step: float,
-) -> None:
-    """Move displacements (N,) and gaps (P,) along their rates."""
+) -> float:
+    """Move displacements (N,) and gaps (P,) along their rates; returns the largest displacement."""
     for i in range(len(u)):
         u[i] += step * velocity[i]
     for p in range(len(opening)):
         opening[p] += step * opening_rate[p]
         trial[p] += step * trial_rate[p]
+    return largest(u)
 
 
 @compiled

@@ -7,6 +7,7 @@ scale of the displacements only.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import cast
 
@@ -119,12 +120,14 @@ class WallModel:
 
     def change(self, point: int, old: int, new: int) -> tuple[IntArray, FloatArray, FloatArray]:
         """The rank-one change a b' of the tangent when a point changes its state: (unknowns, a, b), all (6,)."""
-        k, x = self.interface[point], self.position[point]
-        rows = self.rows[k]
         a, b = np.empty(6), np.empty(6)
-        row_n = (1.0 - x) * rows[0] + x * rows[1]
-        flip_vectors(row_n, rows[2], self.kn[point], self.kt[point], self.mu[point], old, new, a, b)
-        return self.unknown[k], a, b
+        rank_one_change(self.rows, self.interface, self.position, self.kn, self.kt, self.mu, point, old, new, a, b)
+        return self.unknown[self.interface[point]], a, b
+
+    def add_changes(self, changes: Sequence[tuple[int, int, int]], columns: FloatArray) -> int:
+        """Add the vectors a of changes (point, old, new) to the columns of (N, k); returns the first row concerned."""
+        springs = self.rows, self.interface, self.position, self.kn, self.kt, self.mu
+        return add_changes(self.unknown, *springs, np.array(changes), columns)
 
     def block_displacements(self, u: FloatArray) -> FloatArray:
         """(n, 3) displacements of all blocks [length, length, rad] from the dimensionless unknowns (N,)."""
@@ -302,3 +305,48 @@ def add_tangent(
             left_t = rows[k, 2, i] * tt
             for j in range(6):
                 values[slot[k, 6 * i + j]] += left_n * row_n[j] + left_t * rows[k, 2, j]
+
+
+@compiled
+def rank_one_change(
+    rows: FloatArray,
+    interface: IntArray,
+    position: FloatArray,
+    kn: FloatArray,
+    kt: FloatArray,
+    mu: FloatArray,
+    point: int,
+    old: int,
+    new: int,
+    a: FloatArray,
+    b: FloatArray,
+) -> None:
+    """The change a b' of the tangent when a point changes its state, into a and b (6,)."""
+    k, x = interface[point], position[point]
+    row_n = (1.0 - x) * rows[k, 0] + x * rows[k, 1]
+    flip_vectors(row_n, rows[k, 2], kn[point], kt[point], mu[point], old, new, a, b)
+
+
+@compiled
+def add_changes(
+    unknown: IntArray,
+    rows: FloatArray,
+    interface: IntArray,
+    position: FloatArray,
+    kn: FloatArray,
+    kt: FloatArray,
+    mu: FloatArray,
+    changes: IntArray,
+    columns: FloatArray,
+) -> int:
+    """Add the vectors a of changes (k, 3) to the columns of (N, k); returns the first row concerned."""
+    a, b = np.empty(6), np.empty(6)
+    first = len(columns)
+    for c in range(len(changes)):
+        point, old, new = changes[c]
+        rank_one_change(rows, interface, position, kn, kt, mu, point, old, new, a, b)
+        index = unknown[interface[point]]
+        for j in range(6):
+            columns[index[j], c] += a[j]
+            first = min(first, index[j])
+    return first
