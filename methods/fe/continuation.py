@@ -16,11 +16,14 @@ from methods.fe.gap_law import OPEN, SLIP_PLUS, STICK, gap_forces
 from methods.fe.kinks import advance, coming_kinks, live_rate, next_kink, strain_rates
 from methods.fe.newton import load_scale
 from methods.fe.path_record import PathEnd, PathRecord, Snapshot
+from methods.fe.plateau import CERTIFICATE, worst_residual
 from methods.fe.tolerances import (
     DRIFT,
     ELASTIC,
+    ENOUGH,
     FAR,
     GLANCE,
+    GROWN,
     LARGE,
     LOOK,
     LOST,
@@ -39,7 +42,8 @@ class Tracer:
         u, multiplier, state: where the path is; history: (P,) frozen-in shears h.
         opening, trial: (P,) g and tau there; largest: the largest displacement.
         direction: of the present piece.
-        kept: the last mechanism on the way that is an exact collapse state but for rounding.
+        kept: the last mechanism on the way that is an exact collapse state but for rounding; kept_at: the extent
+            there; kept_holds: whether its residuals pass the certificate.
     """
 
     def __init__(
@@ -51,9 +55,11 @@ class Tracer:
         history: FloatArray,
         state: IntArray,
         factorised: bool = False,
+        certificate: float = CERTIFICATE,
     ) -> None:
         self.model = model
         self.factor = factor
+        self.certificate = certificate
         self.u = u.copy()
         self.multiplier = multiplier
         self.history = history
@@ -70,6 +76,7 @@ class Tracer:
         self.largest = largest(self.u)
         self.first_displacement = self.largest + 1.0
         self.kept: Snapshot | None = None
+        self.kept_at, self.kept_holds = 0.0, False
         self.turns: set[tuple[int, int, float]] = set()
         self.direction = Direction(model, factor)
         if factorised:
@@ -209,22 +216,26 @@ class Tracer:
         """Whether the piece is a mechanism that goes on so far that the next kink is of no interest.
 
         No gap may close on it. Mechanisms that stop earlier are kept: each is an exact collapse state at its
-        multiplier, and the last one stands for the plateau when rounding ends the path among displacements of 1e13
-        times the elastic ones.
+        multiplier, and the last one that passes its check stands for the plateau when rounding ends the path. Among
+        displacements of 1e10 times the elastic ones it is the plateau.
         """
-        way = self.direction
+        model, way = self.model, self.direction
         if not way.pins:
             return False
         size, fastest = self.extent, largest(way.velocity)
         ahead = step * fastest
-        if ahead < 1e-3 * size or not self.is_mechanism() or live_rate(self.model.live, way.velocity) <= 0.0:
+        if ahead < 1e-3 * size or not self.is_mechanism() or live_rate(model.live, way.velocity) <= 0.0:
             return False
         if way.opening_rate[self.state == OPEN].min(initial=0.0) < -ELASTIC * fastest:
             return False
-        self.kept = Snapshot(
-            self.multiplier, self.opening.copy(), self.trial.copy(), self.state.copy(), way.velocity.copy()
-        )
-        return ahead > FAR * size or size > LARGE * self.first_displacement
+        if ahead > FAR * size:
+            return True
+        if size < GROWN * self.kept_at:
+            return False
+        holds = worst_residual(model, self.present()) <= self.certificate
+        if holds or not self.kept_holds:
+            self.kept, self.kept_at, self.kept_holds = self.present().copy(), size, holds
+        return holds and size > ENOUGH * self.first_displacement
 
     def _advance(self, velocity: FloatArray, speed: float, step: float) -> None:
         way = self.direction

@@ -43,7 +43,7 @@ class PathRecord:
         self.open.append(n_open)
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Snapshot:
     """A mechanism met on the path: multiplier, gaps g and tau (P,), states (P,) and velocity (N,)."""
 
@@ -52,3 +52,8 @@ class Snapshot:
     trial: FloatArray
     state: IntArray
     velocity: FloatArray
+
+    def copy(self) -> Snapshot:
+        """The same with arrays of its own."""
+        arrays = self.opening, self.trial, self.state, self.velocity
+        return Snapshot(self.multiplier, *(values.copy() for values in arrays))

@@ -70,6 +70,11 @@ def finish(model: WallModel, present: Snapshot, kept: Snapshot | None = None) ->
     return None
 
 
+def worst_residual(model: WallModel, shot: Snapshot) -> float:
+    """Largest relative residual of forces and velocity of a snapshot, as they are, as a collapse state."""
+    return _as_traced(model, shot).worst
+
+
 def _as_traced(model: WallModel, shot: Snapshot) -> CollapseState:
     """Forces and velocity of a snapshot as they are."""
     return _collapse_state(model, shot.multiplier, shot.opening, shot.trial, shot.state, shot.velocity)

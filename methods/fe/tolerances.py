@@ -32,6 +32,10 @@ FAR = 1e4
 """A mechanism that moves this many times the present displacement before its next kink is the collapse."""
 LARGE = 1e13
 """Displacements, in multiples of the first ones, beyond which the path is not followed."""
+ENOUGH = 1e10
+"""Displacements, in multiples of the first ones, at which a mechanism that passes its check is the collapse."""
+GROWN = 1.1
+"""By how much displacements grow from one check of a mechanism to the next."""
 LOST = 1e-5
 """Out-of-balance force (share of the load scale) at which the path counts as lost."""
 GLANCE = 4
