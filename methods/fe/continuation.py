@@ -7,6 +7,8 @@ the collapse mechanism.
 
 from __future__ import annotations
 
+from copy import deepcopy
+
 import numpy as np
 
 from harness.model.assembly import FloatArray, IntArray
@@ -234,7 +236,7 @@ class Tracer:
             return False
         holds = worst_residual(model, self.present()) <= self.certificate
         if holds or not self.kept_holds:
-            self.kept, self.kept_at, self.kept_holds = self.present().copy(), size, holds
+            self.kept, self.kept_at, self.kept_holds = deepcopy(self.present()), size, holds
         return holds and size > ENOUGH * self.first_displacement
 
     def _advance(self, velocity: FloatArray, speed: float, step: float) -> None:

@@ -52,8 +52,3 @@ class Snapshot:
     trial: FloatArray
     state: IntArray
     velocity: FloatArray
-
-    def copy(self) -> Snapshot:
-        """The same with arrays of its own."""
-        arrays = self.opening, self.trial, self.state, self.velocity
-        return Snapshot(self.multiplier, *(values.copy() for values in arrays))
