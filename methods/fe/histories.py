@@ -28,8 +28,8 @@ START = 1e-3
 
 DISTURBANCES = (1e-9, 1e-7, 1e-5)
 """Random initial shears, in weights of a block, tried in turn where exact ties lead a path astray."""
-LONGER = 1.5
-"""By how much the commit interval of a lost history is lengthened when it is traced again."""
+LONGER = (1.0, 1.5, 2.25)
+"""Multiples of its commit interval at which a history is traced, in turn while it is lost."""
 COMMIT_WITHIN = 300.0
 """Displacements, in multiples of the first, up to which the history is still committed."""
 TURN = 0.1
@@ -79,17 +79,18 @@ def trace_history(
 
     Where exact ties lead a path without commits astray it is traced again with the initial shears disturbed by 1e-9,
     1e-7 and 1e-5 of a block's weight: data nobody knows, and the end is an exact collapse state all the same. A lost
-    history with commits is traced once more with intervals half as long again, which the result then names.
+    history with commits is traced again with longer intervals, which the result then names.
 
     Args:
         model: the wall; factor: its tangent; gravity: equilibrium under the dead load.
         step: commit interval as a share of `scale`, 0 for no history; scale: a multiplier of the order of collapse.
         max_events: changes of state after which the history is given up.
     """
-    result = _trace(model, factor, gravity.u, model.history, step, scale, max_events, 0.0)
+    for longer in LONGER:
+        result = _trace(model, factor, gravity.u, model.history, longer * step, scale, max_events, 0.0)
+        if step == 0.0 or not _lost(result):
+            break
     if step > 0.0:
-        if _lost(result):
-            return _trace(model, factor, gravity.u, model.history, LONGER * step, scale, max_events, 0.0)
         return result
     for disturbance in DISTURBANCES:
         if not _lost(result):
