@@ -8,12 +8,12 @@ import numpy as np
 
 from harness.model.assembly import FloatArray
 from harness.model.method import Answer, Finding, Status
-from methods.fe.gap_law import equivalent_end_forces
 from methods.fe.histories import HistoryResult, moving_blocks
 from methods.fe.newton import Equilibrium
-from methods.fe.path_record import PathEnd, PathRecord
-from methods.fe.plateau import CollapseState
-from methods.fe.wall_model import WallModel
+from methods.springs.gap_law import equivalent_end_forces
+from methods.springs.path_record import PathEnd, PathRecord
+from methods.springs.plateau import CollapseState
+from methods.springs.wall_model import WallModel
 
 PATH_POINTS = 300
 """Points of the path that an answer keeps at most."""

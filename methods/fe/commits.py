@@ -9,12 +9,12 @@ from __future__ import annotations
 import numpy as np
 
 from harness.model.assembly import FloatArray, IntArray
-from methods.fe.continuation import Tracer
-from methods.fe.factor import Change, Factor, SingularTangent
-from methods.fe.gap_law import OPEN, SLIP_MINUS, SLIP_PLUS, STICK, TIED, classify, same_forces
-from methods.fe.wall_model import WallModel, point_strains
 from methods.numerics.block_kernels import MANY as AT_ONCE
 from methods.numerics.vectors import largest
+from methods.springs.continuation import Tracer
+from methods.springs.factor import Change, Factor, SingularTangent
+from methods.springs.gap_law import OPEN, SLIP_MINUS, SLIP_PLUS, STICK, TIED, classify, same_forces
+from methods.springs.wall_model import WallModel, point_strains
 
 MANY = 24
 """Changed points above which a fresh factor is cheaper than updates."""

@@ -19,8 +19,8 @@ import osqp
 import scipy.sparse as sp
 
 from harness.model.assembly import FloatArray
-from methods.fe.path_record import PathRecord
-from methods.fe.wall_model import WallModel
+from methods.springs.path_record import PathRecord
+from methods.springs.wall_model import WallModel
 
 
 @dataclass(frozen=True)

@@ -14,13 +14,13 @@ import numpy as np
 from harness.model.assembly import FloatArray
 from harness.model.method import OutOfTime
 from methods.fe.commits import committed_step
-from methods.fe.continuation import Tracer
-from methods.fe.factor import Factor
-from methods.fe.gap_law import OPEN, SLIP_PLUS
 from methods.fe.newton import Equilibrium, equilibrium, newton
-from methods.fe.path_record import PathEnd, PathRecord
-from methods.fe.plateau import CollapseState, finish
-from methods.fe.wall_model import WallModel
+from methods.springs.continuation import Tracer
+from methods.springs.factor import Factor
+from methods.springs.gap_law import OPEN, SLIP_PLUS
+from methods.springs.path_record import PathEnd, PathRecord
+from methods.springs.plateau import CollapseState, finish
+from methods.springs.wall_model import WallModel
 
 START = 1e-3
 """First Newton step off the kinks on which gravity leaves many gap points, as a multiplier."""

@@ -14,12 +14,12 @@ from dataclasses import dataclass
 import numpy as np
 
 from harness.model.assembly import FloatArray, IntArray
-from methods.fe.factor import Factor, SingularTangent, make_factor
 from methods.fe.histories import START
-from methods.fe.newton import Equilibrium, load_scale, newton
-from methods.fe.path_record import PathRecord, Snapshot
-from methods.fe.plateau import CollapseState, finish
-from methods.fe.wall_model import WallModel
+from methods.fe.newton import Equilibrium, newton
+from methods.springs.factor import Factor, SingularTangent, make_factor
+from methods.springs.path_record import PathRecord, Snapshot
+from methods.springs.plateau import CollapseState, finish
+from methods.springs.wall_model import WallModel, load_scale
 
 
 @dataclass(frozen=True)

@@ -12,10 +12,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from harness.model.assembly import FloatArray, IntArray
-from methods.fe.factor import Factor, SingularTangent
-from methods.fe.gap_law import TIED, same_forces
-from methods.fe.wall_model import WallModel
-from methods.numerics.vectors import largest
+from methods.springs.factor import Factor, SingularTangent
+from methods.springs.gap_law import TIED, same_forces
+from methods.springs.wall_model import WallModel, load_scale
 
 SETTLED = 1e-11
 """Out-of-balance force (share of the load scale) at which pseudo-transient steps have come to rest.
@@ -77,11 +76,6 @@ def _settled(
     """Whether the two sets of states give the same forces at u."""
     opening, slip = model.strains(u)
     return same_forces(opening, model.kt * slip + history, model.kn, model.mu, state, landed, TIED * scale)
-
-
-def load_scale(model: WallModel, multiplier: float) -> float:
-    """Size of the loads (dimensionless force)."""
-    return largest(model.dead) + abs(multiplier) * largest(model.live) or 1.0
 
 
 def pseudo_transient(

@@ -5,14 +5,14 @@ from __future__ import annotations
 import numpy as np
 
 from methods.fe.commits import change_states
-from methods.fe.exact_rates import exact_gap_rates
-from methods.fe.factor import SparseFactor
-from methods.fe.gap_law import STICK, neighbour_states
 from methods.fe.histories import gravity_state, trace_history
-from methods.fe.kinks import live_rate, strain_rates
 from methods.fe.patterns import block_on_halves
 from methods.fe.settings import GapSpringsSettings
-from methods.fe.wall_model import build_model
+from methods.springs.exact_rates import exact_gap_rates
+from methods.springs.factor import SparseFactor
+from methods.springs.gap_law import STICK, neighbour_states
+from methods.springs.kinks import live_rate, strain_rates
+from methods.springs.wall_model import build_model
 
 
 def load_kernels() -> None:

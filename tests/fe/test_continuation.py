@@ -14,9 +14,9 @@ from harness.model.assembly import Assembly
 from harness.model.method import Answer, Finding, Status
 from methods.fe.adapter import GapSprings
 from methods.fe.patterns import block_on_halves, running_bond
-from methods.fe.plateau import check
 from methods.fe.random_walls import random_wall
 from methods.fe.settings import GapSpringsSettings
+from methods.springs.plateau import check
 
 EXACT = 1e-9  # closed forms are met to rounding; this leaves room for other linear algebra libraries
 

@@ -15,10 +15,10 @@ import scipy.sparse as sp
 from scipy.sparse.linalg import SuperLU, splu
 
 from harness.model.assembly import Assembly, BoolArray, FloatArray, IntArray
-from methods.fe.factor import SingularTangent
-from methods.fe.gap_law import classify, equivalent_end_forces, gap_forces
-from methods.fe.path_record import Snapshot
-from methods.fe.wall_model import WallModel, point_strains
+from methods.springs.factor import SingularTangent
+from methods.springs.gap_law import classify, equivalent_end_forces, gap_forces
+from methods.springs.path_record import Snapshot
+from methods.springs.wall_model import WallModel, point_strains
 
 CERTIFICATE = 1e-8
 """Largest relative residual at which a final state counts as an exact collapse state."""

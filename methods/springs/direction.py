@@ -20,11 +20,11 @@ from dataclasses import dataclass
 import numpy as np
 
 from harness.model.assembly import FloatArray, IntArray
-from methods.fe.exact_rates import exact_gap_rates
-from methods.fe.factor import Change, Factor, SingularTangent
-from methods.fe.tolerances import BEARABLE, BENT, CAREFUL, COARSE, CROOKED, FREE, MOST, SOFT, STEEP, STRAIGHT, WEAK
-from methods.fe.wall_model import WallModel, point_strains
 from methods.numerics.vectors import combine, largest
+from methods.springs.exact_rates import exact_gap_rates
+from methods.springs.factor import Change, Factor, SingularTangent
+from methods.springs.tolerances import BEARABLE, BENT, CAREFUL, COARSE, CROOKED, FREE, MOST, SOFT, STEEP, STRAIGHT, WEAK
+from methods.springs.wall_model import WallModel, point_strains
 
 
 @dataclass

@@ -8,8 +8,8 @@ each product (a fused multiply and add gives it) and of each sum is carried alon
 from __future__ import annotations
 
 from harness.model.assembly import FloatArray, IntArray
-from methods.fe.gap_law import point_forces
 from methods.numerics.compiled import compiled, fused
+from methods.springs.gap_law import point_forces
 
 
 @compiled

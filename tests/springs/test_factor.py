@@ -5,12 +5,12 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from methods.fe import factor as factor_module
-from methods.fe.factor import DenseFactor, Factor, SingularTangent, SparseFactor
-from methods.fe.gap_law import OPEN, STICK, neighbour_states
 from methods.fe.patterns import running_bond
 from methods.fe.settings import GapSpringsSettings
-from methods.fe.wall_model import WallModel, build_model
+from methods.springs import factor as factor_module
+from methods.springs.factor import DenseFactor, Factor, SingularTangent, SparseFactor
+from methods.springs.gap_law import OPEN, STICK, neighbour_states
+from methods.springs.wall_model import WallModel, build_model
 
 
 @pytest.fixture(scope="module")

@@ -15,12 +15,13 @@ import numpy as np
 import scipy.sparse as sp
 
 from harness.model.assembly import Assembly, FloatArray, IntArray
-from methods.fe.exact_rates import tangent_defect
-from methods.fe.gap_law import OPEN, classify, flip_vectors, gap_forces, tangent_coefficients
-from methods.fe.points import gap_points
-from methods.fe.settings import GapSettings
 from methods.numerics.block_lu import elimination_order
 from methods.numerics.compiled import compiled
+from methods.numerics.vectors import largest
+from methods.springs.exact_rates import tangent_defect
+from methods.springs.gap_law import OPEN, classify, flip_vectors, gap_forces, tangent_coefficients
+from methods.springs.points import gap_points
+from methods.springs.settings import GapSettings
 
 
 @dataclass(frozen=True, eq=False)
@@ -188,6 +189,11 @@ def build_model(assembly: Assembly, settings: GapSettings, friction_cap: float =
         displacement=force / stiffness,
     )
     return model
+
+
+def load_scale(model: WallModel, multiplier: float) -> float:
+    """Size of the loads (dimensionless force)."""
+    return largest(model.dead) + abs(multiplier) * largest(model.live) or 1.0
 
 
 def _kinematic_rows(assembly: Assembly, place: IntArray, length: float) -> tuple[IntArray, FloatArray]:

@@ -16,11 +16,11 @@ import scipy.linalg as sla
 from scipy.sparse.linalg import SuperLU, splu
 
 from harness.model.assembly import FloatArray, IntArray
-from methods.fe.wall_model import WallModel, add_tangent
 from methods.numerics.block_kernels import MANY
 from methods.numerics.block_lu import BlockFactor, BlockPattern
 from methods.numerics.compiled import compiled
 from methods.numerics.vectors import largest
+from methods.springs.wall_model import WallModel, add_tangent
 
 GROWTH = 1e5
 """Entries of L above this cost too many digits; a factorisation with row exchanges is called for."""

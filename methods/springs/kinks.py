@@ -11,9 +11,9 @@ from __future__ import annotations
 import numpy as np
 
 from harness.model.assembly import FloatArray, IntArray
-from methods.fe.gap_law import OPEN, SLIP_MINUS, SLIP_PLUS, STICK
 from methods.numerics.compiled import compiled
 from methods.numerics.vectors import largest
+from methods.springs.gap_law import OPEN, SLIP_MINUS, SLIP_PLUS, STICK
 
 
 @compiled

@@ -6,13 +6,13 @@ import numpy as np
 import pytest
 
 from harness.model.assembly import FloatArray, IntArray
-from methods.fe.direction import Direction
-from methods.fe.factor import DenseFactor, SparseFactor
-from methods.fe.gap_law import SLIP_PLUS, STICK, neighbour_states
 from methods.fe.patterns import block_on_halves, running_bond
 from methods.fe.settings import GapSpringsSettings
-from methods.fe.tolerances import MOST
-from methods.fe.wall_model import WallModel, build_model
+from methods.springs.direction import Direction
+from methods.springs.factor import DenseFactor, SparseFactor
+from methods.springs.gap_law import SLIP_PLUS, STICK, neighbour_states
+from methods.springs.tolerances import MOST
+from methods.springs.wall_model import WallModel, build_model
 
 Kind = type[DenseFactor] | type[SparseFactor]
 EXTENT = 100.0

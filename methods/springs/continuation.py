@@ -1,8 +1,8 @@
 """The equilibrium path traced exactly, kink by kink.
 
 In a fixed set of states the response is linear, and the path is a chain of straight pieces; at each kink one gap point
-changes state and the path turns (`methods.fe.direction`). When nothing stops the motion at a constant multiplier, it is
-the collapse mechanism.
+changes state and the path turns (`methods.springs.direction`). When nothing stops the motion at a constant multiplier,
+it is the collapse mechanism.
 """
 
 from __future__ import annotations
@@ -12,14 +12,15 @@ from copy import deepcopy
 import numpy as np
 
 from harness.model.assembly import FloatArray, IntArray
-from methods.fe.direction import Direction
-from methods.fe.factor import Change, Factor, SingularTangent
-from methods.fe.gap_law import OPEN, SLIP_PLUS, STICK, gap_forces
-from methods.fe.kinks import advance, coming_kinks, live_rate, next_kink, strain_rates
-from methods.fe.newton import load_scale
-from methods.fe.path_record import PathEnd, PathRecord, Snapshot
-from methods.fe.plateau import CERTIFICATE, worst_residual
-from methods.fe.tolerances import (
+from methods.numerics.block_kernels import MANY
+from methods.numerics.vectors import largest
+from methods.springs.direction import Direction
+from methods.springs.factor import Change, Factor, SingularTangent
+from methods.springs.gap_law import OPEN, SLIP_PLUS, STICK, gap_forces
+from methods.springs.kinks import advance, coming_kinks, live_rate, next_kink, strain_rates
+from methods.springs.path_record import PathEnd, PathRecord, Snapshot
+from methods.springs.plateau import CERTIFICATE, worst_residual
+from methods.springs.tolerances import (
     DRIFT,
     ELASTIC,
     ENOUGH,
@@ -32,9 +33,7 @@ from methods.fe.tolerances import (
     NOISE,
     TIE,
 )
-from methods.fe.wall_model import WallModel, point_strains
-from methods.numerics.block_kernels import MANY
-from methods.numerics.vectors import largest
+from methods.springs.wall_model import WallModel, load_scale, point_strains
 
 
 class Tracer:
