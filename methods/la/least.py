@@ -14,6 +14,7 @@ from methods.la.associated import AssociatedResult, solve_associated
 from methods.la.continuation import POOL, climb, descend_from, smooth_joints
 from methods.la.large import MOST_INTERFACES, lagged_state, large_search, region_search
 from methods.la.newton_matrix import NewtonMatrix
+from methods.la.prestressed import prestressed_state
 from methods.la.problem import Problem
 from methods.la.rational import confirm
 from methods.la.search import Effort, Search
@@ -110,17 +111,18 @@ def _large(problem: Problem, newton: NewtonMatrix, settings: SearchSettings, tol
         return not_converged(f"The associated programme that shows the moving part ended as {associated.outcome}.")
     else:
         found = region_search(problem, newton, settings.seed, associated.state.velocities)
-    details: dict[str, Any] = {
-        "starts": len(found.states),
-        "newton_steps": found.steps,
-        "path_gap": found.gap,
-        "unknowns": 7 * problem.n_interfaces + problem.n_velocities + 1,
-    }
+    details: dict[str, Any] = {"unknowns": 7 * problem.n_interfaces + problem.n_velocities + 1}
+    if not found.states:
+        led = prestressed_state(problem, newton)
+        details["kinks"] = led.kinks
+        found.add(None if led.state is None else polished(problem, newton, led.state), led.steps, found.gap)
+    details |= {"starts": len(found.states), "newton_steps": found.steps, "path_gap": found.gap}
     if associated.state is not None:
         details["associated"] = associated.state.multiplier * problem.unit_multiplier
     if not found.states:
         return not_converged(
-            "No contact forces fit the mechanisms at the ends of the paths, so no collapse state is known.",
+            "No contact forces fit the mechanisms at the ends of the central paths, and the path of the wall with "
+            "springs in its joints came to no mechanism, so no collapse state is known.",
             found.steps,
             details,
         )

@@ -40,7 +40,8 @@ class Tracer:
     """A point on the path and the straight piece that leads on from it.
 
     Attributes:
-        u, multiplier, state: where the path is; history: (P,) frozen-in shears h.
+        u, multiplier, state: where the path is; history: (P,) frozen-in shears h. A wall that is preloaded carries
+            compression (P,) at u = 0.
         opening, trial: (P,) g and tau there; largest: the largest displacement.
         direction: of the present piece.
         kept: the last mechanism on the way that is an exact collapse state but for rounding; kept_at: the extent
@@ -56,6 +57,7 @@ class Tracer:
         history: FloatArray,
         state: IntArray,
         factorised: bool = False,
+        preload: FloatArray | None = None,
         certificate: float = CERTIFICATE,
     ) -> None:
         self.model = model
@@ -76,6 +78,9 @@ class Tracer:
         self.n_slip = int(np.count_nonzero(state >= SLIP_PLUS))
         self.largest = largest(self.u)
         self.first_displacement = self.largest + 1.0
+        if preload is not None:
+            self.opening -= preload / model.kn
+            self.first_displacement += largest(self.opening)
         self.kept: Snapshot | None = None
         self.kept_at, self.kept_holds = 0.0, False
         self.turns: set[tuple[int, int, float]] = set()

@@ -1,0 +1,46 @@
+"""Collapse states at the ends of paths from safe forces, on walls small enough to know their order."""
+
+from __future__ import annotations
+
+import pytest
+
+from harness.model.assembly import Assembly
+from methods.la.adapter import LimitAnalysis
+from methods.la.associated import solve_associated
+from methods.la.newton_matrix import NewtonMatrix
+from methods.la.prestressed import prestressed_state
+from methods.la.problem import make_problem
+from methods.la.settings import SearchSettings
+from methods.la.state import polished, residuals
+from tests.la.bodies import block_on_halves, running_bond
+
+WALLS = {
+    "block of the paper": block_on_halves(),
+    "21 bricks": running_bond(6, 3, 0.2, 0.65),
+    "55 bricks": running_bond(10, 5, 0.175, 0.65),
+    "210 bricks": running_bond(20, 10, 0.175, 0.4),
+}
+
+
+@pytest.mark.parametrize("wall", WALLS.values(), ids=WALLS)
+def test_safe_forces_lead_to_an_exact_state_between_the_least_known_and_the_greatest(wall: Assembly) -> None:
+    problem = make_problem(wall)
+    newton = NewtonMatrix(problem)
+    state = prestressed_state(problem, newton).state
+    assert state is not None
+    assert max(residuals(problem, polished(problem, newton, state)).values()) <= 1e-12
+    associated = solve_associated(problem, newton).state
+    assert associated is not None
+    assert state.multiplier <= associated.multiplier * (1.0 + 1e-9)
+    least = LimitAnalysis().solve(wall, SearchSettings(effort="quick")).multiplier
+    assert least is not None
+    assert state.multiplier * problem.unit_multiplier >= least * (1.0 - 1e-9)
+
+
+@pytest.mark.slow
+def test_slender_wall_whose_central_paths_lead_nowhere_gets_its_state_from_the_springs() -> None:
+    answer = LimitAnalysis().solve(running_bond(70, 35, 0.175, 0.65), SearchSettings())
+    assert answer.multiplier is not None
+    assert answer.details["kinks"] > 0
+    assert answer.multiplier <= answer.details["associated"]
+    assert max(answer.details["residuals"].values()) <= 1e-11
