@@ -11,6 +11,7 @@ from methods.fe.answers import (
     collapse_answer,
     compact,
     end_forces,
+    falling,
     gravity_failure,
     single_state_answer,
     standing_answer,
@@ -137,6 +138,8 @@ class ConvexSteps:
         model = build_model(assembly, settings, settings.friction_cap)
         result = bracket_collapse(model, settings.first_step, settings.resolution, settings.fixed_points)
         details = {"programmes": result.programmes, "gap_points": model.n_points}
+        if result.fall is not None:
+            return falling(model, result.fall, "the energy has no minimum under the dead load", result.programmes)
         if not result.gravity:
             return Answer(
                 Status.NOT_CONVERGED,

@@ -23,23 +23,28 @@ WIDE = 0.025
 
 def gravity_failure(model: WallModel, gravity: Equilibrium) -> Answer:
     """The answer for a wall that falls under its dead load, or for a gravity step that did not end."""
-    rate = model.block_displacements(gravity.rate)
-    if not np.any(rate):
+    if not np.any(gravity.rate):
         return Answer(
             Status.NOT_CONVERGED,
             Finding.NONE,
             "the equilibrium under the dead load was not found",
             details={"path_status": "not_converged"},
         )
-    blocks = moving_blocks(model, rate)
+    return falling(model, gravity.rate, "the gap springs find no equilibrium", gravity.iterations)
+
+
+def falling(model: WallModel, rate: FloatArray, why: str, iterations: int) -> Answer:
+    """The answer for a wall that falls under its dead load along displacements (N,), which are approximate."""
+    motion = model.block_displacements(rate)
+    blocks = moving_blocks(model, motion)
     shown = ", ".join(blocks[:8]) + (f" and {len(blocks) - 8} more" if len(blocks) > 8 else "")
     return Answer(
         Status.OK,
         Finding.FALLS,
-        f"the wall falls under its dead load: the gap springs find no equilibrium for {shown}",
-        mechanism=rate / np.abs(rate).max(),
+        f"the wall falls under its dead load: {why} for {shown}",
+        mechanism=motion / np.abs(motion).max(),
         flow="approximate",
-        iterations=gravity.iterations,
+        iterations=iterations,
         details={"path_status": "gravity_failure", "moving_blocks": blocks},
     )
 

@@ -29,6 +29,8 @@ class ConvexResult:
 
     Attributes:
         lower, upper: the bracket; upper None when no step lost its equilibrium.
+        gravity: whether the dead load settled; fall: displacements (N,) along which the energy falls without end, even
+            with friction limits as if every joint carried the whole wall.
         forces: gap forces N and T (P,) of the last step that settled, at `lower`.
     """
 
@@ -38,6 +40,7 @@ class ConvexResult:
     programmes: int
     gravity: bool
     forces: tuple[FloatArray, FloatArray] | None = None
+    fall: FloatArray | None = None
 
 
 class TrescaProgramme:
@@ -47,6 +50,7 @@ class TrescaProgramme:
         self.model = model
         self.programmes = 0
         self.normal, self.shear = np.zeros(model.n_points), np.zeros(model.n_points)
+        self.ray: FloatArray | None = None
         n, p = model.n_unknowns, model.n_points
         opening, slip = self._gap_matrices()
         self._opening, self._slip = opening, slip
@@ -112,6 +116,7 @@ class TrescaProgramme:
         self._solver.update(q=linear)
         result = self._solver.solve(raise_error=False)
         self.programmes += 1
+        self.ray = result.dual_inf_cert[: self.n].copy() if result.info.status == "dual infeasible" else None
         if result.info.status not in ("solved", "solved inaccurate") or not np.isfinite(result.x).all():
             self.restart()
             return None
@@ -138,7 +143,8 @@ def bracket_collapse(
         rough = model.mu * float(np.abs(model.dead).sum())
         limit = _settle(programme, 0.0, rough, 2 * fixed_points, 0.5)
     if limit is None:
-        return ConvexResult(0.0, None, record, programme.programmes, False)
+        programme.solve(0.0, rough)
+        return ConvexResult(0.0, None, record, programme.programmes, False, fall=programme.ray)
     forces = programme.normal, np.clip(programme.shear, -limit, limit)
     if not model.assembly.has_live_load:
         return ConvexResult(0.0, None, record, programme.programmes, True, forces)

@@ -151,6 +151,8 @@ def _starting_states(
     if not few or not any(states):
         state, steps, _ = lagged_state(search.problem, search.newton, ((100, 0.6),))
         search.tally.newton_steps += steps
+        if state is not None:
+            search.record(state.multiplier)
         states.append(state)
     states += [search.interior(spread=2.0) for _ in range(starts)]
     return [state for state in states if state is not None]

@@ -85,10 +85,11 @@ class Search:
                 self.known[key] = None
             else:
                 self.known[key] = CollapseState(solution.forces, solution.multiplier, velocities, moving)
-                self._record(solution.multiplier)
+                self.record(solution.multiplier)
         return self.known[key]
 
-    def _record(self, multiplier: float) -> None:
+    def record(self, multiplier: float) -> None:
+        """Note a multiplier (scaled) that a collapse state has, if none known is lower."""
         if not self.history or multiplier < self.history[-1][1] - LOWER:
             self.history.append((time.process_time(), multiplier))
 

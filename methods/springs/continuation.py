@@ -103,9 +103,9 @@ class Tracer:
         """Whether a commit changes anything, and the factor is that of the tangent itself."""
         return self.n_slip > 0 and not self.direction.pins
 
-    def refresh(self) -> None:
-        """Factorise afresh, solve for the direction again and remove the drift of the gaps."""
-        self.direction.solve_anew(self.state, self.extent)
+    def refresh(self, crossed: tuple[Change, float] | None = None) -> None:
+        """Factorise afresh, solve for the direction again, on over the kink just crossed, and remove the drift."""
+        self.direction.solve_anew(self.state, self.extent, crossed)
         self._remove_drift()
 
     def _remove_drift(self) -> None:
@@ -269,7 +269,7 @@ class Tracer:
         self.last_point, self.last_old = point, old
         look = self.factor.count % GLANCE == 0
         if not self.direction.turn(change, crossing, self.state, self.extent, look):
-            self.refresh()
+            self.refresh((change, crossing))
         elif self._drifted():
             self._remove_drift()
 

@@ -23,7 +23,7 @@ from harness.model.assembly import FloatArray, IntArray
 from methods.numerics.vectors import combine, largest
 from methods.springs.exact_rates import exact_gap_rates
 from methods.springs.factor import Change, Factor, SingularTangent
-from methods.springs.tolerances import BEARABLE, BENT, CAREFUL, COARSE, CROOKED, FREE, MOST, SOFT, STEEP, STRAIGHT, WEAK
+from methods.springs.tolerances import BEARABLE, BENT, CAREFUL, CLEAR, COARSE, CROOKED, FREE, MOST, SOFT, STEEP, STRAIGHT, WEAK
 from methods.springs.wall_model import WallModel, point_strains
 
 
@@ -64,11 +64,12 @@ class Direction:
         fastest = largest(self.velocity)
         return fastest / max(abs(self.speed) * self.elastic, 1e-300) if self.elastic else 0.0
 
-    def solve_anew(self, state: IntArray, extent: float) -> None:
+    def solve_anew(self, state: IntArray, extent: float, crossed: tuple[Change, float] | None = None) -> None:
         """Factorise the tangent in these states and solve for the velocity; it keeps its sense.
 
         Args:
             state: (P,) states; extent: largest displacement so far, over which force rates must not matter.
+            crossed: the change of state just made, and the rate b'v at which its kink was met, if it was.
 
         Raises:
             SingularTangent: the tangent is singular, or the velocity cannot be refined.
@@ -78,6 +79,8 @@ class Direction:
         for careful in (False, True):
             self._factorise(state, careful)
             self._solve(before, rising)
+            if crossed is not None:
+                self._keep_crossing(*crossed)
             if self.straighten(state, extent):
                 return
             if self.factor.careful:
@@ -120,6 +123,13 @@ class Direction:
             self.velocity, self.speed = self._hold(self.factor.solve(one), 1.0)
             sense = float(before[self.pins[0]])
         if sense < 0.0:
+            self.velocity, self.speed = -self.velocity, -self.speed
+
+    def _keep_crossing(self, change: Change, rate: float) -> None:
+        """Turn the velocity round if it leads back over the kink just crossed, and does so beyond rounding."""
+        index, _, b = self.model.change(*change)
+        along = float(b @ self.velocity[index])
+        if abs(along) > CLEAR * largest(self.velocity) and along * rate < 0.0:
             self.velocity, self.speed = -self.velocity, -self.speed
 
     def _hold(self, x: FloatArray, held: float = 0.0) -> tuple[FloatArray, float]:

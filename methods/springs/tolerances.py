@@ -4,7 +4,7 @@ from __future__ import annotations
 
 DRIFT = 1e-9
 """Out-of-balance force (share of the load scale) above which the tangent is factorised afresh."""
-STEEP = 1e6
+STEEP = 1e8
 """Changes with |1 + b'y| or its inverse above this would cost digits; the tangent is factorised afresh."""
 FREE = 1e4
 """Velocities larger than this many times the first one, at the same rate of the multiplier, are pinned."""
@@ -16,7 +16,7 @@ BENT = 1e-7
 """Defect of K v = l live (share of the live load) above which a velocity is refined."""
 CROOKED = 1e-5
 """The same when refinement no longer helps, above which the tangent is factorised afresh."""
-STRAIGHT = 1e-8
+STRAIGHT = 1e-7
 """Defect above which a pinned velocity is refined, as a force over a motion as long as the displacements so far."""
 BEARABLE = 1e-4
 """The same when refinement no longer helps, above which the tangent is factorised afresh."""
@@ -24,6 +24,8 @@ SOFT = 1e8
 """A response of the pinned wall to the live load this many times the first one is a soft motion to be pinned too."""
 MOST = 4
 """Pins at most."""
+CLEAR = 1e-6
+"""Rate of a kink function, over the fastest velocity, from which its sign in a new direction is beyond doubt."""
 CAREFUL = 8
 """Refinements of a velocity at most."""
 NOISE = 1e-7

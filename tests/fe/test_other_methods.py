@@ -4,9 +4,13 @@ from __future__ import annotations
 
 from pathlib import Path
 
+import numpy as np
 import pytest
 
+from harness.model.assembly import Assembly
+from harness.model.build import build
 from harness.model.method import Finding, Status
+from harness.model.wall import Wall
 from methods.fe.adapter import ConvexSteps, IncrementalNewton
 from methods.fe.patterns import block_on_halves, running_bond
 from methods.fe.sensitivity import main
@@ -36,6 +40,33 @@ def test_convex_steps_refuse_walls_that_are_too_large_for_them() -> None:
     answer = ConvexSteps().solve(running_bond(20, 10, 0.65), ConvexSettings())
     assert (answer.status, answer.finding) == (Status.REFUSED, Finding.NONE)
     assert "210 blocks" in answer.sentence
+
+
+def test_convex_steps_show_the_block_that_overhangs_too_far_to_stay() -> None:
+    """Two blocks of one width on each other, the upper shifted by more than half of it, turns over its edge."""
+    answer = ConvexSteps().solve(column_with_overhang(0.6), ConvexSettings())
+    assert (answer.status, answer.finding) == (Status.OK, Finding.FALLS)
+    assert answer.details["moving_blocks"] == ["upper"]
+    assert answer.mechanism is not None
+    assert ConvexSteps().solve(column_with_overhang(0.4), ConvexSettings()).finding is Finding.STANDS
+
+
+def column_with_overhang(shift: float) -> Assembly:
+    square = np.array([[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]])
+    blocks = [("ground", [-1.0, -1.0], True), ("lower", [0.0, 0.0], False), ("upper", [shift, 1.0], False)]
+    stretch = {"ground": [3.0, 1.0]}
+    wall = Wall.model_validate(
+        {
+            "format": "wall/1",
+            "unit_weight": 1.0,
+            "friction": 0.7,
+            "blocks": [
+                {"id": name, "polygon": (square * stretch.get(name, [1.0, 1.0]) + place).tolist(), "fixed": fixed}
+                for name, place, fixed in blocks
+            ],
+        }
+    )
+    return build(wall).assembly
 
 
 @pytest.mark.slow
