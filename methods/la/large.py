@@ -40,6 +40,8 @@ NEAR = PathSettings(dilatancy=1.0, gap=0.05, residual=float("inf"))
 """How far the associated path leads before dilatancy is taken away."""
 ARC_GAPS = (1e-5, 3e-6, 1e-6, 1e-7)
 """Relative gaps of the path by arc length at which its mechanism is tried."""
+MOST_ARC_STEPS = 500
+"""Newton steps by arc length from one of these gaps to the next; walls on which it led to a state took up to 440."""
 WIDEST_GAP = 1e-2
 """Relative gap at the end of a path above which its slacks do not tell a mechanism."""
 
@@ -209,7 +211,7 @@ def region_search(problem: Problem, newton: NewtonMatrix, seed: int, velocities:
     path = follow_path(guide, region.newton, start.point, replace(PATH, patience=5))
     found.steps += start.iterations + path.iterations
     for gap in ARC_GAPS:
-        path = follow_arc(guide, region.newton, path.point, ArcSettings(gap))
+        path = follow_arc(guide, region.newton, path.point, ArcSettings(gap, max_iterations=MOST_ARC_STEPS))
         found.add(None, path.iterations, path.gap)
         if not path.converged:
             break

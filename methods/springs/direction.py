@@ -23,7 +23,20 @@ from harness.model.assembly import FloatArray, IntArray
 from methods.numerics.vectors import combine, largest
 from methods.springs.exact_rates import exact_gap_rates
 from methods.springs.factor import Change, Factor, SingularTangent
-from methods.springs.tolerances import BEARABLE, BENT, CAREFUL, CLEAR, COARSE, CROOKED, FREE, MOST, SOFT, STEEP, STRAIGHT, WEAK
+from methods.springs.tolerances import (
+    BEARABLE,
+    BENT,
+    CAREFUL,
+    CLEAR,
+    COARSE,
+    CROOKED,
+    FREE,
+    MOST,
+    SOFT,
+    STEEP,
+    STRAIGHT,
+    WEAK,
+)
 from methods.springs.wall_model import WallModel, point_strains
 
 

@@ -71,7 +71,7 @@ def test_each_piece_is_in_equilibrium_and_leads_on_into_the_new_cell(
 
 @pytest.mark.parametrize("shrink", [1.0, 1e-6])
 def test_a_velocity_whose_sense_was_lost_to_rounding_gets_it_from_the_kink(rough: WallModel, shrink: float) -> None:
-    """Where 1 - b'w nearly vanishes rounding may turn the estimate round; the factorised direction must not follow it."""
+    """Where 1 - b'w nearly vanishes rounding may turn the estimate round; the new direction must not follow it."""
     state = sticking(rough)
     way = Direction(rough, SparseFactor(rough))
     way.solve_anew(state, EXTENT)
