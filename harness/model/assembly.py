@@ -154,4 +154,5 @@ class Assembly:
 def polygon_area(polygon: FloatArray) -> float:
     """Area enclosed by a polygon (k, 2) [length^2], without sign."""
     x, y = polygon[:, 0], polygon[:, 1]
-    return float(abs(np.dot(x, np.roll(y, -1)) - np.dot(y, np.roll(x, -1))) / 2.0)
+    following = [*range(1, len(polygon)), 0]
+    return float(abs(np.dot(x, y[following]) - np.dot(y, x[following])) / 2.0)

@@ -13,7 +13,7 @@ import numpy as np
 
 from harness.model.assembly import FloatArray
 from methods.la.exact import exact_forces
-from methods.la.interior_point import PathSettings, follow_path, start_point
+from methods.la.interior_point import MANY, PathSettings, follow_path, start_point
 from methods.la.newton_matrix import NewtonMatrix
 from methods.la.newton_step import Point
 from methods.la.problem import Problem
@@ -94,7 +94,7 @@ def duality_gap(problem: Problem, state: CollapseState) -> float:
 
 def _by_interior_point(problem: Problem, newton: NewtonMatrix) -> AssociatedResult:
     gap = 1e-12 if problem.n_interfaces <= MANY_INTERFACES else 1e-10
-    settings = PathSettings(dilatancy=1.0, gap=gap, residual=1e-3)
+    settings = PathSettings(dilatancy=1.0, gap=gap, residual=1e-3, correctors=MANY)
     result = follow_path(problem, newton, start_point(problem), settings)
     if not result.gap < 1e-4 or result.statics > 0.1:
         return AssociatedResult("unknown", iterations=result.iterations)
@@ -108,7 +108,7 @@ def _by_interior_point(problem: Problem, newton: NewtonMatrix) -> AssociatedResu
         size = max(residuals(problem, state).values())
         if size < merit:
             best, merit = state, size
-        if merit < 1e-12:
+        if merit < gap:
             break
     if best is None:
         return AssociatedResult("unknown", iterations=result.iterations)

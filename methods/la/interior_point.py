@@ -21,10 +21,9 @@ from methods.la.problem import Problem
 
 MIDDLE = 0.995
 """Part of the way to the boundary that a step goes."""
-CORRECTORS = 3
-"""Corrections of a step for centrality, each one more solution with the factors of the step."""
-AHEAD = 0.3
-"""How much longer a step a correction aims at."""
+SOME = (3, 0.3)
+MANY = (5, 0.2)
+"""Corrections of a step for centrality, each one more solution with its factors; how much longer a step they aim at."""
 
 
 @dataclass(frozen=True)
@@ -40,6 +39,7 @@ class PathSettings:
         fade: None, or the relative gap below which dilatancy fades from one in proportion to the gap, to reach
             zero-dilatancy flow from the well-behaved path of associated flow.
         above: None, or a multiplier at which the path ends if the forces are in equilibrium.
+        correctors: `SOME` or `MANY`, which takes fewer steps to a tiny gap on large walls.
     """
 
     dilatancy: float = 0.0
@@ -49,6 +49,7 @@ class PathSettings:
     patience: int = 12
     fade: float | None = None
     above: float | None = None
+    correctors: tuple[int, float] = SOME
 
 
 @dataclass(frozen=True)
@@ -135,14 +136,20 @@ def follow_path(
             best_merit = merit
         if not product.any() or merit <= 1.0 or iteration - best_at > settings.patience or not np.isfinite(merit):
             break
-        point = _centred_step(step, point, product, pairs, tight, dilatancy)
+        point = _centred_step(step, point, product, pairs, tight, dilatancy, settings.correctors)
     if best is None:
         raise RuntimeError("the interior point could not factorise its first system")
     return best
 
 
 def _centred_step(
-    step: NewtonStep, point: Point, product: FloatArray, pairs: int, tight: BoolArray, dilatancy: float
+    step: NewtonStep,
+    point: Point,
+    product: FloatArray,
+    pairs: int,
+    tight: BoolArray,
+    dilatancy: float,
+    correctors: tuple[int, float],
 ) -> Point:
     """Mehrotra's predictor and corrector; where that is blocked, a step that mostly centres."""
     mean = float(product.sum()) / pairs
@@ -155,7 +162,9 @@ def _centred_step(
     target = np.clip(centring * mean - second_order, -10.0 * mean, 10.0 * mean)
     corrector = step.direction(target)
     primal, dual = step_lengths(point, corrector, tight, MIDDLE, dilatancy)
-    corrector, primal, dual = _longer_step(step, point, corrector, target, centring * mean, tight, dilatancy)
+    corrector, primal, dual = _longer_step(
+        step, point, corrector, target, centring * mean, tight, dilatancy, correctors
+    )
     if min(primal, dual) < 0.1:
         centred = step.direction(np.clip(0.5 * mean, 0.1 * product, None))
         lengths = step_lengths(point, centred, tight, MIDDLE, dilatancy)
@@ -172,18 +181,20 @@ def _longer_step(
     mean: float,
     tight: BoolArray,
     dilatancy: float,
+    correctors: tuple[int, float],
 ) -> tuple[Direction, float, float]:
     """Correctors that bring the products of a longer step back to the middle (Gondzio 1996), while they lengthen it."""
     primal, dual = step_lengths(point, change, tight, MIDDLE, dilatancy)
-    for _ in range(CORRECTORS):
+    most, further = correctors
+    for _ in range(most):
         if min(primal, dual) > 0.9:
             break
-        reach = (min(1.0, primal + AHEAD), min(1.0, dual + AHEAD))
+        reach = (min(1.0, primal + further), min(1.0, dual + further))
         product = (point.slack + reach[0] * change.slack) * (point.rates + reach[1] * change.rates)
         shift = np.clip(np.clip(product, 0.1 * mean, 10.0 * mean) - product, -10.0 * mean, None)
         other = step.direction(target + shift)
         lengths = step_lengths(point, other, tight, MIDDLE, dilatancy)
-        if sum(lengths) < primal + dual + 0.1 * AHEAD:
+        if sum(lengths) < primal + dual + 0.1 * further:
             break
         change, target, (primal, dual) = other, target + shift, lengths
     return change, primal, dual

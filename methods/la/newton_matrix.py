@@ -14,7 +14,7 @@ import numpy as np
 import scipy.sparse as sp
 from scipy.sparse.linalg import SuperLU, splu
 
-from harness.model.assembly import BoolArray, FloatArray, IntArray
+from harness.model.assembly import FloatArray, IntArray
 from methods.la.problem import Problem
 
 if TYPE_CHECKING:
@@ -110,9 +110,8 @@ class NewtonMatrix:
 
         unknown = np.where(index >= 0, index, np.roll(index, 3, axis=1))
         self.pattern = BlockPattern(unknown[:, 0] // 3, unknown[:, 3] // 3, self.size // 3)
-        self._slot = self.pattern.slot(unknown).ravel()
+        self._slot = self.pattern.slot(unknown)
         self._diagonal = self.pattern.place(np.arange(self.size), np.arange(self.size))
-        self._used: BoolArray | slice = slice(None)
         self._n_values = self.pattern.n_values
 
     def _place_in_columns(self, index: IntArray) -> None:
@@ -139,9 +138,7 @@ class NewtonMatrix:
         Raises:
             RuntimeError: K is singular to rounding.
         """
-        products = np.matmul(self.rows.transpose(0, 2, 1), np.matmul(flexibility, self.rows)).ravel()
-        sums = np.bincount(self._slot, weights=products[self._used], minlength=self._n_values)
-        values = cast(FloatArray, sums)
+        values = self._assembled(flexibility)
         values[self._diagonal] += relative * np.maximum(abs(values[self._diagonal]), 1e-30) + shift
         if self.large:
             from methods.numerics.block_lu import BlockFactor
@@ -153,6 +150,17 @@ class NewtonMatrix:
         matrix = sp.csc_matrix((values, self._indices, self._pointers), shape=(self.size, self.size))
         options = {"SymmetricMode": True}
         return Factor(splu(matrix, permc_spec="NATURAL", diag_pivot_thresh=0.0, options=options), self.order)
+
+    def _assembled(self, flexibility: FloatArray) -> FloatArray:
+        """The entries of K for flexibilities (m, 3, 3), where they stand in the factor."""
+        if self.large:
+            from methods.numerics.block_kernels import add_congruences
+
+            values = np.zeros(self._n_values)
+            add_congruences(self._slot, self.rows, flexibility, values)
+            return values
+        products = np.matmul(self.rows.transpose(0, 2, 1), np.matmul(flexibility, self.rows)).ravel()
+        return cast(FloatArray, np.bincount(self._slot, products[self._used], self._n_values))
 
 
 class Factor:

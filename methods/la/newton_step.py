@@ -18,6 +18,8 @@ from methods.la.problem import Problem
 
 SOFTEST = 1e-15
 """Least weight g/y in the matrix: softer contacts would magnify rounding of the velocities into their forces."""
+ROUGH = 1e-3
+"""Relative gap of an associated path above which directions are refined once only."""
 
 
 @dataclass
@@ -70,6 +72,7 @@ class NewtonStep:
         self.kinematics = problem.strains(point.velocities) - problem.strains_of_rates(point.rates, dilatancy)
         self.work = problem.live_work - float(problem.live @ point.velocities)
         self.factor = newton.factorise(self.compliance.matrices, 1e-15)
+        self.fine = dilatancy < 1.0 or float((point.slack * point.rates).sum()) < ROUGH * problem.live_work
         self.by_live = self.factor.solve(problem.live)
         self.live_compliance = float(problem.live @ self.by_live)
 
@@ -78,9 +81,11 @@ class NewtonStep:
         change = (work - float(self.problem.live @ by_load)) / self.live_compliance
         return by_load + change * self.by_live, change
 
-    def direction(self, target: FloatArray, refinements: int = 2) -> Direction:
-        """Newton direction towards y o g = target (m, 4)."""
+    def direction(self, target: FloatArray, refinements: int | None = None) -> Direction:
+        """Newton direction towards y o g = target (m, 4), by default with as many refinements as its accuracy needs."""
         problem = self.problem
+        if refinements is None:
+            refinements = 2 if self.fine else 1
         rate_shift = np.where(self.tight, 0.0, target / self.slack - self.point.rates)
         shift = problem.strains_of_rates(rate_shift, self.dilatancy) - self.kinematics
         load = np.asarray(problem.statics @ self.compliance.forces(shift).ravel()) + self.statics
