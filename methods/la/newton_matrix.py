@@ -20,7 +20,7 @@ from methods.la.problem import Problem
 if TYPE_CHECKING:
     from methods.numerics.block_lu import BlockFactor
 
-FEW = 300
+FEW = 200
 """Blocks up to which SuperLU factorises."""
 LEAF = 24
 """Blocks below which a part is not divided further."""

@@ -19,6 +19,8 @@ from methods.la.problem import Problem
 INFINITY = highspy.kHighsInf
 SIMPLEX_INTERFACES = 800
 """Interfaces up to which the simplex method is the quicker way to a vertex of a static programme."""
+DEVEX_INTERFACES = 200
+"""Interfaces above which Devex pricing finds the vertex of a static programme sooner than steepest edge."""
 
 
 @dataclass(frozen=True)
@@ -136,6 +138,8 @@ class StaticProgramme:
             (np.append(-problem.dead, np.zeros(m)), np.append(-problem.dead, np.full(m, INFINITY))),
         )
         self._programme.highs.setOptionValue("solver", solver)
+        if m > DEVEX_INTERFACES:
+            self._programme.highs.setOptionValue("simplex_dual_edge_weight_strategy", 1)
 
     def solve(self, tight: BoolArray | None = None, greatest: bool = False) -> StaticSolution | str:
         """The solution, or "infeasible", "unbounded", "unknown".
