@@ -153,7 +153,10 @@ class Direction:
         """
         if not self.pins:
             return x, 0.0
-        share = self._share(x, held)
+        try:
+            share = self._share(x, held)
+        except np.linalg.LinAlgError as error:
+            raise SingularTangent("the motions that are pinned are not independent") from error
         if not np.isfinite(share).all():
             raise SingularTangent("the live load does not act on the motion")
         out = x + share[0] * self.response
