@@ -34,12 +34,11 @@ MOST_KINKS = 5
 
 @dataclass(frozen=True)
 class PrestressedResult:
-    """The collapse state at the end of the path, or None with the reason; Newton steps before it, kinks along it."""
+    """The collapse state at the end of the path, or None; Newton steps before it, kinks along it."""
 
     state: CollapseState | None
     steps: int
     kinks: int
-    end: PathEnd | None = None
 
 
 def prestressed_state(problem: Problem, newton: NewtonMatrix) -> PrestressedResult:
@@ -62,11 +61,11 @@ def prestressed_state(problem: Problem, newton: NewtonMatrix) -> PrestressedResu
     end = tracer.run(record, MOST_KINKS * model.n_points)
     found = finish(model, tracer.present(), tracer.kept) if end in (PathEnd.PLATEAU, PathEnd.BREAKDOWN) else None
     if found is None:
-        return PrestressedResult(None, safe.iterations, record.events, end)
+        return PrestressedResult(None, safe.iterations, record.events)
     velocities = problem.from_mechanism(found.mechanism)
     velocities *= problem.live_work / float(problem.live @ velocities)
     moving = moving_contacts(problem.rates_of_velocities(velocities, False))
     state = CollapseState(
         found.forces / problem.unit_force, found.multiplier / problem.unit_multiplier, velocities, moving
     )
-    return PrestressedResult(state, safe.iterations, record.events, end)
+    return PrestressedResult(state, safe.iterations, record.events)

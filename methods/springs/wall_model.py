@@ -95,10 +95,8 @@ class WallModel:
 
     def residual(self, u: FloatArray, multiplier: float, history: FloatArray, state: IntArray) -> FloatArray:
         """Out-of-balance forces (N,): loads minus internal forces of points held in the given states."""
-        normal, shear = self.forces(u, history, state)
-        out = self.dead + multiplier * self.live
-        subtract_internal(self.unknown, self.rows, self.interface, self.position, -normal, shear, out)
-        return out
+        opening, slip = self.strains(u)
+        return self.out_of_balance(opening, self.kt * slip + history, state, multiplier)
 
     def out_of_balance(
         self, opening: FloatArray, trial: FloatArray, state: IntArray, multiplier: float, dead: float = 1.0
@@ -264,25 +262,6 @@ def point_strains(
             previous = k
         opening[p] = (1.0 - position[p]) * e0 + position[p] * e1
         slip[p] = e2
-
-
-@compiled
-def subtract_internal(
-    unknown: IntArray,
-    rows: FloatArray,
-    interface: IntArray,
-    position: FloatArray,
-    normal: FloatArray,
-    shear: FloatArray,
-    out: FloatArray,
-) -> None:
-    """Subtract from `out` (N,) the generalised internal forces of normal forces and shears (P,)."""
-    for p in range(len(interface)):
-        k = interface[p]
-        x = position[p]
-        for j in range(6):
-            row_n = (1.0 - x) * rows[k, 0, j] + x * rows[k, 1, j]
-            out[unknown[k, j]] -= row_n * normal[p] + rows[k, 2, j] * shear[p]
 
 
 @compiled
