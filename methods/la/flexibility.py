@@ -45,12 +45,13 @@ class Compliance:
         """(m, 3) forces r = A^-1 e of strains e (m, 3)."""
         return self._both(strain)[0]
 
-    def slacks(self, strain: FloatArray) -> FloatArray:
-        """(m, 4) slacks S A^-1 e: y3 = 2 mu N w4/(w3 + w4) + e3/(w3 + w4) and y4 likewise."""
+    def response(self, strain: FloatArray) -> tuple[FloatArray, FloatArray]:
+        """Forces (m, 3) and their slacks S A^-1 e (m, 4): y3 = 2 mu N w4/(w3 + w4) + e3/(w3 + w4) and y4 likewise."""
         forces, normal = self._both(strain)
         strength = 2.0 * self.friction * normal
         own = strain[:, 2] / self.total
-        return np.column_stack([forces[:, :2], strength * self.share[:, 1] + own, strength * self.share[:, 0] - own])
+        ends = forces[:, :2]
+        return forces, np.column_stack([ends, strength * self.share[:, 1] + own, strength * self.share[:, 0] - own])
 
     def _both(self, strain: FloatArray) -> tuple[FloatArray, FloatArray]:
         opening = strain[:, :2] - (self.dilatancy * self.skew * strain[:, 2])[:, None]

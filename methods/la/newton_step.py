@@ -16,10 +16,8 @@ from methods.la.flexibility import Compliance
 from methods.la.newton_matrix import NewtonMatrix
 from methods.la.problem import Problem
 
-SOFTEST = 1e-15
-"""Least weight g/y in the matrix: softer contacts would magnify rounding of the velocities into their forces."""
-ROUGH = 1e-3
-"""Relative gap of an associated path above which directions are refined once only."""
+SOFTEST = 1e-25
+"""Least weight g/y in the matrix, far below what any path reaches, so that no stiffness overflows."""
 
 
 @dataclass
@@ -72,7 +70,6 @@ class NewtonStep:
         self.kinematics = problem.strains(point.velocities) - problem.strains_of_rates(point.rates, dilatancy)
         self.work = problem.live_work - float(problem.live @ point.velocities)
         self.factor = newton.factorise(self.compliance.matrices, 1e-15)
-        self.fine = dilatancy < 1.0 or float((point.slack * point.rates).sum()) < ROUGH * problem.live_work
         self.by_live = self.factor.solve(problem.live)
         self.live_compliance = float(problem.live @ self.by_live)
 
@@ -81,22 +78,25 @@ class NewtonStep:
         change = (work - float(self.problem.live @ by_load)) / self.live_compliance
         return by_load + change * self.by_live, change
 
-    def direction(self, target: FloatArray, refinements: int | None = None) -> Direction:
-        """Newton direction towards y o g = target (m, 4), by default with as many refinements as its accuracy needs."""
+    def direction(self, target: FloatArray, refinements: int = 1) -> Direction:
+        """Newton direction towards y o g = target (m, 4).
+
+        Refinements add to forces and slacks, instead of finding them anew from the velocities: the rounding of a slip
+        times the stiffness of the pressed ends beside it would be an imbalance that no refinement removes.
+        """
         problem = self.problem
-        if refinements is None:
-            refinements = 2 if self.fine else 1
         rate_shift = np.where(self.tight, 0.0, target / self.slack - self.point.rates)
         shift = problem.strains_of_rates(rate_shift, self.dilatancy) - self.kinematics
         load = np.asarray(problem.statics @ self.compliance.forces(shift).ravel()) + self.statics
         velocity, multiplier = self._bordered(load, self.work)
+        forces, slack = self.compliance.response(shift - problem.strains(velocity))
         for _ in range(refinements):
-            forces = self.compliance.forces(shift - problem.strains(velocity))
             defect = self.statics + np.asarray(problem.statics @ forces.ravel()) + multiplier * problem.live
             extra, more = self._bordered(defect, self.work - float(problem.live @ velocity))
             velocity, multiplier = velocity + extra, multiplier + more
-        strain = shift - problem.strains(velocity)
-        slack = np.where(self.tight, 0.0, self.compliance.slacks(strain))
+            less_forces, less_slack = self.compliance.response(problem.strains(extra))
+            forces, slack = forces - less_forces, slack - less_slack
+        slack = np.where(self.tight, 0.0, slack)
         rates = self._rates(rate_shift, slack, problem.strains(velocity) + self.kinematics)
         return Direction(slack, multiplier, velocity, rates)
 
