@@ -13,7 +13,7 @@ import numpy as np
 
 from harness.model.assembly import FloatArray
 from methods.la.exact import exact_forces
-from methods.la.interior_point import MANY, PathSettings, follow_path, start_point
+from methods.la.interior_point import PathSettings, follow_path, start_point
 from methods.la.newton_matrix import NewtonMatrix
 from methods.la.newton_step import Point
 from methods.la.problem import Problem
@@ -24,8 +24,8 @@ SIMPLEX_INTERFACES = 400
 """Interfaces above which the interior point is quicker, and closes a gap that simplex leaves at 5e-9."""
 MOST_SIMPLEX_INTERFACES = 8000
 """Interfaces above which simplex is not tried either where the interior point ends early."""
-MANY_INTERFACES = 5000
-"""Interfaces above which the path ends earlier: there rounding of the forces grows faster than the gap falls."""
+GAP = 1e-12
+"""Complementarity y.g relative to the live work at which the path ends."""
 
 
 @dataclass(frozen=True)
@@ -93,9 +93,7 @@ def duality_gap(problem: Problem, state: CollapseState) -> float:
 
 
 def _by_interior_point(problem: Problem, newton: NewtonMatrix) -> AssociatedResult:
-    gap = 1e-12 if problem.n_interfaces <= MANY_INTERFACES else 1e-10
-    settings = PathSettings(dilatancy=1.0, gap=gap, residual=1e-3, correctors=MANY)
-    result = follow_path(problem, newton, start_point(problem), settings)
+    result = follow_path(problem, newton, start_point(problem), PathSettings(dilatancy=1.0, gap=GAP, residual=1e-3))
     if not result.gap < 1e-4 or result.statics > 0.1:
         return AssociatedResult("unknown", iterations=result.iterations)
     point = result.point
@@ -108,7 +106,7 @@ def _by_interior_point(problem: Problem, newton: NewtonMatrix) -> AssociatedResu
         size = max(residuals(problem, state).values())
         if size < merit:
             best, merit = state, size
-        if merit < gap:
+        if merit < GAP:
             break
     if best is None:
         return AssociatedResult("unknown", iterations=result.iterations)

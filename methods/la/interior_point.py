@@ -21,9 +21,10 @@ from methods.la.problem import Problem
 
 MIDDLE = 0.995
 """Part of the way to the boundary that a step goes."""
-SOME = (3, 0.3)
-MANY = (5, 0.2)
-"""Corrections of a step for centrality, each one more solution with its factors; how much longer a step they aim at."""
+CORRECTORS = 3
+"""Corrections of a step for centrality at most, each one more solution with its factors."""
+FURTHER = 0.3
+"""How much longer a step each of them aims at."""
 
 
 @dataclass(frozen=True)
@@ -39,7 +40,6 @@ class PathSettings:
         fade: None, or the relative gap below which dilatancy fades from one in proportion to the gap, to reach
             zero-dilatancy flow from the well-behaved path of associated flow.
         above: None, or a multiplier at which the path ends if the forces are in equilibrium.
-        correctors: `SOME` or `MANY`, which takes fewer steps to a tiny gap on large walls.
     """
 
     dilatancy: float = 0.0
@@ -49,7 +49,6 @@ class PathSettings:
     patience: int = 12
     fade: float | None = None
     above: float | None = None
-    correctors: tuple[int, float] = SOME
 
 
 @dataclass(frozen=True)
@@ -136,7 +135,7 @@ def follow_path(
             best_merit = merit
         if not product.any() or merit <= 1.0 or iteration - best_at > settings.patience or not np.isfinite(merit):
             break
-        point = _centred_step(step, point, product, pairs, tight, dilatancy, settings.correctors)
+        point = _centred_step(step, point, product, pairs, tight, dilatancy)
     if best is None:
         raise RuntimeError("the interior point could not factorise its first system")
     return best
@@ -149,7 +148,6 @@ def _centred_step(
     pairs: int,
     tight: BoolArray,
     dilatancy: float,
-    correctors: tuple[int, float],
 ) -> Point:
     """Mehrotra's predictor and corrector; where that is blocked, a step that mostly centres."""
     mean = float(product.sum()) / pairs
@@ -162,9 +160,7 @@ def _centred_step(
     target = np.clip(centring * mean - second_order, -10.0 * mean, 10.0 * mean)
     corrector = step.direction(target)
     primal, dual = step_lengths(point, corrector, tight, MIDDLE, dilatancy)
-    corrector, primal, dual = _longer_step(
-        step, point, corrector, target, centring * mean, tight, dilatancy, correctors
-    )
+    corrector, primal, dual = _longer_step(step, point, corrector, target, centring * mean, tight, dilatancy)
     if min(primal, dual) < 0.1:
         centred = step.direction(np.clip(0.5 * mean, 0.1 * product, None))
         lengths = step_lengths(point, centred, tight, MIDDLE, dilatancy)
@@ -181,20 +177,18 @@ def _longer_step(
     mean: float,
     tight: BoolArray,
     dilatancy: float,
-    correctors: tuple[int, float],
 ) -> tuple[Direction, float, float]:
     """Correctors that bring the products of a longer step back to the middle (Gondzio 1996), while they lengthen it."""
     primal, dual = step_lengths(point, change, tight, MIDDLE, dilatancy)
-    most, further = correctors
-    for _ in range(most):
+    for _ in range(CORRECTORS):
         if min(primal, dual) > 0.9:
             break
-        reach = (min(1.0, primal + further), min(1.0, dual + further))
+        reach = (min(1.0, primal + FURTHER), min(1.0, dual + FURTHER))
         product = (point.slack + reach[0] * change.slack) * (point.rates + reach[1] * change.rates)
         shift = np.clip(np.clip(product, 0.1 * mean, 10.0 * mean) - product, -10.0 * mean, None)
         other = step.direction(target + shift)
         lengths = step_lengths(point, other, tight, MIDDLE, dilatancy)
-        if sum(lengths) < primal + dual + 0.1 * further:
+        if sum(lengths) < primal + dual + 0.1 * FURTHER:
             break
         change, target, (primal, dual) = other, target + shift, lengths
     return change, primal, dual

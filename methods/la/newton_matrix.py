@@ -144,7 +144,7 @@ class NewtonMatrix:
             from methods.numerics.block_lu import BlockFactor
 
             factors = BlockFactor(self.pattern, values)
-            if not factors.factorise():
+            if not factors.factorise(symmetric=bool((flexibility == flexibility.transpose(0, 2, 1)).all())):
                 raise RuntimeError("the Newton matrix is singular")
             return Factor(factors, self.order)
         matrix = sp.csc_matrix((values, self._indices, self._pointers), shape=(self.size, self.size))

@@ -133,8 +133,12 @@ def factorise(
     values: FloatArray,
     swapped: IntArray,
     growth: float,
+    symmetric: bool,
 ) -> bool:
-    """Supernode by supernode: subtract what those before it reach, eliminate its diagonal, divide what lies below."""
+    """Supernode by supernode: subtract what those before it reach, eliminate its diagonal, divide what lies below.
+
+    Of a symmetric matrix only what lies below the diagonal is used and updated; what lies above is its copy.
+    """
     count = len(start) - 1
     head, following = np.full(count, -1), np.full(count, -1)
     reached = np.zeros(count, dtype=np.int64)
@@ -175,10 +179,11 @@ def factorise(
                 else:
                     _subtract(low, 3 * position[their[i]], work, 3 * (i - p1), their, p1, p2, c0)
             if p2 < n:
-                work = buffer[: 3 * (n - p2) * k].reshape(3 * (n - p2), k)
-                _product(right[3 * p2 :], left[3 * p1 : 3 * p2], work)
-                for i in range(p2, n):
-                    _subtract(up, 3 * position[their[i]], work, 3 * (i - p2), their, p1, p2, c0)
+                if not symmetric:
+                    work = buffer[: 3 * (n - p2) * k].reshape(3 * (n - p2), k)
+                    _product(right[3 * p2 :], left[3 * p1 : 3 * p2], work)
+                    for i in range(p2, n):
+                        _subtract(up, 3 * position[their[i]], work, 3 * (i - p2), their, p1, p2, c0)
                 t = owner[their[p2]]
                 following[d] = head[t]
                 head[t] = d
@@ -187,6 +192,8 @@ def factorise(
         if not _eliminate(diagonal, swapped[3 * c0 : 3 * c0 + w]):
             return False
         if r:
+            if symmetric:
+                up[:] = low
             columns = buffer[: w * r].reshape(w, r)
             greatest = max(greatest, _divide(low, diagonal, swapped[3 * c0 : 3 * c0 + w], columns))
             t = owner[rows[0]]

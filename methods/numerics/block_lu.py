@@ -81,10 +81,13 @@ class BlockFactor:
         self.values = np.zeros(pattern.n_values) if values is None else values
         self._swapped = np.zeros(3 * pattern.n, dtype=np.int64)
 
-    def factorise(self, growth: float = np.inf) -> bool:
-        """Factorise the values in place; False when a pivot is zero or entries of L grow beyond `growth`."""
+    def factorise(self, growth: float = np.inf, symmetric: bool = False) -> bool:
+        """Factorise the values in place; False when a pivot is zero or entries of L grow beyond `growth`.
+
+        A symmetric matrix takes half the work.
+        """
         p = self.pattern
-        return factorise(p.start, p.owner, p.row_start, p.row, p.offset, self.values, self._swapped, growth)
+        return factorise(p.start, p.owner, p.row_start, p.row, p.offset, self.values, self._swapped, growth, symmetric)
 
     def solve(self, right: FloatArray) -> FloatArray:
         """The solution (3 n,) for a right-hand side (3 n,)."""

@@ -26,6 +26,16 @@ def test_path_by_arc_length_leads_from_the_middle_to_complementarity() -> None:
     assert max(end.statics, end.kinematics) <= ArcSettings().residual
 
 
+def test_path_to_a_tiny_gap_stays_in_equilibrium() -> None:
+    """Sliding joints under pressure are what rounding disturbs most; without refined forces it is 1e-3 here."""
+    problem = make_problem(running_bond(28, 16, 0.175, 0.65))
+    settings = PathSettings(dilatancy=1.0, gap=1e-12, residual=1e-9)
+    end = follow_path(problem, NewtonMatrix(problem), start_point(problem), settings)
+    assert end.converged
+    # In mean weights of a block; rounding of 448 blocks' forces alone is about 1e-13.
+    assert end.statics <= 1e-9
+
+
 def test_what_rests_on_a_moving_block_moves() -> None:
     wall = running_bond(3, 2, 0.2, 0.65)
     lowest = int(np.flatnonzero(~wall.fixed)[np.argmin(wall.centroid[~wall.fixed, 1])])
