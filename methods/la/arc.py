@@ -2,7 +2,8 @@
 
 Where the path y o g = tau folds, tau must rise before it falls again. The tangent d/d(log tau) still exists; its
 sense is kept by the angle to the tangent before, and a Newton step across it leads back to the path (Keller 1977).
-Lengths are relative changes of slacks and rates, so that contacts that fade weigh no less than others.
+Lengths are relative changes of slacks and rates, so that contacts that fade weigh no less than others. Where the path
+bends sharply, or steps across do not lead back to it, it is taken up again at the last good point with half the stride.
 """
 
 from __future__ import annotations
@@ -20,88 +21,135 @@ from methods.la.problem import Problem
 
 STRIDE = 4.0
 """Largest relative change of a slack or rate that a step along the tangent aims at."""
+SHORTEST = 2.0**-8
+"""Stride below which it is not halved again."""
 FAR = 4.0
 """Largest logarithm of y g / tau at which a step goes along the path; beyond, it only leads back to it."""
 ASTRAY = 0.5
 """Root mean square of the relative changes back to the path beyond which a step only leads back."""
+PATIENCE = 8
+"""Steps back in turn after which the path is taken up again with a shorter stride."""
+SHARP = 0.3
+"""Cosine of the angle between two tangents below which the path has bent too sharply to tell its sense."""
+STRAIGHT = 0.9
+"""The cosine above which the stride may grow again."""
 SHORT = 0.9
 """Part of the way to the boundary that a step goes."""
+GONE = 10.0
+"""Relative gap above which the path has turned away for good."""
+RESIDUAL = 1e-3
+"""Scaled equilibrium and compatibility residuals at which a stretch of the path may stop."""
 
 
 @dataclass(frozen=True)
-class ArcSettings:
-    """How far the path is followed.
+class _Place:
+    """A point with its log-mean tau, and the unit tangent (of slacks and rates, of log tau) that led to it."""
 
-    Attributes:
-        gap: complementarity y.g relative to the live work at which it stops.
-        residual: scaled equilibrium and compatibility residuals at which it may stop.
-        max_iterations: Newton steps at most.
-    """
-
-    gap: float = 1e-7
-    residual: float = 1e-3
-    max_iterations: int = 1000
+    point: Point
+    mean: float
+    before: tuple[FloatArray, float] | None
 
 
-def follow_arc(problem: Problem, newton: NewtonMatrix, start: Point, settings: ArcSettings) -> PathResult:
-    """Follow the central path of zero-dilatancy flow by arc length from a point near it.
+@dataclass(frozen=True)
+class _Way:
+    """How the path goes on from a place: across leads back to it, along is its tangent per unit of log tau."""
 
-    Args:
-        problem: the scaled wall.
-        newton: its Newton matrix.
-        start: a point with positive slacks and rates, as where `follow_path` stalls.
-        settings: where it ends.
-
-    Raises:
-        RuntimeError: the first Newton matrix is singular to rounding.
-    """
-    tight = close_tight(problem, np.zeros(start.slack.shape, dtype=bool))
-    point, mean = start, _mean(start, tight)
-    before: tuple[FloatArray, float] | None = None
-    result: PathResult | None = None
-    history: list[float] = []
-    for iteration in range(settings.max_iterations + 1):
-        try:
-            step = NewtonStep(problem, newton, point, 0.0, tight)
-        except (RuntimeError, FloatingPointError):
-            break
-        history.append(point.multiplier)
-        gap = float((point.slack * point.rates).sum()) / problem.live_work
-        statics, kinematics = float(abs(step.statics).max()), float(abs(step.kinematics).max())
-        converged = gap <= settings.gap and max(statics, kinematics) <= settings.residual
-        result = PathResult(point, converged, iteration, gap, statics, kinematics, history)
-        if converged:
-            break
-        change, growth, before = _change(step, point, mean, before, tight)
-        length = min(step_lengths(point, change, tight, SHORT, 0.0))
-        point, mean = step.advance(change, length, length), mean * float(np.exp(length * growth))
-    if result is None:
-        raise RuntimeError("the path could not factorise its first system")
-    return result
+    back: Direction
+    tangent: Direction
+    growth: float
+    along: FloatArray
+    norm: float
+    on_path: bool
 
 
-def _change(
-    step: NewtonStep, point: Point, mean: float, before: tuple[FloatArray, float] | None, tight: BoolArray
-) -> tuple[Direction, float, tuple[FloatArray, float] | None]:
-    """The change of the point, that of log tau, and the unit tangent to compare the next with."""
-    target = np.full(point.slack.shape, mean)
-    back = step.direction(target, refinements=0)
-    tangent = step.direction(2.0 * target, refinements=0).plus(-1.0, back)
-    along, across = _relative(point, tangent, tight), _relative(point, back, tight)
-    square = float((along**2).mean())
-    growth = -float((along * across).mean()) / (square + 1.0)
-    astray = float(np.sqrt(((across + growth * along) ** 2).mean()))
-    product = np.where(tight, mean, point.slack * point.rates)
-    if astray > ASTRAY or float(abs(np.log(product / mean)).max()) > FAR:
-        return back.plus(growth, tangent), growth, before
-    norm = float(np.sqrt(square + 1.0))
-    sense = -1.0 if before is None else float(np.sign((along * before[0]).mean() + before[1]))
-    stride = sense * min(STRIDE / max(float(abs(along).max()), 1e-30), 1.0)
-    return back.plus(growth + stride, tangent), growth + stride, (sense * along / norm, sense / norm)
+class ArcPath:
+    """The central path from a point near it on, followed in stretches; its sense is kept from one to the next."""
 
+    def __init__(self, problem: Problem, newton: NewtonMatrix, start: Point) -> None:
+        self.problem, self.newton = problem, newton
+        self.tight = close_tight(problem, np.zeros(start.slack.shape, dtype=bool))
+        self.stride = STRIDE
+        self._here = _Place(start, float((start.slack * start.rates)[~self.tight].mean()), None)
+        self._good: _Place | None = None
+        self._again = False
+        self._astray = 0
 
-def _mean(point: Point, tight: BoolArray) -> float:
-    return float((point.slack * point.rates)[~tight].mean())
+    def follow(self, gap: float, max_iterations: int) -> PathResult:
+        """Follow the path until complementarity y.g is at most `gap` of the live work.
+
+        Args:
+            gap: at which it stops; max_iterations: Newton steps at most.
+
+        Raises:
+            RuntimeError: the first Newton matrix is singular to rounding.
+        """
+        result: PathResult | None = None
+        history: list[float] = []
+        for iteration in range(max_iterations + 1):
+            point = self._here.point
+            try:
+                step = NewtonStep(self.problem, self.newton, point, 0.0, self.tight)
+            except (RuntimeError, FloatingPointError):
+                break
+            history.append(point.multiplier)
+            present = float((point.slack * point.rates).sum()) / self.problem.live_work
+            statics, kinematics = float(abs(step.statics).max()), float(abs(step.kinematics).max())
+            converged = present <= gap and max(statics, kinematics) <= RESIDUAL
+            result = PathResult(point, converged, iteration, present, statics, kinematics, history)
+            if converged or present > GONE:
+                break
+            self._go_on(step)
+        if result is None:
+            raise RuntimeError("the path could not factorise its first system")
+        return result
+
+    def _go_on(self, step: NewtonStep) -> None:
+        """One step back to the path, or along it, or back to the last good point."""
+        way, here = self._way(step), self._here
+        if not (way.on_path or self._again):
+            self._astray += 1
+            if self._astray <= PATIENCE or not self._take_up_again():
+                self._advance(step, way, 0.0, here.before)
+            return
+        turned = 1.0
+        if here.before is not None:
+            turned = (float((way.along * here.before[0]).mean()) + here.before[1]) / way.norm
+        if not self._again:
+            if abs(turned) < SHARP and self._take_up_again():
+                return
+            if self._astray <= 1 and abs(turned) > STRAIGHT:
+                self.stride = min(STRIDE, 2.0 * self.stride)
+        self._good, self._astray, self._again = here, 0, False
+        sense = -1.0 if here.before is None else float(np.sign(turned))
+        stride = sense * min(self.stride / max(float(abs(way.along).max()), 1e-30), 1.0)
+        self._advance(step, way, stride, (sense * way.along / way.norm, sense / way.norm))
+
+    def _take_up_again(self) -> bool:
+        """Return to the last good point with half the stride, if there is one and the stride can be halved."""
+        if self._good is None or self.stride <= SHORTEST:
+            return False
+        self._here, self.stride = self._good, 0.5 * self.stride
+        self._astray, self._again = 0, True
+        return True
+
+    def _advance(self, step: NewtonStep, way: _Way, stride: float, before: tuple[FloatArray, float] | None) -> None:
+        change, growth = way.back.plus(way.growth + stride, way.tangent), way.growth + stride
+        length = min(step_lengths(self._here.point, change, self.tight, SHORT, 0.0))
+        mean = self._here.mean * float(np.exp(length * growth))
+        self._here = _Place(step.advance(change, length, length), mean, before)
+
+    def _way(self, step: NewtonStep) -> _Way:
+        point, mean = self._here.point, self._here.mean
+        target = np.full(point.slack.shape, mean)
+        back = step.direction(target, refinements=0)
+        tangent = step.direction(2.0 * target, refinements=0).plus(-1.0, back)
+        along, across = _relative(point, tangent, self.tight), _relative(point, back, self.tight)
+        square = float((along**2).mean())
+        growth = -float((along * across).mean()) / (square + 1.0)
+        astray = float(np.sqrt(((across + growth * along) ** 2).mean()))
+        product = np.where(self.tight, mean, point.slack * point.rates)
+        on_path = astray <= ASTRAY and float(abs(np.log(product / mean)).max()) <= FAR
+        return _Way(back, tangent, growth, along, float(np.sqrt(square + 1.0)), on_path)
 
 
 def _relative(point: Point, change: Direction, tight: BoolArray) -> FloatArray:

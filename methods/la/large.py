@@ -14,7 +14,8 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from harness.model.assembly import BoolArray, FloatArray
-from methods.la.arc import ArcSettings, follow_arc
+from methods.la.arc import ArcPath
+from methods.la.central_point import central_point
 from methods.la.continuation import smooth_friction
 from methods.la.exact import close_tight, exact_forces, exact_mechanism
 from methods.la.interior_point import PathResult, PathSettings, follow_path, start_point
@@ -36,12 +37,10 @@ MOST_INTERFACES = 6000
 SMOOTH = (0.3, 0.6, 0.0)
 """Factors on the friction of the joints that the dead load leaves unloaded, each the guide of one attempt."""
 PATH = PathSettings(gap=1e-8, residual=1e-3, max_iterations=150)
-NEAR = PathSettings(dilatancy=1.0, gap=0.05, residual=float("inf"))
-"""How far the associated path leads before dilatancy is taken away."""
 ARC_GAPS = (1e-5, 3e-6, 1e-6, 1e-7)
 """Relative gaps of the path by arc length at which its mechanism is tried."""
-MOST_ARC_STEPS = 500
-"""Newton steps by arc length from one of these gaps to the next; walls on which it led to a state took up to 440."""
+MOST_ARC_STEPS = 600
+"""Newton steps by arc length from one of these gaps to the next; walls on which it led to a state took up to 542."""
 WIDEST_GAP = 1e-2
 """Relative gap at the end of a path above which its slacks do not tell a mechanism."""
 
@@ -200,18 +199,19 @@ def large_search(problem: Problem, newton: NewtonMatrix, seed: int) -> LargeSear
 def region_search(problem: Problem, newton: NewtonMatrix, seed: int, velocities: FloatArray) -> LargeSearch:
     """Exact collapse states of a wall too large for a search of the whole.
 
-    The search is in the part that an associated mechanism with velocities (3n,) moves, with smoother unloaded joints:
-    Newton's path from the part's own associated path, and where it stalls the same path by arc length.
+    The search is in the part that an associated mechanism with velocities (3n,) moves, with smoother unloaded joints,
+    along the central path by arc length.
     """
     found = LargeSearch()
     region = moving_region(problem, velocities)
     friction = smooth_friction(region.problem, SMOOTH[0])
     guide = region.problem if friction is None else replace(region.problem, friction=friction)
-    start = follow_path(guide, region.newton, start_point(guide), NEAR)
-    path = follow_path(guide, region.newton, start.point, replace(PATH, patience=5))
-    found.steps += start.iterations + path.iterations
+    start, found.steps = central_point(guide, region.newton)
+    if start is None:
+        return found
+    arc = ArcPath(guide, region.newton, start)
     for gap in ARC_GAPS:
-        path = follow_arc(guide, region.newton, path.point, ArcSettings(gap, max_iterations=MOST_ARC_STEPS))
+        path = arc.follow(gap, MOST_ARC_STEPS)
         found.add(None, path.iterations, path.gap)
         if not path.converged:
             break

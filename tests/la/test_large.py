@@ -3,27 +3,49 @@
 from __future__ import annotations
 
 import numpy as np
+import pytest
 
-from methods.la.arc import ArcSettings, follow_arc
+from methods.la.adapter import LimitAnalysis
+from methods.la.arc import RESIDUAL, ArcPath
 from methods.la.associated import solve_associated
+from methods.la.central_point import CENTRED, central_point
 from methods.la.interior_point import PathSettings, follow_path, start_point
 from methods.la.large import region_search
 from methods.la.newton_matrix import NewtonMatrix
 from methods.la.problem import make_problem
 from methods.la.region import with_all_above
+from methods.la.settings import SearchSettings
 from methods.la.state import residuals
 from tests.la.bodies import running_bond
 
 
-def test_path_by_arc_length_leads_from_the_middle_to_complementarity() -> None:
+def test_path_by_arc_length_leads_from_its_beginning_to_complementarity() -> None:
+    """In two stretches, as the search follows it; the second goes on in the sense of the first."""
     problem = make_problem(running_bond(28, 16, 0.175, 0.65))
     newton = NewtonMatrix(problem)
-    middle = follow_path(problem, newton, start_point(problem), PathSettings(gap=1e-1, residual=1e-3))
-    end = follow_arc(problem, newton, middle.point, ArcSettings(gap=1e-6))
+    start, _ = central_point(problem, newton)
+    assert start is not None
+    path = ArcPath(problem, newton, start)
+    middle, end = path.follow(1e-2, 500), path.follow(1e-6, 500)
+    assert middle.converged
     assert end.converged
-    assert end.gap <= 1e-6
+    assert end.gap <= 1e-6 < middle.gap <= 1e-2
     # What the search asks of a path before it reads a mechanism from it; the state itself is made exact afterwards.
-    assert max(end.statics, end.kinematics) <= ArcSettings().residual
+    assert max(end.statics, end.kinematics) <= RESIDUAL
+
+
+def test_path_begins_in_the_middle_of_zero_dilatancy_flow() -> None:
+    problem = make_problem(running_bond(14, 7, 0.175, 0.65))
+    point, steps = central_point(problem, NewtonMatrix(problem))
+    assert point is not None
+    assert steps > 0
+    product = np.log(point.slack * point.rates)
+    assert np.ptp(product) <= 2.0 * CENTRED
+    assert np.all(point.slack > 0.0)
+    assert np.all(point.rates > 0.0)
+    # In mean weights of a block, and for velocities of order one.
+    assert abs(problem.imbalance(problem.forces_of_slacks(point.slack), point.multiplier)).max() <= 1e-8
+    assert abs(problem.strains(point.velocities) - problem.strains_of_rates(point.rates, 0.0)).max() <= 1e-8
 
 
 def test_path_to_a_tiny_gap_stays_in_equilibrium() -> None:
@@ -55,3 +77,12 @@ def test_search_of_the_part_that_collapses_gives_a_state_of_the_whole_wall() -> 
     state = found.states[0]
     assert state.multiplier <= associated.state.multiplier
     assert max(residuals(problem, state).values()) <= 1e-10
+
+
+@pytest.mark.slow
+def test_slender_wall_of_2485_blocks_has_an_exact_state() -> None:
+    """Its central path has sharp folds; safe forces led along springs come to a mechanism at .43116, above this one."""
+    answer = LimitAnalysis().solve(running_bond(70, 35, 0.175, 0.65), SearchSettings())
+    assert answer.multiplier is not None
+    assert answer.multiplier < 0.43116
+    assert max(answer.details["residuals"].values()) <= 1e-12

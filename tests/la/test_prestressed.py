@@ -5,6 +5,7 @@ from __future__ import annotations
 import pytest
 
 from harness.model.assembly import Assembly
+from methods.la import large, least
 from methods.la.adapter import LimitAnalysis
 from methods.la.associated import solve_associated
 from methods.la.newton_matrix import NewtonMatrix
@@ -37,10 +38,13 @@ def test_safe_forces_lead_to_an_exact_state_between_the_least_known_and_the_grea
     assert state.multiplier * problem.unit_multiplier >= least * (1.0 - 1e-9)
 
 
-@pytest.mark.slow
-def test_slender_wall_whose_central_paths_lead_nowhere_gets_its_state_from_the_springs() -> None:
-    answer = LimitAnalysis().solve(running_bond(70, 35, 0.175, 0.65), SearchSettings())
+def test_wall_whose_central_paths_lead_nowhere_gets_its_state_from_the_springs(monkeypatch: pytest.MonkeyPatch) -> None:
+    """As the 7,050 blocks do, in minutes; here the central path of a small wall is cut short."""
+    monkeypatch.setattr(least, "SIMPLEX_SEARCH", 100)
+    monkeypatch.setattr(least, "MOST_INTERFACES", 100)
+    monkeypatch.setattr(large, "MOST_ARC_STEPS", 1)
+    answer = LimitAnalysis().solve(WALLS["210 bricks"], SearchSettings())
     assert answer.multiplier is not None
     assert answer.details["kinks"] > 0
     assert answer.multiplier <= answer.details["associated"]
-    assert max(answer.details["residuals"].values()) <= 1e-11
+    assert max(answer.details["residuals"].values()) <= 1e-12
