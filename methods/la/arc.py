@@ -43,10 +43,10 @@ RESIDUAL = 1e-3
 
 @dataclass(frozen=True)
 class _Place:
-    """A point with its log-mean tau, and the unit tangent (of slacks and rates, of log tau) that led to it."""
+    """A point with its tau, and the unit tangent (of slacks and rates, of log tau) that led to it, if one did."""
 
     point: Point
-    mean: float
+    tau: float
     before: tuple[FloatArray, float] | None
 
 
@@ -66,10 +66,10 @@ class ArcPath:
     """The central path from a point near it on, followed in stretches; its sense is kept from one to the next."""
 
     def __init__(self, problem: Problem, newton: NewtonMatrix, start: Point) -> None:
-        self.problem, self.newton = problem, newton
-        self.tight = close_tight(problem, np.zeros(start.slack.shape, dtype=bool))
-        self.stride = STRIDE
-        self._here = _Place(start, float((start.slack * start.rates)[~self.tight].mean()), None)
+        self._problem, self._newton = problem, newton
+        self._tight = close_tight(problem, np.zeros(start.slack.shape, dtype=bool))
+        self._stride = STRIDE
+        self._here = _Place(start, float((start.slack * start.rates)[~self._tight].mean()), None)
         self._good: _Place | None = None
         self._again = False
         self._astray = 0
@@ -88,11 +88,11 @@ class ArcPath:
         for iteration in range(max_iterations + 1):
             point = self._here.point
             try:
-                step = NewtonStep(self.problem, self.newton, point, 0.0, self.tight)
+                step = NewtonStep(self._problem, self._newton, point, 0.0, self._tight)
             except (RuntimeError, FloatingPointError):
                 break
             history.append(point.multiplier)
-            present = float((point.slack * point.rates).sum()) / self.problem.live_work
+            present = float((point.slack * point.rates).sum()) / self._problem.live_work
             statics, kinematics = float(abs(step.statics).max()), float(abs(step.kinematics).max())
             converged = present <= gap and max(statics, kinematics) <= RESIDUAL
             result = PathResult(point, converged, iteration, present, statics, kinematics, history)
@@ -118,37 +118,37 @@ class ArcPath:
             if abs(turned) < SHARP and self._take_up_again():
                 return
             if self._astray <= 1 and abs(turned) > STRAIGHT:
-                self.stride = min(STRIDE, 2.0 * self.stride)
+                self._stride = min(STRIDE, 2.0 * self._stride)
         self._good, self._astray, self._again = here, 0, False
         sense = -1.0 if here.before is None else float(np.sign(turned))
-        stride = sense * min(self.stride / max(float(abs(way.along).max()), 1e-30), 1.0)
+        stride = sense * min(self._stride / max(float(abs(way.along).max()), 1e-30), 1.0)
         self._advance(step, way, stride, (sense * way.along / way.norm, sense / way.norm))
 
     def _take_up_again(self) -> bool:
         """Return to the last good point with half the stride, if there is one and the stride can be halved."""
-        if self._good is None or self.stride <= SHORTEST:
+        if self._good is None or self._stride <= SHORTEST:
             return False
-        self._here, self.stride = self._good, 0.5 * self.stride
+        self._here, self._stride = self._good, 0.5 * self._stride
         self._astray, self._again = 0, True
         return True
 
     def _advance(self, step: NewtonStep, way: _Way, stride: float, before: tuple[FloatArray, float] | None) -> None:
         change, growth = way.back.plus(way.growth + stride, way.tangent), way.growth + stride
-        length = min(step_lengths(self._here.point, change, self.tight, SHORT, 0.0))
-        mean = self._here.mean * float(np.exp(length * growth))
-        self._here = _Place(step.advance(change, length, length), mean, before)
+        length = min(step_lengths(self._here.point, change, self._tight, SHORT, 0.0))
+        tau = self._here.tau * float(np.exp(length * growth))
+        self._here = _Place(step.advance(change, length, length), tau, before)
 
     def _way(self, step: NewtonStep) -> _Way:
-        point, mean = self._here.point, self._here.mean
-        target = np.full(point.slack.shape, mean)
+        point, tau = self._here.point, self._here.tau
+        target = np.full(point.slack.shape, tau)
         back = step.direction(target, refinements=0)
         tangent = step.direction(2.0 * target, refinements=0).plus(-1.0, back)
-        along, across = _relative(point, tangent, self.tight), _relative(point, back, self.tight)
+        along, across = _relative(point, tangent, self._tight), _relative(point, back, self._tight)
         square = float((along**2).mean())
         growth = -float((along * across).mean()) / (square + 1.0)
         astray = float(np.sqrt(((across + growth * along) ** 2).mean()))
-        product = np.where(self.tight, mean, point.slack * point.rates)
-        on_path = astray <= ASTRAY and float(abs(np.log(product / mean)).max()) <= FAR
+        product = np.where(self._tight, tau, point.slack * point.rates)
+        on_path = astray <= ASTRAY and float(abs(np.log(product / tau)).max()) <= FAR
         return _Way(back, tangent, growth, along, float(np.sqrt(square + 1.0)), on_path)
 
 

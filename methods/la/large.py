@@ -39,8 +39,8 @@ SMOOTH = (0.3, 0.6, 0.0)
 PATH = PathSettings(gap=1e-8, residual=1e-3, max_iterations=150)
 ARC_GAPS = (1e-5, 3e-6, 1e-6, 1e-7)
 """Relative gaps of the path by arc length at which its mechanism is tried."""
-MOST_ARC_STEPS = 600
-"""Newton steps by arc length from one of these gaps to the next; walls on which it led to a state took up to 542."""
+MOST_ARC_STEPS = 1000
+"""Newton steps by arc length from one of these gaps to the next; walls on which it led to a state took up to 716."""
 WIDEST_GAP = 1e-2
 """Relative gap at the end of a path above which its slacks do not tell a mechanism."""
 
