@@ -67,7 +67,7 @@ class ArcPath:
 
     def __init__(self, problem: Problem, newton: NewtonMatrix, start: Point) -> None:
         self._problem, self._newton = problem, newton
-        self._tight = close_tight(problem, np.zeros(start.slack.shape, dtype=bool))
+        self._tight = close_tight(problem)
         self._stride = STRIDE
         self._here = _Place(start, float((start.slack * start.rates)[~self._tight].mean()), None)
         self._good: _Place | None = None

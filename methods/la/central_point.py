@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from harness.model.assembly import BoolArray
 from methods.la.exact import close_tight
 from methods.la.interior_point import PathSettings, follow_path, start_point, step_lengths
 from methods.la.newton_matrix import NewtonMatrix
@@ -35,13 +36,13 @@ CENTRED = 0.5
 def central_point(problem: Problem, newton: NewtonMatrix) -> tuple[Point | None, int]:
     """A point of the central path of zero-dilatancy flow, or None where the fading path folds, and the steps spent."""
     wide = follow_path(problem, newton, start_point(problem), WIDE)
-    tight = close_tight(problem, np.zeros(wide.point.slack.shape, dtype=bool))
+    tight = close_tight(problem)
     mean = float((wide.point.slack * wide.point.rates)[~tight].mean())
-    point, steps = _centred(problem, newton, wide.point, 1.0, mean, 2 * STEPS)
+    point, steps = _centred(problem, newton, wide.point, 1.0, mean, tight, 2 * STEPS)
     spent, dilatancy, less = wide.iterations + steps, 1.0, FIRST
     while point is not None and dilatancy > 0.0:
         lower = max(0.0, dilatancy - less)
-        there, steps = _centred(problem, newton, point, lower, mean, STEPS)
+        there, steps = _centred(problem, newton, point, lower, mean, tight, STEPS)
         spent += steps
         if there is not None:
             point, dilatancy = there, lower
@@ -54,10 +55,15 @@ def central_point(problem: Problem, newton: NewtonMatrix) -> tuple[Point | None,
 
 
 def _centred(
-    problem: Problem, newton: NewtonMatrix, point: Point, dilatancy: float, mean: float, most: int
+    problem: Problem,
+    newton: NewtonMatrix,
+    point: Point,
+    dilatancy: float,
+    mean: float,
+    tight: BoolArray,
+    most: int,
 ) -> tuple[Point | None, int]:
     """The point with y o g = mean to which Newton's method leads at a dilatancy, or None, and the steps spent."""
-    tight = close_tight(problem, np.zeros(point.slack.shape, dtype=bool))
     target = np.full(point.slack.shape, mean)
     for count in range(most):
         try:

@@ -22,9 +22,12 @@ DIVERGED = 1e100
 """Velocities above this come from a matrix singular to rounding; their products would overflow."""
 
 
-def close_tight(problem: Problem, tight: BoolArray) -> BoolArray:
-    """Tight slacks (m, 4) with those that follow: no normal force means no shear, both shear limits mean no force."""
-    closed = tight.copy()
+def close_tight(problem: Problem, tight: BoolArray | None = None) -> BoolArray:
+    """Tight slacks (m, 4), by default none, with those that follow.
+
+    No normal force means no shear, both shear limits mean no force, no friction means no shear.
+    """
+    closed = np.zeros((problem.n_interfaces, 4), dtype=bool) if tight is None else tight.copy()
     closed[problem.rigid_in_shear, 2:] = True
     both = closed[:, 2] & closed[:, 3] & ~problem.rigid_in_shear
     closed[both] = True

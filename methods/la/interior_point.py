@@ -22,9 +22,9 @@ from methods.la.problem import Problem
 MIDDLE = 0.995
 """Part of the way to the boundary that a step goes."""
 CORRECTORS = 3
-"""Corrections of a step for centrality at most, each one more solution with its factors."""
-FURTHER = 0.3
-"""How much longer a step each of them aims at."""
+"""Corrections of a step for centrality, each one more solution with the factors of the step."""
+AHEAD = 0.3
+"""How much longer a step a correction aims at."""
 
 
 @dataclass(frozen=True)
@@ -80,7 +80,7 @@ def start_point(
         normal = np.exp(generator.uniform(-spread, spread, (m, 2)))
         tilt = generator.uniform(-0.5, 0.5, m)
         target = np.exp(generator.uniform(-spread, spread, (m, 4)))
-    tight = close_tight(problem, np.zeros((m, 4), dtype=bool)) if tight is None else tight
+    tight = close_tight(problem) if tight is None else tight
     normal = np.where(tight[:, :2], 0.0, normal)
     tilt = np.where(tight[:, 2], -1.0, np.where(tight[:, 3], 1.0, tilt))
     forces = np.column_stack([normal, tilt * problem.friction * normal.sum(axis=1)])
@@ -107,7 +107,7 @@ def follow_path(
         RuntimeError: the first Newton matrix is singular to rounding.
     """
     point = start
-    tight = close_tight(problem, np.zeros((problem.n_interfaces, 4), dtype=bool)) if tight is None else tight
+    tight = close_tight(problem) if tight is None else tight
     pairs = max(int((~tight).sum()), 1)
     history: list[float] = []
     best: PathResult | None = None
@@ -142,12 +142,7 @@ def follow_path(
 
 
 def _centred_step(
-    step: NewtonStep,
-    point: Point,
-    product: FloatArray,
-    pairs: int,
-    tight: BoolArray,
-    dilatancy: float,
+    step: NewtonStep, point: Point, product: FloatArray, pairs: int, tight: BoolArray, dilatancy: float
 ) -> Point:
     """Mehrotra's predictor and corrector; where that is blocked, a step that mostly centres."""
     mean = float(product.sum()) / pairs
@@ -183,12 +178,12 @@ def _longer_step(
     for _ in range(CORRECTORS):
         if min(primal, dual) > 0.9:
             break
-        reach = (min(1.0, primal + FURTHER), min(1.0, dual + FURTHER))
+        reach = (min(1.0, primal + AHEAD), min(1.0, dual + AHEAD))
         product = (point.slack + reach[0] * change.slack) * (point.rates + reach[1] * change.rates)
         shift = np.clip(np.clip(product, 0.1 * mean, 10.0 * mean) - product, -10.0 * mean, None)
         other = step.direction(target + shift)
         lengths = step_lengths(point, other, tight, MIDDLE, dilatancy)
-        if sum(lengths) < primal + dual + 0.1 * FURTHER:
+        if sum(lengths) < primal + dual + 0.1 * AHEAD:
             break
         change, target, (primal, dual) = other, target + shift, lengths
     return change, primal, dual

@@ -55,7 +55,7 @@ def lagged_mechanism(problem: Problem, newton: NewtonMatrix, steps: int, follow:
     settings = PathSettings(dilatancy=1.0, gap=START_GAP, residual=1e-3)
     start = follow_path(problem, newton, start_point(problem), settings)
     point, bound = start.point, _strength(problem, start.point)
-    tight = close_tight(problem, np.zeros(point.slack.shape, dtype=bool))
+    tight = close_tight(problem)
     mean = float((point.slack * point.rates).mean())
     least = END_GAP * problem.live_work / point.slack.size
     taken = 0

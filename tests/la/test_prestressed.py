@@ -5,7 +5,6 @@ from __future__ import annotations
 import pytest
 
 from harness.model.assembly import Assembly
-from methods.la import large, least
 from methods.la.adapter import LimitAnalysis
 from methods.la.associated import solve_associated
 from methods.la.newton_matrix import NewtonMatrix
@@ -40,9 +39,9 @@ def test_safe_forces_lead_to_an_exact_state_between_the_least_known_and_the_grea
 
 def test_wall_whose_central_paths_lead_nowhere_gets_its_state_from_the_springs(monkeypatch: pytest.MonkeyPatch) -> None:
     """As the 7,050 blocks do, in minutes; here the central path of a small wall is cut short."""
-    monkeypatch.setattr(least, "SIMPLEX_SEARCH", 100)
-    monkeypatch.setattr(least, "MOST_INTERFACES", 100)
-    monkeypatch.setattr(large, "MOST_ARC_STEPS", 1)
+    monkeypatch.setattr("methods.la.least.SIMPLEX_SEARCH", 100)
+    monkeypatch.setattr("methods.la.least.MOST_INTERFACES", 100)
+    monkeypatch.setattr("methods.la.large.MOST_ARC_STEPS", 1)
     answer = LimitAnalysis().solve(WALLS["210 bricks"], SearchSettings())
     assert answer.multiplier is not None
     assert answer.details["kinks"] > 0
