@@ -141,8 +141,8 @@ class ArcPath:
     def _way(self, step: NewtonStep) -> _Way:
         point, tau = self._here.point, self._here.tau
         target = np.full(point.slack.shape, tau)
-        back = step.direction(target, refinements=0)
-        tangent = step.direction(2.0 * target, refinements=0).plus(-1.0, back)
+        back = step.direction(target)
+        tangent = step.direction(2.0 * target).plus(-1.0, back)
         along, across = _relative(point, tangent, self._tight), _relative(point, back, self._tight)
         square = float((along**2).mean())
         growth = -float((along * across).mean()) / (square + 1.0)

@@ -74,7 +74,7 @@ def _centred(
         residual = max(float(abs(step.statics).max()), float(abs(step.kinematics).max()))
         if residual <= EXACT and float(abs(np.log(product / mean)).max()) <= CENTRED:
             return point, count
-        change = step.direction(target)
+        change = step.refined(step.direction(target), target)
         length = min(step_lengths(point, change, tight, 0.9, 0.0))
         point = step.advance(change, length, length)
     return None, most

@@ -146,34 +146,31 @@ def _centred_step(
 ) -> Point:
     """Mehrotra's predictor and corrector; where that is blocked, a step that mostly centres."""
     mean = float(product.sum()) / pairs
-    predictor = step.direction(np.zeros(product.shape), refinements=0)
+    predictor = step.direction(np.zeros(product.shape))
     primal, dual = step_lengths(point, predictor, tight, 1.0, dilatancy)
     ahead = (point.slack + primal * predictor.slack) * (point.rates + dual * predictor.rates)
     mean_ahead = float(np.where(tight, 0.0, ahead).sum()) / pairs
     centring = float(np.clip((mean_ahead / mean) ** 3, 1e-6, 1.0))
     second_order = predictor.slack * predictor.rates * min(primal, dual)
     target = np.clip(centring * mean - second_order, -10.0 * mean, 10.0 * mean)
-    corrector = step.direction(target)
-    primal, dual = step_lengths(point, corrector, tight, MIDDLE, dilatancy)
-    corrector, primal, dual = _longer_step(step, point, corrector, target, centring * mean, tight, dilatancy)
-    if min(primal, dual) < 0.1:
-        centred = step.direction(np.clip(0.5 * mean, 0.1 * product, None))
-        lengths = step_lengths(point, centred, tight, MIDDLE, dilatancy)
-        if min(lengths) > min(primal, dual):
-            corrector, (primal, dual) = centred, lengths
-    return step.advance(corrector, primal, dual)
+    corrector, target, lengths = _longer_step(step, point, target, centring * mean, tight, dilatancy)
+    if min(lengths) < 0.1:
+        safe = np.clip(0.5 * mean, 0.1 * product, None)
+        centred = step.direction(safe)
+        if min(step_lengths(point, centred, tight, MIDDLE, dilatancy)) > min(lengths):
+            corrector, target = centred, safe
+    corrector = step.refined(corrector, target)
+    return step.advance(corrector, *step_lengths(point, corrector, tight, MIDDLE, dilatancy))
 
 
 def _longer_step(
-    step: NewtonStep,
-    point: Point,
-    change: Direction,
-    target: FloatArray,
-    mean: float,
-    tight: BoolArray,
-    dilatancy: float,
-) -> tuple[Direction, float, float]:
-    """Correctors that bring the products of a longer step back to the middle (Gondzio 1996), while they lengthen it."""
+    step: NewtonStep, point: Point, target: FloatArray, mean: float, tight: BoolArray, dilatancy: float
+) -> tuple[Direction, FloatArray, tuple[float, float]]:
+    """The step to a target, its target and lengths.
+
+    Correctors bring the products of a longer step back to the middle (Gondzio 1996), while they lengthen it.
+    """
+    change = step.direction(target)
     primal, dual = step_lengths(point, change, tight, MIDDLE, dilatancy)
     for _ in range(CORRECTORS):
         if min(primal, dual) > 0.9:
@@ -186,7 +183,7 @@ def _longer_step(
         if sum(lengths) < primal + dual + 0.1 * AHEAD:
             break
         change, target, (primal, dual) = other, target + shift, lengths
-    return change, primal, dual
+    return change, target, (primal, dual)
 
 
 def step_lengths(
@@ -201,5 +198,5 @@ def step_lengths(
 
 
 def _longest(value: FloatArray, change: FloatArray, tight: BoolArray) -> float:
-    falling = (change < 0.0) & ~tight
-    return float((value[falling] / -change[falling]).min(initial=np.inf))
+    steepest = -float((change / np.where(tight, np.inf, value)).min(initial=0.0))
+    return 1.0 / steepest if steepest > 0.0 else np.inf

@@ -87,11 +87,12 @@ def _step(step: NewtonStep, point: Point, shift: FloatArray, mean: float) -> tup
     grown = np.zeros(point.slack.shape)
     grown[:, 2:] = shift[:, None]
     target = mean - point.rates * grown
-    predictor = step.direction(target, refinements=0)
+    predictor = step.direction(target)
     lengths = step_lengths(point, replace(predictor, slack=predictor.slack + grown), step.tight, 1.0, 1.0)
     with np.errstate(over="ignore"):  # A product without bound is clipped below like any large one.
         second = (predictor.slack + grown) * predictor.rates * min(lengths)
-    corrector = step.direction(target - np.clip(second, -5.0 * mean, 5.0 * mean))
+    target = target - np.clip(second, -5.0 * mean, 5.0 * mean)
+    corrector = step.refined(step.direction(target), target)
     corrector = replace(corrector, slack=corrector.slack + grown)
     primal, dual = step_lengths(point, corrector, step.tight, 0.95, 1.0)
     return step.advance(corrector, primal, dual), min(primal, dual)

@@ -32,8 +32,9 @@ class Point:
 
 @dataclass
 class Direction:
-    """A change of a point."""
+    """A change of a point; of the forces (m, 3) too, from which it can be refined."""
 
+    forces: FloatArray
     slack: FloatArray
     multiplier: float
     velocities: FloatArray
@@ -42,6 +43,7 @@ class Direction:
     def plus(self, factor: float, other: Direction) -> Direction:
         """This change and `factor` times another."""
         return Direction(
+            self.forces + factor * other.forces,
             self.slack + factor * other.slack,
             self.multiplier + factor * other.multiplier,
             self.velocities + factor * other.velocities,
@@ -78,27 +80,47 @@ class NewtonStep:
         change = (work - float(self.problem.live @ by_load)) / self.live_compliance
         return by_load + change * self.by_live, change
 
-    def direction(self, target: FloatArray, refinements: int = 1) -> Direction:
-        """Newton direction towards y o g = target (m, 4).
-
-        Refinements add to forces and slacks, instead of finding them anew from the velocities: the rounding of a slip
-        times the stiffness of the pressed ends beside it would be an imbalance that no refinement removes.
-        """
-        problem = self.problem
-        rate_shift = np.where(self.tight, 0.0, target / self.slack - self.point.rates)
+    def direction(self, target: FloatArray) -> Direction:
+        """Newton direction towards y o g = target (m, 4)."""
+        problem, rate_shift = self.problem, self._rate_shift(target)
         shift = problem.strains_of_rates(rate_shift, self.dilatancy) - self.kinematics
         load = np.asarray(problem.statics @ self.compliance.forces(shift).ravel()) + self.statics
         velocity, multiplier = self._bordered(load, self.work)
-        forces, slack = self.compliance.response(shift - problem.strains(velocity))
-        for _ in range(refinements):
-            defect = self.statics + np.asarray(problem.statics @ forces.ravel()) + multiplier * problem.live
-            extra, more = self._bordered(defect, self.work - float(problem.live @ velocity))
-            velocity, multiplier = velocity + extra, multiplier + more
-            less_forces, less_slack = self.compliance.response(problem.strains(extra))
-            forces, slack = forces - less_forces, slack - less_slack
+        strain = problem.strains(velocity)
+        forces, slack = self.compliance.response(shift - strain)
+        return self._with_rates(rate_shift, forces, slack, multiplier, velocity, strain)
+
+    def refined(self, change: Direction, target: FloatArray) -> Direction:
+        """A direction towards y o g = target (m, 4) with less rounding.
+
+        The refinement adds to forces and slacks, instead of finding them anew from the velocities: the rounding of a
+        slip times the stiffness of the pressed ends beside it would be an imbalance that no refinement removes.
+        """
+        problem = self.problem
+        defect = self.statics + np.asarray(problem.statics @ change.forces.ravel()) + change.multiplier * problem.live
+        extra, more = self._bordered(defect, self.work - float(problem.live @ change.velocities))
+        velocity = change.velocities + extra
+        less_forces, less_slack = self.compliance.response(problem.strains(extra))
+        forces, slack = change.forces - less_forces, change.slack - less_slack
+        multiplier = change.multiplier + more
+        return self._with_rates(
+            self._rate_shift(target), forces, slack, multiplier, velocity, problem.strains(velocity)
+        )
+
+    def _rate_shift(self, target: FloatArray) -> FloatArray:
+        return np.where(self.tight, 0.0, target / self.slack - self.point.rates)
+
+    def _with_rates(
+        self,
+        rate_shift: FloatArray,
+        forces: FloatArray,
+        slack: FloatArray,
+        multiplier: float,
+        velocity: FloatArray,
+        strain: FloatArray,
+    ) -> Direction:
         slack = np.where(self.tight, 0.0, slack)
-        rates = self._rates(rate_shift, slack, problem.strains(velocity) + self.kinematics)
-        return Direction(slack, multiplier, velocity, rates)
+        return Direction(forces, slack, multiplier, velocity, self._rates(rate_shift, slack, strain + self.kinematics))
 
     def _rates(self, shift: FloatArray, slack: FloatArray, strain: FloatArray) -> FloatArray:
         """Changes of the rates: from the complementarity where that is accurate, else from compatibility E dg = strain.
