@@ -11,9 +11,28 @@ from pydantic import BaseModel, ValidationError
 
 from harness.model.build import Built, build
 from harness.model.errors import InputError
-from harness.model.wall import Wall
+from harness.model.wall import TAGS, Wall
 
 ModelType = TypeVar("ModelType", bound=BaseModel)
+
+MOST_SHOWN = 60
+"""Characters of a wrong value that are shown."""
+PLAIN = {
+    "missing": "it is missing",
+    "tuple_type": "it should be a list, in square brackets",
+    "list_type": "it should be a list, in square brackets",
+    "dict_type": "it should be an object, in braces",
+    "model_type": "it should be an object, in braces",
+    "model_attributes_type": "it should be an object, in braces",
+    "float_type": "it should be a number",
+    "int_type": "it should be a whole number",
+    "string_type": "it should be text, in quotes",
+    "bool_type": "it should be true or false",
+    "too_long": "it has too many entries",
+    "union_tag_not_found": 'it needs a "type"',
+    "union_tag_invalid": 'its type is "{tag}", and should be one of {expected_tags}',
+}
+"""Words for kinds of faults for which those of the validating library suppose that one writes Python."""
 
 
 def read_json(path: Path) -> Any:
@@ -24,7 +43,7 @@ def read_json(path: Path) -> Any:
     """
     source = str(path)
     try:
-        text = path.read_text(encoding="utf-8")
+        text = path.read_text(encoding="utf-8-sig")
     except FileNotFoundError:
         raise InputError("there is no such file", "Check the path", source=source) from None
     except (OSError, UnicodeDecodeError) as error:
@@ -50,6 +69,8 @@ def read_json(path: Path) -> Any:
         raise InputError(
             f"line {error.lineno}, column {error.colno}: {error.msg}", "Give valid JSON", source=source
         ) from None
+    except ValueError:
+        raise InputError("it has a number of thousands of digits", "Give finite numbers", source=source) from None
     except RecursionError:
         raise InputError("it is nested too deeply", "Give a wall/1 document", source=source) from None
 
@@ -67,6 +88,8 @@ def validate(model: type[ModelType], data: Any, source: str) -> ModelType:
         fault = faults[0]
         place = _place(fault["loc"], data)
         message = str(fault["msg"]).removeprefix("Value error, ")
+        if fault["type"] in PLAIN:
+            message = PLAIN[fault["type"]].format(**fault.get("ctx", {}))
         more = f" (and {len(faults) - 1} more)" if len(faults) > 1 else ""
         remedy = ""
         if fault["type"] == "extra_forbidden":
@@ -74,7 +97,7 @@ def validate(model: type[ModelType], data: Any, source: str) -> ModelType:
             message = f'unknown field "{fault["loc"][-1]}"'
             remedy = f"Known here: {', '.join(fields)}" if fields else "Leave it out or correct its name"
         elif "input" in fault and not isinstance(fault["input"], dict | list):
-            message += f" (given: {fault['input']!r})"
+            message += f" (given: {repr(fault['input'])[:MOST_SHOWN]})"
         raise InputError(message + more, remedy, place, source) from None
 
 
@@ -84,6 +107,8 @@ def _place(location: tuple[int | str, ...], data: Any) -> str:
     named = ""
     here = data
     for part in location:
+        if part in TAGS:
+            continue
         if isinstance(part, int):
             path += f"[{part}]"
             here = here[part] if isinstance(here, list) and part < len(here) else None

@@ -8,11 +8,17 @@ from __future__ import annotations
 
 from typing import Annotated, Any, Literal
 
-from pydantic import BaseModel, ConfigDict, Field, model_validator
+from pydantic import BaseModel, ConfigDict, Discriminator, Field, Tag, model_validator
 
-Point = tuple[float, float]
-Positive = Annotated[float, Field(gt=0.0)]
-NonNegative = Annotated[float, Field(ge=0.0)]
+LARGEST = 1e15
+"""Greatest size of any number of the format, whatever its unit, so that no product of a few of them overflows."""
+MOST_BLOCKS = 100_000
+"""Blocks that a pattern makes at most."""
+Number = Annotated[float, Field(ge=-LARGEST, le=LARGEST, strict=True)]
+Point = tuple[Number, Number]
+Positive = Annotated[float, Field(gt=0.0, le=LARGEST, strict=True)]
+NonNegative = Annotated[float, Field(ge=0.0, le=LARGEST, strict=True)]
+Count = Annotated[int, Field(ge=1, le=MOST_BLOCKS)]
 Name = Annotated[str, Field(min_length=1, max_length=200)]
 
 
@@ -20,6 +26,21 @@ class Strict(BaseModel):
     """Base of the format: unknown fields, NaN and infinities are refused."""
 
     model_config = ConfigDict(extra="forbid", allow_inf_nan=False, frozen=True, populate_by_name=True)
+
+
+TAGS = ONE, MANY, OBJECT, OTHER = "(one)", "(many)", "(object)", "(other)"
+"""Alternatives of a field, told apart by what is given, so that only the faults of the one meant are found.
+
+Parentheses keep them apart from names of fields.
+"""
+
+
+def _one_or_many(value: Any) -> str:
+    return MANY if isinstance(value, list) else ONE
+
+
+def _object_or_other(value: Any) -> str:
+    return OBJECT if isinstance(value, dict | BaseModel) else OTHER
 
 
 class Units(Strict):
@@ -151,11 +172,11 @@ class RunningBond(PatternBase):
     type: Literal["running_bond"]
     block_length: Positive
     block_height: Positive
-    courses: list[list[float]] | None = Field(
+    courses: list[list[Number]] | None = Field(
         None, description="bottom to top; 1 = one block length, -1 = a gap of one"
     )
-    count: Annotated[int, Field(ge=1)] | None = Field(None, description="number of courses, instead of `courses`")
-    bricks: Annotated[int, Field(ge=1)] | None = Field(None, description="whole bricks in a full course, with `count`")
+    count: Count | None = Field(None, description="number of courses, instead of `courses`")
+    bricks: Count | None = Field(None, description="whole bricks in a full course, with `count`")
     start: Literal["half", "full"] = Field("half", description="bottom course begins with half a brick, or a whole one")
     base: bool = Field(True, description="add a fixed block under the whole width, one block high")
 
@@ -163,6 +184,8 @@ class RunningBond(PatternBase):
     def _courses_or_count(self) -> RunningBond:
         if (self.courses is None) == (self.count is None or self.bricks is None):
             raise ValueError("a running bond gives either courses, or count and bricks")
+        if self.count is not None and self.bricks is not None and self.count * self.bricks > MOST_BLOCKS:
+            raise ValueError(f"{self.count} courses of {self.bricks} bricks are more than {MOST_BLOCKS} blocks")
         for number, course in enumerate(self.courses or [], start=1):
             if not any(width > 0.0 for width in course) or any(width == 0.0 for width in course):
                 raise ValueError(f"course {number} has a width of zero or no block")
@@ -175,8 +198,8 @@ class Ring(PatternBase):
     type: Literal["ring"]
     inner_radius: Positive
     outer_radius: Positive
-    count: Annotated[int, Field(ge=1)]
-    angles: tuple[float, float] = Field((180.0, 0.0), description="[degrees] from the x axis, first to last joint")
+    count: Count
+    angles: tuple[Number, Number] = Field((180.0, 0.0), description="[degrees] from the x axis, first to last joint")
     supports: Literal["abutments", "end_voussoirs", "none"] = Field(
         "abutments", description="fixed blocks added beyond both ends, or the end voussoirs fixed, or neither"
     )
@@ -196,9 +219,9 @@ class Stack(PatternBase):
     type: Literal["stack"]
     width: Positive
     height: Positive
-    count: Annotated[int, Field(ge=1)]
-    offsets: list[float] | None = Field(None, description="[length] of each block's left edge from the origin")
-    base: tuple[float, float] | None = Field(
+    count: Count
+    offsets: list[Number] | None = Field(None, description="[length] of each block's left edge from the origin")
+    base: tuple[Number, Number] | None = Field(
         None, description="left and right edge of the fixed block; as wide as a block"
     )
 
@@ -226,6 +249,13 @@ class Panel(PatternBase):
 
 
 Pattern = Annotated[RunningBond | Ring | Stack | Panel, Field(discriminator="type")]
+Patterns = Annotated[Annotated[Pattern, Tag(ONE)] | Annotated[list[Pattern], Tag(MANY)], Discriminator(_one_or_many)]
+FrictionOfWall = Annotated[
+    Annotated[NonNegative, Tag(OTHER)] | Annotated[Friction, Tag(OBJECT)], Discriminator(_object_or_other)
+]
+Interfaces = Annotated[
+    Annotated[list[Interface], Tag(OTHER)] | Annotated[Detection, Tag(OBJECT)], Discriminator(_object_or_other)
+]
 
 
 class Wall(Strict):
@@ -237,9 +267,9 @@ class Wall(Strict):
     metadata: dict[str, Any] = Field(default_factory=dict, description="free: source, author, remarks")
     unit_weight: NonNegative | None = Field(None, description="[force/length^3] for blocks that give no weight")
     thickness: Positive = Field(1.0, description="out of plane [length]")
-    friction: NonNegative | Friction
-    pattern: Pattern | list[Pattern] | None = None
+    friction: FrictionOfWall
+    pattern: Patterns | None = None
     blocks: list[Block] = Field(default_factory=list)
-    interfaces: list[Interface] | Detection = Field(default_factory=Detection)
+    interfaces: Interfaces = Field(default_factory=Detection)
     contact_inset: Inset | None = None
     loads: Loads = Field(default_factory=Loads)

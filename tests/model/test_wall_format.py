@@ -23,6 +23,9 @@ BOND: dict[str, Any] = {
 }
 
 
+PANEL: dict[str, Any] = {"type": "panel", "cell_length": 1, "cell_height": 1, "layout": ["AA", "##"], "fixed": "#"}
+
+
 def two_blocks(**changes: Any) -> dict[str, Any]:
     wall: dict[str, Any] = {
         "format": "wall/1",
@@ -186,6 +189,18 @@ BAD: list[tuple[str, dict[str, Any], list[str]]] = [
         ['"zz"', "interfaces[0]"],
     ),
     ("no blocks", two_blocks(blocks=[]), ["blocks"]),
+    ("number in quotes", two_blocks(friction="0.4"), ["friction", "number", "0.4"]),
+    ("friction of a rule", two_blocks(friction={"default": -1}), ["friction.default", "-1"]),
+    ("point for a polygon", two_blocks(blocks=[{"id": "a", "polygon": 3}]), ['polygon ("a")', "list", "brackets"]),
+    ("pattern of no kind", two_blocks(pattern={"type": "dome"}), ["pattern", "dome", "running_bond", "ring"]),
+    ("second pattern", two_blocks(pattern=[PANEL, PANEL | {"cell_length": 0}]), ["pattern[1].", "cell_length", "0"]),
+    ("tolerance in words", two_blocks(interfaces={"tolerance": "fine"}), ["interfaces.tolerance", "fine"]),
+    ("more than a number can be", two_blocks(unit_weight=1e200), ["unit_weight", "1e+200"]),
+    (
+        "more than a wall can be",
+        two_blocks(pattern=BOND["pattern"] | {"count": 1000, "bricks": 1000}),
+        ["100000 blocks"],
+    ),
     ("not an object", [1, 2], ["object"]),  # type: ignore[list-item]
 ]
 
@@ -203,13 +218,20 @@ def test_bad_walls_are_refused_with_the_place_and_the_reason(data: Any, words: l
 
 
 @pytest.mark.parametrize(
-    "text", ['{"a": NaN}', '{"a": Infinity}', '{"a": 1e999}', '{"a": 1, "a": 2}', "{", "[" * 100000]
+    "text",
+    ['{"a": NaN}', '{"a": Infinity}', '{"a": 1e999}', '{"a": 1, "a": 2}', "{", "[" * 100000, "1" * 5000],
 )
 def test_json_that_python_would_let_pass_is_refused(text: str, tmp_path: Path):
     path = tmp_path / "wall.json"
     path.write_text(text)
     with pytest.raises(InputError, match=r"wall\.json"):
         read_json(path)
+
+
+def test_files_that_begin_with_a_byte_order_mark_are_read(tmp_path: Path):
+    path = tmp_path / "wall.json"
+    path.write_text(json.dumps(BOND), encoding="utf-8-sig")
+    assert read_json(path) == BOND
 
 
 def test_unreadable_files_are_refused(tmp_path: Path):
