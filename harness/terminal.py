@@ -68,8 +68,14 @@ def _value(result: Result) -> str:
     if result.finding is not Finding.COLLAPSES:
         return str(result.finding)
     if result.family == "de" and result.bracket is not None:
-        return f"[{result.bracket[0]:.5f}, {result.bracket[1]:.5f}]"
-    return "-" if result.multiplier is None else f"{result.multiplier:.7f}"
+        return f"[{_number(result.bracket[0], 5)}, {_number(result.bracket[1], 5)}]"
+    return "-" if result.multiplier is None else _number(result.multiplier, 7)
+
+
+def _number(value: float, decimals: int) -> str:
+    """A multiplier with so many decimals; by powers of ten where those would show nothing or pretend too much."""
+    usual = value == 0.0 or 1e-3 <= abs(value) < 1e6
+    return f"{value:.{decimals}f}" if usual else f"{value:.{decimals}e}"
 
 
 def _expected(result: Result) -> str:

@@ -8,9 +8,12 @@ yield               largest tension or excess of |s| over mu (n1 + n2) / W
 interpenetration    largest closing velocity at a contact point (beyond what the flow rule asks for)
 dilatancy           largest opening of a contact point that still carries force: min(force/mean block weight, velocity)
 sliding             largest slip against slack of the friction cone, the same way
-complementarity     work of contact forces on the motion they ought to have none in / live work
-virtual_work        |multiplier - (dissipation - dead work)/live work|, relative to max(1, |multiplier|)
+complementarity     work of contact forces where nothing should move, in live work at max(unit, |multiplier|)
+virtual_work        |multiplier - (dissipation - dead work)/live work|, relative to max(unit, |multiplier|)
 live_work           not a residual to be small: live work of the mechanism, must be positive
+
+The unit is the multiplier at which the live load is as large as the dead load: one for a tilt. So a live load that is
+given ten times larger, with a multiplier ten times smaller, is judged alike.
 """
 
 from __future__ import annotations
@@ -100,8 +103,9 @@ def collapse_residuals(
     }
     if live_work > 0.0:
         by_virtual_work = (dissipation - power(assembly.dead, mechanism)) / live_work
-        residuals["complementarity"] = idle_work / live_work
-        residuals["virtual_work"] = abs(by_virtual_work - multiplier) / max(1.0, abs(multiplier))
+        size = max(assembly.load_unit, abs(multiplier))
+        residuals["complementarity"] = idle_work / live_work / size
+        residuals["virtual_work"] = abs(by_virtual_work - multiplier) / size
     return residuals
 
 

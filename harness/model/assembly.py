@@ -113,6 +113,17 @@ class Assembly:
         areas = [polygon_area(self.polygons[i]) for i in self.free]
         return float(np.mean(np.sqrt(areas)))
 
+    @cached_property
+    def load_unit(self) -> float:
+        """Multiplier at which the live load is as large as the dead load (sums of force and moment / size over blocks).
+
+        One where the live load is a tilt; what is small of a multiplier is small against this.
+        """
+        live = self.live[self.free]
+        size = np.hypot(live[:, 0], live[:, 1]) + np.abs(live[:, 2]) / self.length_scale
+        total = float(size.sum())
+        return self.force_scale / total if total > 0.0 else 1.0
+
     @property
     def has_live_load(self) -> bool:
         """Whether any free block carries a live load."""

@@ -9,7 +9,7 @@ import numpy as np
 
 from harness.model.assembly import Assembly, IntArray
 from harness.model.method import Answer, Finding, Status
-from methods.de.bracket import LOOSE, Bracket, Search, held_forces, load_unit, mechanism_at
+from methods.de.bracket import LOOSE, Bracket, Search, held_forces, mechanism_at
 from methods.de.courses import Tuning, courses, insertion_orders, tunings
 from methods.de.engine import Engine
 from methods.de.settings import HoldSettings
@@ -36,7 +36,7 @@ def solve_by_holds(
     """
     if assembly.n_free == 0:
         return Answer(Status.OK, Finding.STANDS, "every block is fixed: nothing can move")
-    unit = load_unit(assembly)
+    unit = assembly.load_unit
     course = courses(assembly)
     orders = insertion_orders(assembly, course, settings.orders, settings.seed)
     candidates = candidates or tunings(course, settings.mass_decay)
@@ -78,7 +78,7 @@ def first_bracket(
     tried: list[tuple[float, int, Tuning, Bracket]] = []
     for k, tuning in enumerate(candidates):
         engine = make_engine(blocks, joints, tuning)
-        found = Search(engine, settings, load_unit(assembly), name).run(assembly.has_live_load)
+        found = Search(engine, settings, assembly.load_unit, name).run(assembly.has_live_load)
         if found.told(assembly.has_live_load):
             return tuning, found
         width = 1.0 if found.width is None else found.width

@@ -4,9 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 
-import numpy as np
-
-from harness.model.assembly import Assembly, FloatArray
+from harness.model.assembly import FloatArray
 from methods.de.engine import Engine
 from methods.de.hold import Hold, State, hold, hold_limit, settle
 from methods.de.settings import HoldSettings
@@ -72,14 +70,6 @@ class Bracket:
         return self.width is not None and self.width <= LOOSE
 
 
-def load_unit(assembly: Assembly) -> float:
-    """Multiplier at which the live load is as large as the dead load (sums of force and moment / size over blocks)."""
-    live = assembly.live[assembly.free]
-    size = np.hypot(live[:, 0], live[:, 1]) + np.abs(live[:, 2]) / assembly.length_scale
-    total = float(size.sum())
-    return assembly.force_scale / total if total > 0.0 else 1.0
-
-
 CREEPING = 2e-3
 """Accuracy below a state that could not be told: just under collapse a wall creeps, and narrower costs much."""
 
@@ -93,7 +83,7 @@ class Search:
     Args:
         engine: the wall in that order.
         settings: steps and tolerances.
-        unit: multiplier at which the live load equals the dead load, see `load_unit`.
+        unit: multiplier at which the live load equals the dead load.
         order: name of the order.
     """
 

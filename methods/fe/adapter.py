@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from typing import Any, ClassVar
 
 from harness.model.assembly import Assembly
@@ -64,7 +65,7 @@ class GapSprings:
             if not gravity.found:
                 return gravity_failure(model, gravity)
         results: list[HistoryResult] = []
-        scale = 1.0
+        scale = _unit(model.assembly)
         limit = settings.max_events or 2000 + 5 * model.n_points
         for step in chosen_histories(model, settings):
             result = trace_history(model, factor, gravity, step, scale, limit)
@@ -82,6 +83,11 @@ def chosen_histories(model: WallModel, settings: GapSpringsSettings) -> tuple[fl
     if settings.histories is not None:
         return settings.histories
     return (0.0, 0.01, 0.002) if model.assembly.n_free <= THREE_UP_TO else (0.0,)
+
+
+def _unit(assembly: Assembly) -> float:
+    """The load unit rounded to a power of two: a live load that is given so many times larger is marched up alike."""
+    return 2.0 ** round(math.log2(assembly.load_unit))
 
 
 class IncrementalNewton:
@@ -102,7 +108,8 @@ class IncrementalNewton:
             return gravity_failure(model, gravity)
         if not assembly.has_live_load:
             return stands(model, gravity)
-        result = march(model, factor, gravity, settings.first_step, settings.cuts, settings.displacement_steps)
+        first_step = settings.first_step * _unit(assembly)
+        result = march(model, factor, gravity, first_step, settings.cuts, settings.displacement_steps)
         details = {"load_control_limit": result.load_control, "gap_points": model.n_points}
         if result.state is not None:
             return single_state_answer(model, result.state, result.sentence, result.record, details, result.iterations)
@@ -136,7 +143,8 @@ class ConvexSteps:
                 details={"path_status": "refused"},
             )
         model = build_model(assembly, settings, settings.friction_cap)
-        result = bracket_collapse(model, settings.first_step, settings.resolution, settings.fixed_points)
+        first_step = settings.first_step * _unit(assembly)
+        result = bracket_collapse(model, first_step, settings.resolution, settings.fixed_points)
         details = {"programmes": result.programmes, "gap_points": model.n_points}
         if result.fall is not None:
             return falling(model, result.fall, "the energy has no minimum under the dead load", result.programmes)

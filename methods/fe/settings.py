@@ -28,7 +28,8 @@ class NewtonSettings(GapSettings):
     """Settings of `fe-newton`.
 
     Attributes:
-        first_step: first step of the multiplier; cuts: halvings after which load control stops.
+        first_step: first step of the live load, as a share of the dead load (to a factor of two).
+        cuts: halvings after which load control stops.
         displacement_steps: steps of displacement control.
     """
 
@@ -41,7 +42,8 @@ class ConvexSettings(GapSettings):
     """Settings of `fe-qp`.
 
     Attributes:
-        first_step: first step of the multiplier; resolution: relative width of the bracket at which to stop.
+        first_step: first step of the live load, as a share of the dead load (to a factor of two).
+        resolution: relative width of the bracket at which to stop.
         fixed_points: Tresca iterations allowed for one step; max_blocks: size above which the method refuses.
         friction_cap: friction coefficients above this are lowered to it.
     """

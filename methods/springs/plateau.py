@@ -176,7 +176,7 @@ def check(assembly: Assembly, multiplier: float, forces: FloatArray, mechanism: 
 
     Forces are relative to a mean block weight, rates to the fastest block. Complementarity is the work of contact
     forces on the motion they ought to have none in, and direction what slip gains instead of dissipating, both as
-    shares of the live work.
+    shares of the work of the live load at max(load unit, |multiplier|).
 
     Args:
         multiplier: of the live load; forces: (m, 3) end forces [force]; mechanism: (n, 3) block velocities.
@@ -192,17 +192,18 @@ def check(assembly: Assembly, multiplier: float, forces: FloatArray, mechanism: 
     total = forces[:, 0] + forces[:, 1]
     slack = assembly.friction * total - np.abs(forces[:, 2])
     power = float(live @ velocity)
+    size = max(assembly.load_unit, abs(multiplier))
     idle = float(np.abs(forces[:, :2] * rates[:, :2]).sum() + np.abs(slack * rates[:, 2]).sum())
     gained = float(np.maximum(forces[:, 2] * rates[:, 2], 0.0).sum())
     residuals = {
         "equilibrium": float(np.abs(balance).max()) / scale,
         "yield": max(0.0, -float(forces[:, :2].min()), -float(slack.min())) / scale,
         "dilatancy": max(0.0, -float(rates[:, :2].min())) / speed,
-        "complementarity": idle / power if power > 0.0 else np.inf,
-        "direction": gained / power if power > 0.0 else np.inf,
+        "complementarity": idle / (power * size) if power > 0.0 else np.inf,
+        "direction": gained / (power * size) if power > 0.0 else np.inf,
     }
     # power of the contact forces is friction only: n . opening = 0, s slip = -mu (n1 + n2) |slip|
     friction_work = float(np.sum(assembly.friction * total * np.abs(rates[:, 2])))
     work = float(friction_work - dead @ velocity) / power if power else float("inf")
-    residuals["work"] = abs(work - multiplier) / max(1.0, abs(multiplier)) if power > 0.0 else 1.0
+    residuals["work"] = abs(work - multiplier) / size if power > 0.0 else 1.0
     return CollapseState(multiplier, work, forces, mechanism, residuals)
