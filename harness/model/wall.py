@@ -18,6 +18,7 @@ Number = Annotated[float, Field(ge=-LARGEST, le=LARGEST, strict=True)]
 Point = tuple[Number, Number]
 Positive = Annotated[float, Field(gt=0.0, le=LARGEST, strict=True)]
 NonNegative = Annotated[float, Field(ge=0.0, le=LARGEST, strict=True)]
+Coefficient = Annotated[float, Field(ge=0.0, le=1e4, strict=True)]
 Count = Annotated[int, Field(ge=1, le=MOST_BLOCKS)]
 Name = Annotated[str, Field(min_length=1, max_length=200)]
 
@@ -66,7 +67,7 @@ class Block(Strict):
 class FrictionRule(Strict):
     """Friction of some interfaces: those between two materials, of a named joint, or between two blocks."""
 
-    value: NonNegative = Field(description="coefficient of friction, tan(phi)")
+    value: Coefficient = Field(description="coefficient of friction, tan(phi)")
     materials: tuple[str, str] | None = None
     joint: str | None = Field(None, description='"bed", "head", or a name given in `interfaces`')
     between: tuple[str, str] | None = Field(None, description="ids of the two blocks")
@@ -81,7 +82,7 @@ class FrictionRule(Strict):
 class Friction(Strict):
     """Friction by rules. The most particular rule holds: interface, then between, then joint, then materials."""
 
-    default: NonNegative
+    default: Coefficient
     rules: list[FrictionRule] = Field(default_factory=list)
 
 
@@ -104,7 +105,7 @@ class Interface(Strict):
     between: tuple[str, str] = Field(description="ids of the two blocks")
     start: Point = Field(alias="from")
     end: Point = Field(alias="to")
-    friction: NonNegative | None = None
+    friction: Coefficient | None = None
     joint: str | None = Field(None, description='a name for friction rules; "bed" or "head" by inclination if absent')
     inset: Inset | None = None
 
@@ -251,7 +252,7 @@ class Panel(PatternBase):
 Pattern = Annotated[RunningBond | Ring | Stack | Panel, Field(discriminator="type")]
 Patterns = Annotated[Annotated[Pattern, Tag(ONE)] | Annotated[list[Pattern], Tag(MANY)], Discriminator(_one_or_many)]
 FrictionOfWall = Annotated[
-    Annotated[NonNegative, Tag(OTHER)] | Annotated[Friction, Tag(OBJECT)], Discriminator(_object_or_other)
+    Annotated[Coefficient, Tag(OTHER)] | Annotated[Friction, Tag(OBJECT)], Discriminator(_object_or_other)
 ]
 Interfaces = Annotated[
     Annotated[list[Interface], Tag(OTHER)] | Annotated[Detection, Tag(OBJECT)], Discriminator(_object_or_other)

@@ -16,7 +16,7 @@ from harness.model.method import OutOfTime
 from methods.fe.commits import committed_step
 from methods.fe.newton import Equilibrium, equilibrium, newton
 from methods.springs.continuation import Tracer
-from methods.springs.factor import Factor
+from methods.springs.factor import Factor, SingularTangent
 from methods.springs.gap_law import OPEN, SLIP_PLUS
 from methods.springs.path_record import PathEnd, PathRecord
 from methods.springs.plateau import CollapseState, finish
@@ -38,8 +38,8 @@ DOUBLE_ABOVE = 100
 """Blocks above which a path without commits starts where doubled Newton steps end, to save the early events."""
 ASTRAY = 3.0
 """Multiple of the first history's plateau at which a committed history counts as lost."""
-JUMPS = 5
-"""Jumps allowed in one history."""
+JUMPS = 10
+"""Jumps tried in one history: a loop would be tried to be left for ever."""
 SENTENCES = {
     PathEnd.PLATEAU: "the path ends on a plateau",
     PathEnd.UNBOUNDED: "the path goes on to any multiplier",
@@ -125,6 +125,8 @@ def _trace(
         if record.multiplier:
             sentence += f", at {record.multiplier[-1]:.4g} times the live load (greatest so far {record.peak:.4g})"
         return HistoryResult(step, PathEnd.TIME, sentence, record, None, 0, 0.0, disturbance)
+    except SingularTangent:
+        return HistoryResult(step, PathEnd.BREAKDOWN, SENTENCES[PathEnd.BREAKDOWN], record, None, 0, 0.0, disturbance)
 
 
 def _trace_in_time(
@@ -138,7 +140,12 @@ def _trace_in_time(
     disturbance: float,
     record: PathRecord,
 ) -> HistoryResult:
-    """Trace one history into the record. Raises OutOfTime."""
+    """Trace one history into the record.
+
+    Raises:
+        OutOfTime: the time given is over.
+        SingularTangent: the path cannot be begun, or taken up again, where it stands.
+    """
     commits, worst, jumps = 0, 0.0, 0
     start = START * min(1.0, scale)
     first = equilibrium(model, factor, u, start, history)
@@ -162,9 +169,10 @@ def _trace_in_time(
         worst = max(worst, tracer.worst_residual)
         if end == PathEnd.TURNED_DOWN:
             turn = np.inf
-            jumped = _jump(model, factor, tracer, record) if jumps < JUMPS else None
+            jumps += 1
+            jumped = _jump(model, factor, tracer, record) if jumps <= JUMPS else None
             if jumped is not None:
-                jumps, tracer, turn = jumps + 1, jumped, TURN
+                tracer, turn = jumped, TURN
             else:
                 tracer.refresh()
             continue
@@ -215,7 +223,11 @@ def _jump(model: WallModel, factor: Factor, tracer: Tracer, record: PathRecord) 
     answer = equilibrium(model, factor, tracer.u, above, tracer.history)
     if not answer.found:
         return None
-    return _successor(Tracer(model, factor, answer.u, above, tracer.history, answer.state), tracer)
+    try:
+        follow = Tracer(model, factor, answer.u, above, tracer.history, answer.state)
+    except SingularTangent:
+        return None
+    return _successor(follow, tracer)
 
 
 def _successor(follow: Tracer, tracer: Tracer) -> Tracer:

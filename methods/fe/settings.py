@@ -21,7 +21,7 @@ class GapSpringsSettings(GapSettings):
 
     histories: tuple[float, ...] | None = None
     max_events: int | None = Field(None, ge=1)
-    friction_cap: float = Field(4.0, gt=0.0)
+    friction_cap: float = Field(2.0, gt=0.0)
 
 
 class NewtonSettings(GapSettings):
@@ -52,4 +52,4 @@ class ConvexSettings(GapSettings):
     resolution: float = Field(0.001, gt=0.0)
     fixed_points: int = Field(60, ge=1)
     max_blocks: int = Field(60, ge=1)
-    friction_cap: float = Field(4.0, gt=0.0)
+    friction_cap: float = Field(2.0, gt=0.0)

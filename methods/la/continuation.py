@@ -23,8 +23,18 @@ POOL = 24
 """Mechanisms carried from one rung to the next."""
 
 
+ROUGH = 1.0
+"""Friction above which the rungs are shares of this instead: much higher, most starts end at self-stress."""
+ROUGHEST = 1.5
+"""Friction to which all joints are lowered where unloaded ones are lowered further."""
+ROUGH_RUNGS = (1.0, 1.5, 2.25)
+"""Rungs added for joints that are rougher still, in shares of ROUGH."""
+
+
 def climb(search: Search, ladder: tuple[float, ...], effort: Effort, descents: int) -> Search | None:
     """The search at the last rung of the ladder below the wall's own friction, with all it knows; None without rungs.
+
+    Rough joints add rungs of their own.
 
     Args:
         search: of the wall itself.
@@ -33,8 +43,11 @@ def climb(search: Search, ladder: tuple[float, ...], effort: Effort, descents: i
         descents: lowest states a rung descends from.
     """
     below: Search | None = None
-    for factor in ladder:
-        rung = _with_friction(search, search.problem.friction * factor)
+    friction = search.problem.friction
+    below_rough = np.minimum(friction, ROUGH)
+    rough = [factor for factor in ROUGH_RUNGS if factor * ROUGH < float(friction.max(initial=0.0))]
+    for factor in (*ladder, *rough):
+        rung = _with_friction(search, np.minimum(below_rough * factor, friction))
         states = [rung.interior()]
         if below is not None:
             states += rung.adopt(below, POOL)
@@ -67,9 +80,10 @@ def smooth_joints(search: Search, factor: float) -> Search | None:
 
 
 def smooth_friction(problem: Problem, factor: float) -> FloatArray | None:
-    """Friction (m,) with that of the unloaded joints multiplied by `factor`; None if all joints are loaded."""
+    """Friction (m,), ROUGHEST at most, times `factor` in the unloaded joints; None if all joints are loaded."""
     unloaded = problem.unloaded_joints
-    return np.where(unloaded, factor * problem.friction, problem.friction) if unloaded.any() else None
+    friction = np.minimum(problem.friction, ROUGHEST)
+    return np.where(unloaded, factor * friction, friction) if unloaded.any() else None
 
 
 def _with_friction(search: Search, friction: FloatArray) -> Search:

@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import json
 from collections.abc import Callable
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -11,13 +13,16 @@ import pytest
 from harness.engine.isolate import run_isolated
 from harness.engine.worker import Task
 from harness.model.assembly import Assembly
+from harness.model.build import build
 from harness.model.method import Answer, Finding, Status
+from harness.model.reading import parse_wall
 from methods.fe.adapter import GapSprings
 from methods.fe.patterns import block_on_halves, running_bond
 from methods.fe.random_walls import random_wall
 from methods.fe.settings import GapSpringsSettings
 from methods.springs.plateau import check
 
+CASES = Path(__file__).parents[2] / "cases"
 EXACT = 1e-9  # closed forms are met to rounding; this leaves room for other linear algebra libraries
 
 
@@ -158,3 +163,18 @@ def test_fe_990_bricks_end_in_an_exact_collapse_state_on_soft_pieces() -> None:
     answer = solve(running_bond(44, 22, 0.65), histories=(0.0,))
     assert answer.multiplier == pytest.approx(0.4158961784, abs=1e-9)
     assert max(answer.details["residuals"].values()) < 1e-9
+
+
+def test_fe_point_load_at_the_end_of_a_beam_has_the_multiplier_of_limit_analysis() -> None:
+    # A jump from a path that had turned down led to a state whose tangent is singular, and the method raised.
+    data = json.loads((CASES / "panel-4x4-3-f0" / "wall.json").read_text(encoding="utf-8"))
+    data["loads"]["live"]["points"][0]["at"][0] = 0.002
+    wall = build(parse_wall(data, "panel")).assembly
+    answer = solve(wall)
+    assert answer.finding is Finding.COLLAPSES
+    assert answer.multiplier == pytest.approx(407 / 36, rel=1e-8)
+
+
+@pytest.mark.parametrize("friction", [3.0, 10.0, 1000.0])
+def test_fe_very_rough_bricks_rock_alike(friction: float) -> None:
+    assert solve(running_bond(6, 3, friction)).multiplier == pytest.approx(13 / 23, rel=EXACT)
