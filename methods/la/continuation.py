@@ -28,7 +28,7 @@ ROUGH = 1.0
 ROUGHEST = 1.5
 """Friction to which all joints are lowered where unloaded ones are lowered further."""
 ROUGH_RUNGS = (1.0, 1.5, 2.25)
-"""Rungs added for joints that are rougher still, in shares of ROUGH."""
+"""Friction of the rungs added for joints that are rougher still."""
 
 
 def climb(search: Search, ladder: tuple[float, ...], effort: Effort, descents: int) -> Search | None:
@@ -38,16 +38,16 @@ def climb(search: Search, ladder: tuple[float, ...], effort: Effort, descents: i
 
     Args:
         search: of the wall itself.
-        ladder: factors on all friction coefficients, in order.
+        ladder: factors on all friction coefficients, and on ROUGH where they are higher, in order.
         effort: of each ray descent.
         descents: lowest states a rung descends from.
     """
     below: Search | None = None
     friction = search.problem.friction
-    below_rough = np.minimum(friction, ROUGH)
-    rough = [factor for factor in ROUGH_RUNGS if factor * ROUGH < float(friction.max(initial=0.0))]
-    for factor in (*ladder, *rough):
-        rung = _with_friction(search, np.minimum(below_rough * factor, friction))
+    rungs = [factor * np.minimum(friction, ROUGH) for factor in ladder]
+    rungs += [np.minimum(friction, most) for most in ROUGH_RUNGS if most < float(friction.max(initial=0.0))]
+    for lowered in rungs:
+        rung = _with_friction(search, lowered)
         states = [rung.interior()]
         if below is not None:
             states += rung.adopt(below, POOL)
