@@ -121,12 +121,12 @@ def _trace(
     try:
         return _trace_in_time(model, factor, u, history, step, scale, max_events, disturbance, record)
     except OutOfTime:
-        sentence = SENTENCES[PathEnd.TIME]
+        end, sentence = PathEnd.TIME, SENTENCES[PathEnd.TIME]
         if record.multiplier:
             sentence += f", at {record.multiplier[-1]:.4g} times the live load (greatest so far {record.peak:.4g})"
-        return HistoryResult(step, PathEnd.TIME, sentence, record, None, 0, 0.0, disturbance)
     except SingularTangent:
-        return HistoryResult(step, PathEnd.BREAKDOWN, SENTENCES[PathEnd.BREAKDOWN], record, None, 0, 0.0, disturbance)
+        end, sentence = PathEnd.BREAKDOWN, SENTENCES[PathEnd.BREAKDOWN]
+    return HistoryResult(step, end, sentence, record, None, 0, 0.0, disturbance)
 
 
 def _trace_in_time(
