@@ -1,9 +1,10 @@
-"""The central path of zero-dilatancy flow followed by its arc length, past the folds at which Newton's path stalls.
+"""The path of zero-dilatancy flow followed by its arc length, past the folds at which Newton's path stalls.
 
-Where the path y o g = tau folds, tau must rise before it falls again. The tangent d/d(log tau) still exists; its
-sense is kept by the angle to the tangent before, and a Newton step across it leads back to the path (Keller 1977).
-Lengths are relative changes of slacks and rates, so that contacts that fade weigh no less than others. Where the path
-bends sharply, or steps across do not lead back to it, it is taken up again at the last good point with half the stride.
+The path goes through its start: y o g = tau w with the weights w that the start has. Where it folds, tau must rise
+before it falls again. The tangent d/d(log tau) still exists, and a Newton step across it leads back to the path (Keller
+1977). At a fold the determinant of the Newton system changes its sign, and so tells the sense of the path however
+sharply it bends. Lengths are relative changes of slacks and rates, so that contacts that fade weigh no less than
+others. Where steps across do not lead back, the path is taken up again at the last good point with half the stride.
 """
 
 from __future__ import annotations
@@ -24,15 +25,11 @@ STRIDE = 4.0
 SHORTEST = 2.0**-8
 """Stride below which it is not halved again."""
 FAR = 4.0
-"""Largest logarithm of y g / tau at which a step goes along the path; beyond, it only leads back to it."""
+"""Largest logarithm of y g / (tau w) at which a step goes along the path; beyond, it only leads back to it."""
 ASTRAY = 0.5
 """Root mean square of the relative changes back to the path beyond which a step only leads back."""
 PATIENCE = 8
 """Steps back in turn after which the path is taken up again with a shorter stride."""
-SHARP = 0.3
-"""Cosine of the angle between two tangents below which the path has bent too sharply to tell its sense."""
-STRAIGHT = 0.9
-"""The cosine above which the stride may grow again."""
 SHORT = 0.9
 """Part of the way to the boundary that a step goes."""
 GONE = 10.0
@@ -43,11 +40,10 @@ RESIDUAL = 1e-3
 
 @dataclass(frozen=True)
 class _Place:
-    """A point with its tau, and the unit tangent (of slacks and rates, of log tau) that led to it, if one did."""
+    """A point with its tau."""
 
     point: Point
     tau: float
-    before: tuple[FloatArray, float] | None
 
 
 @dataclass(frozen=True)
@@ -57,20 +53,29 @@ class _Way:
     back: Direction
     tangent: Direction
     growth: float
-    along: FloatArray
-    norm: float
+    steepest: float
     on_path: bool
 
 
 class ArcPath:
-    """The central path from a point near it on, followed in stretches; its sense is kept from one to the next."""
+    """The path from a point on, followed in stretches; its sense is kept from one to the next.
 
-    def __init__(self, problem: Problem, newton: NewtonMatrix, start: Point) -> None:
+    Args:
+        problem: the scaled wall.
+        newton: its Newton matrix.
+        start: a point with positive slacks and rates.
+        spread: how many times greater or less than the mean a weight may be; beyond, the path passes beside the start.
+    """
+
+    def __init__(self, problem: Problem, newton: NewtonMatrix, start: Point, spread: float = np.inf) -> None:
         self._problem, self._newton = problem, newton
         self._tight = close_tight(problem)
         self._stride = STRIDE
-        self._here = _Place(start, float((start.slack * start.rates)[~self._tight].mean()), None)
+        product = np.where(self._tight, 1.0, start.slack * start.rates)
+        self._weights = np.clip(product / product[~self._tight].mean(), 1.0 / spread, spread)
+        self._here = _Place(start, float((product / self._weights)[~self._tight].mean()))
         self._good: _Place | None = None
+        self._begun: float | None = None
         self._again = False
         self._astray = 0
 
@@ -105,24 +110,19 @@ class ArcPath:
 
     def _go_on(self, step: NewtonStep) -> None:
         """One step back to the path, or along it, or back to the last good point."""
-        way, here = self._way(step), self._here
+        way = self._way(step)
         if not (way.on_path or self._again):
             self._astray += 1
             if self._astray <= PATIENCE or not self._take_up_again():
-                self._advance(step, way, 0.0, here.before)
+                self._advance(step, way, 0.0)
             return
-        turned = 1.0
-        if here.before is not None:
-            turned = (float((way.along * here.before[0]).mean()) + here.before[1]) / way.norm
-        if not self._again:
-            if abs(turned) < SHARP and self._take_up_again():
-                return
-            if self._astray <= 1 and abs(turned) > STRAIGHT:
-                self._stride = min(STRIDE, 2.0 * self._stride)
-        self._good, self._astray, self._again = here, 0, False
-        sense = -1.0 if here.before is None else float(np.sign(turned))
-        stride = sense * min(self._stride / max(float(abs(way.along).max()), 1e-30), 1.0)
-        self._advance(step, way, stride, (sense * way.along / way.norm, sense / way.norm))
+        if not self._again and self._astray <= 1:
+            self._stride = min(STRIDE, 2.0 * self._stride)
+        if self._begun is None:
+            self._begun = step.orientation()
+        self._good, self._astray, self._again = self._here, 0, False
+        sense = -step.orientation() * self._begun
+        self._advance(step, way, sense * min(self._stride / max(way.steepest, 1e-30), 1.0))
 
     def _take_up_again(self) -> bool:
         """Return to the last good point with half the stride, if there is one and the stride can be halved."""
@@ -132,24 +132,23 @@ class ArcPath:
         self._astray, self._again = 0, True
         return True
 
-    def _advance(self, step: NewtonStep, way: _Way, stride: float, before: tuple[FloatArray, float] | None) -> None:
+    def _advance(self, step: NewtonStep, way: _Way, stride: float) -> None:
         change, growth = way.back.plus(way.growth + stride, way.tangent), way.growth + stride
         length = min(step_lengths(self._here.point, change, self._tight, SHORT, 0.0))
-        tau = self._here.tau * float(np.exp(length * growth))
-        self._here = _Place(step.advance(change, length, length), tau, before)
+        self._here = _Place(step.advance(change, length, length), self._here.tau * float(np.exp(length * growth)))
 
     def _way(self, step: NewtonStep) -> _Way:
         point, tau = self._here.point, self._here.tau
-        target = np.full(point.slack.shape, tau)
+        target = tau * self._weights
         back = step.direction(target)
         tangent = step.direction(2.0 * target).plus(-1.0, back)
         along, across = _relative(point, tangent, self._tight), _relative(point, back, self._tight)
         square = float((along**2).mean())
         growth = -float((along * across).mean()) / (square + 1.0)
         astray = float(np.sqrt(((across + growth * along) ** 2).mean()))
-        product = np.where(self._tight, tau, point.slack * point.rates)
-        on_path = astray <= ASTRAY and float(abs(np.log(product / tau)).max()) <= FAR
-        return _Way(back, tangent, growth, along, float(np.sqrt(square + 1.0)), on_path)
+        product = np.where(self._tight, target, point.slack * point.rates)
+        on_path = astray <= ASTRAY and float(abs(np.log(product / target)).max()) <= FAR
+        return _Way(back, tangent, growth, float(abs(along).max()), on_path)
 
 
 def _relative(point: Point, change: Direction, tight: BoolArray) -> FloatArray:

@@ -15,14 +15,14 @@ import numpy as np
 
 from harness.model.assembly import BoolArray, FloatArray
 from methods.la.arc import ArcPath
-from methods.la.central_point import central_point
 from methods.la.continuation import smooth_friction
 from methods.la.exact import close_tight, exact_forces, exact_mechanism
+from methods.la.feasible_pair import feasible_pair, kinematic_programme
 from methods.la.interior_point import PathResult, PathSettings, follow_path, start_point
 from methods.la.lagged import SHARP, lagged_mechanism
 from methods.la.newton_matrix import NewtonMatrix
 from methods.la.problem import Problem
-from methods.la.region import in_whole, moving_region
+from methods.la.region import Region, in_whole, moving_region
 from methods.la.state import CollapseState, residuals
 
 LINEAR = PathSettings(dilatancy=1.0, gap=1e-13, residual=1e-3, max_iterations=150, patience=20)
@@ -33,16 +33,43 @@ ATTEMPTS = ((80, 0.3), (120, 0.15), (100, 0.6))
 FEW_INTERFACES = 2000
 """Interfaces up to which every factor of `SMOOTH` is tried, instead of the first that leads to a state."""
 MOST_INTERFACES = 6000
-"""Interfaces above which the search is in the part that an associated mechanism moves."""
+"""Interfaces above which Newton's path of the whole wall stalls at folds."""
 SMOOTH = (0.3, 0.6, 0.0)
 """Factors on the friction of the joints that the dead load leaves unloaded, each the guide of one attempt."""
 PATH = PathSettings(gap=1e-8, residual=1e-3, max_iterations=150)
-ARC_GAPS = (1e-5, 3e-6, 1e-6, 1e-7)
-"""Relative gaps of the path by arc length at which its mechanism is tried."""
-MOST_ARC_STEPS = 1000
-"""Newton steps by arc length from one of these gaps to the next; walls on which it led to a state took up to 716."""
 WIDEST_GAP = 1e-2
 """Relative gap at the end of a path above which its slacks do not tell a mechanism."""
+
+
+@dataclass(frozen=True)
+class Lead:
+    """How a path by arc length begins, and how far it is followed.
+
+    Attributes:
+        smooth: factor on the friction of the joints that the dead load leaves unloaded.
+        gap: relative gap of the associated path at which the forces of its start are taken.
+        spread: of the weights about their mean.
+        gaps: of the path at which its mechanism is tried.
+        most_steps: Newton steps from one of them to the next.
+    """
+
+    smooth: float
+    gap: float
+    spread: float
+    gaps: tuple[float, ...]
+    most_steps: int
+
+
+NEAR = (10.0, (1e-6, 1e-8), 600)
+LEADS = (Lead(0.3, 1e-2, *NEAR), Lead(0.45, 1e-2, *NEAR), Lead(0.3, 1e-3, *NEAR))
+"""Paths near the central one, which end low but do not always arrive."""
+FAR = (np.inf, (1e-8, 1e-9, 1e-10), 2000)
+FAR_LEADS = (Lead(0.15, 1e-2, *FAR), Lead(0.3, 1e-3, *FAR), Lead(0.0, 1e-2, *FAR))
+"""Paths with the weights of their start, tried where no other led to a state and from MANY moving blocks on."""
+MANY = 2000
+"""Blocks of a moving part on which a path near the central one folds a thousand times and more."""
+ENOUGH = 1e6
+"""Newton steps times blocks of the moving part after which no other lead is tried once there is a state."""
 
 
 def cheapest_mechanism(
@@ -54,13 +81,8 @@ def cheapest_mechanism(
     """
     spread = least * generator.uniform(0.5, 1.5, cost.shape)
     size = float(np.median(cost[cost > 0.0])) if np.any(cost > 0.0) else 1.0
-    shifted = replace(
-        problem,
-        dead=np.zeros_like(problem.dead),
-        friction=np.zeros_like(problem.friction),
-        cohesion=cost / size + spread,
-    )
-    return follow_path(shifted, newton, start_point(shifted), SHARP)
+    programme = kinematic_programme(problem, cost / size + spread)
+    return follow_path(programme, newton, start_point(programme), SHARP)
 
 
 def least_multiplier(problem: Problem, newton: NewtonMatrix, moving: BoolArray) -> PathResult:
@@ -176,45 +198,56 @@ class LargeSearch:
             self.seconds.append(time.process_time())
 
 
-def large_search(problem: Problem, newton: NewtonMatrix, seed: int) -> LargeSearch:
+def large_search(problem: Problem, newton: NewtonMatrix, seed: int, velocities: FloatArray | None) -> LargeSearch:
     """Exact collapse states of a large wall.
 
-    First from the wall with smoother unloaded joints; where no forces fit those mechanisms, from the wall itself with
-    lagged friction bounds.
+    First at the end of Newton's path of the wall with smoother unloaded joints, then along paths by arc length in the
+    part that an associated mechanism with velocities (3n,), if one is known, moves. Where no forces fit those
+    mechanisms, from the wall itself with lagged friction bounds, and from its own path.
     """
     found = LargeSearch()
-    for factor in SMOOTH:
+    whole = problem.n_interfaces <= MOST_INTERFACES
+    for factor in SMOOTH if whole else ():
         friction = smooth_friction(problem, factor)
         if friction is not None:
             found.add(*_path_state(problem, replace(problem, friction=friction), newton, seed))
         if found.states and problem.n_interfaces > FEW_INTERFACES:
             break
-    if not found.states:
+    if velocities is not None:
+        _search_part(found, problem, newton, seed, velocities)
+    if whole and not found.states:
         found.add(*lagged_state(problem, newton))
-    if not found.states:
+    if whole and not found.states:
         found.add(*_path_state(problem, problem, newton, seed))
     return found
 
 
-def region_search(problem: Problem, newton: NewtonMatrix, seed: int, velocities: FloatArray) -> LargeSearch:
-    """Exact collapse states of a wall too large for a search of the whole.
-
-    The search is in the part that an associated mechanism with velocities (3n,) moves, with smoother unloaded joints,
-    along the central path by arc length.
-    """
-    found = LargeSearch()
+def _search_part(found: LargeSearch, problem: Problem, newton: NewtonMatrix, seed: int, velocities: FloatArray) -> None:
+    """Add the states that paths by arc length lead to in the part that moves."""
     region = moving_region(problem, velocities)
-    friction = smooth_friction(region.problem, SMOOTH[0])
+    blocks, before = region.problem.n_velocities // 3, found.steps
+    for lead in FAR_LEADS if blocks > MANY else LEADS + FAR_LEADS:
+        if found.states and (lead in FAR_LEADS or (found.steps - before) * blocks > ENOUGH):
+            break
+        _follow_lead(found, lead, problem, newton, region, seed)
+
+
+def _follow_lead(
+    found: LargeSearch, lead: Lead, problem: Problem, newton: NewtonMatrix, region: Region, seed: int
+) -> None:
+    """Add what one path by arc length leads to."""
+    friction = smooth_friction(region.problem, lead.smooth)
     guide = region.problem if friction is None else replace(region.problem, friction=friction)
-    start, found.steps = central_point(guide, region.newton)
+    start, steps = feasible_pair(guide, region.newton, lead.gap)
+    found.steps += steps
     if start is None:
-        return found
-    arc = ArcPath(guide, region.newton, start)
-    for gap in ARC_GAPS:
-        path = arc.follow(gap, MOST_ARC_STEPS)
+        return
+    arc = ArcPath(guide, region.newton, start, lead.spread)
+    for gap in lead.gaps:
+        path = arc.follow(gap, lead.most_steps)
         found.add(None, path.iterations, path.gap)
         if not path.converged:
-            break
+            return
         mechanism = cheapest_mechanism(guide, region.newton, path.point.slack, np.random.default_rng(seed))
         state, steps = mechanism_states(region.problem, region.newton, mechanism, (0.0, 1e-9))
         found.steps += mechanism.iterations + steps
@@ -223,8 +256,7 @@ def region_search(problem: Problem, newton: NewtonMatrix, seed: int, velocities:
         state, steps = mechanism_states(problem, newton, in_whole(problem, region, mechanism), (0.0, 1e-9))
         found.add(state, steps, path.gap)
         if state is not None:
-            break
-    return found
+            return
 
 
 def _path_state(

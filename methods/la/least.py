@@ -12,14 +12,14 @@ from harness.model.method import Answer
 from methods.la.answers import collapse_answer, not_converged, unbounded_answer
 from methods.la.associated import AssociatedResult, solve_associated
 from methods.la.continuation import POOL, climb, descend_from, smooth_joints
-from methods.la.large import MOST_INTERFACES, lagged_state, large_search, region_search
+from methods.la.large import lagged_state, large_search
 from methods.la.newton_matrix import NewtonMatrix
 from methods.la.prestressed import prestressed_state
 from methods.la.problem import Problem
 from methods.la.rational import confirm
 from methods.la.search import Effort, Search
 from methods.la.settings import SearchSettings
-from methods.la.state import CollapseState, polished
+from methods.la.state import CollapseState, polished, residuals
 
 
 @dataclass(frozen=True)
@@ -36,6 +36,8 @@ SIMPLEX_SEARCH = 1000
 """Interfaces above which the search by simplex programmes is too slow and the interior point does all."""
 FEW_INTERFACES = 400
 """Interfaces up to which the associated solution is one more start; on larger walls it led to high states only."""
+SAME = 1e-9
+"""Relative difference of two multipliers below which the state with the smaller residuals is the better one."""
 LADDER = (0.55, 0.65, 0.75, 0.85, 0.925)
 SMOOTH = (0.5, 0.3, 0.0)
 """Factors on the friction of the joints that the dead load leaves unloaded, each one more start."""
@@ -103,19 +105,14 @@ def _path(search: Search, began: float) -> dict[str, list[float]]:
 
 def _large(problem: Problem, newton: NewtonMatrix, settings: SearchSettings, tolerance: float) -> Answer:
     began = time.process_time()
-    associated = solve_associated(problem, newton) if problem.n_interfaces > MOST_INTERFACES else None
-    if associated is None:
-        found = large_search(problem, newton, settings.seed)
-        associated = solve_associated(problem, newton)
-    elif associated.state is None:
-        return not_converged(f"The associated programme that shows the moving part ended as {associated.outcome}.")
-    else:
-        found = region_search(problem, newton, settings.seed, associated.state.velocities)
+    associated = solve_associated(problem, newton)
+    velocities = None if associated.state is None else associated.state.velocities
+    found = large_search(problem, newton, settings.seed, velocities)
     details: dict[str, Any] = {"unknowns": 7 * problem.n_interfaces + problem.n_velocities + 1}
     if not found.states:
         led = prestressed_state(problem, newton)
         details["kinks"] = led.kinks
-        found.add(None if led.state is None else polished(problem, newton, led.state), led.steps, found.gap)
+        found.add(led.state, led.steps, found.gap)
     details |= {"starts": len(found.states), "newton_steps": found.steps, "path_gap": found.gap}
     if associated.state is not None:
         details["associated"] = associated.state.multiplier * problem.unit_multiplier
@@ -128,10 +125,12 @@ def _large(problem: Problem, newton: NewtonMatrix, settings: SearchSettings, tol
         )
     values = [state.multiplier * problem.unit_multiplier for state in found.states]
     details["start_values"] = values
-    best = min(found.states, key=lambda state: state.multiplier)
+    least = min(state.multiplier for state in found.states)
+    same = (state for state in found.states if state.multiplier <= least + SAME * abs(least))
+    best = polished(problem, newton, min(same, key=lambda state: max(residuals(problem, state).values())))
     sentence = (
-        f"The least collapse multiplier known is {min(values):.7g}, without descent because of the size of the wall. "
-        "It is not proved to be the least."
+        f"The least collapse multiplier known is {best.multiplier * problem.unit_multiplier:.7g}, without descent "
+        "because of the size of the wall. It is not proved to be the least."
     )
     answer = collapse_answer(problem, best, sentence, tolerance, found.steps, details)
     path = {

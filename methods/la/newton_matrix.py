@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, cast
 
 import numpy as np
 import scipy.sparse as sp
+from scipy.sparse.csgraph import connected_components
 from scipy.sparse.linalg import SuperLU, splu
 
 from harness.model.assembly import FloatArray, IntArray
@@ -170,8 +171,23 @@ class Factor:
         self._factors = factors
         self._order = order
 
+    def determinant_sign(self) -> float:
+        """The sign of the determinant of K."""
+        if isinstance(self._factors, SuperLU):
+            negative = np.count_nonzero(self._factors.U.diagonal() < 0.0)
+            odd = negative + sum(map(_exchanges, (self._factors.perm_r, self._factors.perm_c)))
+            return -1.0 if odd % 2 else 1.0
+        return self._factors.determinant_sign()
+
     def solve(self, right: FloatArray) -> FloatArray:
         """K^-1 b for b (3n,)."""
         solution = np.empty_like(right)
         solution[self._order] = self._factors.solve(right[self._order])
         return solution
+
+
+def _exchanges(order: IntArray) -> int:
+    """How many exchanges of two make this permutation: its length less its number of cycles."""
+    n = len(order)
+    graph = sp.csr_matrix((np.ones(n), (np.arange(n), order)), shape=(n, n))
+    return n - int(connected_components(graph, directed=False)[0])

@@ -75,6 +75,10 @@ class NewtonStep:
         self.by_live = self.factor.solve(problem.live)
         self.live_compliance = float(problem.live @ self.by_live)
 
+    def orientation(self) -> float:
+        """The sign of the determinant of the system, but for a sign common to all points of a path."""
+        return self.factor.determinant_sign() * float(np.sign(self.live_compliance))
+
     def _bordered(self, load: FloatArray, work: float) -> tuple[FloatArray, float]:
         by_load = self.factor.solve(load)
         change = (work - float(self.problem.live @ by_load)) / self.live_compliance

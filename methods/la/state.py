@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
 
 from harness.model.assembly import BoolArray, FloatArray
 from methods.la.exact import exact_forces, exact_mechanism
@@ -69,15 +70,23 @@ def polished(
     best, merit = state, max(residuals(problem, state).values())
     guess = tight_contacts(problem, state.forces) if tight is None else tight
     for tight in (guess | state.moving, state.moving):
-        try:
-            forces, multiplier = exact_forces(problem, newton, state.forces, state.multiplier, tight)
-            velocities = exact_mechanism(problem, newton, state.velocities, state.moving, state.associated)
-        except RuntimeError:
-            continue
-        candidate = CollapseState(forces, multiplier, velocities, state.moving, state.associated)
-        size = max(residuals(problem, candidate).values())
-        if size < merit:
-            best, merit = candidate, size
+        for candidate in _exact(problem, newton, state, tight):
+            size = max(residuals(problem, candidate).values())
+            if size < merit:
+                best, merit = candidate, size
         if merit < 1e-13:
             break
     return best
+
+
+def _exact(problem: Problem, newton: NewtonMatrix, state: CollapseState, tight: BoolArray) -> Iterator[CollapseState]:
+    """The state with exact forces, then with an exact mechanism too, as far as there are any."""
+    try:
+        forces, multiplier = exact_forces(problem, newton, state.forces, state.multiplier, tight)
+        state = replace(state, forces=forces, multiplier=multiplier)
+        yield state
+        yield replace(
+            state, velocities=exact_mechanism(problem, newton, state.velocities, state.moving, state.associated)
+        )
+    except RuntimeError:
+        return

@@ -89,6 +89,15 @@ class BlockFactor:
         p = self.pattern
         return factorise(p.start, p.owner, p.row_start, p.row, p.offset, self.values, self._swapped, growth, symmetric)
 
+    def determinant_sign(self) -> float:
+        """The sign of the determinant of the factorised matrix."""
+        p = self.pattern
+        unknowns = np.arange(3 * p.n)
+        first = 3 * np.repeat(p.start[:-1], 3 * np.diff(p.start))
+        swaps = np.count_nonzero(self._swapped != unknowns - first)
+        negative = np.count_nonzero(self.values[p.place(unknowns, unknowns)] < 0.0)
+        return -1.0 if (swaps + negative) % 2 else 1.0
+
     def solve(self, right: FloatArray) -> FloatArray:
         """The solution (3 n,) for a right-hand side (3 n,)."""
         p, x = self.pattern, right.copy()

@@ -4,14 +4,17 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from scipy.linalg import block_diag
 
 from methods.la.adapter import LimitAnalysis
 from methods.la.arc import RESIDUAL, ArcPath
 from methods.la.associated import solve_associated
-from methods.la.central_point import CENTRED, central_point
+from methods.la.exact import close_tight
+from methods.la.feasible_pair import FEASIBLE, feasible_pair
 from methods.la.interior_point import PathSettings, follow_path, start_point
-from methods.la.large import region_search
+from methods.la.large import large_search
 from methods.la.newton_matrix import NewtonMatrix
+from methods.la.newton_step import NewtonStep, Point
 from methods.la.problem import make_problem
 from methods.la.region import with_all_above
 from methods.la.settings import SearchSettings
@@ -23,7 +26,7 @@ def test_path_by_arc_length_leads_from_its_beginning_to_complementarity() -> Non
     """In two stretches, as the search follows it; the second goes on in the sense of the first."""
     problem = make_problem(running_bond(28, 16, 0.175, 0.65))
     newton = NewtonMatrix(problem)
-    start, _ = central_point(problem, newton)
+    start, _ = feasible_pair(problem, newton, 1e-2)
     assert start is not None
     path = ArcPath(problem, newton, start)
     middle, end = path.follow(1e-2, 500), path.follow(1e-6, 500)
@@ -34,18 +37,37 @@ def test_path_by_arc_length_leads_from_its_beginning_to_complementarity() -> Non
     assert max(end.statics, end.kinematics) <= RESIDUAL
 
 
-def test_path_begins_in_the_middle_of_zero_dilatancy_flow() -> None:
+def test_path_begins_with_forces_and_mechanism_of_the_true_wall() -> None:
+    """The sums are those of zero-dilatancy flow, which neither of the two programmes behind the pair solves."""
     problem = make_problem(running_bond(14, 7, 0.175, 0.65))
-    point, steps = central_point(problem, NewtonMatrix(problem))
-    assert point is not None
+    pair, steps = feasible_pair(problem, NewtonMatrix(problem), 1e-2)
+    assert pair is not None
     assert steps > 0
-    product = np.log(point.slack * point.rates)
-    assert np.ptp(product) <= 2.0 * CENTRED
-    assert np.all(point.slack > 0.0)
-    assert np.all(point.rates > 0.0)
+    assert np.all(pair.slack > 0.0)
+    assert np.all(pair.rates > 0.0)
+    assert problem.live @ pair.velocities == pytest.approx(problem.live_work, rel=1e-9)
     # In mean weights of a block, and for velocities of order one.
-    assert abs(problem.imbalance(problem.forces_of_slacks(point.slack), point.multiplier)).max() <= 1e-8
-    assert abs(problem.strains(point.velocities) - problem.strains_of_rates(point.rates, 0.0)).max() <= 1e-8
+    assert abs(problem.imbalance(problem.forces_of_slacks(pair.slack), pair.multiplier)).max() <= FEASIBLE
+    assert abs(problem.strains(pair.velocities) - problem.strains_of_rates(pair.rates, 0.0)).max() <= FEASIBLE
+
+
+@pytest.mark.parametrize(("courses", "bricks"), [(6, 3), (14, 16)])
+def test_orientation_of_the_path_is_the_sign_of_the_determinant(courses: int, bricks: int) -> None:
+    """Of K bordered by the live load, by dense LU; the two sizes are factorised by different libraries."""
+    problem = make_problem(running_bond(courses, bricks, 0.2, 2.0))
+    newton = NewtonMatrix(problem)
+    generator = np.random.default_rng(0)
+    signs = set()
+    for _ in range(6):
+        slack, rates = np.exp(generator.normal(0.0, 3.0, (2, problem.n_interfaces, 4)))
+        point = Point(slack, 0.0, np.zeros(problem.n_velocities), rates)
+        step = NewtonStep(problem, newton, point, 0.0, close_tight(problem))
+        dense = problem.statics @ block_diag(*step.compliance.matrices) @ problem.kinematic.toarray()
+        live = problem.live[:, None]
+        sign = np.linalg.slogdet(np.block([[dense, -live], [live.T, np.zeros((1, 1))]]))[0]
+        assert step.orientation() == sign
+        signs.add(sign)
+    assert len(signs) == 2
 
 
 def test_path_to_a_tiny_gap_stays_in_equilibrium() -> None:
@@ -67,14 +89,15 @@ def test_what_rests_on_a_moving_block_moves() -> None:
     assert not moves[wall.fixed].any()
 
 
-def test_search_of_the_part_that_collapses_gives_a_state_of_the_whole_wall() -> None:
+def test_search_of_the_part_that_collapses_gives_a_state_of_the_whole_wall(monkeypatch: pytest.MonkeyPatch) -> None:
     problem = make_problem(running_bond(14, 7, 0.175, 0.65))
     newton = NewtonMatrix(problem)
     associated = solve_associated(problem, newton)
     assert associated.state is not None
-    found = region_search(problem, newton, 0, associated.state.velocities)
-    assert len(found.states) == 1
-    state = found.states[0]
+    monkeypatch.setattr("methods.la.large.MOST_INTERFACES", 100)
+    found = large_search(problem, newton, 0, associated.state.velocities)
+    assert found.states
+    state = min(found.states, key=lambda state: state.multiplier)
     assert state.multiplier <= associated.state.multiplier
     assert max(residuals(problem, state).values()) <= 1e-10
 

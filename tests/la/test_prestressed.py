@@ -38,10 +38,11 @@ def test_safe_forces_lead_to_an_exact_state_between_the_least_known_and_the_grea
 
 
 def test_wall_whose_central_paths_lead_nowhere_gets_its_state_from_the_springs(monkeypatch: pytest.MonkeyPatch) -> None:
-    """As the 7,050 blocks do, in minutes; here the central path of a small wall is cut short."""
+    """Here those of a small wall, which are left out."""
     monkeypatch.setattr("methods.la.least.SIMPLEX_SEARCH", 100)
-    monkeypatch.setattr("methods.la.least.MOST_INTERFACES", 100)
-    monkeypatch.setattr("methods.la.large.MOST_ARC_STEPS", 1)
+    monkeypatch.setattr("methods.la.large.MOST_INTERFACES", 100)
+    monkeypatch.setattr("methods.la.large.LEADS", ())
+    monkeypatch.setattr("methods.la.large.FAR_LEADS", ())
     answer = LimitAnalysis().solve(WALLS["210 bricks"], SearchSettings())
     assert answer.multiplier is not None
     assert answer.details["kinks"] > 0

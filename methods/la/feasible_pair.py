@@ -1,0 +1,60 @@
+"""Forces and a mechanism, each feasible with a margin: where the path of zero-dilatancy flow begins on a large wall.
+
+Forces well within yield come from the path of associated flow, some way before its end. The mechanism of zero-dilatancy
+flow that does least work on their slacks is a linear programme; its path is left early too, where every rate is still
+positive. Together they meet equilibrium and compatibility, but not y o g = tau: the path goes on with the weights that
+they have (Jansen, Roos, Terlaky and Vial 1996), from a far smaller gap than that at which the central path is single.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+
+from harness.model.assembly import FloatArray
+from methods.la.exact import close_tight
+from methods.la.interior_point import PathSettings, follow_path, start_point
+from methods.la.newton_matrix import NewtonMatrix
+from methods.la.newton_step import Point
+from methods.la.problem import Problem
+
+FEASIBLE = 1e-6
+"""Scaled equilibrium and compatibility residuals of the pair."""
+EARLY = 1e-2
+"""Relative gap of the kinematic programme at which its path is left; full steps may end below it."""
+LEAST_COST = 1e-9
+"""Least cost of a rate, so that none is free to grow."""
+
+
+def feasible_pair(problem: Problem, newton: NewtonMatrix, gap: float) -> tuple[Point | None, int]:
+    """The pair as one point, or None where either path does not get there, and the Newton steps spent.
+
+    Args:
+        problem: the scaled wall.
+        newton: its Newton matrix.
+        gap: relative gap of the associated path at which its forces are taken; full steps may end below it.
+    """
+    settings = PathSettings(dilatancy=1.0, gap=gap, residual=FEASIBLE)
+    forces = follow_path(problem, newton, start_point(problem), settings)
+    if not forces.converged:
+        return None, forces.iterations
+    slack = forces.point.slack
+    cost = slack / float(np.median(slack)) + LEAST_COST
+    programme = kinematic_programme(problem, np.where(close_tight(problem), 0.0, cost))
+    settings = PathSettings(dilatancy=1.0, gap=EARLY, residual=FEASIBLE)
+    mechanism = follow_path(programme, newton, start_point(programme), settings)
+    steps = forces.iterations + mechanism.iterations
+    if not mechanism.converged:
+        return None, steps
+    return Point(slack, forces.point.multiplier, mechanism.point.velocities, mechanism.point.rates), steps
+
+
+def kinematic_programme(problem: Problem, cost: FloatArray) -> Problem:
+    """The programme min c.g, C u = E g, fL.u = const for costs c (m, 4), as a problem of associated flow.
+
+    It is the dual of max lambda s.t. C' r + lambda fL = 0, E' r + c >= 0: the same wall without dead load and friction
+    and with cohesion c.
+    """
+    nothing = np.zeros_like
+    return replace(problem, dead=nothing(problem.dead), friction=nothing(problem.friction), cohesion=cost)
