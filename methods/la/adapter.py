@@ -81,7 +81,7 @@ def associated_answer(problem: Problem, result: AssociatedResult, tolerance: flo
             f"The static and the kinematic multiplier differ by {result.gap:.2g}, more than {tolerance:.2g}.",
             result.iterations,
         )
-    multiplier = result.state.multiplier * problem.unit_multiplier
+    multiplier = problem.to_multiplier(result.state.multiplier)
     return collapse_answer(
         problem,
         result.state,

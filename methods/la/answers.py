@@ -30,7 +30,7 @@ def collapse_answer(
 ) -> Answer:
     """The answer of a collapse state, or not_converged if it fails the method's own check."""
     found = residuals(problem, state)
-    multiplier = state.multiplier * problem.unit_multiplier
+    multiplier = problem.to_multiplier(state.multiplier)
     details = {**details, "residuals": found}
     failed = {name: value for name, value in found.items() if not value <= tolerance}
     if failed:

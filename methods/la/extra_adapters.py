@@ -74,7 +74,7 @@ def paper_answer(problem: Problem, newton: NewtonMatrix, result: PaperResult, st
         return not_converged(
             f"Ipopt ended with {result.message} and no collapse state lies near its end.", result.iterations, details
         )
-    multiplier = state.multiplier * problem.unit_multiplier
+    multiplier = problem.to_multiplier(state.multiplier)
     return collapse_answer(
         problem,
         polished(problem, newton, state),
@@ -114,7 +114,7 @@ class TrescaSequence(LimitAnalysisFamily):
         return collapse_answer(
             problem,
             state,
-            f"The sequence settles at {state.multiplier * problem.unit_multiplier:.7g}: a collapse state, "
+            f"The sequence settles at {problem.to_multiplier(state.multiplier):.7g}: a collapse state, "
             "seldom the least one.",
             self.tolerance,
             len(result.history),

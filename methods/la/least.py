@@ -115,7 +115,7 @@ def _large(problem: Problem, newton: NewtonMatrix, settings: SearchSettings, tol
         found.add(led.state, led.steps, found.gap)
     details |= {"starts": len(found.states), "newton_steps": found.steps, "path_gap": found.gap}
     if associated.state is not None:
-        details["associated"] = associated.state.multiplier * problem.unit_multiplier
+        details["associated"] = problem.to_multiplier(associated.state.multiplier)
     if not found.states:
         return not_converged(
             "No contact forces fit the mechanisms at the ends of the central paths, and the path of the wall with "
@@ -123,13 +123,13 @@ def _large(problem: Problem, newton: NewtonMatrix, settings: SearchSettings, tol
             found.steps,
             details,
         )
-    values = [state.multiplier * problem.unit_multiplier for state in found.states]
+    values = [problem.to_multiplier(state.multiplier) for state in found.states]
     details["start_values"] = values
     least = min(state.multiplier for state in found.states)
     same = (state for state in found.states if state.multiplier <= least + SAME * abs(least))
     best = polished(problem, newton, min(same, key=lambda state: max(residuals(problem, state).values())))
     sentence = (
-        f"The least collapse multiplier known is {best.multiplier * problem.unit_multiplier:.7g}, without descent "
+        f"The least collapse multiplier known is {problem.to_multiplier(best.multiplier):.7g}, without descent "
         "because of the size of the wall. It is not proved to be the least."
     )
     answer = collapse_answer(problem, best, sentence, tolerance, found.steps, details)
@@ -177,9 +177,9 @@ def _answer(
     tolerance: float,
     rational_interfaces: int,
 ) -> Answer:
-    unit = problem.unit_multiplier
-    values, climbed = ([state.multiplier * unit for state in group] for group in states)
-    agreeing = sum(value <= best.multiplier * unit * (1.0 + 1e-7) + 1e-12 for value in values)
+    least = problem.to_multiplier(best.multiplier)
+    values, climbed = ([problem.to_multiplier(state.multiplier) for state in group] for group in states)
+    agreeing = sum(value <= least * (1.0 + 1e-7) + 1e-12 for value in values)
     details: dict[str, Any] = {
         "starts": len(values),
         "starts_agree": agreeing == len(values),
@@ -193,11 +193,11 @@ def _answer(
     if problem.n_interfaces <= rational_interfaces:
         details["rational_confirmation"] = confirm(problem, best)
     if associated.state is not None:
-        details["associated"] = associated.state.multiplier * unit
+        details["associated"] = problem.to_multiplier(associated.state.multiplier)
     return collapse_answer(
         problem,
         best,
-        f"The least collapse multiplier known is {best.multiplier * unit:.7g}; {agreeing} of {len(values)} starts "
+        f"The least collapse multiplier known is {least:.7g}; {agreeing} of {len(values)} starts "
         "lead to it. It is not proved to be the least.",
         tolerance,
         search.tally.newton_steps,

@@ -19,6 +19,8 @@ from harness.model.assembly import Assembly, BoolArray, FloatArray
 
 FRICTIONLESS = 1e-12
 """Friction coefficients below this are zero to rounding."""
+NOTHING = 1e-15
+"""Scaled multipliers up to this are zero to rounding, as of a wall without friction."""
 UNLOADED = 0.05
 """Share of the largest normal force on both its blocks below which a joint counts as unloaded."""
 
@@ -126,6 +128,10 @@ class Problem:
     def imbalance(self, forces: FloatArray, multiplier: float) -> FloatArray:
         """(3n,) out-of-balance loads C' r + dead + multiplier * live."""
         return np.asarray(self.statics @ forces.ravel()) + self.dead + multiplier * self.live
+
+    def to_multiplier(self, multiplier: float) -> float:
+        """The multiplier of a scaled one; zero where the live load is rounding beside the dead load."""
+        return 0.0 if abs(multiplier) <= NOTHING else multiplier * self.unit_multiplier
 
     def to_forces(self, forces: FloatArray) -> FloatArray:
         """(m, 3) contact forces [force] of scaled ones."""

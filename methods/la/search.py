@@ -66,10 +66,13 @@ class Search:
     def adopt(self, other: Search, most: int) -> list[CollapseState]:
         """The states here of the mechanisms that were lowest in another search, whose friction may differ.
 
-        Zero-dilatancy mechanisms do not depend on friction, so each needs one static programme only.
+        Zero-dilatancy mechanisms do not depend on friction, so each needs one static programme only. Where forces fit
+        none of them, the mechanisms nearest to their forces are tried.
         """
         theirs = sorted((state for state in other.known.values() if state is not None), key=lambda s: s.multiplier)
         states = [self._best_of(state.velocities, state.moving) for state in theirs[:most]]
+        if not any(states):
+            states = [self.nearest_mechanism(state.forces) for state in theirs[:most]]
         return [state for state in states if state is not None]
 
     def state_of(self, velocities: FloatArray, rates: FloatArray) -> CollapseState | None:

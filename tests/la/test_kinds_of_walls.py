@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import warnings
 from pathlib import Path
+from typing import Any
 
 import pytest
 
@@ -89,6 +90,21 @@ def test_very_rough_walls_are_not_left_at_states_of_self_stress(
     assert answer.multiplier is not None
     assert answer.multiplier <= plateau + 1e-9
     assert max(answer.details["residuals"].values()) <= 1e-11
+
+
+def test_forces_of_a_lower_friction_lead_to_a_mechanism_where_none_is_carried() -> None:
+    """The wall holds .6267281 at friction 1.5 and 2.25 too, so that it rocks; cold starts end at 1.584."""
+    answer = LimitAnalysis().solve(running_bond(10, 8, 0.175, 3.0), SearchSettings())
+    assert answer.multiplier is not None
+    assert answer.multiplier <= 0.6267282
+
+
+@pytest.mark.parametrize(("courses", "bricks"), [(6, 3), (28, 16)])
+@pytest.mark.parametrize("method", [LimitAnalysis(), AssociatedLimitAnalysis()])
+def test_wall_without_friction_bears_exactly_nothing(method: Any, courses: int, bricks: int) -> None:
+    answer = method.solve(running_bond(courses, bricks, 0.2, 0.0), method.Settings())
+    assert answer.multiplier == 0.0
+    assert " 0" in answer.sentence
 
 
 def test_path_of_an_answer_is_the_least_known_over_search_time() -> None:

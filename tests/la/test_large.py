@@ -109,3 +109,12 @@ def test_slender_wall_of_2485_blocks_has_an_exact_state() -> None:
     assert answer.multiplier is not None
     assert answer.multiplier < 0.43116
     assert max(answer.details["residuals"].values()) <= 1e-12
+
+
+@pytest.mark.slow
+def test_wall_of_7050_blocks_has_an_exact_state() -> None:
+    """A wide wall, whose central path folds more than a thousand times; springs led to .4210900."""
+    answer = LimitAnalysis().solve(running_bond(100, 70, 0.175, 0.65), SearchSettings())
+    assert answer.multiplier is not None
+    assert answer.multiplier < 0.42109
+    assert max(answer.details["residuals"].values()) <= 1e-12
