@@ -9,6 +9,7 @@ with the live load reversed and the slacks J held at zero.
 from __future__ import annotations
 
 import time
+from contextlib import suppress
 from dataclasses import dataclass, field, replace
 
 import numpy as np
@@ -229,7 +230,8 @@ def _search_part(found: LargeSearch, problem: Problem, newton: NewtonMatrix, see
     for lead in FAR_LEADS if blocks > MANY else LEADS + FAR_LEADS:
         if found.states and (lead in FAR_LEADS or (found.steps - before) * blocks > ENOUGH):
             break
-        _follow_lead(found, lead, problem, newton, region, seed)
+        with suppress(RuntimeError):  # A matrix singular to rounding ends one lead, not the search.
+            _follow_lead(found, lead, problem, newton, region, seed)
 
 
 def _follow_lead(
