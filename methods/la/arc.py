@@ -34,6 +34,10 @@ SHORT = 0.9
 """Part of the way to the boundary that a step goes."""
 GONE = 10.0
 """Relative gap above which the path has turned away for good."""
+TRIAL = 200
+"""Steps after which a path must have left its beginning; many that have not are closed."""
+LEFT = 0.3
+"""Root mean square of the changes of the logarithms of slacks and rates that this asks for."""
 RESIDUAL = 1e-3
 """Scaled equilibrium and compatibility residuals at which a stretch of the path may stop."""
 
@@ -75,7 +79,8 @@ class ArcPath:
         self._weights = np.clip(product / product[~self._tight].mean(), 1.0 / spread, spread)
         self._here = _Place(start, float((product / self._weights)[~self._tight].mean()))
         self._good: _Place | None = None
-        self._begun: float | None = None
+        self._begun: tuple[Point, float] | None = None
+        self._steps = 0
         self._again = False
         self._astray = 0
 
@@ -101,9 +106,10 @@ class ArcPath:
             statics, kinematics = float(abs(step.statics).max()), float(abs(step.kinematics).max())
             converged = present <= gap and max(statics, kinematics) <= RESIDUAL
             result = PathResult(point, converged, iteration, present, statics, kinematics, history)
-            if converged or present > GONE:
+            if converged or present > GONE or (self._steps == TRIAL and not self._has_left()):
                 break
             self._go_on(step)
+            self._steps += 1
         if result is None:
             raise RuntimeError("the path could not factorise its first system")
         return result
@@ -119,10 +125,19 @@ class ArcPath:
         if not self._again and self._astray <= 1:
             self._stride = min(STRIDE, 2.0 * self._stride)
         if self._begun is None:
-            self._begun = step.orientation()
+            self._begun = self._here.point, step.orientation()
         self._good, self._astray, self._again = self._here, 0, False
-        sense = -step.orientation() * self._begun
+        sense = -step.orientation() * self._begun[1]
         self._advance(step, way, sense * min(self._stride / max(way.steepest, 1e-30), 1.0))
+
+    def _has_left(self) -> bool:
+        """Whether the path is far from where it began; one that has not been found yet is not."""
+        if self._begun is None:
+            return False
+        before, now = self._begun[0], self._here.point
+        pairs = ((before.slack, now.slack), (before.rates, now.rates))
+        change = [np.log(new[~self._tight] / old[~self._tight]) for old, new in pairs]
+        return float(np.sqrt((np.concatenate(change) ** 2).mean())) > LEFT
 
     def _take_up_again(self) -> bool:
         """Return to the last good point with half the stride, if there is one and the stride can be halved."""

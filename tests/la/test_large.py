@@ -37,6 +37,18 @@ def test_path_by_arc_length_leads_from_its_beginning_to_complementarity() -> Non
     assert max(end.statics, end.kinematics) <= RESIDUAL
 
 
+def test_path_that_stays_beside_its_beginning_is_given_up(monkeypatch: pytest.MonkeyPatch) -> None:
+    problem = make_problem(running_bond(28, 16, 0.175, 0.65))
+    newton = NewtonMatrix(problem)
+    start, _ = feasible_pair(problem, newton, 1e-2)
+    assert start is not None
+    monkeypatch.setattr("methods.la.arc.TRIAL", 5)
+    monkeypatch.setattr("methods.la.arc.LEFT", 1e3)
+    end = ArcPath(problem, newton, start).follow(1e-6, 500)
+    assert not end.converged
+    assert end.iterations == 5
+
+
 def test_path_begins_with_forces_and_mechanism_of_the_true_wall() -> None:
     """The sums are those of zero-dilatancy flow, which neither of the two programmes behind the pair solves."""
     problem = make_problem(running_bond(14, 7, 0.175, 0.65))
