@@ -7,11 +7,13 @@ A comparison may bring further studies in `provenance["studies"]`, a list of obj
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from typing import Any
 
 import numpy as np
 
-from harness.model.comparison import ComparisonRun
+from harness.model.comparison import CaseResults, ComparisonRun
+from harness.model.result import Result
 from reports import charts, numbers
 from reports.families import Study, families, methods_of, solved
 from reports.grid import grids
@@ -26,34 +28,41 @@ def studies(run: ComparisonRun) -> list[Study]:
 
 
 def cost_against_size(run: ComparisonRun) -> Study | None:
-    """CPU time of solved runs against the number of free blocks, log-log, with slopes."""
-    series, slopes = [], []
-    for method in methods_of(run):
-        points = sorted(
-            (result.blocks, result.cpu_seconds)
-            for item in run.cases
-            if (result := item.of(method)) is not None and solved(result) and result.cpu_seconds
-        )
-        if not points:
-            continue
-        x, y = [float(p[0]) for p in points], [float(p[1]) for p in points]
-        series.append(charts.Series(method, x, y, line=False))
-        slope = _slope(x, y)
-        if slope is not None:
-            slopes.append(f"{method} {slope:.2f}")
-    if len({x for line in series for x in line.x}) < 2:
+    """CPU time of solved runs against the number of free blocks and of interfaces, log-log, with slopes."""
+    by_blocks = _costs(run, lambda item, result: result.blocks)
+    by_interfaces = _costs(run, lambda item, result: item.case.assembly.n_interfaces)
+    if len({x for line in by_blocks for x in line.x}) < 2:
         return None
-    chart = charts.Chart(
-        "CPU time against number of blocks", "free blocks", "CPU time [s]", series, log_x=True, log_y=True
-    )
+    slopes = [
+        f"{line.name} {slope:.2f}" for line in by_blocks if (slope := _slope(list(line.x), list(line.y))) is not None
+    ]
     fitted = f" Fitted slopes over walls of at least 10 blocks: {', '.join(slopes)}." if slopes else ""
+    drawings = []
+    for what, series in (("free blocks", by_blocks), ("interfaces", by_interfaces)):
+        title = f"CPU time against number of {what}"
+        chart = charts.Chart(title, what, "CPU time [s]", series, log_x=True, log_y=True)
+        drawings.append((f"Against {what}", charts.svg(chart)))
     return Study(
         "Cost against size",
         "What a wall costs grows with its number of blocks, differently for every method." + fitted,
         "Both axes are logarithmic: a slope of 1 means that twice the blocks cost twice the time. Only runs that "
         "ended with an accepted answer are drawn; time to start the process is not counted.",
-        [("", charts.svg(chart))],
+        drawings,
     )
+
+
+def _costs(run: ComparisonRun, size: Callable[[CaseResults, Result], int]) -> list[charts.Series]:
+    """CPU time of each method's solved runs over the size of the wall."""
+    series = []
+    for method in methods_of(run):
+        points = sorted(
+            (float(size(item, result)), result.cpu_seconds)
+            for item in run.cases
+            if (result := item.of(method)) is not None and solved(result) and result.cpu_seconds
+        )
+        if points:
+            series.append(charts.Series(method, [p[0] for p in points], [p[1] for p in points], line=False))
+    return series
 
 
 def _slope(x: list[float], y: list[float], smallest: float = 10.0) -> float | None:

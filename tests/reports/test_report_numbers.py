@@ -159,6 +159,21 @@ def test_profile_does_not_count_an_unsolved_case_as_won():
     assert studies.profile(run, ["fe", "la", "de"]) == {"fe": [1.0], "la": [], "de": []}
 
 
+def test_cost_stands_against_blocks_and_against_interfaces():
+    case = samples.bond()
+    small, large = samples.solved(case, "la", 0.5, cpu=0.1), samples.solved(case, "la", 0.5, cpu=0.2)
+    large.blocks = 2 * small.blocks
+    run = ComparisonRun("", "", "", [CaseResults(case, [small]), CaseResults(case, [large])])
+    study = studies.cost_against_size(run)
+    assert study is not None
+    by_blocks, by_interfaces = (svg for _, svg in study.charts)
+    assert "number of free blocks" in by_blocks
+    assert "number of interfaces" in by_interfaces
+    (line,) = studies._costs(run, lambda item, _: item.case.assembly.n_interfaces)
+    assert list(line.x) == [case.assembly.n_interfaces] * 2
+    assert sorted(line.y) == [0.1, 0.2]
+
+
 def test_slope_of_a_power_law_is_found():
     x = [10.0, 20.0, 50.0, 100.0]
     assert studies._slope(x, [3.0 * value**1.7 for value in x]) == pytest.approx(1.7)
