@@ -14,7 +14,6 @@ from dataclasses import replace
 
 import numpy as np
 
-from harness.model.assembly import FloatArray
 from methods.la.problem import Problem
 from methods.la.search import Effort, Search
 from methods.la.state import CollapseState
@@ -47,7 +46,7 @@ def climb(search: Search, ladder: tuple[float, ...], effort: Effort, descents: i
     rungs = [factor * np.minimum(friction, ROUGH) for factor in ladder]
     rungs += [np.minimum(friction, most) for most in ROUGH_RUNGS if most < float(friction.max(initial=0.0))]
     for lowered in rungs:
-        rung = _with_friction(search, lowered)
+        rung = Search(replace(search.problem, friction=lowered), search.newton, parent=search)
         states = [rung.interior()]
         if below is not None:
             states += rung.adopt(below, POOL)
@@ -71,20 +70,16 @@ def descend_from(states: list[CollapseState], search: Search, effort: Effort, mo
 
 def smooth_joints(search: Search, factor: float) -> Search | None:
     """The search of the wall whose unloaded joints have `factor` times their friction; None if all are loaded."""
-    friction = smooth_friction(search.problem, factor)
-    if friction is None:
+    guide = smoothed(search.problem, factor)
+    if guide is None:
         return None
-    smooth = _with_friction(search, friction)
+    smooth = Search(guide, search.newton, parent=search)
     smooth.interior()
     return smooth
 
 
-def smooth_friction(problem: Problem, factor: float) -> FloatArray | None:
-    """Friction (m,), ROUGHEST at most, times `factor` in the unloaded joints; None if all joints are loaded."""
+def smoothed(problem: Problem, factor: float) -> Problem | None:
+    """The wall with friction of ROUGHEST at most, times `factor` in the unloaded joints; None if all are loaded."""
     unloaded = problem.unloaded_joints
     friction = np.minimum(problem.friction, ROUGHEST)
-    return np.where(unloaded, factor * friction, friction) if unloaded.any() else None
-
-
-def _with_friction(search: Search, friction: FloatArray) -> Search:
-    return Search(replace(search.problem, friction=friction), search.newton, parent=search)
+    return replace(problem, friction=np.where(unloaded, factor * friction, friction)) if unloaded.any() else None

@@ -16,7 +16,7 @@ import numpy as np
 
 from harness.model.assembly import BoolArray, FloatArray
 from methods.la.arc import ArcPath
-from methods.la.continuation import smooth_friction
+from methods.la.continuation import smoothed
 from methods.la.exact import close_tight, exact_forces, exact_mechanism
 from methods.la.feasible_pair import feasible_pair, kinematic_programme
 from methods.la.interior_point import PathResult, PathSettings, follow_path, start_point
@@ -209,9 +209,9 @@ def large_search(problem: Problem, newton: NewtonMatrix, seed: int, velocities: 
     found = LargeSearch()
     whole = problem.n_interfaces <= MOST_INTERFACES
     for factor in SMOOTH if whole else ():
-        friction = smooth_friction(problem, factor)
-        if friction is not None:
-            found.add(*_path_state(problem, replace(problem, friction=friction), newton, seed))
+        guide = smoothed(problem, factor)
+        if guide is not None:
+            found.add(*_path_state(problem, guide, newton, seed))
         if found.states and problem.n_interfaces > FEW_INTERFACES:
             break
     if velocities is not None:
@@ -238,8 +238,7 @@ def _follow_lead(
     found: LargeSearch, lead: Lead, problem: Problem, newton: NewtonMatrix, region: Region, seed: int
 ) -> None:
     """Add what one path by arc length leads to."""
-    friction = smooth_friction(region.problem, lead.smooth)
-    guide = region.problem if friction is None else replace(region.problem, friction=friction)
+    guide = smoothed(region.problem, lead.smooth) or region.problem
     start, steps = feasible_pair(guide, region.newton, lead.gap)
     found.steps += steps
     if start is None:

@@ -112,7 +112,7 @@ class NewtonMatrix:
         unknown = np.where(index >= 0, index, np.roll(index, 3, axis=1))
         self.pattern = BlockPattern(unknown[:, 0] // 3, unknown[:, 3] // 3, self.size // 3)
         self._slot = self.pattern.slot(unknown)
-        self._diagonal = self.pattern.place(np.arange(self.size), np.arange(self.size))
+        self._diagonal = self.pattern.diagonal
         self._n_values = self.pattern.n_values
 
     def _place_in_columns(self, index: IntArray) -> None:

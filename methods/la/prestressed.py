@@ -10,9 +10,9 @@ both from the start.
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
-from methods.la.continuation import smooth_friction
+from methods.la.continuation import smoothed
 from methods.la.interior_point import PathSettings, follow_path, start_point
 from methods.la.newton_matrix import NewtonMatrix
 from methods.la.problem import Problem
@@ -48,8 +48,7 @@ def prestressed_state(problem: Problem, newton: NewtonMatrix) -> PrestressedResu
         problem: the scaled wall, which stands under its dead load and has a live load.
         newton: its Newton matrix.
     """
-    friction = smooth_friction(problem, 0.0)
-    guide = problem if friction is None else replace(problem, friction=friction)
+    guide = smoothed(problem, 0.0) or problem
     safe = follow_path(guide, newton, start_point(guide), SAFE)
     if not safe.converged:
         return PrestressedResult(None, safe.iterations, 0)

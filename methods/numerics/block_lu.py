@@ -32,7 +32,7 @@ class BlockPattern:
         n: blocks of unknowns; n_values: numbers to keep for the factors.
         start: (k + 1,) first block of each supernode; owner: (n,) the supernode of each block.
         row_start: (k + 1,) where the rows of each supernode start in `row`; row: blocks below it, ascending.
-        offset: (k + 1,) where its values start.
+        offset: (k + 1,) where its values start; diagonal: (3 n,) where the entries of the diagonal are.
     """
 
     def __init__(self, first: IntArray, second: IntArray, n: int) -> None:
@@ -48,6 +48,7 @@ class BlockPattern:
         self.offset = np.cumsum(np.concatenate([[0], 9 * width * (width + 2 * np.diff(self.row_start))]))
         self.n_values = int(self.offset[-1])
         self._keys = np.repeat(np.arange(len(width)), np.diff(self.row_start)) * n + self.row
+        self.diagonal = self.place(np.arange(3 * n), np.arange(3 * n))
 
     def slot(self, unknown: IntArray) -> IntArray:
         """(m, 36) places in the values of the products of two rows of each interface with unknowns (m, 6)."""
@@ -92,10 +93,9 @@ class BlockFactor:
     def determinant_sign(self) -> float:
         """The sign of the determinant of the factorised matrix."""
         p = self.pattern
-        unknowns = np.arange(3 * p.n)
         first = 3 * np.repeat(p.start[:-1], 3 * np.diff(p.start))
-        swaps = np.count_nonzero(self._swapped != unknowns - first)
-        negative = np.count_nonzero(self.values[p.place(unknowns, unknowns)] < 0.0)
+        swaps = np.count_nonzero(self._swapped != np.arange(3 * p.n) - first)
+        negative = np.count_nonzero(self.values[p.diagonal] < 0.0)
         return -1.0 if (swaps + negative) % 2 else 1.0
 
     def solve(self, right: FloatArray) -> FloatArray:

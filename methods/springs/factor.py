@@ -137,7 +137,7 @@ class SparseFactor:
         n = model.n_unknowns
         pattern = BlockPattern(model.unknown[:, 0] // 3, model.unknown[:, 3] // 3, n // 3)
         self._slot = pattern.slot(model.unknown)
-        self._diagonal = pattern.place(np.arange(n), np.arange(n))
+        self._diagonal = pattern.diagonal
         self._lu = BlockFactor(pattern)
         self.careful = False
         self._exchanged: SuperLU | None = None
