@@ -9,7 +9,7 @@ import numpy as np
 from harness.model.assembly import FloatArray
 from harness.model.method import Answer, Finding, Status
 from methods.fe.histories import HistoryResult, moving_blocks
-from methods.fe.newton import Equilibrium
+from methods.springs.equilibrium import Equilibrium
 from methods.springs.gap_law import equivalent_end_forces
 from methods.springs.path_record import PathEnd, PathRecord
 from methods.springs.plateau import CollapseState

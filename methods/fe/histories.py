@@ -14,8 +14,8 @@ import numpy as np
 from harness.model.assembly import FloatArray
 from harness.model.method import OutOfTime
 from methods.fe.commits import committed_step
-from methods.fe.newton import Equilibrium, equilibrium, newton
 from methods.springs.continuation import Tracer
+from methods.springs.equilibrium import Equilibrium, equilibrium, newton
 from methods.springs.factor import Factor, SingularTangent
 from methods.springs.gap_law import OPEN, SLIP_PLUS
 from methods.springs.path_record import PathEnd, PathRecord

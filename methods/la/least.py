@@ -14,7 +14,7 @@ from methods.la.associated import AssociatedResult, solve_associated
 from methods.la.continuation import POOL, climb, descend_from, smooth_joints
 from methods.la.large import lagged_state, large_search
 from methods.la.newton_matrix import NewtonMatrix
-from methods.la.prestressed import prestressed_state
+from methods.la.prestressed import light_states, prestressed_state
 from methods.la.problem import Problem
 from methods.la.rational import confirm
 from methods.la.search import Effort, Search
@@ -24,12 +24,13 @@ from methods.la.state import CollapseState, polished, residuals
 
 @dataclass(frozen=True)
 class Plan:
-    """How much is tried: random starts, failures that end a descent, friction ladder, descents a rung."""
+    """How much is tried: random starts, failures that end a descent, ladder, descents a rung, light starts."""
 
     starts: int
     failures: int
     ladder: tuple[float, ...]
     descents: int
+    light: int
 
 
 SIMPLEX_SEARCH = 1000
@@ -47,17 +48,17 @@ FINE_LADDER = (1.3, 1.15, 1.0, 0.9, 0.8, 0.7, 0.6, 0.5, 0.55, 0.6, 0.65, 0.7, 0.
 def plan_of(settings: SearchSettings, n_free: int) -> Plan:
     """The plan for a wall of n_free blocks; normal effort shrinks with size so that the time grows slowly."""
     plan = {
-        "quick": Plan(0, 8, (), 1),
-        "normal": Plan(3, 12, LADDER, 3) if n_free <= 30 else Plan(1, 12, LADDER[::2], 1),
-        "deep": Plan(20, 40, FINE_LADDER, 8),
+        "quick": Plan(0, 8, (), 1, 1),
+        "normal": Plan(3, 12, LADDER, 3, 24) if n_free <= 30 else Plan(1, 12, LADDER[::2], 1, 12),
+        "deep": Plan(20, 40, FINE_LADDER, 8, 100),
     }[settings.effort]
     if settings.effort == "normal" and n_free > 60:
-        plan = Plan(1 if n_free <= 150 else 0, 40, (), 1)
-    return Plan(
-        plan.starts if settings.starts is None else settings.starts,
-        plan.failures if settings.failures is None else settings.failures,
-        plan.ladder if settings.ladder is None else settings.ladder,
-        plan.descents,
+        plan = Plan(1, 40, (), 1, 6) if n_free <= 150 else Plan(0, 40, (), 1, 2)
+    return replace(
+        plan,
+        starts=plan.starts if settings.starts is None else settings.starts,
+        failures=plan.failures if settings.failures is None else settings.failures,
+        ladder=plan.ladder if settings.ladder is None else settings.ladder,
     )
 
 
@@ -85,6 +86,8 @@ def least_known(problem: Problem, newton: NewtonMatrix, settings: SearchSettings
     below = climb(search, plan.ladder, effort, plan.descents)
     if below is not None:
         climbed += descend_from(search.adopt(below, POOL), search, effort, plan.descents)
+    light = light_states(search, plan.light)
+    climbed += descend_from(light, search, effort, plan.descents)
     if not found and not climbed:
         return _nothing_found(search, associated)
     best = min(found + climbed, key=lambda state: state.multiplier)

@@ -1,23 +1,33 @@
-"""Collapse states of the largest walls: safe contact forces led to a mechanism along an exact path.
+"""Collapse states at the ends of the paths of springs, from contact forces that they carry as they stand.
 
-A point on the associated path somewhat before its end has contact forces in equilibrium, within yield by a margin; with
-the joints smooth that the dead load leaves unloaded, they lead to low collapse states. Springs in the contacts carry
-them as they stand, and the live load changes along the equilibrium path of the wall
-(`methods.springs`) until a mechanism moves without any change of force: an exact collapse state under zero dilatancy,
-whatever the stiffness of the springs. Where no forces fit the mechanisms that the central path ends at, this one has
-both from the start.
+The live load changes along the equilibrium path of the wall (`methods.springs`) until a mechanism moves without any
+change of force: an exact collapse state under zero dilatancy, whatever the stiffness of the springs. Where a path goes
+depends on the self-stress it starts with.
+
+The forces of gravity on a wall without any, and random vertices of statics of least weighted compression, lead to low
+states of walls of irregular blocks. Central paths end high there: they keep all the self-stress that friction allows.
+
+On the largest walls a point on the associated path somewhat before its end has forces within yield by a margin; with
+the joints smooth that the dead load leaves unloaded, they lead to low states too. Where no forces fit the mechanisms
+that the central path ends at, this path has both from the start.
 """
 
 from __future__ import annotations
 
 from dataclasses import dataclass
 
+import numpy as np
+
+from harness.model.assembly import FloatArray
 from methods.la.continuation import smoothed
 from methods.la.interior_point import PathSettings, follow_path, start_point
 from methods.la.newton_matrix import NewtonMatrix
 from methods.la.problem import Problem
+from methods.la.search import Search
 from methods.la.state import CollapseState, moving_contacts
-from methods.springs.factor import make_factor
+from methods.springs.continuation import Tracer
+from methods.springs.equilibrium import equilibrium
+from methods.springs.factor import SingularTangent, make_factor
 from methods.springs.path_record import PathEnd, PathRecord
 from methods.springs.plateau import finish
 from methods.springs.preload import preloaded
@@ -30,6 +40,12 @@ CERTIFICATE = 1e-12
 """Residual of a mechanism at which the path ends."""
 MOST_KINKS = 5
 """Changes of state per gap point after which the path is given up."""
+OFF = 1e-3
+"""Multiplier of the first step, by Newton, off the kinks on which gravity leaves many gap points."""
+RATIOS = (0.5, 5.0, 50.0)
+"""kt / kn of the paths, in turn; the first is that of `fe`."""
+HEAVY = 3
+"""Power of the exponential weights on compression: a few joints are to carry next to nothing."""
 
 
 @dataclass(frozen=True)
@@ -52,19 +68,74 @@ def prestressed_state(problem: Problem, newton: NewtonMatrix) -> PrestressedResu
     safe = follow_path(guide, newton, start_point(guide), SAFE)
     if not safe.converged:
         return PrestressedResult(None, safe.iterations, 0)
-    forces = problem.to_forces(guide.forces_of_slacks(safe.point.slack))
-    multiplier = safe.point.multiplier * problem.unit_multiplier
+    forces = guide.forces_of_slacks(safe.point.slack)
+    state, kinks = _collapse_state(problem, _from_forces(problem, forces, safe.point.multiplier, RATIOS[0]))
+    return PrestressedResult(state, safe.iterations, kinks)
+
+
+def light_states(search: Search, starts: int) -> list[CollapseState]:
+    """Collapse states that forces with little self-stress lead to.
+
+    No other forces that fit its mechanism made any of 611 such states on walls of irregular blocks lower.
+
+    Args:
+        search: of the wall, which stands under its dead load; its generator draws the weights on compression.
+        starts: how many are tried: gravity on the wall without self-stress first, then vertices of statics.
+    """
+    problem = search.problem
+    states: list[CollapseState] = []
+    for k in range(starts):
+        try:
+            tracer = _from_gravity(problem) if k == 0 else _from_vertex(search, RATIOS[k % len(RATIOS)])
+        except SingularTangent:
+            continue
+        state = None if tracer is None else _collapse_state(problem, tracer)[0]
+        if state is not None:
+            search.record(state.multiplier)
+            states.append(state)
+    return states
+
+
+def _from_gravity(problem: Problem) -> Tracer | None:
+    """The path from the forces that gravity causes in a wall without self-stress; None if none are found."""
     model = build_model(problem.assembly, GapSettings())
-    tracer = preloaded(model, make_factor(model), multiplier, forces, CERTIFICATE)
-    record = PathRecord()
+    factor = make_factor(model)
+    gravity = equilibrium(model, factor, np.zeros(model.n_unknowns), 0.0, model.history)
+    if not gravity.found:
+        return None
+    multiplier = OFF * min(1.0, problem.unit_multiplier)
+    first = equilibrium(model, factor, gravity.u, multiplier, model.history)
+    if not first.found:
+        return None
+    return Tracer(model, factor, first.u, multiplier, model.history, first.state, certificate=CERTIFICATE)
+
+
+def _from_vertex(search: Search, ratio: float) -> Tracer | None:
+    """The path from a random vertex of statics, with kt / kn = ratio; None if no vertex is found."""
+    weights = search.generator.exponential(size=(search.problem.n_interfaces, 2)) ** HEAVY
+    search.tally.programmes += 1
+    forces = search.static.lightest(weights)
+    return None if forces is None else _from_forces(search.problem, forces, 0.0, ratio)
+
+
+def _from_forces(problem: Problem, forces: FloatArray, multiplier: float, ratio: float) -> Tracer:
+    """The path from scaled forces (m, 3) in equilibrium with a scaled multiplier. Raises SingularTangent."""
+    model = build_model(problem.assembly, GapSettings(stiffness_ratio=ratio))
+    start = multiplier * problem.unit_multiplier, problem.to_forces(forces)
+    return preloaded(model, make_factor(model), *start, CERTIFICATE)
+
+
+def _collapse_state(problem: Problem, tracer: Tracer) -> tuple[CollapseState | None, int]:
+    """The collapse state at the end of a path, or None; and the kinks on the way."""
+    record, model = PathRecord(), tracer.model
     end = tracer.run(record, MOST_KINKS * model.n_points)
     found = finish(model, tracer.present(), tracer.kept) if end in (PathEnd.PLATEAU, PathEnd.BREAKDOWN) else None
     if found is None:
-        return PrestressedResult(None, safe.iterations, record.events)
+        return None, record.events
     velocities = problem.from_mechanism(found.mechanism)
     velocities *= problem.live_work / float(problem.live @ velocities)
     moving = moving_contacts(problem.rates_of_velocities(velocities, False))
     state = CollapseState(
         found.forces / problem.unit_force, found.multiplier / problem.unit_multiplier, velocities, moving
     )
-    return PrestressedResult(state, safe.iterations, record.events)
+    return state, record.events

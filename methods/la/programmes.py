@@ -158,8 +158,31 @@ class StaticProgramme:
         status, value, _ = self._programme.run()
         if status != "optimal":
             return status
-        forces = np.asarray(self._forces @ np.maximum(value[:-1], 0.0)).reshape(-1, 3)
-        return StaticSolution(forces, float(value[-1]), self._programme.iterations())
+        return StaticSolution(self._to_forces(value), float(value[-1]), self._programme.iterations())
+
+    def lightest(self, weights: FloatArray) -> FloatArray | None:
+        """Forces (m, 3) that carry the dead load with the least sum of weights (m, 2) times n1, n2; None if not found.
+
+        Such forces have little self-stress: what one joint does not need, it does not bear.
+        """
+        m = self.problem.n_interfaces
+        self._hold(0.0)
+        self._programme.set_costs(0, np.column_stack([weights, np.zeros(m)]).ravel())
+        status, value, _ = self._programme.run()
+        self._programme.set_costs(0, np.zeros(3 * m))
+        return self._to_forces(value) if status == "optimal" else None
+
+    def _hold(self, multiplier: float) -> None:
+        """Let no slack be held, but the multiplier, without cost."""
+        m = self.problem.n_interfaces
+        self._programme.set_columns(0, *self._free)
+        self._programme.set_rows(self.problem.n_velocities, np.zeros(m), np.full(m, INFINITY))
+        self._programme.set_columns(3 * m, np.array([multiplier]), np.array([multiplier]))
+        self._programme.set_costs(3 * m, np.array([0.0]))
+
+    def _to_forces(self, value: FloatArray) -> FloatArray:
+        """Forces (m, 3) of the columns."""
+        return np.asarray(self._forces @ np.maximum(value[:-1], 0.0)).reshape(-1, 3)
 
     def stands_at(self, multiplier: float) -> StaticSolution | FloatArray:
         """Forces in equilibrium within yield at a multiplier, or the velocities (3n,) that prove there are none.
@@ -171,10 +194,7 @@ class StaticProgramme:
         """
         m = self.problem.n_interfaces
         programme = self._programme
-        self._programme.set_columns(0, *self._free)
-        programme.set_rows(self.problem.n_velocities, np.zeros(m), np.full(m, INFINITY))
-        programme.set_columns(3 * m, np.array([multiplier]), np.array([multiplier]))
-        programme.set_costs(3 * m, np.array([0.0]))
+        self._hold(multiplier)
         try:
             status, value, _ = programme.run()
             if status != "optimal":
@@ -182,8 +202,7 @@ class StaticProgramme:
                 programme.highs.setOptionValue("solver", "simplex")
                 status, value, _ = programme.run()
             if status == "optimal":
-                forces = np.asarray(self._forces @ np.maximum(value[:-1], 0.0)).reshape(-1, 3)
-                return StaticSolution(forces, multiplier, programme.iterations())
+                return StaticSolution(self._to_forces(value), multiplier, programme.iterations())
             ray = programme.highs.getDualRay()
             direction = np.array(ray[2])[: self.problem.n_velocities] if ray[1] else np.zeros(0)
         finally:
