@@ -176,7 +176,7 @@ def _starts(result: Result) -> tuple[str, Markup]:
         value = result.details["associated"]
         levels.append((f"associated maximum {numbers.multiplier(value)}", value))
     if result.multiplier is not None and result.multiplier < min(values) * (1.0 - 1e-9):
-        levels.append((f"least known, by continuation {numbers.multiplier(result.multiplier)}", result.multiplier))
+        levels.append((f"least known, by descent {numbers.multiplier(result.multiplier)}", result.multiplier))
     chart = charts.Chart(
         title=f"Least known multiplier over the starts of {result.method}",
         x_label="start",

@@ -77,7 +77,7 @@ def standing_answer(forces: FloatArray, iterations: int, details: dict[str, Any]
 
 
 def collapse_answer(model: WallModel, results: list[HistoryResult], factorisations: int) -> Answer:
-    """The answer from the histories: the least plateau, with its spread."""
+    """The answer from the histories: the plateau of the first that reached one, with the spread."""
     reached = [r for r in results if r.state is not None]
     details: dict[str, Any] = {
         "histories": [

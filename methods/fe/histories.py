@@ -50,6 +50,7 @@ SENTENCES = {
     PathEnd.TURNED_DOWN: "the path turned down",
     PathEnd.TIME: "the path was left at the time limit",
 }
+BELOW_ZERO = "the path has a peak but runs down below zero: past its peak the wall falls under its dead load alone"
 
 
 @dataclass(frozen=True)
@@ -187,7 +188,9 @@ def _trace_in_time(
         else None
     )
     sentence = SENTENCES[end]
-    if state is None and end == PathEnd.PLATEAU:
+    if state is not None and state.multiplier < 0.0:
+        state, end, sentence = None, PathEnd.RUNS_DOWN, BELOW_ZERO
+    elif state is None and end == PathEnd.PLATEAU:
         sentence = "the last piece is a mechanism, but its forces do not pass the check of an exact collapse state"
     return HistoryResult(step, end, sentence, record, state, commits, worst, disturbance)
 

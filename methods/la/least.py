@@ -24,13 +24,13 @@ from methods.la.state import CollapseState, polished, residuals
 
 @dataclass(frozen=True)
 class Plan:
-    """How much is tried: random starts, failures that end a descent, ladder, descents a rung, light starts."""
+    """How much is tried: random starts, failures that end a descent, ladder, descents a rung, kinks of light starts."""
 
     starts: int
     failures: int
     ladder: tuple[float, ...]
     descents: int
-    light: int
+    kinks: int
 
 
 SIMPLEX_SEARCH = 1000
@@ -48,12 +48,12 @@ FINE_LADDER = (1.3, 1.15, 1.0, 0.9, 0.8, 0.7, 0.6, 0.5, 0.55, 0.6, 0.65, 0.7, 0.
 def plan_of(settings: SearchSettings, n_free: int) -> Plan:
     """The plan for a wall of n_free blocks; normal effort shrinks with size so that the time grows slowly."""
     plan = {
-        "quick": Plan(0, 8, (), 1, 1),
-        "normal": Plan(3, 12, LADDER, 3, 24) if n_free <= 30 else Plan(1, 12, LADDER[::2], 1, 12),
-        "deep": Plan(20, 40, FINE_LADDER, 8, 100),
+        "quick": Plan(0, 8, (), 1, 300),
+        "normal": Plan(3, 12, LADDER, 3, 6000) if n_free <= 30 else Plan(1, 12, LADDER[::2], 1, 6000),
+        "deep": Plan(20, 40, FINE_LADDER, 8, 60000),
     }[settings.effort]
     if settings.effort == "normal" and n_free > 60:
-        plan = Plan(1, 40, (), 1, 6) if n_free <= 150 else Plan(0, 40, (), 1, 2)
+        plan = Plan(1, 40, (), 1, 3000) if n_free <= 150 else Plan(0, 40, (), 1, 1500)
     return replace(
         plan,
         starts=plan.starts if settings.starts is None else settings.starts,
@@ -86,8 +86,9 @@ def least_known(problem: Problem, newton: NewtonMatrix, settings: SearchSettings
     below = climb(search, plan.ladder, effort, plan.descents)
     if below is not None:
         climbed += descend_from(search.adopt(below, POOL), search, effort, plan.descents)
-    light = light_states(search, plan.light)
+    light = light_states(search, plan.kinks)
     climbed += descend_from(light, search, effort, plan.descents)
+    found += light
     if not found and not climbed:
         return _nothing_found(search, associated)
     best = min(found + climbed, key=lambda state: state.multiplier)

@@ -73,23 +73,30 @@ def prestressed_state(problem: Problem, newton: NewtonMatrix) -> PrestressedResu
     return PrestressedResult(state, safe.iterations, kinks)
 
 
-def light_states(search: Search, starts: int) -> list[CollapseState]:
+def light_states(search: Search, kinks: int) -> list[CollapseState]:
     """Collapse states that forces with little self-stress lead to.
 
     No other forces that fit its mechanism made any of 611 such states on walls of irregular blocks lower.
 
     Args:
         search: of the wall, which stands under its dead load; its generator draws the weights on compression.
-        starts: how many are tried: gravity on the wall without self-stress first, then vertices of statics.
+        kinks: changes of state on all paths together after which no other is begun. The first path is from gravity on
+            the wall without self-stress, the others are from vertices of statics, no more than twice as many as joints.
     """
     problem = search.problem
     states: list[CollapseState] = []
-    for k in range(starts):
+    spent = 0
+    for k in range(1 + 2 * problem.n_interfaces):
+        if spent >= kinks:
+            break
         try:
             tracer = _from_gravity(problem) if k == 0 else _from_vertex(search, RATIOS[k % len(RATIOS)])
         except SingularTangent:
             continue
-        state = None if tracer is None else _collapse_state(problem, tracer)[0]
+        if tracer is None:
+            continue
+        state, passed = _collapse_state(problem, tracer)
+        spent += passed
         if state is not None:
             search.record(state.multiplier)
             states.append(state)
@@ -126,11 +133,11 @@ def _from_forces(problem: Problem, forces: FloatArray, multiplier: float, ratio:
 
 
 def _collapse_state(problem: Problem, tracer: Tracer) -> tuple[CollapseState | None, int]:
-    """The collapse state at the end of a path, or None; and the kinks on the way."""
+    """The collapse state at the end of a path, or None, also below a multiplier of zero; and the kinks on the way."""
     record, model = PathRecord(), tracer.model
     end = tracer.run(record, MOST_KINKS * model.n_points)
     found = finish(model, tracer.present(), tracer.kept) if end in (PathEnd.PLATEAU, PathEnd.BREAKDOWN) else None
-    if found is None:
+    if found is None or found.multiplier < 0.0:
         return None, record.events
     velocities = problem.from_mechanism(found.mechanism)
     velocities *= problem.live_work / float(problem.live @ velocities)

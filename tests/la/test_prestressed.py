@@ -8,11 +8,13 @@ from harness.model.assembly import Assembly
 from methods.la.adapter import LimitAnalysis
 from methods.la.associated import solve_associated
 from methods.la.newton_matrix import NewtonMatrix
-from methods.la.prestressed import prestressed_state
+from methods.la.prestressed import light_states, prestressed_state
 from methods.la.problem import make_problem
+from methods.la.search import Search
 from methods.la.settings import SearchSettings
 from methods.la.state import polished, residuals
 from tests.la.bodies import block_on_halves, running_bond
+from tests.walls import rubble
 
 WALLS = {
     "block of the paper": block_on_halves(),
@@ -35,6 +37,20 @@ def test_safe_forces_lead_to_an_exact_state_between_the_least_known_and_the_grea
     least = LimitAnalysis().solve(wall, SearchSettings(effort="quick")).multiplier
     assert least is not None
     assert state.multiplier * problem.unit_multiplier >= least * (1.0 - 1e-9)
+
+
+@pytest.mark.parametrize("wall", [WALLS["21 bricks"], rubble(27, 4, 4, 0.8)], ids=["bricks", "irregular blocks"])
+def test_forces_with_little_self_stress_lead_to_exact_states_within_statics(wall: Assembly) -> None:
+    problem = make_problem(wall)
+    newton = NewtonMatrix(problem)
+    states = light_states(Search(problem, newton), 1000)
+    associated = solve_associated(problem, newton).state
+    assert associated is not None
+    assert len(states) > 3
+    assert len({round(state.multiplier, 9) for state in states}) > 1
+    for state in states:
+        assert max(residuals(problem, polished(problem, newton, state)).values()) <= 1e-12
+        assert 0.0 <= state.multiplier <= associated.multiplier * (1.0 + 1e-9)
 
 
 def test_wall_whose_central_paths_lead_nowhere_gets_its_state_from_the_springs(monkeypatch: pytest.MonkeyPatch) -> None:
