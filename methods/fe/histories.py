@@ -15,9 +15,10 @@ from harness.model.assembly import FloatArray
 from harness.model.method import OutOfTime
 from methods.fe.commits import committed_step
 from methods.springs.continuation import Tracer
-from methods.springs.equilibrium import Equilibrium, equilibrium, newton
+from methods.springs.equilibrium import Equilibrium, doubled, equilibrium
 from methods.springs.factor import Factor, SingularTangent
 from methods.springs.gap_law import OPEN, SLIP_PLUS
+from methods.springs.jump import JUMPS, TURN, jump, successor
 from methods.springs.path_record import PathEnd, PathRecord
 from methods.springs.plateau import CollapseState, finish
 from methods.springs.wall_model import WallModel
@@ -32,14 +33,10 @@ LONGER = (1.0, 1.5, 2.25)
 """Multiples of its commit interval at which a history is traced, in turn while it is lost."""
 COMMIT_WITHIN = 300.0
 """Displacements, in multiples of the first, up to which the history is still committed."""
-TURN = 0.1
-"""Share of the peak by which a path may turn down before a jump from it is tried."""
 DOUBLE_ABOVE = 100
 """Blocks above which a path without commits starts where doubled Newton steps end, to save the early events."""
 ASTRAY = 3.0
 """Multiple of the first history's plateau at which a committed history counts as lost."""
-JUMPS = 10
-"""Jumps tried in one history: a loop would be tried to be left for ever."""
 SENTENCES = {
     PathEnd.PLATEAU: "the path ends on a plateau",
     PathEnd.UNBOUNDED: "the path goes on to any multiplier",
@@ -171,7 +168,7 @@ def _trace_in_time(
         if end == PathEnd.TURNED_DOWN:
             turn = np.inf
             jumps += 1
-            jumped = _jump(model, factor, tracer, record) if jumps <= JUMPS else None
+            jumped = jump(tracer, record.peak) if jumps <= JUMPS else None
             if jumped is not None:
                 tracer, turn = jumped, TURN
             else:
@@ -203,40 +200,18 @@ def _commit(tracer: Tracer, interval: float, record: PathRecord) -> Tracer | Non
         return None
     record.peak = max(record.peak, follow.multiplier)
     record.add(follow.multiplier, float(tracer.model.live @ follow.u), follow.n_slip, follow.n_open)
-    return _successor(follow, tracer)
+    return successor(follow, tracer)
 
 
 def _doubled(
     model: WallModel, factor: Factor, first: Equilibrium, start: float, history: FloatArray, record: PathRecord
 ) -> tuple[Equilibrium, float]:
-    """Double the multiplier while Newton converges; without commits the law has no history, so the path is the same."""
-    while start < 1e6:
-        answer = newton(model, factor, first.u, 2.0 * start, history, 25)
-        if not answer.found:
-            break
-        first, start = answer, 2.0 * start
+    """The last of the doubled equilibria from the first, and its multiplier; all are recorded."""
+    for answer, multiplier in doubled(model, factor, first, start, history):
+        first, start = answer, multiplier
         slipping = int(np.count_nonzero(first.state >= SLIP_PLUS))
         record.add(start, float(model.live @ first.u), slipping, int(np.count_nonzero(first.state == OPEN)))
     return first, start
-
-
-def _jump(model: WallModel, factor: Factor, tracer: Tracer, record: PathRecord) -> Tracer | None:
-    """A dynamic jump from a path that has turned down to equilibrium just above its peak, if there is any."""
-    above = record.peak * (1.0 + 1e-3) + 1e-9
-    answer = equilibrium(model, factor, tracer.u, above, tracer.history)
-    if not answer.found:
-        return None
-    try:
-        follow = Tracer(model, factor, answer.u, above, tracer.history, answer.state)
-    except SingularTangent:
-        return None
-    return _successor(follow, tracer)
-
-
-def _successor(follow: Tracer, tracer: Tracer) -> Tracer:
-    """A tracer further along the path, which keeps the scales of the one it follows."""
-    follow.direction.elastic, follow.first_displacement = tracer.direction.elastic, tracer.first_displacement
-    return follow
 
 
 def gravity_state(model: WallModel, factor: Factor) -> Equilibrium:

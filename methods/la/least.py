@@ -53,7 +53,7 @@ def plan_of(settings: SearchSettings, n_free: int) -> Plan:
         "deep": Plan(20, 40, FINE_LADDER, 8, 60000),
     }[settings.effort]
     if settings.effort == "normal" and n_free > 60:
-        plan = Plan(1, 40, (), 1, 3000) if n_free <= 150 else Plan(0, 40, (), 1, 1500)
+        plan = Plan(1 if n_free <= 150 else 0, 40, (), 1, 5000)
     return replace(
         plan,
         starts=plan.starts if settings.starts is None else settings.starts,

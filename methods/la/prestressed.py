@@ -14,6 +14,7 @@ that the central path ends at, this path has both from the start.
 
 from __future__ import annotations
 
+from contextlib import suppress
 from dataclasses import dataclass
 
 import numpy as np
@@ -26,8 +27,9 @@ from methods.la.problem import Problem
 from methods.la.search import Search
 from methods.la.state import CollapseState, moving_contacts
 from methods.springs.continuation import Tracer
-from methods.springs.equilibrium import equilibrium
+from methods.springs.equilibrium import doubled, equilibrium
 from methods.springs.factor import SingularTangent, make_factor
+from methods.springs.jump import JUMPS, TURN, jump
 from methods.springs.path_record import PathEnd, PathRecord
 from methods.springs.plateau import finish
 from methods.springs.preload import preloaded
@@ -58,7 +60,7 @@ class PrestressedResult:
 
 
 def prestressed_state(problem: Problem, newton: NewtonMatrix) -> PrestressedResult:
-    """The collapse state that safe forces of the wall lead to.
+    """The collapse state that safe forces of the wall lead to, or else those of gravity without self-stress.
 
     Args:
         problem: the scaled wall, which stands under its dead load and has a live load.
@@ -66,11 +68,19 @@ def prestressed_state(problem: Problem, newton: NewtonMatrix) -> PrestressedResu
     """
     guide = smoothed(problem, 0.0) or problem
     safe = follow_path(guide, newton, start_point(guide), SAFE)
-    if not safe.converged:
-        return PrestressedResult(None, safe.iterations, 0)
-    forces = guide.forces_of_slacks(safe.point.slack)
-    state, kinks = _collapse_state(problem, _from_forces(problem, forces, safe.point.multiplier, RATIOS[0]))
-    return PrestressedResult(state, safe.iterations, kinks)
+    kinks = 0
+    if safe.converged:
+        forces = guide.forces_of_slacks(safe.point.slack)
+        with suppress(SingularTangent):
+            state, kinks = _collapse_state(problem, _from_forces(problem, forces, safe.point.multiplier, RATIOS[0]))
+            if state is not None:
+                return PrestressedResult(state, safe.iterations, kinks)
+    with suppress(SingularTangent):
+        tracer = _from_gravity(problem)
+        if tracer is not None:
+            state, more = _collapse_state(problem, tracer, JUMPS)
+            return PrestressedResult(state, safe.iterations, kinks + more)
+    return PrestressedResult(None, safe.iterations, kinks)
 
 
 def light_states(search: Search, kinks: int) -> list[CollapseState]:
@@ -91,11 +101,11 @@ def light_states(search: Search, kinks: int) -> list[CollapseState]:
             break
         try:
             tracer = _from_gravity(problem) if k == 0 else _from_vertex(search, RATIOS[k % len(RATIOS)])
+            if tracer is None:
+                continue
+            state, passed = _collapse_state(problem, tracer, 0 if k else JUMPS)
         except SingularTangent:
             continue
-        if tracer is None:
-            continue
-        state, passed = _collapse_state(problem, tracer)
         spent += passed
         if state is not None:
             search.record(state.multiplier)
@@ -114,6 +124,8 @@ def _from_gravity(problem: Problem) -> Tracer | None:
     first = equilibrium(model, factor, gravity.u, multiplier, model.history)
     if not first.found:
         return None
+    for answer, further in doubled(model, factor, first, multiplier, model.history):
+        first, multiplier = answer, further
     return Tracer(model, factor, first.u, multiplier, model.history, first.state, certificate=CERTIFICATE)
 
 
@@ -132,10 +144,21 @@ def _from_forces(problem: Problem, forces: FloatArray, multiplier: float, ratio:
     return preloaded(model, make_factor(model), *start, CERTIFICATE)
 
 
-def _collapse_state(problem: Problem, tracer: Tracer) -> tuple[CollapseState | None, int]:
-    """The collapse state at the end of a path, or None, also below a multiplier of zero; and the kinks on the way."""
+def _collapse_state(problem: Problem, tracer: Tracer, jumps: int = 0) -> tuple[CollapseState | None, int]:
+    """The collapse state at the end of a path, or None, also below a multiplier of zero; and the kinks on the way.
+
+    Args:
+        problem: the scaled wall; tracer: the beginning of the path.
+        jumps: jumps tried where the path turns down; none from forces that displacements did not cause.
+    """
     record, model = PathRecord(), tracer.model
-    end = tracer.run(record, MOST_KINKS * model.n_points)
+    turn = TURN if jumps else np.inf
+    while (end := tracer.run(record, MOST_KINKS * model.n_points, turn=turn)) == PathEnd.TURNED_DOWN:
+        after = jump(tracer, record.peak) if jumps else None
+        jumps = max(jumps - 1, 0)
+        tracer, turn = (tracer, np.inf) if after is None else (after, TURN)
+        if after is None:
+            tracer.refresh()
     found = finish(model, tracer.present(), tracer.kept) if end in (PathEnd.PLATEAU, PathEnd.BREAKDOWN) else None
     if found is None or found.multiplier < 0.0:
         return None, record.events

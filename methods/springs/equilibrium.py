@@ -7,6 +7,7 @@ virgin state it may cycle; a repeated set of states is recognised and handed to 
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
@@ -21,6 +22,8 @@ SETTLED = 1e-11
 
 Newton then need not confirm it: in a statically determinate state the tangent is singular, and its step is noise.
 """
+FURTHEST = 1e6
+"""Multiplier beyond which nothing is doubled."""
 
 
 @dataclass(frozen=True)
@@ -134,3 +137,18 @@ def equilibrium(model: WallModel, factor: Factor, u: FloatArray, multiplier: flo
     if answer.found:
         return answer
     return pseudo_transient(model, factor, u, multiplier, history)
+
+
+def doubled(
+    model: WallModel, factor: Factor, first: Equilibrium, multiplier: float, history: FloatArray
+) -> Iterator[tuple[Equilibrium, float]]:
+    """Equilibria at 2, 4, 8, ... times the multiplier of a first one, as far as Newton converges.
+
+    Without commits the law has no history, so they lie on the path from the first.
+    """
+    while multiplier < FURTHEST:
+        multiplier *= 2.0
+        first = newton(model, factor, first.u, multiplier, history, 25)
+        if not first.found:
+            return
+        yield first, multiplier

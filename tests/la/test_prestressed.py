@@ -7,6 +7,7 @@ import pytest
 from harness.model.assembly import Assembly
 from methods.la.adapter import LimitAnalysis
 from methods.la.associated import solve_associated
+from methods.la.irregular_walls import irregular_wall
 from methods.la.newton_matrix import NewtonMatrix
 from methods.la.prestressed import light_states, prestressed_state
 from methods.la.problem import make_problem
@@ -14,7 +15,6 @@ from methods.la.search import Search
 from methods.la.settings import SearchSettings
 from methods.la.state import polished, residuals
 from tests.la.bodies import block_on_halves, running_bond
-from tests.walls import rubble
 
 WALLS = {
     "block of the paper": block_on_halves(),
@@ -39,7 +39,9 @@ def test_safe_forces_lead_to_an_exact_state_between_the_least_known_and_the_grea
     assert state.multiplier * problem.unit_multiplier >= least * (1.0 - 1e-9)
 
 
-@pytest.mark.parametrize("wall", [WALLS["21 bricks"], rubble(27, 4, 4, 0.8)], ids=["bricks", "irregular blocks"])
+@pytest.mark.parametrize(
+    "wall", [WALLS["21 bricks"], irregular_wall(27, 4, 4, 0.8)], ids=["bricks", "irregular blocks"]
+)
 def test_forces_with_little_self_stress_lead_to_exact_states_within_statics(wall: Assembly) -> None:
     problem = make_problem(wall)
     newton = NewtonMatrix(problem)

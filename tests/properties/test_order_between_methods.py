@@ -12,7 +12,8 @@ from harness.conformance import answered
 from harness.engine.symmetry import VIEWS
 from harness.model.assembly import Assembly
 from harness.model.method import Finding, Status, load_method
-from tests.walls import assembly, rubble
+from methods.la.irregular_walls import irregular_wall
+from tests.walls import assembly
 
 BOUND = 1e-7
 """Relative: the accuracy of the linear programme's optimum, with a margin."""
@@ -62,7 +63,7 @@ def test_least_known_plateau_and_associated_maximum_are_ordered(wall: Assembly):
 @pytest.mark.parametrize(("seed", "columns", "courses"), [(27, 4, 4), (7, 5, 4), (4, 5, 3), (17, 5, 3)])
 def test_least_known_is_no_higher_than_the_plateau_of_irregular_blocks(seed: int, columns: int, courses: int):
     # Central paths alone ended up to 3 times as high as the plateau on these walls.
-    wall = rubble(seed, columns, courses, 0.8)
+    wall = irregular_wall(seed, columns, courses, 0.8)
     (least, judgement), (plateau, _) = (answered(load_method(name), wall) for name in ("la", "fe"))
     assert judgement.accepted
     assert least.multiplier is not None
@@ -71,7 +72,7 @@ def test_least_known_is_no_higher_than_the_plateau_of_irregular_blocks(seed: int
 
 
 def test_wall_that_falls_alone_past_its_peak_has_no_plateau_and_no_negative_multiplier():
-    wall = rubble(2, 5, 3, 0.8)
+    wall = irregular_wall(2, 5, 3, 0.8)
     path, _ = answered(load_method("fe"), wall)
     assert path.multiplier is None
     assert path.details["path_status"] == "peak_only"

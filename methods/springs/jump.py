@@ -1,0 +1,32 @@
+"""The dynamic jump of a wall whose path has turned down, to equilibrium just above the peak."""
+
+from __future__ import annotations
+
+from methods.springs.continuation import Tracer
+from methods.springs.equilibrium import equilibrium
+from methods.springs.factor import SingularTangent
+
+TURN = 0.1
+"""Share of the peak by which a path may turn down before a jump from it is tried."""
+JUMPS = 10
+"""Jumps tried along one path: a loop would be tried to be left for ever."""
+
+
+def jump(tracer: Tracer, peak: float) -> Tracer | None:
+    """The tracer just above the peak, at the equilibrium that the springs come to from where it is; None if at none."""
+    above = peak * (1.0 + 1e-3) + 1e-9
+    answer = equilibrium(tracer.model, tracer.factor, tracer.u, above, tracer.history)
+    if not answer.found:
+        return None
+    try:
+        follow = Tracer(tracer.model, tracer.factor, answer.u, above, tracer.history, answer.state)
+    except SingularTangent:
+        return None
+    return successor(follow, tracer)
+
+
+def successor(follow: Tracer, tracer: Tracer) -> Tracer:
+    """A tracer further along the path, which keeps the scales of the one it follows."""
+    follow.direction.elastic, follow.first_displacement = tracer.direction.elastic, tracer.first_displacement
+    follow.certificate = tracer.certificate
+    return follow
