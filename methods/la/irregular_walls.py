@@ -82,9 +82,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
     if not blocks:
         print(f"{count} walls, none of which all three methods have a multiplier for")
         return 0
-    print(
-        f"{count} walls, {len(blocks)} of {min(blocks)} to {max(blocks)} blocks with a multiplier of all three methods"
-    )
+    sizes = f"{min(blocks)} to {max(blocks)} blocks"
+    print(f"{count} walls; {len(blocks)} of them, of {sizes}, have a multiplier of all three methods")
     print(f"least known below the plateau: {below}; equal: {equal}; above it or the maximum: {above or 'none'}")
     print(f"la: {spent:.0f} CPU s")
     return int(bool(above))

@@ -42,6 +42,8 @@ CERTIFICATE = 1e-12
 """Residual of a mechanism at which the path ends."""
 MOST_KINKS = 5
 """Changes of state per gap point after which the path is given up."""
+JUMPS_UP_TO = 2000
+"""Interfaces up to which jumps are tried where nothing else is found: one may take thousands of factorisations."""
 OFF = 1e-3
 """Multiplier of the first step, by Newton, off the kinks on which gravity leaves many gap points."""
 RATIOS = (0.5, 5.0, 50.0)
@@ -78,7 +80,7 @@ def prestressed_state(problem: Problem, newton: NewtonMatrix) -> PrestressedResu
     with suppress(SingularTangent):
         tracer = _from_gravity(problem)
         if tracer is not None:
-            state, more = _collapse_state(problem, tracer, JUMPS)
+            state, more = _collapse_state(problem, tracer, JUMPS if problem.n_interfaces <= JUMPS_UP_TO else 0)
             return PrestressedResult(state, safe.iterations, kinks + more)
     return PrestressedResult(None, safe.iterations, kinks)
 
