@@ -19,8 +19,8 @@ KNOWN_LIMITS: list[tuple[str, list[str]]] = [
             "The plateau is a collapse state, but which one depends on the history of friction; the spread over "
             "histories is reported and is the uncertainty of the number.",
             "Springs are numerical: the plateau does not depend on their stiffness at a fixed ratio of tangential to "
-            "normal stiffness, and on regular walls little on the ratio; on irregular ones with rough joints it may move "
-            "by a third. Deformable joints tend to reach states above the least one.",
+            "normal stiffness, and on regular walls little on the ratio; on irregular ones with rough joints it may "
+            "move by a third. Deformable joints tend to reach states above the least one.",
             "Cost grows faster than the number of blocks. Large walls are followed under one friction history only.",
         ],
     ),
