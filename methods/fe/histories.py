@@ -15,17 +15,13 @@ from harness.model.assembly import FloatArray
 from harness.model.method import OutOfTime
 from methods.fe.commits import committed_step
 from methods.springs.continuation import Tracer
-from methods.springs.equilibrium import Equilibrium, doubled, equilibrium
+from methods.springs.equilibrium import Equilibrium, doubled, equilibrium, first_step
 from methods.springs.factor import Factor, SingularTangent
 from methods.springs.gap_law import OPEN, SLIP_PLUS
-from methods.springs.jump import JUMPS, TURN, jump, successor
+from methods.springs.jump import JUMPS, TURN, past_turn, successor
 from methods.springs.path_record import PathEnd, PathRecord
 from methods.springs.plateau import CollapseState, finish
 from methods.springs.wall_model import WallModel
-
-START = 1e-3
-"""First Newton step off the kinks on which gravity leaves many gap points, as a multiplier."""
-
 
 DISTURBANCES = (1e-9, 1e-7, 1e-5)
 """Random initial shears, in weights of a block, tried in turn where exact ties lead a path astray."""
@@ -144,9 +140,8 @@ def _trace_in_time(
         OutOfTime: the time given is over.
         SingularTangent: the path cannot be begun, or taken up again, where it stands.
     """
-    commits, worst, jumps = 0, 0.0, 0
-    start = START * min(1.0, scale)
-    first = equilibrium(model, factor, u, start, history)
+    commits, worst, jumps = 0, 0.0, JUMPS
+    first, start = first_step(model, factor, u, history, scale)
     if not first.found:
         sentence = "no equilibrium a small step off the dead load"
         return HistoryResult(step, PathEnd.BREAKDOWN, sentence, record, None, 0, 0.0, disturbance)
@@ -166,13 +161,8 @@ def _trace_in_time(
             end = tracer.run(record, max_events, tracer.multiplier + interval, turn)
         worst = max(worst, tracer.worst_residual)
         if end == PathEnd.TURNED_DOWN:
-            turn = np.inf
-            jumps += 1
-            jumped = jump(tracer, record.peak) if jumps <= JUMPS else None
-            if jumped is not None:
-                tracer, turn = jumped, TURN
-            else:
-                tracer.refresh()
+            tracer, turn = past_turn(tracer, record.peak, jumps)
+            jumps -= 1
             continue
         if end != PathEnd.TARGET:
             break

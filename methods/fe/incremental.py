@@ -14,8 +14,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from harness.model.assembly import FloatArray, IntArray
-from methods.fe.histories import START
-from methods.springs.equilibrium import Equilibrium, newton
+from methods.springs.equilibrium import START, Equilibrium, newton
 from methods.springs.factor import Factor, SingularTangent, make_factor
 from methods.springs.path_record import PathRecord, Snapshot
 from methods.springs.plateau import CollapseState, finish

@@ -27,9 +27,9 @@ from methods.la.problem import Problem
 from methods.la.search import Search
 from methods.la.state import CollapseState, moving_contacts
 from methods.springs.continuation import Tracer
-from methods.springs.equilibrium import doubled, equilibrium
+from methods.springs.equilibrium import doubled, equilibrium, first_step
 from methods.springs.factor import SingularTangent, make_factor
-from methods.springs.jump import JUMPS, TURN, jump
+from methods.springs.jump import JUMPS, TURN, past_turn
 from methods.springs.path_record import PathEnd, PathRecord
 from methods.springs.plateau import finish
 from methods.springs.preload import preloaded
@@ -44,8 +44,6 @@ MOST_KINKS = 5
 """Changes of state per gap point after which the path is given up."""
 JUMPS_UP_TO = 2000
 """Interfaces up to which jumps are tried where nothing else is found: one may take thousands of factorisations."""
-OFF = 1e-3
-"""Multiplier of the first step, by Newton, off the kinks on which gravity leaves many gap points."""
 RATIOS = (0.5, 5.0, 50.0)
 """kt / kn of the paths, in turn; the first is that of `fe`."""
 HEAVY = 3
@@ -122,8 +120,7 @@ def _from_gravity(problem: Problem) -> Tracer | None:
     gravity = equilibrium(model, factor, np.zeros(model.n_unknowns), 0.0, model.history)
     if not gravity.found:
         return None
-    multiplier = OFF * min(1.0, problem.unit_multiplier)
-    first = equilibrium(model, factor, gravity.u, multiplier, model.history)
+    first, multiplier = first_step(model, factor, gravity.u, model.history, problem.unit_multiplier)
     if not first.found:
         return None
     for answer, further in doubled(model, factor, first, multiplier, model.history):
@@ -156,11 +153,8 @@ def _collapse_state(problem: Problem, tracer: Tracer, jumps: int = 0) -> tuple[C
     record, model = PathRecord(), tracer.model
     turn = TURN if jumps else np.inf
     while (end := tracer.run(record, MOST_KINKS * model.n_points, turn=turn)) == PathEnd.TURNED_DOWN:
-        after = jump(tracer, record.peak) if jumps else None
-        jumps = max(jumps - 1, 0)
-        tracer, turn = (tracer, np.inf) if after is None else (after, TURN)
-        if after is None:
-            tracer.refresh()
+        tracer, turn = past_turn(tracer, record.peak, jumps)
+        jumps -= 1
     found = finish(model, tracer.present(), tracer.kept) if end in (PathEnd.PLATEAU, PathEnd.BREAKDOWN) else None
     if found is None or found.multiplier < 0.0:
         return None, record.events

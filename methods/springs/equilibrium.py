@@ -22,6 +22,8 @@ SETTLED = 1e-11
 
 Newton then need not confirm it: in a statically determinate state the tangent is singular, and its step is noise.
 """
+START = 1e-3
+"""First Newton step off the kinks on which gravity leaves many gap points, as a multiplier."""
 FURTHEST = 1e6
 """Multiplier beyond which nothing is doubled."""
 
@@ -137,6 +139,19 @@ def equilibrium(model: WallModel, factor: Factor, u: FloatArray, multiplier: flo
     if answer.found:
         return answer
     return pseudo_transient(model, factor, u, multiplier, history)
+
+
+def first_step(
+    model: WallModel, factor: Factor, u: FloatArray, history: FloatArray, scale: float
+) -> tuple[Equilibrium, float]:
+    """Equilibrium a small step off the dead load, and its multiplier.
+
+    Args:
+        model: the wall; factor: its tangent; u: (N,) displacements under the dead load; history: (P,) h.
+        scale: a multiplier of the order of collapse.
+    """
+    multiplier = START * min(1.0, scale)
+    return equilibrium(model, factor, u, multiplier, history), multiplier
 
 
 def doubled(

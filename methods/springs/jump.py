@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import numpy as np
+
 from methods.springs.continuation import Tracer
 from methods.springs.equilibrium import equilibrium
 from methods.springs.factor import SingularTangent
@@ -12,7 +14,23 @@ JUMPS = 10
 """Jumps tried along one path: a loop would be tried to be left for ever."""
 
 
-def jump(tracer: Tracer, peak: float) -> Tracer | None:
+def past_turn(tracer: Tracer, peak: float, jumps: int) -> tuple[Tracer, float]:
+    """The tracer to go on with where a path has turned down, and the share of the peak at which to look again.
+
+    Args:
+        tracer: where the path has turned down; peak: its peak; jumps: how many may still be tried.
+
+    Raises:
+        SingularTangent: the path cannot be taken up again where it stands.
+    """
+    after = _jump(tracer, peak) if jumps > 0 else None
+    if after is not None:
+        return after, TURN
+    tracer.refresh()
+    return tracer, np.inf
+
+
+def _jump(tracer: Tracer, peak: float) -> Tracer | None:
     """The tracer just above the peak, at the equilibrium that the springs come to from where it is; None if at none."""
     above = peak * (1.0 + 1e-3) + 1e-9
     answer = equilibrium(tracer.model, tracer.factor, tracer.u, above, tracer.history)
