@@ -15,8 +15,8 @@ from collections.abc import Sequence
 from harness.model.assembly import Assembly
 from harness.model.case import read_case, shipped_cases
 from methods.fe.adapter import GapSprings
-from methods.fe.patterns import arch, block_on_halves, running_bond
 from methods.fe.settings import GapSpringsSettings
+from methods.springs.patterns import arch, block_on_halves, running_bond
 
 WALLS: tuple[tuple[int, int, float, float, float], ...] = (
     (21, 3, 0.65, 13 / 23, 0.1),

@@ -13,8 +13,8 @@ from pathlib import Path
 
 from harness.model.assembly import Assembly
 from methods.fe.adapter import GapSprings
-from methods.fe.patterns import running_bond
 from methods.fe.settings import GapSpringsSettings
+from methods.springs.patterns import running_bond
 
 RATIOS = (0.01, 0.03, 0.1, 0.3, 0.5, 1.0, 3.0, 10.0)
 

@@ -14,6 +14,7 @@ from methods.la.least import least_known
 from methods.la.newton_matrix import NewtonMatrix
 from methods.la.problem import Problem
 from methods.la.settings import AssociatedSettings, CvxpySettings, SearchSettings
+from methods.springs.warm_up import load_kernels
 
 __all__ = [
     "AssociatedLimitAnalysis",
@@ -23,6 +24,8 @@ __all__ = [
     "PaperProgramme",
     "TrescaSequence",
 ]
+
+load_kernels()
 
 
 class AssociatedLimitAnalysis(LimitAnalysisFamily):

@@ -17,9 +17,9 @@ from harness.model.build import build
 from harness.model.method import Answer, Finding, Status
 from harness.model.reading import parse_wall
 from methods.fe.adapter import GapSprings
-from methods.fe.patterns import block_on_halves, running_bond
 from methods.fe.random_walls import random_wall
 from methods.fe.settings import GapSpringsSettings
+from methods.springs.patterns import block_on_halves, running_bond
 from methods.springs.plateau import check
 
 CASES = Path(__file__).parents[2] / "cases"

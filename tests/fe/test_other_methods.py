@@ -12,9 +12,9 @@ from harness.model.build import build
 from harness.model.method import Finding, Status
 from harness.model.wall import Wall
 from methods.fe.adapter import ConvexSteps, IncrementalNewton
-from methods.fe.patterns import block_on_halves, running_bond
 from methods.fe.sensitivity import main
 from methods.fe.settings import ConvexSettings, NewtonSettings
+from methods.springs.patterns import block_on_halves, running_bond
 
 
 def test_newton_reaches_the_plateau_of_the_single_block() -> None:

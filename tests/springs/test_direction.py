@@ -6,11 +6,11 @@ import numpy as np
 import pytest
 
 from harness.model.assembly import FloatArray, IntArray
-from methods.fe.patterns import block_on_halves, running_bond
 from methods.fe.settings import GapSpringsSettings
 from methods.springs.direction import Direction
 from methods.springs.factor import DenseFactor, SparseFactor
 from methods.springs.gap_law import SLIP_PLUS, STICK, neighbour_states
+from methods.springs.patterns import block_on_halves, running_bond
 from methods.springs.tolerances import MOST
 from methods.springs.wall_model import WallModel, build_model
 

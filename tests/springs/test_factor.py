@@ -5,11 +5,11 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from methods.fe.patterns import running_bond
 from methods.fe.settings import GapSpringsSettings
 from methods.springs import factor as factor_module
 from methods.springs.factor import DenseFactor, Factor, SingularTangent, SparseFactor
 from methods.springs.gap_law import OPEN, STICK, neighbour_states
+from methods.springs.patterns import running_bond
 from methods.springs.wall_model import WallModel, build_model
 
 

@@ -1,0 +1,44 @@
+"""Load the compiled kernels when a method is imported, so that the first wall does not pay for it."""
+
+from __future__ import annotations
+
+from functools import cache
+
+import numpy as np
+
+from methods.springs.continuation import Tracer
+from methods.springs.equilibrium import equilibrium, first_step
+from methods.springs.exact_rates import exact_gap_rates
+from methods.springs.factor import SparseFactor
+from methods.springs.gap_law import STICK, neighbour_states
+from methods.springs.kinks import live_rate, strain_rates
+from methods.springs.path_record import PathRecord
+from methods.springs.patterns import block_on_halves
+from methods.springs.plateau import finish
+from methods.springs.settings import GapSettings
+from methods.springs.wall_model import build_model
+
+
+@cache
+def load_kernels() -> None:
+    """Trace a single block to its collapse with the sparse factor, and call what that leaves out, once in a process."""
+    model = build_model(block_on_halves((0.6, 0.4)), GapSettings())
+    factor = SparseFactor(model)
+    gravity = equilibrium(model, factor, np.zeros(model.n_unknowns), 0.0, model.history)
+    first, multiplier = first_step(model, factor, gravity.u, model.history, 1.0)
+    tracer = Tracer(model, factor, first.u, multiplier, model.history, first.state)
+    tracer.run(PathRecord(), 100)
+    finish(model, tracer.present(), tracer.kept)
+    rates = np.empty(model.n_points), np.empty(model.n_points)
+    kinematics = model.unknown, model.rows, model.interface, model.position
+    exact_gap_rates(*kinematics, model.kt, gravity.u, np.zeros(model.n_unknowns), *rates)
+    strain_rates(*rates, model.kt, gravity.state)
+    live_rate(model.live, gravity.u)
+    for new in neighbour_states(STICK):
+        factor.refactor(np.full(model.n_points, STICK), 1.0)
+        change = 0, STICK, new
+        factor.foresee([change])
+        index, _, b = model.change(*change)
+        y = factor.solve_change(change)
+        factor.update(y, index, b, 1.0 + float(b @ y[index]))
+        factor.solve(model.live)
