@@ -124,6 +124,8 @@ def print_comparison(compared: ComparisonRun, report: Path) -> None:
         for result in case.results:
             if result.status is not Status.OK:
                 console.print(f"{escape(case.case.id)}, {result.method}: {escape(result.sentence)}", highlight=False)
+        if case.split_on_dead_load:
+            console.print(f"{escape(case.case.id)}: {case.split_on_dead_load}.", highlight=False)
     broken = violations(compared)
     gated = sum(item.gate for case in compared.cases for result in case.results for item in result.comparisons)
     gates = sum(len(case.gates) for case in compared.cases)

@@ -37,3 +37,9 @@ def assembly(pattern: dict[str, Any], friction: Any = 0.65, **more: Any) -> Asse
 def case(pattern: dict[str, Any], friction: Any = 0.65, references: list[Reference] | None = None, **more: Any) -> Case:
     file = CaseFile(id="made-up", title="A wall of a test", source="the tests", references=references or [])
     return Case(file, Wall.model_validate(wall_data(pattern, friction, **more)), "made-up/wall.json")
+
+
+def wedge() -> dict[str, Any]:
+    """A block between two fixed ones, which only friction on its sides can hold; its live load draws it down."""
+    panel = {"type": "panel", "cell_length": 1.0, "cell_height": 1.0, "layout": ["LMR"], "fixed": "LR"}
+    return wall_data(panel, 0.5, loads={"live": {"body": [{"per_weight": [0, -1]}]}})

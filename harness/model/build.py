@@ -12,7 +12,7 @@ from scipy.sparse.csgraph import connected_components
 
 from harness.model import geometry
 from harness.model.assembly import Assembly, FloatArray, IntArray, polygon_area
-from harness.model.errors import InputError
+from harness.model.errors import InputError, first_few
 from harness.model.pattern import blocks_of
 from harness.model.wall import Block, Detection, Friction, Inset, Interface, Load, PatternBase, Wall
 
@@ -191,7 +191,7 @@ def _check_held(
     if not floating.any():
         return
     listed = [names[k] for k in np.flatnonzero(floating)]
-    shown = ", ".join(f'"{name}"' for name in listed[:5]) + (f" and {len(listed) - 5} more" if len(listed) > 5 else "")
+    shown = first_few([f'"{name}"' for name in listed], 5)
     at_corner = bool(len(corners) and np.any(floating[corners[:, 0]] | floating[corners[:, 1]]))
     raise InputError(
         "no chain of interfaces joins "
@@ -371,9 +371,8 @@ def _explicit(
 def _warnings(assembly: Assembly, corners: IntArray, size: float) -> tuple[str, ...]:
     sentences = []
     if len(corners):
-        shown = ", ".join(f"{assembly.block_ids[a]}/{assembly.block_ids[b]}" for a, b in corners[:5])
-        more = f" and {len(corners) - 5} more" if len(corners) > 5 else ""
-        sentences.append(f"{len(corners)} pair(s) of blocks touch only at a corner, which is no support: {shown}{more}")
+        shown = first_few([f"{assembly.block_ids[a]}/{assembly.block_ids[b]}" for a, b in corners], 5)
+        sentences.append(f"{len(corners)} pair(s) of blocks touch only at a corner, which is no support: {shown}")
     short = np.flatnonzero(assembly.length < 1e-3 * size)
     if len(short):
         p = short[int(np.argmin(assembly.length[short]))]

@@ -8,6 +8,7 @@ from typing import Any
 from pydantic import BaseModel, ConfigDict
 
 from harness.model.case import Case
+from harness.model.method import Finding, Status
 from harness.model.result import Result
 
 
@@ -39,6 +40,20 @@ class CaseResults:
     def of(self, method: str) -> Result | None:
         """The result of a method, or None."""
         return next((result for result in self.results if result.method == method), None)
+
+    @property
+    def split_on_dead_load(self) -> str:
+        """Which methods say that the wall falls under its dead load and which that it stands; empty if they agree."""
+        answered = [result for result in self.results if result.status is Status.OK]
+        fall = [result.method for result in answered if result.finding is Finding.FALLS]
+        stand = [result.method for result in answered if result.finding not in (Finding.FALLS, Finding.NONE)]
+        if not fall or not stand:
+            return ""
+        return (
+            f"Under the dead load the wall falls for {', '.join(fall)} and stands for {', '.join(stand)}. Limit "
+            "analysis lets the joints carry any self-stress that statics and friction allow; springs and distinct "
+            "elements start without. A multiplier of this wall holds only if its joints are under such stress"
+        )
 
 
 @dataclass(frozen=True)

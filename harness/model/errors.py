@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 
 class InputError(Exception):
     """Something a user gave cannot be used. The command line prints it and exits with code 2.
@@ -24,3 +26,9 @@ class InputError(Exception):
 
     def __reduce__(self) -> tuple[type[InputError], tuple[str, str, str, str]]:
         return InputError, (self.problem, self.remedy, self.element, self.source)
+
+
+def first_few(names: Sequence[str], most: int) -> str:
+    """So many names in words, and how many more there are."""
+    more = f" and {len(names) - most} more" if len(names) > most else ""
+    return ", ".join(names[:most]) + more

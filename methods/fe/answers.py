@@ -7,8 +7,9 @@ from typing import Any
 import numpy as np
 
 from harness.model.assembly import FloatArray
+from harness.model.errors import first_few
 from harness.model.method import Answer, Finding, Status
-from methods.fe.histories import HistoryResult, moving_blocks
+from methods.fe.histories import HistoryResult
 from methods.springs.equilibrium import Equilibrium
 from methods.springs.gap_law import equivalent_end_forces
 from methods.springs.path_record import PathEnd, PathRecord
@@ -36,12 +37,11 @@ def gravity_failure(model: WallModel, gravity: Equilibrium) -> Answer:
 def falling(model: WallModel, rate: FloatArray, why: str, iterations: int) -> Answer:
     """The answer for a wall that falls under its dead load along displacements (N,), which are approximate."""
     motion = model.block_displacements(rate)
-    blocks = moving_blocks(model, motion)
-    shown = ", ".join(blocks[:8]) + (f" and {len(blocks) - 8} more" if len(blocks) > 8 else "")
+    blocks = model.moving_blocks(motion)
     return Answer(
         Status.OK,
         Finding.FALLS,
-        f"the wall falls under its dead load: {why} for {shown}",
+        f"the wall falls under its dead load: {why} for {first_few(blocks, 8)}",
         mechanism=motion / np.abs(motion).max(),
         flow="approximate",
         iterations=iterations,
@@ -132,7 +132,7 @@ def collapse_answer(model: WallModel, results: list[HistoryResult], factorisatio
         "peak": best.record.peak,
         "plateau": best.state.multiplier,
         "spread": spread if len(reached) > 1 else None,
-        "moving_blocks": moving_blocks(model, best.state.mechanism),
+        "moving_blocks": model.moving_blocks(best.state.mechanism),
         "residuals": best.state.residuals,
         "work_multiplier": best.state.work_multiplier,
     }
@@ -228,6 +228,6 @@ def single_state_answer(
         | {
             "path_status": "plateau",
             "residuals": state.residuals,
-            "moving_blocks": moving_blocks(model, state.mechanism),
+            "moving_blocks": model.moving_blocks(state.mechanism),
         },
     )

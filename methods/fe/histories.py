@@ -214,9 +214,3 @@ def with_initial_shear(model: WallModel, gravity: Equilibrium, share: float, see
     normal, _ = model.forces(gravity.u, model.history, gravity.state)
     noise = np.random.default_rng(seed).uniform(-share, share, model.n_points)
     return replace(model, history=noise * model.mu * normal)
-
-
-def moving_blocks(model: WallModel, mechanism: FloatArray) -> list[str]:
-    """Names of the blocks that move in a mechanism (n, 3): faster than a millionth of the fastest."""
-    speed = np.abs(mechanism * np.array([1.0, 1.0, model.length])).max(axis=1)
-    return [model.assembly.block_ids[i] for i in np.flatnonzero(speed > 1e-6 * speed.max(initial=0.0))]

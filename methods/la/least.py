@@ -8,13 +8,14 @@ from typing import Any
 
 import numpy as np
 
+from harness.model.errors import first_few
 from harness.model.method import Answer
 from methods.la.answers import collapse_answer, not_converged, unbounded_answer
 from methods.la.associated import AssociatedResult, solve_associated
 from methods.la.continuation import POOL, climb, descend_from, smooth_joints
 from methods.la.large import lagged_state, large_search
 from methods.la.newton_matrix import NewtonMatrix
-from methods.la.prestressed import light_states, prestressed_state
+from methods.la.prestressed import gravity_of, light_states, prestressed_state
 from methods.la.problem import Problem
 from methods.la.rational import confirm
 from methods.la.search import Effort, Search
@@ -86,18 +87,30 @@ def least_known(problem: Problem, newton: NewtonMatrix, settings: SearchSettings
     below = climb(search, plan.ladder, effort, plan.descents)
     if below is not None:
         climbed += descend_from(search.adopt(below, POOL), search, effort, plan.descents)
-    light = light_states(search, plan.kinks)
+    gravity = gravity_of(problem)
+    light = light_states(search, plan.kinks, gravity)
     climbed += descend_from(light, search, effort, plan.descents)
     found += light
     if not found and not climbed:
-        return _nothing_found(search, associated)
+        return _with_falling_blocks(_nothing_found(search, associated), gravity.falling)
     best = min(found + climbed, key=lambda state: state.multiplier)
     joined = search.as_one_block(best)
     if joined is not None and joined.multiplier < best.multiplier:
         best = search.descend(joined, effort)
     best = polished(problem, newton, best)
     answer = _answer(problem, search, best, (found, climbed), associated, tolerance, settings.rational_interfaces)
-    return replace(answer, path=_path(search, began))
+    return _with_falling_blocks(replace(answer, path=_path(search, began)), gravity.falling)
+
+
+def _with_falling_blocks(answer: Answer, falling: list[str]) -> Answer:
+    """The answer with the blocks that fall under the dead load where the joints carry no self-stress, if any."""
+    if not falling:
+        return answer
+    sentence = (
+        f"{answer.sentence} The wall stands by self-stress in its joints: without any, "
+        f"{first_few(falling, 8)} would fall under the dead load."
+    )
+    return replace(answer, sentence=sentence, details={**answer.details, "falls_without_self_stress": falling})
 
 
 def _path(search: Search, began: float) -> dict[str, list[float]]:

@@ -27,14 +27,14 @@ from methods.la.problem import Problem
 from methods.la.search import Search
 from methods.la.state import CollapseState, moving_contacts
 from methods.springs.continuation import Tracer
-from methods.springs.equilibrium import doubled, equilibrium, first_step
-from methods.springs.factor import SingularTangent, make_factor
+from methods.springs.equilibrium import Equilibrium, doubled, equilibrium, first_step
+from methods.springs.factor import Factor, SingularTangent, make_factor
 from methods.springs.jump import JUMPS, TURN, past_turn
 from methods.springs.path_record import PathEnd, PathRecord
 from methods.springs.plateau import finish
 from methods.springs.preload import preloaded
 from methods.springs.settings import GapSettings
-from methods.springs.wall_model import build_model
+from methods.springs.wall_model import WallModel, build_model
 
 SAFE = PathSettings(dilatancy=1.0, gap=0.1, residual=1e-7)
 """Where the associated path is left. Full steps meet the equilibrium at a gap of half a percent or so."""
@@ -59,6 +59,28 @@ class PrestressedResult:
     kinks: int
 
 
+@dataclass(frozen=True)
+class Gravity:
+    """What the dead load does to a wall with springs in its joints and no self-stress in them."""
+
+    model: WallModel
+    factor: Factor
+    equilibrium: Equilibrium
+
+    @property
+    def falling(self) -> list[str]:
+        """Names of the blocks that fall; none where there is equilibrium, or the search for it did not end."""
+        motion = self.model.block_displacements(self.equilibrium.rate)
+        return [] if self.equilibrium.found else self.model.moving_blocks(motion)
+
+
+def gravity_of(problem: Problem) -> Gravity:
+    """The springs under the dead load of a wall that stands by statics."""
+    model = build_model(problem.assembly, GapSettings())
+    factor = make_factor(model)
+    return Gravity(model, factor, equilibrium(model, factor, np.zeros(model.n_unknowns), 0.0, model.history))
+
+
 def prestressed_state(problem: Problem, newton: NewtonMatrix) -> PrestressedResult:
     """The collapse state that safe forces of the wall lead to, or else those of gravity without self-stress.
 
@@ -76,14 +98,14 @@ def prestressed_state(problem: Problem, newton: NewtonMatrix) -> PrestressedResu
             if state is not None:
                 return PrestressedResult(state, safe.iterations, kinks)
     with suppress(SingularTangent):
-        tracer = _from_gravity(problem)
+        tracer = _from_gravity(problem, gravity_of(problem))
         if tracer is not None:
             state, more = _collapse_state(problem, tracer, JUMPS if problem.n_interfaces <= JUMPS_UP_TO else 0)
             return PrestressedResult(state, safe.iterations, kinks + more)
     return PrestressedResult(None, safe.iterations, kinks)
 
 
-def light_states(search: Search, kinks: int) -> list[CollapseState]:
+def light_states(search: Search, kinks: int, gravity: Gravity) -> list[CollapseState]:
     """Collapse states that forces with little self-stress lead to.
 
     No other forces that fit its mechanism made any of 611 such states on walls of irregular blocks lower.
@@ -92,6 +114,7 @@ def light_states(search: Search, kinks: int) -> list[CollapseState]:
         search: of the wall, which stands under its dead load; its generator draws the weights on compression.
         kinks: changes of state on all paths together after which no other is begun. The first path is from gravity on
             the wall without self-stress, the others are from vertices of statics, no more than twice as many as joints.
+        gravity: what the dead load does to the wall.
     """
     problem = search.problem
     states: list[CollapseState] = []
@@ -100,7 +123,7 @@ def light_states(search: Search, kinks: int) -> list[CollapseState]:
         if spent >= kinks:
             break
         try:
-            tracer = _from_gravity(problem) if k == 0 else _from_vertex(search, RATIOS[k % len(RATIOS)])
+            tracer = _from_gravity(problem, gravity) if k == 0 else _from_vertex(search, RATIOS[k % len(RATIOS)])
             if tracer is None:
                 continue
             state, passed = _collapse_state(problem, tracer, 0 if k else JUMPS)
@@ -113,14 +136,12 @@ def light_states(search: Search, kinks: int) -> list[CollapseState]:
     return states
 
 
-def _from_gravity(problem: Problem) -> Tracer | None:
-    """The path from the forces that gravity causes in a wall without self-stress; None if none are found."""
-    model = build_model(problem.assembly, GapSettings())
-    factor = make_factor(model)
-    gravity = equilibrium(model, factor, np.zeros(model.n_unknowns), 0.0, model.history)
-    if not gravity.found:
+def _from_gravity(problem: Problem, gravity: Gravity) -> Tracer | None:
+    """The path from the forces that gravity causes in a wall without self-stress; None if there are none."""
+    if not gravity.equilibrium.found:
         return None
-    first, multiplier = first_step(model, factor, gravity.u, model.history, problem.unit_multiplier)
+    model, factor = gravity.model, gravity.factor
+    first, multiplier = first_step(model, factor, gravity.equilibrium.u, model.history, problem.unit_multiplier)
     if not first.found:
         return None
     for answer, further in doubled(model, factor, first, multiplier, model.history):

@@ -135,6 +135,11 @@ class WallModel:
         out[:, 2] /= self.length
         return out
 
+    def moving_blocks(self, motion: FloatArray) -> list[str]:
+        """Names of the blocks that move in a motion (n, 3): faster than a millionth of the fastest."""
+        speed = np.abs(motion * np.array([1.0, 1.0, self.length])).max(axis=1)
+        return [self.assembly.block_ids[i] for i in np.flatnonzero(speed > 1e-6 * speed.max(initial=0.0))]
+
 
 def build_model(assembly: Assembly, settings: GapSettings, friction_cap: float = np.inf) -> WallModel:
     """The gap-spring model of a wall.

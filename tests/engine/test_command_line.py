@@ -10,7 +10,7 @@ from typing import Any
 
 import pytest
 
-from tests.walls import running_bond, stack, wall_data
+from tests.walls import running_bond, stack, wall_data, wedge
 
 PROMISED = {
     "status",
@@ -90,6 +90,15 @@ def test_compare_leaves_report_and_store_and_reuses_what_is_there(wall: Path):
     again = drystone("report", cwd=wall.parent)
     assert again.returncode == 0, again.stderr
     assert (wall.parent / "out" / "report.html").is_file()
+
+
+def test_methods_that_are_split_on_the_dead_load_are_named_with_the_reason(tmp_path: Path):
+    (tmp_path / "wedge.json").write_text(json.dumps(wedge()))
+    done = drystone("compare", "wedge.json", "--methods", "fe,la,de", cwd=tmp_path)
+    assert done.returncode == 0, done.stderr
+    reason = "the wall falls for fe, de and stands for la"
+    assert reason in done.stdout.replace("\n", " ")
+    assert reason in (tmp_path / "out" / "report.html").read_text()
 
 
 def test_expanded_wall_gives_the_same_answer(tmp_path: Path):

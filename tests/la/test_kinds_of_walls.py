@@ -13,9 +13,11 @@ from harness.model.assembly import Assembly
 from harness.model.build import build
 from harness.model.case import read_case
 from harness.model.method import Finding, Status
+from harness.model.wall import Wall
 from methods.la.adapter import AssociatedLimitAnalysis, FromFiniteElements, LimitAnalysis
 from methods.la.settings import AssociatedSettings, FromFeSettings, SearchSettings
 from tests.la.bodies import column, running_bond
+from tests.walls import wedge
 
 CASES = Path(__file__).parents[2] / "cases"
 
@@ -44,6 +46,13 @@ def test_joints_cut_into_several_interfaces_give_the_multiplier_of_whole_joints(
         LimitAnalysis().solve(column(*sizes, 0.45, halves), SearchSettings(effort="quick")) for halves in (1, 3)
     )
     assert cut.multiplier == pytest.approx(whole.multiplier, rel=1e-9)
+
+
+def test_wall_that_stands_by_self_stress_alone_is_said_to() -> None:
+    answer = LimitAnalysis().solve(build(Wall.model_validate(wedge())).assembly, SearchSettings())
+    assert answer.multiplier == pytest.approx(0.0, abs=1e-12)
+    assert answer.details["falls_without_self_stress"] == ["M"]
+    assert "self-stress" in answer.sentence
 
 
 @pytest.mark.parametrize("case", ["ferris-tin-loi-4-inset", "ferris-tin-loi-2-inset", "running-bond-overturns"])

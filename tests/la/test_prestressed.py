@@ -9,7 +9,7 @@ from methods.la.adapter import LimitAnalysis
 from methods.la.associated import solve_associated
 from methods.la.irregular_walls import irregular_wall
 from methods.la.newton_matrix import NewtonMatrix
-from methods.la.prestressed import light_states, prestressed_state
+from methods.la.prestressed import gravity_of, light_states, prestressed_state
 from methods.la.problem import make_problem
 from methods.la.search import Search
 from methods.la.settings import SearchSettings
@@ -45,7 +45,7 @@ def test_safe_forces_lead_to_an_exact_state_between_the_least_known_and_the_grea
 def test_forces_with_little_self_stress_lead_to_exact_states_within_statics(wall: Assembly) -> None:
     problem = make_problem(wall)
     newton = NewtonMatrix(problem)
-    states = light_states(Search(problem, newton), 1000)
+    states = light_states(Search(problem, newton), 1000, gravity_of(problem))
     associated = solve_associated(problem, newton).state
     assert associated is not None
     assert len(states) > 3
