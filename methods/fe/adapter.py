@@ -11,7 +11,6 @@ from methods.fe.answers import (
     bracket_answer,
     collapse_answer,
     compact,
-    end_forces,
     falling,
     gravity_failure,
     single_state_answer,
@@ -157,7 +156,7 @@ class ConvexSteps:
                 details=details | {"path_status": "not_converged"},
             )
         assert result.forces is not None
-        forces = end_forces(model, *result.forces)
+        forces = model.end_forces(*result.forces)
         if not assembly.has_live_load:
             return standing_answer(forces, result.programmes, details | {"path_status": "stands"})
         path = {"multiplier": list(result.record.multiplier)}

@@ -11,7 +11,6 @@ from harness.model.errors import first_few
 from harness.model.method import Answer, Finding, Status
 from methods.fe.histories import HistoryResult
 from methods.springs.equilibrium import Equilibrium
-from methods.springs.gap_law import equivalent_end_forces
 from methods.springs.path_record import PathEnd, PathRecord
 from methods.springs.plateau import CollapseState
 from methods.springs.wall_model import WallModel
@@ -49,17 +48,11 @@ def falling(model: WallModel, rate: FloatArray, why: str, iterations: int) -> An
     )
 
 
-def end_forces(model: WallModel, normal: FloatArray, shear: FloatArray) -> FloatArray:
-    """(m, 3) contact forces (n1, n2, s) [force] from dimensionless gap forces N and T (P,)."""
-    ends = equivalent_end_forces(model.position, model.interface, normal, shear, model.assembly.n_interfaces)
-    return model.force * ends
-
-
 def stands(model: WallModel, gravity: Equilibrium) -> Answer:
     """The answer for a wall without live load that is in equilibrium under its dead load, with its gap forces."""
     normal, shear = model.forces(gravity.u, model.history, gravity.state)
     return standing_answer(
-        end_forces(model, normal, shear), gravity.iterations, {"path_status": "stands", "residual": gravity.residual}
+        model.end_forces(normal, shear), gravity.iterations, {"path_status": "stands", "residual": gravity.residual}
     )
 
 

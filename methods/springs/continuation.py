@@ -33,15 +33,14 @@ from methods.springs.tolerances import (
     NOISE,
     TIE,
 )
-from methods.springs.wall_model import WallModel, load_scale, point_strains
+from methods.springs.wall_model import WallModel, load_scale
 
 
 class Tracer:
     """A point on the path and the straight piece that leads on from it.
 
     Attributes:
-        u, multiplier, state: where the path is; history: (P,) frozen-in shears h. A wall that is preloaded carries
-            compression (P,) at u = 0.
+        u, multiplier, state: where the path is; history: (P,) frozen-in shears h.
         opening, trial: (P,) g and tau there; largest: the largest displacement.
         direction: of the present piece.
         kept: the last mechanism on the way that is an exact collapse state but for rounding; kept_at: the extent
@@ -57,7 +56,6 @@ class Tracer:
         history: FloatArray,
         state: IntArray,
         factorised: bool = False,
-        preload: FloatArray | None = None,
         certificate: float = CERTIFICATE,
     ) -> None:
         self.model = model
@@ -70,17 +68,13 @@ class Tracer:
         self.scale = load_scale(model, multiplier)
         self.last_point, self.last_old = -1, OPEN
         self.worst_residual = 0.0
-        self.opening, self.trial = np.empty(model.n_points), np.empty(model.n_points)
-        point_strains(model.unknown, model.rows, model.interface, model.position, u, self.opening, self.trial)
+        self.opening, self.trial = model.strains(u)
         self.trial *= model.kt
         self.trial += history
         self.n_open = int(np.count_nonzero(state == OPEN))
         self.n_slip = int(np.count_nonzero(state >= SLIP_PLUS))
         self.largest = largest(self.u)
-        self.first_displacement = self.largest + 1.0
-        if preload is not None:
-            self.opening -= preload / model.kn
-            self.first_displacement += largest(self.opening)
+        self.first_displacement = self.largest + 1.0 + largest(model.initial_opening)
         self.kept: Snapshot | None = None
         self.kept_at, self.kept_holds = 0.0, False
         self.turns: set[tuple[int, int, float]] = set()

@@ -16,7 +16,7 @@ from scipy.sparse.linalg import SuperLU, splu
 
 from harness.model.assembly import Assembly, BoolArray, FloatArray, IntArray
 from methods.springs.factor import SingularTangent
-from methods.springs.gap_law import classify, equivalent_end_forces, gap_forces
+from methods.springs.gap_law import classify, gap_forces
 from methods.springs.path_record import Snapshot
 from methods.springs.wall_model import WallModel, point_strains
 
@@ -91,7 +91,7 @@ def _collapse_state(
     normal, shear = np.empty_like(opening), np.empty_like(opening)
     gap_forces(opening, trial, model.kn, model.mu, state, normal, shear)
     assembly = model.assembly
-    forces = model.force * equivalent_end_forces(model.position, model.interface, normal, shear, assembly.n_interfaces)
+    forces = model.end_forces(normal, shear)
     field = model.block_displacements(velocity)
     live = float(np.sum(assembly.live * field))
     return check(assembly, multiplier, forces, field / (abs(live) or 1.0))

@@ -6,6 +6,8 @@ there the wall is led to a mechanism like any other. Joints of dry stone carry s
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 
 from harness.model.assembly import FloatArray
@@ -33,5 +35,6 @@ def preloaded(
     ends = np.maximum(forces[:, :2] / model.force, LEAST)
     share = (forces[:, 2] / model.force / ends.sum(axis=1))[model.interface]
     normal = np.where(model.position == 0.0, ends[model.interface, 0], ends[model.interface, 1])
+    loaded = replace(model, initial_opening=-normal / model.kn)
     u, state = np.zeros(model.n_unknowns), np.full(model.n_points, STICK)
-    return Tracer(model, factor, u, multiplier, -share * normal, state, preload=normal, certificate=certificate)
+    return Tracer(loaded, factor, u, multiplier, -share * normal, state, certificate=certificate)

@@ -19,7 +19,14 @@ from methods.numerics.block_lu import elimination_order
 from methods.numerics.compiled import compiled
 from methods.numerics.vectors import largest
 from methods.springs.exact_rates import tangent_defect
-from methods.springs.gap_law import OPEN, classify, flip_vectors, gap_forces, tangent_coefficients
+from methods.springs.gap_law import (
+    OPEN,
+    classify,
+    equivalent_end_forces,
+    flip_vectors,
+    gap_forces,
+    tangent_coefficients,
+)
 from methods.springs.points import gap_points
 from methods.springs.settings import GapSettings
 
@@ -36,7 +43,8 @@ class WallModel:
         rows: (m, 3, 6) coefficients of (opening at end 1, at end 2, slip).
         interface: (P,) interface of each point; position: (P,) in [0, 1] from end 1.
         kn, kt, mu: (P,) stiffnesses and friction.
-        history: (P,) initial h = T0 - kt s0.
+        history: (P,) initial h = T0 - kt s0; initial_opening: (P,) at no displacement, negative where a point carries
+            compression before anything has moved.
         dead, live: (N,) dimensionless loads.
         inertia: (N,) dimensionless masses for pseudo-transient steps.
         column_start, row_index: CSC pattern of the tangent; slot: (m, 36) where each interface adds to its values.
@@ -53,6 +61,7 @@ class WallModel:
     kt: FloatArray
     mu: FloatArray
     history: FloatArray
+    initial_opening: FloatArray
     dead: FloatArray
     live: FloatArray
     inertia: FloatArray
@@ -77,6 +86,7 @@ class WallModel:
         """Openings and slips (P,) of the gap points at displacements u (N,)."""
         opening, slip = np.empty(self.n_points), np.empty(self.n_points)
         point_strains(self.unknown, self.rows, self.interface, self.position, u, opening, slip)
+        opening += self.initial_opening
         return opening, slip
 
     def states(self, u: FloatArray, history: FloatArray, virgin: bool = False) -> IntArray:
@@ -92,6 +102,11 @@ class WallModel:
         normal, shear = np.empty(self.n_points), np.empty(self.n_points)
         gap_forces(opening, self.kt * slip + history, self.kn, self.mu, state, normal, shear)
         return normal, shear
+
+    def end_forces(self, normal: FloatArray, shear: FloatArray) -> FloatArray:
+        """(m, 3) contact forces (n1, n2, s) [force] from the gap forces N and T (P,)."""
+        count = self.assembly.n_interfaces
+        return self.force * equivalent_end_forces(self.position, self.interface, normal, shear, count)
 
     def residual(self, u: FloatArray, multiplier: float, history: FloatArray, state: IntArray) -> FloatArray:
         """Out-of-balance forces (N,): loads minus internal forces of points held in the given states."""
@@ -181,6 +196,7 @@ def build_model(assembly: Assembly, settings: GapSettings, friction_cap: float =
         kt=kn * settings.stiffness_ratio,
         mu=np.minimum(assembly.friction, friction_cap)[interface],
         history=np.zeros(m * q),
+        initial_opening=np.zeros(m * q),
         dead=(assembly.dead[order] * scale).ravel(),
         live=(assembly.live[order] * scale).ravel(),
         inertia=inertia,

@@ -8,7 +8,7 @@ from methods.la.interior_point import PathSettings, follow_path, start_point
 from methods.la.newton_matrix import NewtonMatrix
 from methods.la.problem import make_problem
 from methods.springs.factor import make_factor
-from methods.springs.gap_law import equivalent_end_forces, gap_forces
+from methods.springs.gap_law import gap_forces
 from methods.springs.preload import preloaded
 from methods.springs.settings import GapSettings
 from methods.springs.wall_model import build_model
@@ -24,7 +24,7 @@ def test_springs_carry_the_given_forces_before_anything_moves() -> None:
     tracer = preloaded(model, make_factor(model), safe.point.multiplier * problem.unit_multiplier, forces)
     normal, shear = np.empty(model.n_points), np.empty(model.n_points)
     gap_forces(tracer.opening, tracer.trial, model.kn, model.mu, tracer.state, normal, shear)
-    carried = model.force * equivalent_end_forces(model.position, model.interface, normal, shear, wall.n_interfaces)
+    carried = model.end_forces(normal, shear)
     assert np.abs(carried - forces).max() <= 1e-9 * wall.force_scale
     assert (normal > 0.0).all()
     assert (np.abs(shear) <= model.mu * normal).all()
