@@ -1,7 +1,8 @@
 """Walls of irregular blocks that nobody chose: `la` beside the springs' plateau and the associated maximum.
 
-Run as `python -m methods.la.irregular_walls [count]`, with OPENBLAS_NUM_THREADS=1. Central paths alone end above the
-plateau of `fe` on one such wall in eight.
+Run as `python -m methods.la.irregular_walls [count [least [most]]]`, with OPENBLAS_NUM_THREADS=1: so many walls, of
+`least` to `most` courses and columns (3 to 8). Central paths alone end above the plateau of `fe` on one such wall in
+eight.
 """
 
 from __future__ import annotations
@@ -48,24 +49,24 @@ def irregular_wall(seed: int, columns: int, courses: int, friction: float) -> As
     return build(Wall.model_validate(wall), f"irregular wall {seed}").assembly
 
 
-def drawn(seed: int) -> Assembly:
-    """The wall of a seed: 9 to 64 blocks, friction from 0.3 to 1.0."""
+def drawn(seed: int, least: int = 3, most: int = 8) -> Assembly:
+    """The wall of a seed: courses and columns from `least` to `most`, friction from 0.3 to 1.0."""
     generator = np.random.default_rng([seed, 1])
-    columns, courses = (int(count) for count in generator.integers(3, 9, 2))
+    columns, courses = (int(count) for count in generator.integers(least, most + 1, 2))
     return irregular_wall(seed, columns, courses, round(float(generator.uniform(0.3, 1.0)), 3))
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
     """Print the counts; 1 if a least known multiplier is above the plateau or the associated maximum."""
     given = list(sys.argv[1:] if arguments is None else arguments)
-    count = int(given[0]) if given else 200
+    count, *sizes = [int(word) for word in given] or [200]
     springs = load_method("fe")
     blocks: list[int] = []
     above: list[int] = []
     below = equal = 0
     spent = 0.0
     for seed in range(count):
-        wall = drawn(seed)
+        wall = drawn(seed, *sizes)
         plateau = springs.solve(wall, springs.Settings()).multiplier
         start = time.process_time()
         least = LimitAnalysis().solve(wall, SearchSettings()).multiplier
@@ -82,8 +83,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
     if not blocks:
         print(f"{count} walls, none of which all three methods have a multiplier for")
         return 0
-    sizes = f"{min(blocks)} to {max(blocks)} blocks"
-    print(f"{count} walls; {len(blocks)} of them, of {sizes}, have a multiplier of all three methods")
+    span = f"{min(blocks)} to {max(blocks)} blocks"
+    print(f"{count} walls; {len(blocks)} of them, of {span}, have a multiplier of all three methods")
     print(f"least known below the plateau: {below}; equal: {equal}; above it or the maximum: {above or 'none'}")
     print(f"la: {spent:.0f} CPU s")
     return int(bool(above))

@@ -15,7 +15,7 @@ from methods.la.associated import AssociatedResult, solve_associated
 from methods.la.continuation import POOL, climb, descend_from, smooth_joints
 from methods.la.large import lagged_state, large_search
 from methods.la.newton_matrix import NewtonMatrix
-from methods.la.prestressed import gravity_of, light_states, prestressed_state
+from methods.la.prestressed import LIGHT_UP_TO, gravity_of, light_states, prestressed_state
 from methods.la.problem import Problem
 from methods.la.rational import confirm
 from methods.la.search import Effort, Search
@@ -25,7 +25,12 @@ from methods.la.state import CollapseState, polished, residuals
 
 @dataclass(frozen=True)
 class Plan:
-    """How much is tried: random starts, failures that end a descent, ladder, descents a rung, kinks of light starts."""
+    """How much is tried.
+
+    Attributes:
+        starts: random starts; failures: draws that end a descent; ladder: friction factors; descents: on each rung.
+        kinks: on all paths of springs from forces of little self-stress.
+    """
 
     starts: int
     failures: int
@@ -38,6 +43,8 @@ SIMPLEX_SEARCH = 1000
 """Interfaces above which the search by simplex programmes is too slow and the interior point does all."""
 FEW_INTERFACES = 400
 """Interfaces up to which the associated solution is one more start; on larger walls it led to high states only."""
+LARGE_KINKS = 60000
+"""Kinks on the paths of springs from forces of little self-stress on walls above `SIMPLEX_SEARCH`."""
 SAME = 1e-9
 """Relative difference of two multipliers below which the state with the smaller residuals is the better one."""
 LADDER = (0.55, 0.65, 0.75, 0.85, 0.925)
@@ -51,10 +58,10 @@ def plan_of(settings: SearchSettings, n_free: int) -> Plan:
     plan = {
         "quick": Plan(0, 8, (), 1, 300),
         "normal": Plan(3, 12, LADDER, 3, 6000) if n_free <= 30 else Plan(1, 12, LADDER[::2], 1, 6000),
-        "deep": Plan(20, 40, FINE_LADDER, 8, 60000),
+        "deep": Plan(20, 40, FINE_LADDER, 8, 100000),
     }[settings.effort]
     if settings.effort == "normal" and n_free > 60:
-        plan = Plan(1 if n_free <= 150 else 0, 40, (), 1, 5000)
+        plan = Plan(1 if n_free <= 150 else 0, 40, (), 1, 20000)
     return replace(
         plan,
         starts=plan.starts if settings.starts is None else settings.starts,
@@ -88,7 +95,7 @@ def least_known(problem: Problem, newton: NewtonMatrix, settings: SearchSettings
     if below is not None:
         climbed += descend_from(search.adopt(below, POOL), search, effort, plan.descents)
     gravity = gravity_of(problem)
-    light = light_states(search, plan.kinks, gravity)
+    light = list(light_states(search, gravity, plan.kinks))
     climbed += descend_from(light, search, effort, plan.descents)
     found += light
     if not found and not climbed:
@@ -126,6 +133,14 @@ def _large(problem: Problem, newton: NewtonMatrix, settings: SearchSettings, tol
     velocities = None if associated.state is None else associated.state.velocities
     found = large_search(problem, newton, settings.seed, velocities)
     details: dict[str, Any] = {"unknowns": 7 * problem.n_interfaces + problem.n_velocities + 1}
+    falling: list[str] = []
+    if problem.n_interfaces <= LIGHT_UP_TO:
+        search, gravity = Search(problem, newton, settings.seed), gravity_of(problem)
+        falling = gravity.falling
+        for state in found.states:
+            search.record(state.multiplier)
+        for state in light_states(search, gravity, LARGE_KINKS):
+            found.add(state, 0, found.gap)
     if not found.states:
         led = prestressed_state(problem, newton)
         details["kinks"] = led.kinks
@@ -134,12 +149,13 @@ def _large(problem: Problem, newton: NewtonMatrix, settings: SearchSettings, tol
     if associated.state is not None:
         details["associated"] = problem.to_multiplier(associated.state.multiplier)
     if not found.states:
-        return not_converged(
+        answer = not_converged(
             "No contact forces fit the mechanisms at the ends of the central paths, and the path of the wall with "
             "springs in its joints came to no mechanism, so no collapse state is known.",
             found.steps,
             details,
         )
+        return _with_falling_blocks(answer, falling)
     values = [problem.to_multiplier(state.multiplier) for state in found.states]
     details["start_values"] = values
     least = min(state.multiplier for state in found.states)
@@ -154,7 +170,7 @@ def _large(problem: Problem, newton: NewtonMatrix, settings: SearchSettings, tol
         "cpu_seconds": [second - began for second in found.seconds],
         "multiplier": np.minimum.accumulate(values).tolist(),
     }
-    return replace(answer, path=path)
+    return _with_falling_blocks(replace(answer, path=path), falling)
 
 
 def _starting_states(

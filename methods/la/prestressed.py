@@ -4,8 +4,9 @@ The live load changes along the equilibrium path of the wall (`methods.springs`)
 change of force: an exact collapse state under zero dilatancy, whatever the stiffness of the springs. Where a path goes
 depends on the self-stress it starts with.
 
-The forces of gravity on a wall without any, and random vertices of statics of least weighted compression, lead to low
-states of walls of irregular blocks. Central paths end high there: they keep all the self-stress that friction allows.
+The forces of gravity on a wall without any, random vertices of statics of least weighted compression, and mixtures of
+both with central forces lead to low states of walls of irregular blocks. Central paths end high there: they keep all
+the self-stress that friction allows.
 
 On the largest walls a point on the associated path somewhat before its end has forces within yield by a margin; with
 the joints smooth that the dead load leaves unloaded, they lead to low states too. Where no forces fit the mechanisms
@@ -14,6 +15,7 @@ that the central path ends at, this path has both from the start.
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from contextlib import suppress
 from dataclasses import dataclass
 
@@ -24,7 +26,8 @@ from methods.la.continuation import smoothed
 from methods.la.interior_point import PathSettings, follow_path, start_point
 from methods.la.newton_matrix import NewtonMatrix
 from methods.la.problem import Problem
-from methods.la.search import Search
+from methods.la.search import LOWER, Search
+from methods.la.standing import standing_forces
 from methods.la.state import CollapseState, moving_contacts
 from methods.springs.continuation import Tracer
 from methods.springs.equilibrium import Equilibrium, doubled, equilibrium, first_step
@@ -42,12 +45,28 @@ CERTIFICATE = 1e-12
 """Residual of a mechanism at which the path ends."""
 MOST_KINKS = 5
 """Changes of state per gap point after which the path is given up."""
-JUMPS_UP_TO = 2000
-"""Interfaces up to which jumps are tried where nothing else is found: one may take thousands of factorisations."""
+LIGHT_UP_TO = 2000
+"""Interfaces up to which paths from little self-stress are tried whatever else is found, and may jump.
+
+A jump may take thousands of factorisations.
+"""
 RATIOS = (0.5, 5.0, 50.0)
 """kt / kn of the paths, in turn; the first is that of `fe`."""
 HEAVY = 3
 """Power of the exponential weights on compression: a few joints are to carry next to nothing."""
+VERTEX = ((1.0, 0.0, 0.0),)
+MIXTURES = ((0.9, 0.0, 0.1), (0.7, 0.0, 0.3), (0.24, 0.7, 0.06), (0.48, 0.4, 0.12))
+"""Shares of a vertex, of gravity's forces and of central ones in those that a path starts from, in turn.
+
+Pure vertices have many forces at zero or at the limit of friction, and on walls of hundreds of blocks their paths
+seldom end; a tenth of central forces takes them off their limits.
+"""
+FEW_INTERFACES = 200
+"""Interfaces up to which the paths start from pure vertices.
+
+Above, none is begun where gravity leads above what is known: that marks a wall of courses, and on none of ten of those
+did a mixture lead to anything lower.
+"""
 
 
 @dataclass(frozen=True)
@@ -73,6 +92,13 @@ class Gravity:
         motion = self.model.block_displacements(self.equilibrium.rate)
         return [] if self.equilibrium.found else self.model.moving_blocks(motion)
 
+    def forces(self, problem: Problem) -> FloatArray | None:
+        """The scaled contact forces (m, 3); None where no equilibrium is found."""
+        model, found = self.model, self.equilibrium
+        if not found.found:
+            return None
+        return model.end_forces(*model.forces(found.u, model.history, found.state)) / problem.unit_force
+
 
 def gravity_of(problem: Problem) -> Gravity:
     """The springs under the dead load of a wall that stands by statics."""
@@ -82,7 +108,7 @@ def gravity_of(problem: Problem) -> Gravity:
 
 
 def prestressed_state(problem: Problem, newton: NewtonMatrix) -> PrestressedResult:
-    """The collapse state that safe forces of the wall lead to, or else those of gravity without self-stress.
+    """The collapse state that safe forces of the wall lead to, or else, on a larger one, those of gravity.
 
     Args:
         problem: the scaled wall, which stands under its dead load and has a live load.
@@ -97,43 +123,69 @@ def prestressed_state(problem: Problem, newton: NewtonMatrix) -> PrestressedResu
             state, kinks = _collapse_state(problem, _from_forces(problem, forces, safe.point.multiplier, RATIOS[0]))
             if state is not None:
                 return PrestressedResult(state, safe.iterations, kinks)
-    with suppress(SingularTangent):
-        tracer = _from_gravity(problem, gravity_of(problem))
-        if tracer is not None:
-            state, more = _collapse_state(problem, tracer, JUMPS if problem.n_interfaces <= JUMPS_UP_TO else 0)
-            return PrestressedResult(state, safe.iterations, kinks + more)
+    if problem.n_interfaces > LIGHT_UP_TO:
+        with suppress(SingularTangent):
+            tracer = _from_gravity(problem, gravity_of(problem))
+            if tracer is not None:
+                state, more = _collapse_state(problem, tracer)
+                return PrestressedResult(state, safe.iterations, kinks + more)
     return PrestressedResult(None, safe.iterations, kinks)
 
 
-def light_states(search: Search, kinks: int, gravity: Gravity) -> list[CollapseState]:
-    """Collapse states that forces with little self-stress lead to.
+def light_states(search: Search, gravity: Gravity, kinks: int) -> Iterator[CollapseState]:
+    """Collapse states that forces with little self-stress lead to: those of gravity, then vertices or mixtures.
 
     No other forces that fit its mechanism made any of 611 such states on walls of irregular blocks lower.
 
     Args:
-        search: of the wall, which stands under its dead load; its generator draws the weights on compression.
-        kinks: changes of state on all paths together after which no other is begun. The first path is from gravity on
-            the wall without self-stress, the others are from vertices of statics, no more than twice as many as joints.
+        search: of the wall, which stands under its dead load; its generator draws the vertices.
         gravity: what the dead load does to the wall.
+        kinks: changes of state on all paths together after which no other is begun.
     """
     problem = search.problem
-    states: list[CollapseState] = []
+    sources = gravity.forces(problem), standing_forces(problem, search.newton)
     spent = 0
     for k in range(1 + 2 * problem.n_interfaces):
         if spent >= kinks:
             break
         try:
-            tracer = _from_gravity(problem, gravity) if k == 0 else _from_vertex(search, RATIOS[k % len(RATIOS)])
+            tracer = _from_mixture(search, *sources, k - 1) if k else _from_gravity(problem, gravity)
             if tracer is None:
                 continue
             state, passed = _collapse_state(problem, tracer, 0 if k else JUMPS)
         except SingularTangent:
             continue
         spent += passed
-        if state is not None:
-            search.record(state.multiplier)
-            states.append(state)
-    return states
+        if state is None:
+            continue
+        search.record(state.multiplier)
+        yield state
+        known = search.history[-1][1]
+        if k == 0 and state.multiplier > known + LOWER and problem.n_interfaces > FEW_INTERFACES:
+            return
+
+
+def _from_mixture(search: Search, gravity: FloatArray | None, central: FloatArray | None, k: int) -> Tracer | None:
+    """The path from the k-th mixture of a random vertex of statics, gravity's and central forces, all scaled (m, 3).
+
+    Returns:
+        None where one of them is missing.
+    """
+    mixtures = VERTEX if search.problem.n_interfaces <= FEW_INTERFACES else MIXTURES
+    share, own, middle = mixtures[k % len(mixtures)]
+    if (own and gravity is None) or (middle and central is None):
+        return None
+    weights = search.generator.exponential(size=(search.problem.n_interfaces, 2)) ** HEAVY
+    search.tally.programmes += 1
+    vertex = search.static.lightest(weights)
+    if vertex is None:
+        return None
+    forces = share * vertex
+    if gravity is not None:
+        forces += own * gravity
+    if central is not None:
+        forces += middle * central
+    return _from_forces(search.problem, forces, 0.0, RATIOS[k % len(RATIOS)])
 
 
 def _from_gravity(problem: Problem, gravity: Gravity) -> Tracer | None:
@@ -149,14 +201,6 @@ def _from_gravity(problem: Problem, gravity: Gravity) -> Tracer | None:
     return Tracer(model, factor, first.u, multiplier, model.history, first.state, certificate=CERTIFICATE)
 
 
-def _from_vertex(search: Search, ratio: float) -> Tracer | None:
-    """The path from a random vertex of statics, with kt / kn = ratio; None if no vertex is found."""
-    weights = search.generator.exponential(size=(search.problem.n_interfaces, 2)) ** HEAVY
-    search.tally.programmes += 1
-    forces = search.static.lightest(weights)
-    return None if forces is None else _from_forces(search.problem, forces, 0.0, ratio)
-
-
 def _from_forces(problem: Problem, forces: FloatArray, multiplier: float, ratio: float) -> Tracer:
     """The path from scaled forces (m, 3) in equilibrium with a scaled multiplier. Raises SingularTangent."""
     model = build_model(problem.assembly, GapSettings(stiffness_ratio=ratio))
@@ -169,7 +213,7 @@ def _collapse_state(problem: Problem, tracer: Tracer, jumps: int = 0) -> tuple[C
 
     Args:
         problem: the scaled wall; tracer: the beginning of the path.
-        jumps: jumps tried where the path turns down; none from forces that displacements did not cause.
+        jumps: jumps tried where the path turns down.
     """
     record, model = PathRecord(), tracer.model
     turn = TURN if jumps else np.inf

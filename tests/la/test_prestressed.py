@@ -45,7 +45,7 @@ def test_safe_forces_lead_to_an_exact_state_between_the_least_known_and_the_grea
 def test_forces_with_little_self_stress_lead_to_exact_states_within_statics(wall: Assembly) -> None:
     problem = make_problem(wall)
     newton = NewtonMatrix(problem)
-    states = light_states(Search(problem, newton), 1000, gravity_of(problem))
+    states = list(light_states(Search(problem, newton), gravity_of(problem), 1000))
     associated = solve_associated(problem, newton).state
     assert associated is not None
     assert len(states) > 3
@@ -58,6 +58,7 @@ def test_forces_with_little_self_stress_lead_to_exact_states_within_statics(wall
 def test_wall_whose_central_paths_lead_nowhere_gets_its_state_from_the_springs(monkeypatch: pytest.MonkeyPatch) -> None:
     """Here those of a small wall, which are left out."""
     monkeypatch.setattr("methods.la.least.SIMPLEX_SEARCH", 100)
+    monkeypatch.setattr("methods.la.least.LIGHT_UP_TO", 100)
     monkeypatch.setattr("methods.la.large.MOST_INTERFACES", 100)
     monkeypatch.setattr("methods.la.large.LEADS", ())
     monkeypatch.setattr("methods.la.large.FAR_LEADS", ())
