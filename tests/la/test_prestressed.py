@@ -55,6 +55,15 @@ def test_forces_with_little_self_stress_lead_to_exact_states_within_statics(wall
         assert 0.0 <= state.multiplier <= associated.multiplier * (1.0 + 1e-9)
 
 
+def test_mixtures_of_forces_lead_below_gravity_on_a_wall_of_hundreds_of_joints() -> None:
+    problem = make_problem(irregular_wall(5003, 9, 10, 1.13))
+    newton = NewtonMatrix(problem)
+    gravity, *mixed = light_states(Search(problem, newton), gravity_of(problem), 10000)
+    lowest = min(mixed, key=lambda state: state.multiplier)
+    assert lowest.multiplier < 0.9 * gravity.multiplier
+    assert max(residuals(problem, polished(problem, newton, lowest)).values()) <= 1e-12
+
+
 def test_wall_whose_central_paths_lead_nowhere_gets_its_state_from_the_springs(monkeypatch: pytest.MonkeyPatch) -> None:
     """Here those of a small wall, which are left out."""
     monkeypatch.setattr("methods.la.least.SIMPLEX_SEARCH", 100)
