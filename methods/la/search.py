@@ -23,6 +23,8 @@ from methods.la.state import CollapseState, moving_contacts, tight_contacts
 
 LOWER = 1e-10
 """A multiplier is lower if it is lower by this much (scaled)."""
+ONCE_ABOVE = 400
+"""Interfaces above which nothing descends from a multiplier that a descent ended at: its programmes take long."""
 STILL = 1e-9
 """Blocks slower than this share of the fastest count as still."""
 
@@ -51,7 +53,8 @@ class Tally:
 class Search:
     """Everything that a wall's search shares: programmes, known mechanisms, counters.
 
-    `history` holds every lower multiplier (scaled) with the CPU time of the process at which it was found [s].
+    `history` holds every lower multiplier (scaled) with the CPU time of the process at which it was found [s], `ends`
+    those at which descents ended.
     """
 
     def __init__(self, problem: Problem, newton: NewtonMatrix, seed: int = 0, parent: Search | None = None) -> None:
@@ -62,6 +65,7 @@ class Search:
         self.known: dict[bytes, CollapseState | None] = {}
         self.tally: Tally = Tally() if parent is None else parent.tally
         self.history: list[tuple[float, float]] = []
+        self.ends: list[float] = []
 
     def adopt(self, other: Search, most: int) -> list[CollapseState]:
         """The states here of the mechanisms that were lowest in another search, whose friction may differ.
@@ -145,6 +149,9 @@ class Search:
 
     def descend(self, state: CollapseState, effort: Effort) -> CollapseState:
         """Ray descent from a state."""
+        large = self.problem.n_interfaces > ONCE_ABOVE
+        if large and any(abs(state.multiplier - end) <= LOWER for end in self.ends):
+            return state
         failures = 0
         for _ in range(effort.draws):
             if failures >= effort.failures:
@@ -158,4 +165,5 @@ class Search:
                 state, failures = other, 0
             else:
                 failures += 1
+        self.ends.append(state.multiplier)
         return state
