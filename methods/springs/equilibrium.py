@@ -35,7 +35,8 @@ class Equilibrium:
     Attributes:
         found: whether equilibrium holds.
         u: (N,) displacements; state: (P,) states; residual: largest out-of-balance force, relative to the loads.
-        rate: (N,) displacement of the last pseudo-transient step when nothing was found, else zeros.
+        rate: (N,) displacement of the pseudo-transient step on which the loads did most work when nothing was found,
+            else zeros.
         iterations: linear solves.
     """
 
@@ -88,11 +89,13 @@ def pseudo_transient(
 ) -> Equilibrium:
     """Implicit steps sigma M (u - u_n) = loads - F(u), with sigma lowered as they converge, then plain Newton.
 
-    A wall without equilibrium keeps moving: the last step is then its velocity field.
+    A wall without equilibrium keeps moving, faster and faster: the step on which the loads do most work is then its
+    velocity field. The last ones may be rounding.
     """
     scale = load_scale(model, multiplier)
     sigma, steps, iterations = 1.0, 0, 0
-    rate = np.zeros_like(u)
+    loads = model.dead + multiplier * model.live
+    rate, fall = np.zeros_like(u), np.zeros_like(u)
     state = model.states(u, history, not np.any(u))
     while steps < limit and sigma > 1e-12:
         trial, previous = u.copy(), state
@@ -119,6 +122,7 @@ def pseudo_transient(
             steps += 1
             continue
         rate, u, state = trial - u, trial, previous
+        fall = max(fall, rate, key=loads.dot)
         steps += 1
         if np.abs(sigma * model.inertia * rate).max() < 1e-3 * scale or steps % 10 == 0:
             final = newton(model, factor, u, multiplier, history, 12)
@@ -130,7 +134,7 @@ def pseudo_transient(
         if np.abs(u).max() > 1e8 * scale * len(u):
             break
         sigma *= 0.25 if inner <= 4 else 0.7
-    return Equilibrium(False, u, state, np.inf, rate, iterations)
+    return Equilibrium(False, u, state, np.inf, fall, iterations)
 
 
 def equilibrium(model: WallModel, factor: Factor, u: FloatArray, multiplier: float, history: FloatArray) -> Equilibrium:

@@ -21,6 +21,7 @@ from methods.fe.random_walls import random_wall
 from methods.fe.settings import GapSpringsSettings
 from methods.springs.patterns import block_on_halves, running_bond
 from methods.springs.plateau import check
+from tests.walls import wall_data
 
 CASES = Path(__file__).parents[2] / "cases"
 EXACT = 1e-9  # closed forms are met to rounding; this leaves room for other linear algebra libraries
@@ -126,6 +127,19 @@ def test_fe_floating_block_is_a_gravity_failure_that_names_it() -> None:
     assert answer.details["path_status"] == "gravity_failure"
     assert answer.details["moving_blocks"] == [wall.block_ids[top]]
     assert wall.block_ids[top] in answer.sentence
+
+
+@pytest.mark.parametrize("friction", [0.3, 0.5, 0.708])
+def test_fe_motion_of_a_fall_gains_work_of_the_dead_load(friction: float) -> None:
+    """At 0.5 and 0.708 the springs are followed until rounding is all that moves."""
+    layout = ["AABBCCD", "AABBCCE", "FGHHH.E", "FFJJ...", "F.....N", "_______"]
+    panel = {"type": "panel", "cell_length": 0.5, "cell_height": 0.3, "layout": layout, "fixed": "_"}
+    wall = build(parse_wall(wall_data(panel, friction), "panel.json")).assembly
+    answer = solve(wall)
+    assert answer.finding is Finding.FALLS
+    assert answer.mechanism is not None
+    assert float((wall.dead * answer.mechanism).sum()) > 0.0
+    assert "J" in answer.details["moving_blocks"]
 
 
 def test_fe_path_columns_have_equal_length_and_end_at_the_plateau() -> None:
