@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from typing import Any
 
 import pytest
@@ -38,6 +39,45 @@ def coursed_walls(draw: st.DrawFn) -> Assembly:
         "courses": courses,
     }
     return assembly(pattern, friction)
+
+
+@st.composite
+def panels(draw: st.DrawFn) -> Assembly:
+    """Grids of cells joined at random to blocks of up to four, which need not be convex, pushed sideways or askew."""
+    columns, rows = draw(st.integers(3, 6)), draw(st.integers(3, 5))
+    letters, size = [""] * (columns * rows), Counter[str]()
+    for cell in range(columns * rows):
+        beside = letters[cell - 1] if cell % columns else ""
+        above = letters[cell - columns] if cell >= columns else ""
+        letter = draw(st.sampled_from([beside, above, ""]))
+        letters[cell] = letter if letter and size[letter] < 4 else chr(ord("A") + cell)
+        size[letters[cell]] += 1
+    layout = ["".join(letters[k : k + columns]) for k in range(0, columns * rows, columns)] + ["_" * columns]
+    pattern = {"type": "panel", "cell_length": 0.5, "cell_height": 0.3, "layout": layout, "fixed": "_"}
+    friction = {"default": draw(st.sampled_from([0.3, 0.5, 0.65, 0.9]))}
+    rule = {"joint": "head", "value": draw(st.sampled_from([0.2, 0.6, 1.0]))}
+    live = {"live": {"body": [{"per_weight": draw(st.sampled_from([[1, 0], [-1, 0.4], [0.7, -0.3]]))}]}}
+    return assembly(pattern, friction | {"rules": [rule]}, loads=live)
+
+
+@settings(max_examples=25, deadline=None, derandomize=True, suppress_health_check=list(HealthCheck))
+@given(panels())
+def test_methods_agree_on_panels_of_blocks_of_any_shape(wall: Assembly):
+    found = {name: answered(load_method(name), wall) for name in ("la", "fe", "la-associated", "de")}
+    for name, (_, judgement) in found.items():
+        assert judgement.accepted is not False, (name, judgement.sentence)
+    if found["la-associated"][0].finding is Finding.FALLS:
+        assert {result.finding for result, _ in found.values()} == {Finding.FALLS}
+        return
+    value = {name: result.multiplier for name, (result, _) in found.items() if result.multiplier is not None}
+    bracket = found["de"][0].bracket
+    if bracket is not None:
+        value["de"] = bracket[0]
+    greatest = value.get("la-associated", float("inf"))
+    for name in value:
+        assert value[name] <= greatest + BOUND * max(1.0, greatest), name
+    if "fe" in value and "la" in value:
+        assert value["la"] <= value["fe"] + BOUND * max(1.0, value["fe"])
 
 
 @settings(max_examples=12, deadline=None, derandomize=True, suppress_health_check=list(HealthCheck))
