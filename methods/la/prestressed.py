@@ -46,9 +46,9 @@ CERTIFICATE = 1e-12
 MOST_KINKS = 5
 """Changes of state per gap point after which the path is given up."""
 LIGHT_UP_TO = 2000
-"""Interfaces up to which paths from little self-stress are tried whatever else is found, and may jump.
+"""Interfaces up to which paths from little self-stress are tried whatever else is found.
 
-A jump may take thousands of factorisations.
+That of gravity may jump, which may take thousands of factorisations.
 """
 RATIOS = (0.5, 5.0, 50.0)
 """kt / kn of the paths, in turn; the first is that of `fe`."""
@@ -61,7 +61,7 @@ MIXTURES = ((0.9, 0.0, 0.1), (0.7, 0.0, 0.3), (0.24, 0.7, 0.06), (0.48, 0.4, 0.1
 Pure vertices have many forces at zero or at the limit of friction, and on walls of hundreds of blocks their paths
 seldom end; a tenth of central forces takes them off their limits.
 """
-FEW_INTERFACES = 200
+VERTICES_UP_TO = 200
 """Interfaces up to which the paths start from pure vertices.
 
 Above, none is begun where gravity leads above what is known: that marks a wall of courses, and on none of ten of those
@@ -161,7 +161,7 @@ def light_states(search: Search, gravity: Gravity, kinks: int) -> Iterator[Colla
         search.record(state.multiplier)
         yield state
         known = search.history[-1][1]
-        if k == 0 and state.multiplier > known + LOWER and problem.n_interfaces > FEW_INTERFACES:
+        if k == 0 and state.multiplier > known + LOWER and problem.n_interfaces > VERTICES_UP_TO:
             return
 
 
@@ -171,7 +171,7 @@ def _from_mixture(search: Search, gravity: FloatArray | None, central: FloatArra
     Returns:
         None where one of them is missing.
     """
-    mixtures = VERTEX if search.problem.n_interfaces <= FEW_INTERFACES else MIXTURES
+    mixtures = VERTEX if search.problem.n_interfaces <= VERTICES_UP_TO else MIXTURES
     share, own, middle = mixtures[k % len(mixtures)]
     if (own and gravity is None) or (middle and central is None):
         return None
