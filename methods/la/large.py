@@ -99,7 +99,10 @@ def least_multiplier(problem: Problem, newton: NewtonMatrix, moving: BoolArray) 
 def state_of_mechanism(
     problem: Problem, newton: NewtonMatrix, velocities: FloatArray, moving: BoolArray
 ) -> tuple[CollapseState | None, int]:
-    """The best collapse state of a mechanism with contacts `moving` (m, 4), exact to rounding, and the steps spent."""
+    """The best collapse state of a mechanism with contacts `moving` (m, 4), exact to rounding, and the steps spent.
+
+    One at a negative multiplier is none: the wall would not bear its dead load alone.
+    """
     result = least_multiplier(problem, newton, moving)
     point = result.point
     best: CollapseState | None = None
@@ -111,6 +114,8 @@ def state_of_mechanism(
                 problem, newton, problem.forces_of_slacks(point.slack), -point.multiplier, tight, floor=1e-14
             )
         except RuntimeError:
+            continue
+        if multiplier < -EXACT_ENOUGH:
             continue
         state = CollapseState(forces, multiplier, velocities, moving)
         size = max(residuals(problem, state).values())

@@ -7,7 +7,7 @@ import pytest
 from harness.model.assembly import Assembly
 from methods.la.adapter import LimitAnalysis
 from methods.la.associated import solve_associated
-from methods.la.irregular_walls import irregular_wall
+from methods.la.irregular_walls import drawn, irregular_wall
 from methods.la.newton_matrix import NewtonMatrix
 from methods.la.prestressed import gravity_of, light_states, prestressed_state
 from methods.la.problem import make_problem
@@ -76,3 +76,10 @@ def test_wall_whose_central_paths_lead_nowhere_gets_its_state_from_the_springs(m
     assert answer.details["kinks"] > 0
     assert answer.multiplier <= answer.details["associated"]
     assert max(answer.details["residuals"].values()) <= 1e-12
+
+
+def test_state_at_a_negative_multiplier_is_no_answer() -> None:
+    """Statics lets this wall stand up to .0042, but the mechanism with lagged friction bounds has -.0052."""
+    answer = LimitAnalysis().solve(drawn(53, 9, 16), SearchSettings(effort="quick"))
+    assert answer.multiplier is None or answer.multiplier >= 0.0
+    assert answer.details["falls_without_self_stress"]
