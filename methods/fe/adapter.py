@@ -18,10 +18,10 @@ from methods.fe.answers import (
     stands,
 )
 from methods.fe.convex_steps import bracket_collapse
-from methods.fe.histories import HistoryResult, gravity_state, trace_history, with_initial_shear
+from methods.fe.histories import HistoryResult, trace_history, with_initial_shear
 from methods.fe.incremental import march
 from methods.fe.settings import ConvexSettings, GapSpringsSettings, NewtonSettings
-from methods.springs.equilibrium import equilibrium
+from methods.springs.equilibrium import equilibrium, gravity_state
 from methods.springs.factor import make_factor
 from methods.springs.path_record import PathEnd
 from methods.springs.wall_model import WallModel, build_model

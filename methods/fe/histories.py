@@ -204,11 +204,6 @@ def _doubled(
     return first, start
 
 
-def gravity_state(model: WallModel, factor: Factor) -> Equilibrium:
-    """Equilibrium under the dead load from the virgin state."""
-    return equilibrium(model, factor, np.zeros(model.n_unknowns), 0.0, model.history)
-
-
 def with_initial_shear(model: WallModel, gravity: Equilibrium, share: float, seed: int) -> WallModel:
     """The model with shears frozen in before the live load: a random share of what friction holds under gravity."""
     normal, _ = model.forces(gravity.u, model.history, gravity.state)

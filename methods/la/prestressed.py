@@ -18,6 +18,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from contextlib import suppress
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 
@@ -27,10 +28,9 @@ from methods.la.interior_point import PathSettings, follow_path, start_point
 from methods.la.newton_matrix import NewtonMatrix
 from methods.la.problem import Problem
 from methods.la.search import LOWER, Search
-from methods.la.standing import standing_forces
 from methods.la.state import CollapseState, moving_contacts
 from methods.springs.continuation import Tracer
-from methods.springs.equilibrium import Equilibrium, doubled, equilibrium, first_step
+from methods.springs.equilibrium import Equilibrium, doubled, first_step, gravity_state
 from methods.springs.factor import Factor, SingularTangent, make_factor
 from methods.springs.jump import JUMPS, TURN, past_turn
 from methods.springs.path_record import PathEnd, PathRecord
@@ -82,6 +82,7 @@ class PrestressedResult:
 class Gravity:
     """What the dead load does to a wall with springs in its joints and no self-stress in them."""
 
+    problem: Problem
     model: WallModel
     factor: Factor
     equilibrium: Equilibrium
@@ -92,19 +93,20 @@ class Gravity:
         motion = self.model.block_displacements(self.equilibrium.rate)
         return [] if self.equilibrium.found else self.model.moving_blocks(motion)
 
-    def forces(self, problem: Problem) -> FloatArray | None:
+    @cached_property
+    def forces(self) -> FloatArray | None:
         """The scaled contact forces (m, 3); None where no equilibrium is found."""
         model, found = self.model, self.equilibrium
         if not found.found:
             return None
-        return model.end_forces(*model.forces(found.u, model.history, found.state)) / problem.unit_force
+        return model.end_forces(*model.forces(found.u, model.history, found.state)) / self.problem.unit_force
 
 
 def gravity_of(problem: Problem) -> Gravity:
     """The springs under the dead load of a wall that stands by statics."""
     model = build_model(problem.assembly, GapSettings())
     factor = make_factor(model)
-    return Gravity(model, factor, equilibrium(model, factor, np.zeros(model.n_unknowns), 0.0, model.history))
+    return Gravity(problem, model, factor, gravity_state(model, factor))
 
 
 def prestressed_state(problem: Problem, newton: NewtonMatrix) -> PrestressedResult:
@@ -125,7 +127,7 @@ def prestressed_state(problem: Problem, newton: NewtonMatrix) -> PrestressedResu
                 return PrestressedResult(state, safe.iterations, kinks)
     if problem.n_interfaces > LIGHT_UP_TO:
         with suppress(SingularTangent):
-            tracer = _from_gravity(problem, gravity_of(problem))
+            tracer = _from_gravity(gravity_of(problem))
             if tracer is not None:
                 state, more = _collapse_state(problem, tracer)
                 return PrestressedResult(state, safe.iterations, kinks + more)
@@ -143,13 +145,12 @@ def light_states(search: Search, gravity: Gravity, kinks: int) -> Iterator[Colla
         kinks: changes of state on all paths together after which no other is begun.
     """
     problem = search.problem
-    sources = gravity.forces(problem), standing_forces(problem, search.newton)
     spent = 0
     for k in range(1 + 2 * problem.n_interfaces):
         if spent >= kinks:
             break
         try:
-            tracer = _from_mixture(search, *sources, k - 1) if k else _from_gravity(problem, gravity)
+            tracer = _from_mixture(search, gravity, k - 1) if k else _from_gravity(gravity)
             if tracer is None:
                 continue
             state, passed = _collapse_state(problem, tracer, 0 if k else JUMPS)
@@ -165,15 +166,17 @@ def light_states(search: Search, gravity: Gravity, kinks: int) -> Iterator[Colla
             return
 
 
-def _from_mixture(search: Search, gravity: FloatArray | None, central: FloatArray | None, k: int) -> Tracer | None:
-    """The path from the k-th mixture of a random vertex of statics, gravity's and central forces, all scaled (m, 3).
+def _from_mixture(search: Search, gravity: Gravity, k: int) -> Tracer | None:
+    """The path from the k-th mixture of a random vertex of statics, gravity's and central forces.
 
     Returns:
         None where one of them is missing.
     """
     mixtures = VERTEX if search.problem.n_interfaces <= VERTICES_UP_TO else MIXTURES
     share, own, middle = mixtures[k % len(mixtures)]
-    if (own and gravity is None) or (middle and central is None):
+    own_forces = gravity.forces if own else None
+    central = search.central_forces if middle else None
+    if (own and own_forces is None) or (middle and central is None):
         return None
     weights = search.generator.exponential(size=(search.problem.n_interfaces, 2)) ** HEAVY
     search.tally.programmes += 1
@@ -181,19 +184,19 @@ def _from_mixture(search: Search, gravity: FloatArray | None, central: FloatArra
     if vertex is None:
         return None
     forces = share * vertex
-    if gravity is not None:
-        forces += own * gravity
+    if own_forces is not None:
+        forces += own * own_forces
     if central is not None:
         forces += middle * central
     return _from_forces(search.problem, forces, 0.0, RATIOS[k % len(RATIOS)])
 
 
-def _from_gravity(problem: Problem, gravity: Gravity) -> Tracer | None:
+def _from_gravity(gravity: Gravity) -> Tracer | None:
     """The path from the forces that gravity causes in a wall without self-stress; None if there are none."""
     if not gravity.equilibrium.found:
         return None
     model, factor = gravity.model, gravity.factor
-    first, multiplier = first_step(model, factor, gravity.equilibrium.u, model.history, problem.unit_multiplier)
+    first, multiplier = first_step(model, factor, gravity.equilibrium.u, model.history, gravity.problem.unit_multiplier)
     if not first.found:
         return None
     for answer, further in doubled(model, factor, first, multiplier, model.history):

@@ -10,6 +10,7 @@ from __future__ import annotations
 
 import time
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 
@@ -19,6 +20,7 @@ from methods.la.newton_matrix import NewtonMatrix
 from methods.la.newton_step import Point
 from methods.la.problem import Problem
 from methods.la.programmes import SIMPLEX_INTERFACES, KinematicProgramme, StaticProgramme
+from methods.la.standing import standing_forces
 from methods.la.state import CollapseState, moving_contacts, tight_contacts
 
 LOWER = 1e-10
@@ -66,6 +68,11 @@ class Search:
         self.tally: Tally = Tally() if parent is None else parent.tally
         self.history: list[tuple[float, float]] = []
         self.ends: list[float] = []
+
+    @cached_property
+    def central_forces(self) -> FloatArray | None:
+        """Forces (m, 3) well within yield under the dead load; None if none are found."""
+        return standing_forces(self.problem, self.newton)
 
     def adopt(self, other: Search, most: int) -> list[CollapseState]:
         """The states here of the mechanisms that were lowest in another search, whose friction may differ.

@@ -145,6 +145,11 @@ def equilibrium(model: WallModel, factor: Factor, u: FloatArray, multiplier: flo
     return pseudo_transient(model, factor, u, multiplier, history)
 
 
+def gravity_state(model: WallModel, factor: Factor) -> Equilibrium:
+    """Equilibrium under the dead load from the virgin state."""
+    return equilibrium(model, factor, np.zeros(model.n_unknowns), 0.0, model.history)
+
+
 def first_step(
     model: WallModel, factor: Factor, u: FloatArray, history: FloatArray, scale: float
 ) -> tuple[Equilibrium, float]:

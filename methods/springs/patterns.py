@@ -1,4 +1,4 @@
-"""Small regular walls and an arch, made here so that the bench and the sensitivity study need nothing but the model."""
+"""Small regular walls and an arch, for benches, studies and the warm-up, which need no cases."""
 
 from __future__ import annotations
 

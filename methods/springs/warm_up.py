@@ -7,7 +7,7 @@ from functools import cache
 import numpy as np
 
 from methods.springs.continuation import Tracer
-from methods.springs.equilibrium import equilibrium, first_step
+from methods.springs.equilibrium import first_step, gravity_state
 from methods.springs.exact_rates import exact_gap_rates
 from methods.springs.factor import SparseFactor
 from methods.springs.gap_law import STICK, neighbour_states
@@ -24,7 +24,7 @@ def load_kernels() -> None:
     """Trace a single block to its collapse with the sparse factor, and call what that leaves out, once in a process."""
     model = build_model(block_on_halves((0.6, 0.4)), GapSettings())
     factor = SparseFactor(model)
-    gravity = equilibrium(model, factor, np.zeros(model.n_unknowns), 0.0, model.history)
+    gravity = gravity_state(model, factor)
     first, multiplier = first_step(model, factor, gravity.u, model.history, 1.0)
     tracer = Tracer(model, factor, first.u, multiplier, model.history, first.state)
     tracer.run(PathRecord(), 100)
