@@ -191,7 +191,7 @@ def bracket_answer(
     return Answer(
         Status.OK,
         Finding.COLLAPSES,
-        f"equilibrium is found at {lower:.6g} times the live load and no longer at {upper:.6g}",
+        f"equilibrium is found at {lower:.6g} times the live load and none at {upper:.6g}",
         multiplier=0.5 * (lower + upper),
         bracket=(lower, upper),
         bracket_meaning="last step with equilibrium, first step without",

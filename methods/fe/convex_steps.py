@@ -5,8 +5,10 @@ With the friction limits c = mu N frozen (Tresca), the equilibrium of the gap sp
     min 1/2 sum kn z^2 + 1/2 sum (kt (s - e) + h)^2 / kt + sum c |e| - load'u    with z >= -g(u)
 
 where z is the compression and e the frictional part of the slip. OSQP (Stellato et al., 2020) solves it, split as
-e = e+ - e-, and the limits follow by fixed-point iteration until they repeat (Haslinger, 1983). The step of the
-multiplier is bisected between the last step that converged and the first that did not: the answer is that bracket.
+e = e+ - e-, and the limits follow by fixed-point iteration until they repeat (Haslinger, 1983). They begin where the
+last two steps lead: limits of the last step can be too low for the next, and the energy then has no minimum although
+the wall stands. The step of the multiplier is bisected between the last step that converged and the first that did not:
+the answer is that bracket.
 """
 
 from __future__ import annotations
@@ -134,7 +136,7 @@ def bracket_collapse(
 
     Args:
         first_step: first step of the multiplier; resolution: width of the bracket at which to stop, relative.
-        fixed_points: Tresca iterations allowed for one step; accuracy: of OSQP.
+        fixed_points: Tresca iterations in a row that may bring a step no nearer; accuracy: of OSQP.
     """
     programme = TrescaProgramme(model, accuracy)
     record = PathRecord()
@@ -149,14 +151,17 @@ def bracket_collapse(
     if not model.assembly.has_live_load:
         return ConvexResult(0.0, None, record, programme.programmes, True, forces)
     lower, upper, step = 0.0, None, first_step
+    growth = np.zeros(model.n_points)
     while upper is None or upper - lower > resolution * max(abs(upper), 1e-6):
         goal = lower + step if upper is None else 0.5 * (lower + upper)
-        settled = _settle(programme, goal, limit, fixed_points)
+        ahead = np.maximum(limit + (goal - lower) * growth, 0.0)
+        settled = _settle(programme, goal, ahead, fixed_points)
         if settled is None:
-            settled = _settle(programme, goal, limit, 2 * fixed_points, 0.5)
+            settled = _settle(programme, goal, 2.0 * np.maximum(ahead, limit), 2 * fixed_points, 0.5)
         if settled is None:
             upper = goal
         else:
+            growth = (settled - limit) / (goal - lower)
             lower, limit = goal, settled
             forces = programme.normal, np.clip(programme.shear, -limit, limit)
             record.add(goal, 0.0, 0, 0)
@@ -169,16 +174,22 @@ def bracket_collapse(
 def _settle(
     programme: TrescaProgramme, multiplier: float, limit: FloatArray, count: int, share: float = 1.0
 ) -> FloatArray | None:
-    """Friction limits (P,) that repeat at this multiplier, or None; `share` of each change of the limits is taken."""
+    """Friction limits (P,) that repeat at this multiplier, or None; `share` of each change of the limits is taken.
+
+    The iteration ends without them when `count` programmes in a row bring the change of the limits no tenth lower.
+    """
     model = programme.model
     scale = float(np.abs(model.dead).max() + abs(multiplier) * np.abs(model.live).max()) or 1.0
-    for _ in range(count):
+    least, left = np.inf, count
+    while left:
         answer = programme.solve(multiplier, limit)
         if answer is None or np.abs(answer[0]).max() > 1e6 * scale:
             programme.restart()
             return None
         new = model.mu * answer[1]
-        if np.abs(new - limit).max() < 1e-4 * scale:
+        change = float(np.abs(new - limit).max())
+        if change < 1e-4 * share * scale:
             return new
+        least, left = (change, count) if change < 0.9 * least else (least, left - 1)
         limit = limit + share * (new - limit)
     return None

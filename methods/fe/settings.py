@@ -44,7 +44,8 @@ class ConvexSettings(GapSettings):
     Attributes:
         first_step: first step of the live load, as a share of the dead load (to a factor of two).
         resolution: relative width of the bracket at which to stop.
-        fixed_points: Tresca iterations allowed for one step; max_blocks: size above which the method refuses.
+        fixed_points: Tresca iterations in a row that may bring a step no nearer; max_blocks: size above which the
+            method refuses.
         friction_cap: friction coefficients above this are lowered to it.
     """
 
