@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import time
 from dataclasses import dataclass, replace
+from itertools import chain
 from typing import Any
 
 import numpy as np
@@ -14,6 +15,7 @@ from methods.la.answers import collapse_answer, not_converged, unbounded_answer
 from methods.la.associated import AssociatedResult, solve_associated
 from methods.la.continuation import POOL, climb, descend_from, smooth_joints
 from methods.la.large import lagged_state, large_search
+from methods.la.mechanisms import mechanism_states
 from methods.la.newton_matrix import NewtonMatrix
 from methods.la.prestressed import LIGHT_UP_TO, gravity_of, light_states, prestressed_state
 from methods.la.problem import Problem
@@ -30,6 +32,7 @@ class Plan:
     Attributes:
         starts: random starts; failures: draws that end a descent; ladder: friction factors; descents: on each rung.
         kinks: on all paths of springs from forces of little self-stress.
+        mechanisms: drawn without regard to forces.
     """
 
     starts: int
@@ -37,6 +40,7 @@ class Plan:
     ladder: tuple[float, ...]
     descents: int
     kinks: int
+    mechanisms: int
 
 
 SIMPLEX_SEARCH = 1000
@@ -56,12 +60,12 @@ FINE_LADDER = (1.3, 1.15, 1.0, 0.9, 0.8, 0.7, 0.6, 0.5, 0.55, 0.6, 0.65, 0.7, 0.
 def plan_of(settings: SearchSettings, n_free: int) -> Plan:
     """The plan for a wall of n_free blocks; normal effort shrinks with size so that the time grows slowly."""
     plan = {
-        "quick": Plan(0, 8, (), 1, 300),
-        "normal": Plan(3, 12, LADDER, 3, 6000) if n_free <= 30 else Plan(1, 12, LADDER[::2], 1, 6000),
-        "deep": Plan(20, 40, FINE_LADDER, 8, 100000),
+        "quick": Plan(0, 8, (), 1, 300, 0),
+        "normal": Plan(3, 12, LADDER, 3, 6000, 60) if n_free <= 30 else Plan(1, 12, LADDER[::2], 1, 6000, 20),
+        "deep": Plan(20, 40, FINE_LADDER, 8, 100000, 1000 if n_free <= 60 else 50),
     }[settings.effort]
     if settings.effort == "normal" and n_free > 60:
-        plan = Plan(1 if n_free <= 150 else 0, 40, (), 1, 20000)
+        plan = Plan(1 if n_free <= 150 else 0, 40, (), 1, 20000, 0)
     return replace(
         plan,
         starts=plan.starts if settings.starts is None else settings.starts,
@@ -97,6 +101,7 @@ def least_known(problem: Problem, newton: NewtonMatrix, settings: SearchSettings
     gravity = gravity_of(problem)
     light = list(light_states(search, gravity, plan.kinks))
     climbed += descend_from(light, search, effort, plan.descents)
+    climbed += descend_from(list(mechanism_states(search, plan.mechanisms)), search, effort, plan.descents)
     found += light
     if not found and not climbed:
         return _with_falling_blocks(_nothing_found(search, associated), gravity.falling)
@@ -139,7 +144,7 @@ def _large(problem: Problem, newton: NewtonMatrix, settings: SearchSettings, tol
         falling = gravity.falling
         for state in found.states:
             search.record(state.multiplier)
-        for state in light_states(search, gravity, LARGE_KINKS):
+        for state in chain(light_states(search, gravity, LARGE_KINKS), mechanism_states(search, 0)):
             found.add(state, 0, found.gap)
     if not found.states:
         led = prestressed_state(problem, newton)

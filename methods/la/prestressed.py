@@ -161,8 +161,7 @@ def light_states(search: Search, gravity: Gravity, kinks: int) -> Iterator[Colla
             continue
         search.record(state.multiplier)
         yield state
-        known = search.history[-1][1]
-        if k == 0 and state.multiplier > known + LOWER and problem.n_interfaces > VERTICES_UP_TO:
+        if k == 0 and state.multiplier > search.least + LOWER and problem.n_interfaces > VERTICES_UP_TO:
             return
 
 

@@ -102,9 +102,14 @@ class Search:
                 self.record(solution.multiplier)
         return self.known[key]
 
+    @property
+    def least(self) -> float:
+        """The least multiplier (scaled) of a collapse state so far; infinite before the first."""
+        return self.history[-1][1] if self.history else np.inf
+
     def record(self, multiplier: float) -> None:
         """Note a multiplier (scaled) that a collapse state has, if none known is lower."""
-        if not self.history or multiplier < self.history[-1][1] - LOWER:
+        if multiplier < self.least - LOWER:
             self.history.append((time.process_time(), multiplier))
 
     def nearest_mechanism(self, forces: FloatArray, rates: FloatArray | None = None) -> CollapseState | None:

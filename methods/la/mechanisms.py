@@ -1,0 +1,123 @@
+"""Collapse states sought from mechanisms instead of forces: single blocks, and mechanisms drawn from all there are.
+
+Interior paths, descent and paths of springs all begin with forces, and so with the joints that those press. A block
+that slides out alone from among others, which could press on it but need not, is seldom found from there. Its motions
+are few, though: those of one rigid body against joints without dilatancy are the extreme rays of a cone in three
+dimensions, and each is a mechanism whose least multiplier is one linear programme.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.linalg import block_diag
+from scipy.optimize import linprog
+
+from harness.model.assembly import FloatArray
+from methods.la.problem import Problem
+from methods.la.search import LOWER, Search
+from methods.la.state import CollapseState
+
+ROUNDING = 1e-9
+"""Rates and products of unit vectors up to this are zero to rounding."""
+HEAVY = 6
+"""Power of the exponential costs of rates: a drawn mechanism moves in the few contacts that cost next to nothing."""
+
+
+def mechanism_states(search: Search, draws: int) -> Iterator[CollapseState]:
+    """Collapse states of blocks that may move alone below the least multiplier known, then of drawn mechanisms.
+
+    Args:
+        search: of the wall; its generator draws the mechanisms.
+        draws: how many mechanisms are drawn.
+    """
+    problem = search.problem
+    for block in range(problem.assembly.n_free):
+        for velocities in _motions_below(search, block):
+            state = search.state_of(velocities, problem.rates_of_velocities(velocities, False))
+            if state is not None:
+                yield state
+    everywhere = np.ones((problem.n_interfaces, 4), dtype=bool)
+    for _ in range(draws):
+        search.tally.programmes += 1
+        mechanism = search.kinematic.solve(everywhere, search.generator.exponential(size=everywhere.shape) ** HEAVY)
+        if mechanism is None:
+            return
+        state = search.state_of(mechanism.velocities, mechanism.rates)
+        if state is not None:
+            yield state
+
+
+def _motions_below(search: Search, block: int) -> Iterator[FloatArray]:
+    """Velocities (3n,) of the block's own motions that its equilibrium allows below the least multiplier known."""
+    problem = search.problem
+    own = slice(3 * block, 3 * block + 3)
+    columns = problem.kinematic[:, own].tocoo()
+    joints, row = np.unique(columns.row // 3, return_inverse=True)
+    strains = np.zeros((len(joints), 3, 3))
+    strains[row, columns.row % 3, columns.col] = columns.data
+    for motion in extreme_motions(strains, problem.live[own]):
+        if least_of_block(problem, block, joints, strains, motion) < search.least - LOWER:
+            velocities = np.zeros(problem.n_velocities)
+            velocities[own] = motion * (problem.live_work / float(problem.live[own] @ motion))
+            yield velocities
+
+
+def extreme_motions(strains: FloatArray, live: FloatArray) -> FloatArray:
+    """(r, 3) unit motions of a rigid body that move in fewest of its contacts.
+
+    Args:
+        strains: (k, 3, 3) openings at both ends and slip of its joints, from its motion; no opening may be negative.
+        live: (3,) live load on the body, which is to do positive work.
+    """
+    rows = _distinct(strains.reshape(-1, 3))
+    first, second = np.triu_indices(len(rows), 1)
+    motions = _distinct(np.cross(rows[first], rows[second]))
+    work = motions @ live
+    doing = abs(work) > ROUNDING * np.linalg.norm(live)
+    motions = motions[doing] * np.sign(work[doing])[:, None]
+    rates = np.einsum("kij,rj->rki", strains, motions)
+    possible = (rates[:, :, :2] >= -ROUNDING).all(axis=(1, 2))
+    motions, rates = motions[possible], rates[possible].reshape(-1, 3 * len(strains))
+    moving = np.hstack([rates > ROUNDING, rates < -ROUNDING])
+    within = ~(moving[:, None] & ~moving[None]).any(axis=2)
+    return np.asarray(motions[~(within & ~within.T).any(axis=0)])
+
+
+def least_of_block(
+    problem: Problem, block: int, joints: NDArray[Any], strains: FloatArray, motion: FloatArray
+) -> float:
+    """The least scaled multiplier at which a moving block's joints balance its own loads; inf if they cannot.
+
+    Args:
+        joints: (k,) its interfaces; strains: (k, 3, 3) of them; motion: (3,) of the block.
+    """
+    own = slice(3 * block, 3 * block + 3)
+    rates = strains @ motion
+    yields = np.zeros((len(joints), 4, 3))
+    yields[:, 0, 0] = yields[:, 1, 1] = yields[:, 2, 2] = 1.0
+    yields[:, 3, 2] = -1.0
+    yields[:, 2:, :2] = problem.friction[joints, None, None]
+    slacks = np.pad(block_diag(*yields), ((0, 0), (0, 1)))
+    moving = np.column_stack([rates, -rates[:, 2]]).ravel() > ROUNDING
+    solution = linprog(
+        np.eye(slacks.shape[1])[-1],
+        A_ub=-slacks,
+        b_ub=np.zeros(len(slacks)),
+        A_eq=np.vstack([slacks[moving], np.column_stack([strains.reshape(-1, 3).T, problem.live[own]])]),
+        b_eq=np.append(np.zeros(moving.sum()), -problem.dead[own]),
+        bounds=[(None, None)] * (slacks.shape[1] - 1) + [(0.0, None)],
+    )
+    return np.inf if solution.status != 0 or solution.x is None else float(solution.x[-1])
+
+
+def _distinct(vectors: FloatArray) -> FloatArray:
+    """Unit vectors (k, 3) along those that differ in more than length, sense and rounding."""
+    length = np.linalg.norm(vectors, axis=1)
+    unit = vectors[length > ROUNDING] / length[length > ROUNDING, None]
+    leading = np.take_along_axis(unit, (abs(unit) > ROUNDING).argmax(axis=1)[:, None], axis=1)
+    unit = unit * np.sign(leading)
+    return np.asarray(unit[np.unique(unit.round(8), axis=0, return_index=True)[1]])
