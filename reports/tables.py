@@ -35,10 +35,10 @@ class RunRow:
     case_title: str
     method: str
     family: str
-    number_is: str
     failed: bool
     trouble: bool
     multiplier: Cell
+    proved: bool
     bracket: Cell
     bracket_meaning: str
     reference: Cell
@@ -138,10 +138,10 @@ def run_row(case_number: int, result_number: int, item: CaseResults) -> RunRow:
         case_title=case.file.title,
         method=result.method,
         family=result.family,
-        number_is=words.NUMBER_IS.get(result.method, words.family_of(result.method, result.family).lower()),
         failed=failed,
         trouble=failed or accepted is False or result.verdict in (Verdict.OUTSIDE_TOLERANCE, Verdict.VIOLATES_BOUND),
         multiplier=_multiplier_cell(result),
+        proved=bool(result.details.get("proved_least")),
         bracket=Cell(
             numbers.interval(result.bracket),
             numbers.every_digit(result.bracket) if result.bracket else "",

@@ -19,6 +19,7 @@ from methods.la.mechanisms import mechanism_states
 from methods.la.newton_matrix import NewtonMatrix
 from methods.la.prestressed import LIGHT_UP_TO, gravity_of, light_states, prestressed_state
 from methods.la.problem import Problem
+from methods.la.proof import Proof, prove
 from methods.la.rational import confirm
 from methods.la.search import Effort, Search
 from methods.la.settings import SearchSettings
@@ -33,6 +34,7 @@ class Plan:
         starts: random starts; failures: draws that end a descent; ladder: friction factors; descents: on each rung.
         kinks: on all paths of springs from forces of little self-stress.
         mechanisms: drawn without regard to forces.
+        nodes: of the tree that may prove the least state.
     """
 
     starts: int
@@ -41,6 +43,7 @@ class Plan:
     descents: int
     kinks: int
     mechanisms: int
+    nodes: int
 
 
 SIMPLEX_SEARCH = 1000
@@ -49,6 +52,11 @@ FEW_INTERFACES = 400
 """Interfaces up to which the associated solution is one more start; on larger walls it led to high states only."""
 LARGE_KINKS = 60000
 """Kinks on the paths of springs from forces of little self-stress on walls above `SIMPLEX_SEARCH`."""
+PROVABLE, PROVABLE_RING = 16, 30
+"""Interfaces up to which a proof is tried, and those of walls with hardly more interfaces than blocks.
+
+With more, hardly any tree of 1,500 nodes comes to an end.
+"""
 SAME = 1e-9
 """Relative difference of two multipliers below which the state with the smaller residuals is the better one."""
 LADDER = (0.55, 0.65, 0.75, 0.85, 0.925)
@@ -57,15 +65,21 @@ SMOOTH = (0.5, 0.3, 0.0)
 FINE_LADDER = (1.3, 1.15, 1.0, 0.9, 0.8, 0.7, 0.6, 0.5, 0.55, 0.6, 0.65, 0.7, 0.75, 0.8, 0.85, 0.9, 0.95)
 
 
-def plan_of(settings: SearchSettings, n_free: int) -> Plan:
-    """The plan for a wall of n_free blocks; normal effort shrinks with size so that the time grows slowly."""
+def plan_of(settings: SearchSettings, problem: Problem) -> Plan:
+    """The plan for a wall; normal effort shrinks with size so that the time grows slowly."""
+    n_free = problem.assembly.n_free
+    most = PROVABLE_RING if problem.n_interfaces <= n_free + 2 else PROVABLE
+    nodes = 1500 if problem.n_interfaces <= most else 0
+    deep_nodes = 20000 if problem.n_interfaces <= 2 * most else 0
     plan = {
-        "quick": Plan(0, 8, (), 1, 300, 0),
-        "normal": Plan(3, 12, LADDER, 3, 6000, 60) if n_free <= 30 else Plan(1, 12, LADDER[::2], 1, 6000, 20),
-        "deep": Plan(20, 40, FINE_LADDER, 8, 100000, 1000 if n_free <= 60 else 50),
+        "quick": Plan(0, 8, (), 1, 300, 0, min(nodes, 100)),
+        "normal": Plan(3, 12, LADDER, 3, 6000, 60, nodes)
+        if n_free <= 30
+        else Plan(1, 12, LADDER[::2], 1, 6000, 20, nodes),
+        "deep": Plan(20, 40, FINE_LADDER, 8, 100000, 1000 if n_free <= 60 else 50, deep_nodes),
     }[settings.effort]
     if settings.effort == "normal" and n_free > 60:
-        plan = Plan(1 if n_free <= 150 else 0, 40, (), 1, 20000, 0)
+        plan = Plan(1 if n_free <= 150 else 0, 40, (), 1, 20000, 0, 0)
     return replace(
         plan,
         starts=plan.starts if settings.starts is None else settings.starts,
@@ -86,7 +100,7 @@ def least_known(problem: Problem, newton: NewtonMatrix, settings: SearchSettings
     began = time.process_time()
     if problem.n_interfaces > SIMPLEX_SEARCH:
         return _large(problem, newton, settings, tolerance)
-    plan = plan_of(settings, problem.n_velocities // 3)
+    plan = plan_of(settings, problem)
     effort = Effort(failures=plan.failures)
     search = Search(problem, newton, settings.seed)
     first = search.interior()
@@ -109,8 +123,14 @@ def least_known(problem: Problem, newton: NewtonMatrix, settings: SearchSettings
     joined = search.as_one_block(best)
     if joined is not None and joined.multiplier < best.multiplier:
         best = search.descend(joined, effort)
+    proof = prove(search, best, plan.nodes)
+    if proof.state is not best:
+        best = search.descend(proof.state, effort)
+        proof = replace(proof, state=best)
     best = polished(problem, newton, best)
-    answer = _answer(problem, search, best, (found, climbed), associated, tolerance, settings.rational_interfaces)
+    answer = _answer(
+        problem, search, best, (found, climbed), (associated, proof), tolerance, settings.rational_interfaces
+    )
     return _with_falling_blocks(replace(answer, path=_path(search, began)), gravity.falling)
 
 
@@ -211,10 +231,11 @@ def _answer(
     search: Search,
     best: CollapseState,
     states: tuple[list[CollapseState], list[CollapseState]],
-    associated: AssociatedResult,
+    bounds: tuple[AssociatedResult, Proof],
     tolerance: float,
     rational_interfaces: int,
 ) -> Answer:
+    associated, proof = bounds
     least = problem.to_multiplier(best.multiplier)
     values, climbed = ([problem.to_multiplier(state.multiplier) for state in group] for group in states)
     agreeing = sum(value <= least * (1.0 + 1e-7) + 1e-12 for value in values)
@@ -227,16 +248,25 @@ def _answer(
         "newton_steps": search.tally.newton_steps,
         "programmes": search.tally.programmes,
         "unknowns": 7 * problem.n_interfaces + problem.n_velocities + 1,
+        "lower_bound": problem.to_multiplier(proof.lower_bound),
+        "proved_least": proof.complete,
+        "proof_nodes": proof.nodes,
     }
     if problem.n_interfaces <= rational_interfaces:
         details["rational_confirmation"] = confirm(problem, best)
     if associated.state is not None:
         details["associated"] = problem.to_multiplier(associated.state.multiplier)
+    if proof.complete:
+        sentence = f"The least collapse multiplier is {least:.7g}, proved by {proof.nodes} nodes of branch and bound."
+    else:
+        sentence = (
+            f"The least collapse multiplier known is {least:.7g}; {agreeing} of {len(values)} starts "
+            "lead to it. It is not proved to be the least."
+        )
     return collapse_answer(
         problem,
         best,
-        f"The least collapse multiplier known is {least:.7g}; {agreeing} of {len(values)} starts "
-        "lead to it. It is not proved to be the least.",
+        sentence,
         tolerance,
         search.tally.newton_steps,
         details,

@@ -100,6 +100,10 @@ class Programme:
             highspy.HighsModelStatus.kInfeasible: "infeasible",
             highspy.HighsModelStatus.kUnbounded: "unbounded",
         }
+        if status not in names:
+            self.highs.clearSolver()
+            self.highs.run()
+            status = self.highs.getModelStatus()
         solution = self.highs.getSolution()
         return names.get(status, "unknown"), np.array(solution.col_value), np.array(solution.row_dual)
 

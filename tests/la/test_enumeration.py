@@ -116,6 +116,7 @@ def _assert_least(wall: Assembly) -> None:
     greatest = AssociatedLimitAnalysis().solve(wall, AssociatedSettings()).multiplier
     assert answer.status is Status.OK
     assert answer.finding is Finding.COLLAPSES
+    assert answer.details["proved_least"]
     # Two linear solvers with feasibility tolerances of 1e-7 and less.
     assert answer.multiplier == pytest.approx(least_by_enumeration(wall), rel=1e-7, abs=1e-9)
     assert answer.multiplier is not None

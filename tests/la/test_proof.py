@@ -1,0 +1,57 @@
+"""Branch and bound over contacts: what it proves is what enumeration and the search of `la` find too."""
+
+from __future__ import annotations
+
+import pytest
+
+from harness.model.assembly import Assembly
+from methods.la.adapter import LimitAnalysis
+from methods.la.newton_matrix import NewtonMatrix
+from methods.la.problem import Problem, make_problem
+from methods.la.proof import Proof, prove
+from methods.la.search import Search
+from methods.la.settings import SearchSettings
+from methods.la.state import CollapseState
+from tests.la.bodies import block_on_halves, column, running_bond
+from tests.la.test_mechanisms import six_blocks
+
+
+def proof_from(wall: Assembly, nodes: int) -> tuple[Problem, CollapseState, Proof]:
+    """What the tree proves from the state that the interior point ends at, which need not be the least."""
+    problem = make_problem(wall)
+    search = Search(problem, NewtonMatrix(problem))
+    known = search.interior()
+    assert known is not None
+    return problem, known, prove(search, known, nodes)
+
+
+def test_the_paper_s_block_has_no_collapse_state_below_its_smaller_friction() -> None:
+    """Its joints may carry any self-stress, so it slides at .4, where FE's plateau is .4762 (paper, table 1)."""
+    answer = LimitAnalysis().solve(block_on_halves(), SearchSettings())
+    assert answer.details["proved_least"]
+    assert answer.multiplier == pytest.approx(0.4, rel=1e-12)
+    assert answer.details["lower_bound"] == pytest.approx(0.4, rel=2e-6)  # the margin of the tree
+    assert "proved" in answer.sentence
+
+
+def test_the_tree_finds_the_least_state_of_six_blocks_from_a_higher_one() -> None:
+    problem, known, proof = proof_from(six_blocks(), 3000)
+    assert proof.complete
+    assert problem.to_multiplier(proof.state.multiplier) == pytest.approx(0.4257766, rel=1e-6)  # seven digits
+    assert known.multiplier > 1.1 * proof.state.multiplier
+
+
+def test_a_tree_cut_short_proves_less_but_nothing_wrong() -> None:
+    whole = proof_from(column([0.5, 0.4, 0.6], [0.3, 0.5, 0.2], 0.55), 1000)[2]
+    assert whole.complete
+    for nodes in (0, 1, 3, 5, 9):
+        part = proof_from(column([0.5, 0.4, 0.6], [0.3, 0.5, 0.2], 0.55), nodes)[2]
+        assert part.lower_bound <= whole.state.multiplier
+        assert part.nodes <= nodes + 2
+
+
+def test_a_wall_too_large_for_a_tree_is_said_to_have_no_proof() -> None:
+    answer = LimitAnalysis().solve(running_bond(6, 3, 0.2, 0.65), SearchSettings(effort="quick"))
+    assert not answer.details["proved_least"]
+    assert answer.details["lower_bound"] < answer.multiplier
+    assert "It is not proved to be the least." in answer.sentence
