@@ -177,7 +177,7 @@ def print_result(result: Result, case: Case) -> None:
     """One result, for a person."""
     console = Console()
     rows = Table.grid(padding=(0, 2))
-    rows.add_row("wall", f"{case.file.title} ({result.blocks} free blocks, {result.interfaces} interfaces)")
+    rows.add_row("wall", f"{case.file.title} (free blocks: {result.blocks}, interfaces: {result.interfaces})")
     rows.add_row("method", result.method)
     rows.add_row("finding", f"{_value(result)}" if result.finding is Finding.COLLAPSES else str(result.finding))
     rows.add_row("", escape(result.sentence))

@@ -174,6 +174,17 @@ def test_unknown_method_of_a_third_party_is_shown():
     assert "drystone run mine wall-21" in Page(build.render(run, data_folder="x")).text
 
 
+def test_only_values_that_are_proved_are_marked_as_proved():
+    case = samples.bond()
+    proved, known = samples.solved(case, "la", 0.5), samples.solved(case, "la-from-fe", 0.5)
+    proved.details["proved_least"], known.details["proved_least"] = True, False
+    pages = [
+        build.render(ComparisonRun("small", "", "", [CaseResults(case, [result])]), data_folder="x")
+        for result in (proved, known)
+    ]
+    assert ["proved to be the least</span>" in page for page in pages] == [True, False]
+
+
 def test_fifty_cases_by_eight_methods_stay_below_five_megabytes():
     assert len(build.render(samples.large(), data_folder="x").encode()) < 5_000_000
 
