@@ -159,5 +159,4 @@ class ConvexSteps:
         forces = model.end_forces(*result.forces)
         if not assembly.has_live_load:
             return standing_answer(forces, result.programmes, details | {"path_status": "stands"})
-        path = {"multiplier": list(result.record.multiplier)}
-        return bracket_answer(result.lower, result.upper, forces, details, path, result.programmes)
+        return bracket_answer(result, forces, details)

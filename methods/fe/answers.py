@@ -9,6 +9,7 @@ import numpy as np
 from harness.model.assembly import FloatArray
 from harness.model.errors import first_few
 from harness.model.method import Answer, Finding, Status
+from methods.fe.convex_steps import ConvexResult
 from methods.fe.histories import HistoryResult
 from methods.springs.equilibrium import Equilibrium
 from methods.springs.path_record import PathEnd, PathRecord
@@ -168,25 +169,34 @@ def compact(model: WallModel, record: PathRecord) -> dict[str, list[float]]:
     }
 
 
-def bracket_answer(
-    lower: float,
-    upper: float | None,
-    forces: FloatArray,
-    details: dict[str, Any],
-    path: dict[str, list[float]],
-    iterations: int,
-) -> Answer:
-    """The answer of a method that only knows between which two steps the wall lost its equilibrium."""
+def bracket_answer(result: ConvexResult, forces: FloatArray, details: dict[str, Any]) -> Answer:
+    """The answer of steps that only know between which two of them the wall lost its equilibrium.
+
+    Args:
+        forces: end forces (m, 3) at `result.at`.
+    """
+    lower, upper = result.lower, result.upper
+    path = {"multiplier": list(result.record.multiplier)}
     if upper is None:
         return Answer(
             Status.OK,
             Finding.UNBOUNDED,
             "every step of the live load found equilibrium",
             forces=forces,
-            forces_multiplier=lower,
-            iterations=iterations,
+            forces_multiplier=result.at,
+            iterations=result.programmes,
             path=path,
             details=details | {"path_status": "unbounded"},
+        )
+    if not result.settles:
+        return Answer(
+            Status.NOT_CONVERGED,
+            Finding.NONE,
+            f"equilibrium is found at {lower:.6g} times the live load; at {upper:.6g} the friction limits do not "
+            "settle, which is no proof of collapse",
+            iterations=result.programmes,
+            path=path,
+            details=details | {"path_status": "not_converged", "settled_at": lower},
         )
     return Answer(
         Status.OK,
@@ -196,9 +206,9 @@ def bracket_answer(
         bracket=(lower, upper),
         bracket_meaning="last step with equilibrium, first step without",
         forces=forces,
-        forces_multiplier=lower,
+        forces_multiplier=result.at,
         flow="approximate",
-        iterations=iterations,
+        iterations=result.programmes,
         path=path,
         details=details | {"path_status": "bracket"},
     )

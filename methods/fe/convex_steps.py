@@ -24,6 +24,11 @@ from harness.model.assembly import FloatArray
 from methods.springs.path_record import PathRecord
 from methods.springs.wall_model import WallModel
 
+FAR = 100.0
+"""First steps beyond which forces are no longer kept while no step fails: OSQP's accuracy is relative to the load."""
+NEAR = 0.01
+"""Share of the multiplier within which limits that do not settle are taken for the collapse above them."""
+
 
 @dataclass(frozen=True)
 class ConvexResult:
@@ -33,7 +38,9 @@ class ConvexResult:
         lower, upper: the bracket; upper None when no step lost its equilibrium.
         gravity: whether the dead load settled; fall: displacements (N,) along which the energy falls without end, even
             with friction limits as if every joint carried the whole wall.
-        forces: gap forces N and T (P,) of the last step that settled, at `lower`.
+        forces: gap forces N and T (P,) of the last step that settled with loads not far above the dead load.
+        at: the multiplier of `forces`; settles: whether a step little above `upper` has an energy without minimum, and
+            not only friction limits that do not settle.
     """
 
     lower: float
@@ -42,6 +49,8 @@ class ConvexResult:
     programmes: int
     gravity: bool
     forces: tuple[FloatArray, FloatArray] | None = None
+    at: float = 0.0
+    settles: bool = True
     fall: FloatArray | None = None
 
 
@@ -53,6 +62,7 @@ class TrescaProgramme:
         self.programmes = 0
         self.normal, self.shear = np.zeros(model.n_points), np.zeros(model.n_points)
         self.ray: FloatArray | None = None
+        self.without_minimum = False
         n, p = model.n_unknowns, model.n_points
         opening, slip = self._gap_matrices()
         self._opening, self._slip = opening, slip
@@ -118,7 +128,8 @@ class TrescaProgramme:
         self._solver.update(q=linear)
         result = self._solver.solve(raise_error=False)
         self.programmes += 1
-        self.ray = result.dual_inf_cert[: self.n].copy() if result.info.status == "dual infeasible" else None
+        self.without_minimum = result.info.status == "dual infeasible"
+        self.ray = result.dual_inf_cert[: self.n].copy() if self.without_minimum else None
         if result.info.status not in ("solved", "solved inaccurate") or not np.isfinite(result.x).all():
             self.restart()
             return None
@@ -150,7 +161,7 @@ def bracket_collapse(
     forces = programme.normal, np.clip(programme.shear, -limit, limit)
     if not model.assembly.has_live_load:
         return ConvexResult(0.0, None, record, programme.programmes, True, forces)
-    lower, upper, step = 0.0, None, first_step
+    lower, upper, step, at, falls = 0.0, None, first_step, 0.0, np.inf
     growth = np.zeros(model.n_points)
     while upper is None or upper - lower > resolution * max(abs(upper), 1e-6):
         goal = lower + step if upper is None else 0.5 * (lower + upper)
@@ -159,16 +170,18 @@ def bracket_collapse(
         if settled is None:
             settled = _settle(programme, goal, 2.0 * np.maximum(ahead, limit), 2 * fixed_points, 0.5)
         if settled is None:
-            upper = goal
+            upper, falls = goal, goal if programme.without_minimum else falls
         else:
             growth = (settled - limit) / (goal - lower)
             lower, limit = goal, settled
-            forces = programme.normal, np.clip(programme.shear, -limit, limit)
+            if goal <= FAR * first_step or upper is not None:
+                forces, at = (programme.normal, np.clip(programme.shear, -limit, limit)), goal
             record.add(goal, 0.0, 0, 0)
             step *= 1.5
         if upper is None and lower > 1e6 * first_step:
             break
-    return ConvexResult(lower, upper, record, programme.programmes, True, forces)
+    settles = upper is None or falls <= upper * (1.0 + NEAR)
+    return ConvexResult(lower, upper, record, programme.programmes, True, forces, at, settles)
 
 
 def _settle(
@@ -184,6 +197,7 @@ def _settle(
     while left:
         answer = programme.solve(multiplier, limit)
         if answer is None or np.abs(answer[0]).max() > 1e6 * scale:
+            programme.without_minimum |= answer is not None
             programme.restart()
             return None
         new = model.mu * answer[1]

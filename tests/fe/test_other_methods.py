@@ -63,6 +63,26 @@ def test_convex_steps_bracket_the_multiplier_of_blocks_of_any_shape(
     assert ConvexSteps().solve(assembly, ConvexSettings()).multiplier == pytest.approx(exact, rel=1e-3)
 
 
+def ring(count: int, friction: float, live: dict[str, object]) -> Assembly:
+    pattern = {"type": "ring", "inner_radius": 1.0, "outer_radius": 1.6, "count": count}
+    wall = {"format": "wall/1", "unit_weight": 20.0, "friction": friction, "pattern": pattern, "loads": {"live": live}}
+    return build(Wall.model_validate(wall), "ring").assembly
+
+
+def test_convex_steps_whose_limits_do_not_settle_give_no_multiplier() -> None:
+    answer = ConvexSteps().solve(running_bond(6, 3, 0.65), ConvexSettings(fixed_points=1))
+    assert (answer.status, answer.finding, answer.multiplier) == (Status.NOT_CONVERGED, Finding.NONE, None)
+    assert "no proof of collapse" in answer.sentence
+
+
+def test_convex_steps_that_never_end_show_forces_near_the_dead_load() -> None:
+    """OSQP's accuracy is relative to the load: at 1e5 times the live load the forces miss whole block weights."""
+    answer = ConvexSteps().solve(ring(5, 0.9, {"body": [{"per_weight": [0.0, -1.0]}]}), ConvexSettings())
+    assert (answer.status, answer.finding) == (Status.OK, Finding.UNBOUNDED)
+    assert answer.forces_multiplier is not None
+    assert 0.0 < answer.forces_multiplier < 10.0
+
+
 def test_convex_steps_refuse_walls_that_are_too_large_for_them() -> None:
     answer = ConvexSteps().solve(running_bond(20, 10, 0.65), ConvexSettings())
     assert (answer.status, answer.finding) == (Status.REFUSED, Finding.NONE)
