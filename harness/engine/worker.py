@@ -9,14 +9,17 @@ import contextlib
 import ctypes
 import json
 import math
+import multiprocessing
 import os
 import resource
 import signal
 import sys
+import threading
 import time
 import traceback
 from collections.abc import Iterator
 from dataclasses import dataclass, fields
+from multiprocessing import connection
 from pathlib import Path
 from typing import Any
 
@@ -53,7 +56,7 @@ class Task:
 def run_task(task: Task, folder: str) -> None:
     """Run a task in this process and leave `answer.json` in the folder. Called in a fresh child process only."""
     os.setsid()
-    _die_with_parent()
+    _die_with_engine()
     os.chdir(folder)  # what a library drops in the working directory goes with the run
     _send_output_to(Path(folder) / "output.txt")
     resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
@@ -124,10 +127,23 @@ def _cpu_seconds() -> float:
     )
 
 
-def _die_with_parent() -> None:
-    """Ask the kernel to end this process when the fork server ends (Linux; elsewhere the wall limit must do)."""
+def _die_with_engine() -> None:
+    """End this process with the engine that started it, even one that was killed.
+
+    The fork server cannot tell: it lives as long as any process that holds its pipe, and this one does. Should it be
+    killed itself, the kernel ends this process (Linux; elsewhere the wall limit must do).
+    """
     with contextlib.suppress(OSError, AttributeError):
         ctypes.CDLL(None).prctl(1, int(signal.SIGKILL))
+    engine = multiprocessing.parent_process()
+    if engine is None:
+        return
+
+    def follow() -> None:
+        connection.wait([engine.sentinel])
+        os._exit(1)
+
+    threading.Thread(target=follow, daemon=True).start()
 
 
 def _send_output_to(path: Path) -> None:

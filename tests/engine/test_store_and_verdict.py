@@ -11,6 +11,7 @@ import time
 from pathlib import Path
 from typing import Any
 
+import psutil
 import pytest
 
 from harness.engine.compare import comparison_run, execute, recall, remember
@@ -185,8 +186,11 @@ with open_store(Path({str(tmp_path / "s.sqlite")!r})) as store:
     assert child.stdout is not None
     assert child.stdout.readline() == "done\n"
     time.sleep(0.3)
+    started = psutil.Process(child.pid).children(recursive=True)
+    assert started
     os.kill(child.pid, signal.SIGKILL)
     child.wait()
+    assert not psutil.wait_procs(started, timeout=10.0)[1], "a method that hangs outlives the engine"
     child.stdout.close()
     with open_store(tmp_path / "s.sqlite") as store:
         assert store.get(dummy_run("answer").key) is not None
