@@ -257,7 +257,7 @@ def _answer(
     if associated.state is not None:
         details["associated"] = problem.to_multiplier(associated.state.multiplier)
     if proof.complete:
-        nodes = f"{proof.nodes} node{'s' if proof.nodes > 1 else ''}"
+        nodes = f"{proof.nodes} node{'s' if proof.nodes != 1 else ''}"
         sentence = f"The least collapse multiplier is {least:.7g}, proved by branch and bound ({nodes})."
     else:
         sentence = (

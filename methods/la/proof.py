@@ -55,7 +55,10 @@ def prove(search: Search, known: CollapseState, most: int) -> Proof:
 
     Args:
         search: of the wall, which stands under its dead load; known: its least collapse state so far.
+        most: with none, all that is said is that no multiplier is negative.
     """
+    if most == 0:
+        return Proof(known, 0.0, 0)
     tree = _Tree(search, known)
     shape = (search.problem.n_interfaces, 4)
     nothing = np.zeros(shape, dtype=bool)
