@@ -11,7 +11,7 @@ import osqp
 import scipy.sparse as sp
 
 from harness.model.assembly import FloatArray
-from methods.la.problem import Problem
+from methods.la.problem import Problem, slack_matrix
 
 
 def project_forces(problem: Problem, forces: FloatArray, multiplier: float) -> tuple[FloatArray, float, bool]:
@@ -22,13 +22,8 @@ def project_forces(problem: Problem, forces: FloatArray, multiplier: float) -> t
         forces: (m, 3) scaled contact forces.
         multiplier: scaled multiplier they belong to.
     """
-    m, mu = problem.n_interfaces, problem.friction
-    base = 3 * np.arange(m)
-    rows = np.concatenate([4 * np.arange(m) + k for k in (0, 1, 2, 2, 2, 3, 3, 3)])
-    columns = np.concatenate([base, base + 1, base, base + 1, base + 2, base, base + 1, base + 2])
-    one = np.ones(m)
-    values = np.concatenate([one, one, mu, mu, one, mu, mu, -one])
-    slacks = sp.coo_matrix((values, (rows, columns)), shape=(4 * m, 3 * m + 1))
+    m = problem.n_interfaces
+    slacks = sp.hstack([slack_matrix(problem.friction), sp.csr_matrix((4 * m, 1))])
     equilibrium = sp.hstack([problem.statics, sp.csr_matrix(problem.live[:, None])])
     target = np.append(forces.ravel(), multiplier)
     weight = np.append(np.ones(3 * m), float(m))

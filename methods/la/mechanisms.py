@@ -13,11 +13,10 @@ from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.linalg import block_diag
 from scipy.optimize import linprog
 
 from harness.model.assembly import FloatArray
-from methods.la.problem import Problem
+from methods.la.problem import Problem, slack_matrix
 from methods.la.search import LOWER, Search
 from methods.la.state import CollapseState
 
@@ -97,11 +96,7 @@ def least_of_block(
     """
     own = slice(3 * block, 3 * block + 3)
     rates = strains @ motion
-    yields = np.zeros((len(joints), 4, 3))
-    yields[:, 0, 0] = yields[:, 1, 1] = yields[:, 2, 2] = 1.0
-    yields[:, 3, 2] = -1.0
-    yields[:, 2:, :2] = problem.friction[joints, None, None]
-    slacks = np.pad(block_diag(*yields), ((0, 0), (0, 1)))
+    slacks = np.pad(slack_matrix(problem.friction[joints]).toarray(), ((0, 0), (0, 1)))
     moving = np.column_stack([rates, -rates[:, 2]]).ravel() > ROUNDING
     solution = linprog(
         np.eye(slacks.shape[1])[-1],

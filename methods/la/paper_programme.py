@@ -21,7 +21,7 @@ from scipy.sparse.csgraph import dijkstra
 from scipy.sparse.linalg import splu
 
 from harness.model.assembly import FloatArray, IntArray
-from methods.la.problem import Problem
+from methods.la.problem import Problem, slack_matrix
 
 FASTEST = 1e3
 """Bound on the rates at a mean live displacement of one; without it Ipopt's tolerances admit rates of any size."""
@@ -107,7 +107,7 @@ def solve_paper_programme(
     forces = casadi.SX.zeros(3 * m)
     forces[rows1.tolist()] = first_forces
     forces[rows2.tolist()] = second_forces
-    slack = _matrix(casadi, _slack_matrix(problem)) @ forces
+    slack = _matrix(casadi, slack_matrix(problem.friction).toarray()) @ forces
     work = casadi.dot(slack, rates) / problem.live_work
     constraints = casadi.vertcat(
         _matrix(casadi, compatibility) @ rates, slack, work, _matrix(casadi, live_row[None, :]) @ rates - 1.0
@@ -144,11 +144,6 @@ def solve_paper_programme(
         message = str(statistics["return_status"])
     solved = np.asarray(evaluate(start)).reshape(-1, 3)
     return PaperResult(solved, float(start[0]), start[1 + len(rows2) :].reshape(-1, 4), len(start), iterations, message)
-
-
-def _slack_matrix(problem: Problem) -> FloatArray:
-    blocks = [np.array([[1.0, 0, 0], [0, 1.0, 0], [mu, mu, 1.0], [mu, mu, -1.0]]) for mu in problem.friction.tolist()]
-    return np.asarray(sp.block_diag(blocks).toarray())
 
 
 def _matrix(casadi: Any, dense: FloatArray) -> Any:

@@ -153,6 +153,16 @@ class Problem:
         return np.asarray(moving.ravel())
 
 
+def slack_matrix(friction: FloatArray) -> sp.csr_matrix:
+    """Sparse (4m, 3m) matrix S of the slacks y = S r of forces r = (n1, n2, s), for friction coefficients (m,)."""
+    m = len(friction)
+    base, one = 3 * np.arange(m), np.ones(m)
+    rows = np.concatenate([4 * np.arange(m) + k for k in (0, 1, 2, 2, 2, 3, 3, 3)])
+    columns = np.concatenate([base, base + 1, base, base + 1, base + 2, base, base + 1, base + 2])
+    values = np.concatenate([one, one, friction, friction, one, friction, friction, -one])
+    return sp.csr_matrix((values, (rows, columns)), shape=(4 * m, 3 * m))
+
+
 def make_problem(assembly: Assembly) -> Problem:
     """The scaled limit-analysis problem of an assembly."""
     unit_force = assembly.force_scale / max(assembly.n_free, 1)
