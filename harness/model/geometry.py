@@ -82,6 +82,11 @@ def typical_size(polygons: Sequence[FloatArray]) -> float:
     return float(np.median(np.sqrt(areas)))
 
 
+def distances(polygons: Sequence[FloatArray], which: IntArray, points: FloatArray) -> FloatArray:
+    """Distance (k,) of points (k, 2) from the polygons of numbers `which` (k,), 0 within them [length]."""
+    return np.asarray(shapely.distance(_shapes(polygons)[which], shapely.points(points)))
+
+
 def _shapes(polygons: Sequence[FloatArray]) -> np.ndarray:
     sizes = [len(polygon) for polygon in polygons]
     rings = shapely.linearrings(

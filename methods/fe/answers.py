@@ -188,12 +188,16 @@ def bracket_answer(result: ConvexResult, forces: FloatArray, details: dict[str, 
             path=path,
             details=details | {"path_status": "unbounded"},
         )
-    if not result.settles:
+    if not (result.settles and result.fine):
+        doubt = (
+            "friction limits that settle to 1e-5 of the loads are not exact enough for so small a multiplier"
+            if result.settles
+            else f"at {upper:.6g} the friction limits do not settle, which is no proof of collapse"
+        )
         return Answer(
             Status.NOT_CONVERGED,
             Finding.NONE,
-            f"equilibrium is found at {lower:.6g} times the live load; at {upper:.6g} the friction limits do not "
-            "settle, which is no proof of collapse",
+            f"equilibrium is found at {lower:.6g} times the live load; {doubt}",
             iterations=result.programmes,
             path=path,
             details=details | {"path_status": "not_converged", "settled_at": lower},

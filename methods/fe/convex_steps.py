@@ -21,13 +21,18 @@ import osqp
 import scipy.sparse as sp
 
 from harness.model.assembly import FloatArray
+from methods.numerics.vectors import largest
 from methods.springs.path_record import PathRecord
-from methods.springs.wall_model import WallModel
+from methods.springs.wall_model import WallModel, load_scale
 
 FAR = 100.0
 """First steps beyond which forces are no longer kept while no step fails: OSQP's accuracy is relative to the load."""
 NEAR = 0.01
 """Share of the multiplier within which limits that do not settle are taken for the collapse above them."""
+SETTLED = 1e-5
+"""Change of friction limits, in largest loads of a block, at which they count as repeated."""
+SMALL = 1000.0
+"""Multiples of `SETTLED` at which the live load has to stand to the dead load for a bracket to mean anything."""
 
 
 @dataclass(frozen=True)
@@ -40,7 +45,8 @@ class ConvexResult:
             with friction limits as if every joint carried the whole wall.
         forces: gap forces N and T (P,) of the last step that settled with loads not far above the dead load.
         at: the multiplier of `forces`; settles: whether a step little above `upper` has an energy without minimum, and
-            not only friction limits that do not settle.
+            not only friction limits that do not settle; fine: whether the limits are exact enough for so small a
+            multiplier.
     """
 
     lower: float
@@ -51,6 +57,7 @@ class ConvexResult:
     forces: tuple[FloatArray, FloatArray] | None = None
     at: float = 0.0
     settles: bool = True
+    fine: bool = True
     fall: FloatArray | None = None
 
 
@@ -181,7 +188,8 @@ def bracket_collapse(
         if upper is None and lower > 1e6 * first_step:
             break
     settles = upper is None or falls <= upper * (1.0 + NEAR)
-    return ConvexResult(lower, upper, record, programme.programmes, True, forces, at, settles)
+    fine = upper is None or upper * largest(model.live) >= SMALL * SETTLED * largest(model.dead)
+    return ConvexResult(lower, upper, record, programme.programmes, True, forces, at, settles, fine)
 
 
 def _settle(
@@ -192,7 +200,7 @@ def _settle(
     The iteration ends without them when `count` programmes in a row bring the change of the limits no tenth lower.
     """
     model = programme.model
-    scale = float(np.abs(model.dead).max() + abs(multiplier) * np.abs(model.live).max()) or 1.0
+    scale = load_scale(model, multiplier)
     least, left = np.inf, count
     while left:
         answer = programme.solve(multiplier, limit)
@@ -202,7 +210,7 @@ def _settle(
             return None
         new = model.mu * answer[1]
         change = float(np.abs(new - limit).max())
-        if change < 1e-4 * share * scale:
+        if change < SETTLED * share * scale:
             return new
         least, left = (change, count) if change < 0.9 * least else (least, left - 1)
         limit = limit + share * (new - limit)

@@ -12,6 +12,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from harness.model.assembly import FloatArray
+from harness.model.errors import first_few
 from harness.model.method import OutOfTime
 from methods.fe.commits import committed_step
 from methods.springs.continuation import Tracer
@@ -143,7 +144,7 @@ def _trace_in_time(
     commits, worst, jumps = 0, 0.0, JUMPS
     first, start = first_step(model, factor, u, history, scale)
     if not first.found:
-        sentence = "no equilibrium a small step off the dead load"
+        sentence = f"the dead load is in equilibrium, but {start:.2g} times the live load, the least step tried, is not"
         return HistoryResult(step, PathEnd.BREAKDOWN, sentence, record, None, 0, 0.0, disturbance)
     if step == 0.0 and model.assembly.n_free > DOUBLE_ABOVE:
         first, start = _doubled(model, factor, first, start, history, record)
@@ -178,8 +179,22 @@ def _trace_in_time(
     if state is not None and state.multiplier < 0.0:
         state, end, sentence = None, PathEnd.RUNS_DOWN, BELOW_ZERO
     elif state is None and end == PathEnd.PLATEAU:
-        sentence = "the last piece is a mechanism, but its forces do not pass the check of an exact collapse state"
+        sentence = _not_collapse(model, tracer.present().velocity)
     return HistoryResult(step, end, sentence, record, state, commits, worst, disturbance)
+
+
+def _not_collapse(model: WallModel, velocity: FloatArray) -> str:
+    """Why a last piece that moves along velocities (N,) is no collapse state."""
+    assembly = model.assembly
+    loads = np.abs(assembly.dead) + np.abs(assembly.live)
+    without_load = {assembly.block_ids[k] for k in np.flatnonzero(loads.max(axis=1) == 0.0)}
+    moving = model.moving_blocks(model.block_displacements(velocity))
+    if without_load.issuperset(moving):
+        return (
+            f"blocks without weight or load came loose ({first_few(moving, 8)}), and nothing tells where to: "
+            "give every block a weight, however small"
+        )
+    return "the last piece is a mechanism, but its forces do not pass the check of an exact collapse state"
 
 
 def _commit(tracer: Tracer, interval: float, record: PathRecord) -> Tracer | None:

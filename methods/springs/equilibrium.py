@@ -24,6 +24,10 @@ Newton then need not confirm it: in a statically determinate state the tangent i
 """
 START = 1e-3
 """First Newton step off the kinks on which gravity leaves many gap points, as a multiplier."""
+SHORTER = 0.1
+"""How much shorter each further first step is, where the wall does not stand that one."""
+MOST_SHORTER = 5
+"""First steps tried after the longest one: a wall may collapse at a multiplier below it."""
 FURTHEST = 1e6
 """Multiplier beyond which nothing is doubled."""
 
@@ -153,14 +157,20 @@ def gravity_state(model: WallModel, factor: Factor) -> Equilibrium:
 def first_step(
     model: WallModel, factor: Factor, u: FloatArray, history: FloatArray, scale: float
 ) -> tuple[Equilibrium, float]:
-    """Equilibrium a small step off the dead load, and its multiplier.
+    """Equilibrium a small step off the dead load, and its multiplier: the longest of a few that has one.
 
     Args:
         model: the wall; factor: its tangent; u: (N,) displacements under the dead load; history: (P,) h.
         scale: a multiplier of the order of collapse.
     """
     multiplier = START * min(1.0, scale)
-    return equilibrium(model, factor, u, multiplier, history), multiplier
+    first = equilibrium(model, factor, u, multiplier, history)
+    for _ in range(MOST_SHORTER):
+        if first.found:
+            break
+        multiplier *= SHORTER
+        first = equilibrium(model, factor, u, multiplier, history)
+    return first, multiplier
 
 
 def doubled(

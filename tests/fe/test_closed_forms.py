@@ -43,7 +43,7 @@ def block_on_ground(friction: float, loads: dict[str, Any]) -> Assembly:
 HORIZONTAL: dict[str, Any] = {"body": [{"per_weight": [1.0, 0.0]}]}
 
 
-@pytest.mark.parametrize("friction", [0.1, 0.4, 0.6])
+@pytest.mark.parametrize("friction", [1e-7, 3e-4, 0.1, 0.4, 0.6])
 def test_fe_block_slides_at_its_friction(friction: float) -> None:
     wall = block_on_ground(friction, {"live": HORIZONTAL})
     assert multiplier(wall) == pytest.approx(friction, rel=CLOSED_FORM)

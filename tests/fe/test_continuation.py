@@ -142,6 +142,27 @@ def test_fe_motion_of_a_fall_gains_work_of_the_dead_load(friction: float) -> Non
     assert "J" in answer.details["moving_blocks"]
 
 
+def test_fe_names_the_block_without_weight_that_comes_loose() -> None:
+    """A panel whose weight is neglected, under a loading beam: block a leaves its neighbours, and nothing holds it."""
+    wall = {
+        "format": "wall/1",
+        "unit_weight": 0.0,
+        "friction": 0.58,
+        "pattern": {
+            "type": "panel",
+            "cell_length": 1.0,
+            "cell_height": 1.0,
+            "layout": ["jklm", "ghhi", "eeff", "abcd", "####"],
+            "fixed": "#",
+        },
+        "blocks": [{"id": "beam", "polygon": [[0.0, 5.0], [4.0, 5.0], [4.0, 6.0], [0.0, 6.0]], "weight": 96.0}],
+        "loads": {"live": {"points": [{"block": "beam", "at": [2.0, 5.5], "force": [4.0, 0.0]}]}},
+    }
+    answer = solve(build(parse_wall(wall, "panel")).assembly)
+    assert (answer.status, answer.multiplier) == (Status.NOT_CONVERGED, None)
+    assert "blocks without weight or load came loose (a)" in answer.sentence
+
+
 def test_fe_path_columns_have_equal_length_and_end_at_the_plateau() -> None:
     answer = solve(running_bond(8, 4, 0.65))
     lengths = {len(column) for column in answer.path.values()}

@@ -83,6 +83,15 @@ def test_convex_steps_that_never_end_show_forces_near_the_dead_load() -> None:
     assert 0.0 < answer.forces_multiplier < 10.0
 
 
+def test_convex_steps_say_when_a_multiplier_is_too_small_for_them() -> None:
+    """Limits that settled to 1e-4 of the loads put the slide of a block at 0.003 2 % outside its bracket."""
+    answer = ConvexSteps().solve(block_on_halves((0.02, 0.02)), ConvexSettings())
+    assert answer.multiplier == pytest.approx(0.02, rel=2e-3)
+    answer = ConvexSteps().solve(block_on_halves((0.003, 0.003)), ConvexSettings())
+    assert (answer.status, answer.finding, answer.multiplier) == (Status.NOT_CONVERGED, Finding.NONE, None)
+    assert "not exact enough for so small a multiplier" in answer.sentence
+
+
 def test_convex_steps_refuse_walls_that_are_too_large_for_them() -> None:
     answer = ConvexSteps().solve(running_bond(20, 10, 0.65), ConvexSettings())
     assert (answer.status, answer.finding) == (Status.REFUSED, Finding.NONE)

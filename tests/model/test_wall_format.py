@@ -188,6 +188,11 @@ BAD: list[tuple[str, dict[str, Any], list[str]]] = [
         two_blocks(interfaces=[{"between": ["a", "zz"], "from": [0, 0], "to": [1, 0]}]),
         ['"zz"', "interfaces[0]"],
     ),
+    (
+        "interface far off its blocks",
+        two_blocks(interfaces=[{"between": ["base", "a"], "from": [0, 0], "to": [200, 0]}]),
+        ["interfaces[0]", "base and a", "198 away", "typical size is 1.41"],
+    ),
     ("no blocks", two_blocks(blocks=[]), ["blocks"]),
     ("number in quotes", two_blocks(friction="0.4"), ["friction", "number", "0.4"]),
     ("friction of a rule", two_blocks(friction={"default": -1}), ["friction.default", "-1"]),
@@ -232,6 +237,19 @@ def test_files_that_begin_with_a_byte_order_mark_are_read(tmp_path: Path):
     path = tmp_path / "wall.json"
     path.write_text(json.dumps(BOND), encoding="utf-8-sig")
     assert read_json(path) == BOND
+
+
+def test_points_off_their_block_are_pointed_out():
+    wall = two_blocks(
+        interfaces=[{"between": ["base", "a"], "from": [0, 0], "to": [2.1, 0]}],
+        loads={"live": {"points": [{"block": "a", "at": [1, 0.5], "force": [1, 0]}]}},
+    )
+    (sentence,) = build(Wall.model_validate(wall)).warnings
+    assert "1 interface(s) end up to 0.1 away" in sentence
+    assert sentence.endswith("interfaces[0] (base/a)")
+    wall = two_blocks(loads={"live": {"points": [{"block": "a", "at": [1, 50], "force": [1, 0]}]}})
+    (sentence,) = build(Wall.model_validate(wall)).warnings
+    assert sentence.startswith('loads.live.points[0] acts 49 away from block "a"')
 
 
 def test_unreadable_files_are_refused(tmp_path: Path):
