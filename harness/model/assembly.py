@@ -114,6 +114,11 @@ class Assembly:
         return float(np.mean(np.sqrt(areas)))
 
     @cached_property
+    def middle(self) -> FloatArray:
+        """Mean centroid (2,) of the free blocks [length]; about it coordinates of a national grid keep their digits."""
+        return np.asarray(self.centroid[self.free].mean(axis=0))
+
+    @cached_property
     def load_unit(self) -> float:
         """Multiplier at which the live load is as large as the dead load (sums of force and moment / size over blocks).
 
@@ -164,6 +169,14 @@ class Assembly:
 
 def polygon_area(polygon: FloatArray) -> float:
     """Area enclosed by a polygon (k, 2) [length^2], without sign."""
-    x, y = polygon[:, 0], polygon[:, 1]
+    return abs(signed_area(polygon))
+
+
+def signed_area(polygon: FloatArray) -> float:
+    """Area enclosed by a polygon (k, 2) [length^2], positive if its vertices run counter-clockwise.
+
+    It is computed about the first vertex: in a national grid the coordinates are millions of times a block.
+    """
+    x, y = (polygon - polygon[0]).T
     following = [*range(1, len(polygon)), 0]
-    return float(abs(np.dot(x, y[following]) - np.dot(y, x[following])) / 2.0)
+    return float(np.dot(x, y[following]) - np.dot(y, x[following])) / 2.0

@@ -13,7 +13,7 @@ import numpy as np
 import shapely
 from shapely.validation import explain_validity
 
-from harness.model.assembly import BoolArray, FloatArray, IntArray
+from harness.model.assembly import BoolArray, FloatArray, IntArray, signed_area
 from harness.model.errors import InputError
 
 
@@ -36,9 +36,7 @@ class Contacts:
 
 def counter_clockwise(polygon: FloatArray) -> FloatArray:
     """The polygon (k, 2) with its vertices in counter-clockwise order."""
-    x, y = polygon[:, 0], polygon[:, 1]
-    signed = np.dot(x, np.roll(y, -1)) - np.dot(y, np.roll(x, -1))
-    return polygon if signed > 0.0 else np.ascontiguousarray(polygon[::-1])
+    return polygon if signed_area(polygon) > 0.0 else np.ascontiguousarray(polygon[::-1])
 
 
 def centroid(polygon: FloatArray) -> FloatArray:

@@ -116,7 +116,6 @@ class MujocoWall:
         self.steps = 0
         self._unit = assembly.length_scale
         # Penetrations of 1e-9 vanish in rounding far from the origin.
-        self._origin = assembly.centroid[assembly.free].mean(axis=0)
         self._force = assembly.force_scale / max(assembly.n_free, 1)
         course = courses(assembly)
         self.relaxation = 1.0 / (1.0 - tuning.damping)
@@ -157,7 +156,7 @@ class MujocoWall:
         """Bodies with planar joints; x, y of the wall are x, z of MuJoCo, counter-clockwise is about -y."""
         slide, hinge = self._mujoco.mjtJoint.mjJNT_SLIDE, self._mujoco.mjtJoint.mjJNT_HINGE
         for k, i in enumerate(self._blocks):
-            x, y = (self.assembly.centroid[i] - self._origin) / self._unit
+            x, y = (self.assembly.centroid[i] - self.assembly.middle) / self._unit
             body = spec.worldbody.add_body(name=f"block {i}", pos=[x, 0.0, y])
             body.explicitinertial = True
             body.mass = float(self._mass[k, 0])
@@ -173,7 +172,7 @@ class MujocoWall:
 
         def add(name: str, block: int, place: FloatArray, **shape: Any) -> None:
             body = spec.body(f"block {block}") if block in free else spec.worldbody
-            x, y = (place - (wall.centroid[block] if block in free else self._origin)) / self._unit
+            x, y = (place - (wall.centroid[block] if block in free else wall.middle)) / self._unit
             body.add_geom(name=name, pos=[x, 0.0, y], contype=0, conaffinity=0, **shape)
 
         for p in joints.tolist():

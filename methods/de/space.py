@@ -70,7 +70,7 @@ class StripSpace:
         self._dead[:-1] = assembly.dead[blocks] * scale
         self._live[:-1] = assembly.live[blocks] * scale
         self._rest = np.zeros((len(blocks) + 1, 6))
-        self._rest[:-1, :2] = assembly.centroid[blocks] / self._unit
+        self._rest[:-1, :2] = (assembly.centroid[blocks] - assembly.middle) / self._unit
         self._out, self._in, self._loads = batch.Buffer(), batch.Buffer(), batch.Buffer()
         self.load(0.0)
         self._space.step(TIME_STEP)
@@ -84,7 +84,7 @@ class StripSpace:
             inertia = mass[i] * polygon_gyration(corners)
             self._mass[i] = mass[i], mass[i], inertia
             body = pymunk.Body(mass[i], inertia)
-            body.position = tuple(self.assembly.centroid[i] / self._unit)
+            body.position = tuple((self.assembly.centroid[i] - self.assembly.middle) / self._unit)
             self._space.add(body)
             bodies[int(i)] = body
         return bodies

@@ -70,7 +70,7 @@ def require_lengths(assembly: Assembly) -> None:
 
 
 def build_strips(assembly: Assembly, unit: float) -> Strips:
-    """The pair of strips of every interface.
+    """The pair of strips of every interface, about the middle of the wall.
 
     Args:
         assembly: the wall.
@@ -82,7 +82,7 @@ def build_strips(assembly: Assembly, unit: float) -> Strips:
     require_lengths(assembly)
     length = assembly.length / unit
     back = ROUNDING - OVERLAP / 2.0
-    end1, end2 = assembly.end1 / unit, assembly.end2 / unit
+    end1, end2 = (assembly.end1 - assembly.middle) / unit, (assembly.end2 - assembly.middle) / unit
     along = assembly.tangent * length[:, None]
     inward = assembly.normal * length[:, None]
 

@@ -29,6 +29,12 @@ from methods.la.state import CollapseState, residuals
 LINEAR = PathSettings(dilatancy=1.0, gap=1e-13, residual=1e-3, max_iterations=150, patience=20)
 EXACT_ENOUGH = 1e-10
 """Largest residual of a state that is kept."""
+EXACT = 1e-12
+"""Residual below which no more exact state is looked for."""
+SHARES = (1e-6, 1e-7, 1e-8)
+"""Shares of its slack above which a rate counts as motion, tried until a state is exact."""
+WORTH = 1e-4
+"""Relative rise of the multiplier that a more exact state is worth."""
 ATTEMPTS = ((80, 0.3), (120, 0.15), (100, 0.6))
 """Newton steps with lagged bounds and how fast the bounds follow, tried in order."""
 FEW_INTERFACES = 2000
@@ -121,35 +127,43 @@ def state_of_mechanism(
         size = max(residuals(problem, state).values())
         if size < merit:
             best, merit = state, size
-        if merit < 1e-12:
+        if merit < EXACT:
             break
     return best, result.iterations
 
 
 def mechanism_states(
-    problem: Problem, newton: NewtonMatrix, path: PathResult, thresholds: tuple[float, ...]
+    problem: Problem,
+    newton: NewtonMatrix,
+    path: PathResult,
+    thresholds: tuple[float, ...],
+    shares: tuple[float, ...] = SHARES,
 ) -> tuple[CollapseState | None, int]:
     """The first exact collapse state of a mechanism whose rates count as motion above a threshold, and the steps spent.
 
     Rates decay geometrically away from the centre of a mechanism. A contact that moves by a billionth may be one that
-    approximate forces misjudged; without it the mechanism is exact to the tolerance, or is made so.
+    approximate forces misjudged; without it the mechanism is exact to the tolerance, or is made so. The greatest share
+    of its slack above which a rate counts leaves the forces the most freedom, and so the least multiplier, but the
+    mechanism the least exact: lower shares are tried while they raise the multiplier by little.
     """
     steps, best, merit = 0, None, EXACT_ENOUGH
     tried: set[int] = set()
-    moves = path.point.rates > 1e-6 * path.point.slack
     for threshold in thresholds:
-        moving = moves & (path.point.rates > threshold)
-        if int(moving.sum()) in tried:
-            continue
-        tried.add(int(moving.sum()))
-        state, spent = state_of_mechanism(problem, newton, path.point.velocities, moving)
-        steps += spent
-        if state is None or residuals(problem, state)["equilibrium"] > EXACT_ENOUGH:
-            continue
-        for candidate in (state, _at_rest_elsewhere(problem, newton, state)):
-            size = max(residuals(problem, candidate).values())
-            if size < merit:
-                best, merit = candidate, size
+        for share in shares:
+            moving = path.point.rates > np.maximum(threshold, share * path.point.slack)
+            if int(moving.sum()) in tried:
+                continue
+            tried.add(int(moving.sum()))
+            state, spent = state_of_mechanism(problem, newton, path.point.velocities, moving)
+            steps += spent
+            if state is None or residuals(problem, state)["equilibrium"] > EXACT_ENOUGH:
+                break
+            for candidate in (state, _at_rest_elsewhere(problem, newton, state)):
+                size = max(residuals(problem, candidate).values())
+                if size < merit and (best is None or candidate.multiplier < best.multiplier * (1.0 + WORTH)):
+                    best, merit = candidate, size
+            if merit < EXACT:
+                return best, steps
         if best is not None:
             break
     return best, steps
@@ -255,7 +269,7 @@ def _follow_lead(
         if not path.converged:
             return
         mechanism = cheapest_mechanism(guide, region.newton, path.point.slack, np.random.default_rng(seed))
-        state, steps = mechanism_states(region.problem, region.newton, mechanism, (0.0, 1e-9))
+        state, steps = mechanism_states(region.problem, region.newton, mechanism, (0.0, 1e-9), SHARES[:1])
         found.steps += mechanism.iterations + steps
         if state is None:
             continue

@@ -15,8 +15,8 @@ def test_strips_touch_their_partner_between_the_contact_points():
     wall = assembly(running_bond(4, 2))
     strips = build_strips(wall, wall.length_scale)
     along = np.einsum("pvk,pk->pv", strips.on_a[:, :2], wall.tangent)
-    ends = np.stack([np.sum(e * wall.tangent, axis=1) for e in (wall.end1, wall.end2)], axis=1) / wall.length_scale
-    assert np.allclose(along, ends, atol=1e-12)
+    ends = np.stack([np.sum((e - wall.middle) * wall.tangent, axis=1) for e in (wall.end1, wall.end2)], axis=1)
+    assert np.allclose(along, ends / wall.length_scale, atol=1e-12)
 
 
 def test_neighbouring_strips_have_different_colours():
