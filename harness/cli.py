@@ -78,7 +78,7 @@ def run(
     memory: int,
 ) -> None:
     """Run METHOD on CASE (an id, a case folder or a WALL.json) and print what it finds."""
-    check_methods([method])
+    check_methods([method], "method")
     (found,) = find_cases([case], None, folders)
     chosen = _settings(method, settings)
     limits = Limits(seconds, memory * 2**20)
@@ -128,7 +128,7 @@ def _settings(method: str, pairs: tuple[str, ...]) -> dict[str, Any]:
     metavar="SEEDS",
     help="Also load the paper's wall of uneven blocks, so many of them for each size of defect.",
 )
-@click.option("--seconds", type=float, default=Limits().seconds, show_default=True, help="Wall-clock limit of one run.")
+@seconds_option
 @memory_option
 @jobs_option
 @report_option
@@ -155,6 +155,8 @@ def compare(
     chosen = find_cases(cases, suite, folders)
     names = [name.strip() for name in methods.split(",") if name.strip()] if methods is not None else None
     if names is not None:
+        if not names:
+            raise InputError("it names no method", "`drystone list methods` shows them", "--methods")
         check_methods(names)
     limits = Limits(seconds, memory * 2**20)
     for case in chosen:

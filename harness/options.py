@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import math
 import os
 import sys
 from collections.abc import Callable
@@ -47,6 +48,12 @@ def catching(command: Callable[..., Any]) -> Callable[..., Any]:
     return wrapped
 
 
+def _finite(_context: click.Context, _option: click.Parameter, value: float) -> float:
+    if not math.isfinite(value):
+        raise click.BadParameter(f"{value} is not a finite number.")
+    return value
+
+
 def print_json(value: Any) -> None:
     """One JSON document on standard output."""
     click.echo(json.dumps(value, indent=1, ensure_ascii=False, allow_nan=False))
@@ -70,7 +77,7 @@ jobs_option = click.option(
 )
 seconds_option = click.option(
     "--seconds", type=click.FloatRange(min=0.0, min_open=True), default=Limits().seconds, show_default=True,
-    help="Wall-clock limit of one run.",
+    callback=_finite, help="Wall-clock limit of one run.",
 )  # fmt: skip
 memory_option = click.option(
     "--memory", type=click.IntRange(16), default=Limits().memory_bytes // 2**20, show_default=True,

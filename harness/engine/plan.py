@@ -98,8 +98,8 @@ def gated_runs(case: Case, limits: Limits, tier: str) -> list[Run]:
     return list(needed.values())
 
 
-def check_methods(names: Sequence[str]) -> None:
-    """Refuse a method that is not installed.
+def check_methods(names: Sequence[str], element: str = "--methods") -> None:
+    """Refuse a method that is not installed; `element` is what named it.
 
     Raises:
         InputError: naming it and those there are.
@@ -107,7 +107,7 @@ def check_methods(names: Sequence[str]) -> None:
     known = method_names()
     for name in names:
         if name not in known:
-            raise InputError(f'no method is called "{name}"', f"There are: {', '.join(known)}", "--methods")
+            raise InputError(f'no method is called "{name}"', f"There are: {', '.join(known)}", element)
 
 
 def find_cases(words: Sequence[str], suite: str | None, folders: Sequence[Path]) -> list[Case]:
