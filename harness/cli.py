@@ -288,7 +288,7 @@ def check(
     chosen = find_cases(cases, suite if cases or suite else "all", folders)
     limits = Limits(seconds=120.0 if tier == "quick" else 3600.0)
     runs = [planned for case in chosen for planned in gated_runs(case, limits, tier)]
-    check_methods(sorted({planned.method for planned in runs}))
+    check_methods(sorted({planned.method for planned in runs}), "applies_to of a gated reference")
     with open_store(store) as opened, terminal.progress(len(runs), quiet=as_json) as told:
         results = comparing.execute(runs, opened, jobs, fresh=fresh, told=told)
     lines = regression.lines(runs, results)

@@ -91,5 +91,5 @@ fresh_flag = click.option("--fresh", is_flag=True, help="Run again what is in th
 
 def warn(case: Case) -> None:
     """Tell what a person should hear about a wall, on standard error."""
-    for sentence in case.built.warnings:
+    for sentence in case.warnings:
         click.echo(f"drystone: {case.id}: {sentence}", err=True)

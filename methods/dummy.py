@@ -11,6 +11,7 @@ from typing import ClassVar, Literal
 import numpy as np
 
 from harness.model.assembly import Assembly
+from harness.model.errors import InputError
 from harness.model.method import Answer, Finding, OutOfTime, Settings, Status
 
 
@@ -18,7 +19,19 @@ class DummySettings(Settings):
     """What it shall do."""
 
     does: Literal[
-        "answer", "nan", "nan_forces", "bad_shape", "raise", "abort", "exit", "hang", "spawn", "tell", "eat", "print"
+        "answer",
+        "nan",
+        "nan_forces",
+        "bad_shape",
+        "raise",
+        "refuse",
+        "abort",
+        "exit",
+        "hang",
+        "spawn",
+        "tell",
+        "eat",
+        "print",
     ] = "answer"
 
 
@@ -36,6 +49,8 @@ class Dummy:
         match settings.does:
             case "raise":
                 raise RuntimeError("as ordered")
+            case "refuse":
+                raise InputError("it lacks a part", "Install the part")
             case "abort":
                 print("about to abort", flush=True)
                 os.abort()

@@ -103,7 +103,7 @@ def case_section(
         stroke=stroke_factor(item.case.assembly),
         loads_drawn=_loads_drawn(item.case),
         facts=_facts(item.case),
-        warnings=(*item.case.built.warnings, *filter(None, [item.split_on_dead_load])),
+        warnings=(*item.case.warnings, *filter(None, [item.split_on_dead_load])),
         rows=rows,
         panels=panels,
         without_drawing=without,

@@ -71,6 +71,7 @@ def plan_case(case: Case, methods: Sequence[str] | None, limits: Limits, tier: s
     if methods is None:
         asked = {method for item in references if item.gate for method in item.applies_to}
         base = case.file.methods if case.file.methods is not None else DEFAULT_METHODS
+        check_methods(base, f'methods of case "{case.id}"')
         installed = method_names()
         methods = [*base, *sorted(name for name in asked if name not in base and name in installed)]
     runs: list[Run] = []

@@ -25,10 +25,11 @@ from typing import Any
 
 import numpy as np
 import scipy.sparse.linalg  # noqa: F401  (preloaded for the methods)
-from pydantic import ValidationError
 
 from harness.model.assembly import Assembly
+from harness.model.errors import InputError
 from harness.model.method import Answer, Finding, OutOfTime, Status, load_method
+from harness.model.reading import validate
 
 LAST_WORDS = (0.05, 5.0)
 """Share of the time limit, and at most so many seconds, that are left to a method to say how far it came."""
@@ -68,7 +69,7 @@ def run_task(task: Task, folder: str) -> None:
     try:
         method = load_method(task.method)
         family, tolerance = method.family, method.tolerance
-        chosen = method.Settings.model_validate(task.settings)
+        chosen = validate(method.Settings, task.settings, "settings")
         settings = chosen.model_dump(mode="json")
         before = _cpu_seconds()
         started = time.perf_counter()
@@ -77,10 +78,8 @@ def run_task(task: Task, folder: str) -> None:
         answer = _checked(answer, task.assembly)
     except OutOfTime:
         answer = _failure(Status.TIMEOUT, f"It was stopped at the limit of {task.seconds:g} s.")
-    except ValidationError as error:
-        fault = error.errors()[0]
-        place = ".".join(str(part) for part in fault["loc"])
-        answer = _failure(Status.REFUSED, f"The setting {place} is refused: {fault['msg']}.")
+    except InputError as error:
+        answer = _failure(Status.REFUSED, f"{error}.")
     except MemoryError:
         answer = _failure(Status.OUT_OF_MEMORY, "The memory limit was reached.")
     except Exception as error:

@@ -14,6 +14,7 @@ from pydantic import Field, model_validator
 from harness.model.assembly import Assembly
 from harness.model.build import Built, build
 from harness.model.errors import InputError
+from harness.model.method import method_names
 from harness.model.reading import parse_wall, read_json, validate
 from harness.model.wall import Strict, Wall
 
@@ -112,6 +113,18 @@ class Case:
     def id(self) -> str:
         """The name users type."""
         return self.file.id
+
+    @property
+    def warnings(self) -> tuple[str, ...]:
+        """What a person should hear about the wall, and about references that no installed method can be held to."""
+        known = method_names()
+        unknown = [
+            f'reference "{item.id}" applies to "{name}", and no installed method is called so: it is not held to it'
+            for item in self.file.references
+            for name in item.applies_to
+            if name not in known
+        ]
+        return (*self.built.warnings, *unknown)
 
 
 def read_case(folder: Path) -> Case:

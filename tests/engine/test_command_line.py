@@ -222,6 +222,22 @@ def test_cases_of_a_user_are_compared_and_gated(value: float, code: int, tmp_pat
     assert json.loads(checked.stdout)["passed"] is not bool(code)
 
 
+def test_methods_that_a_case_names_and_nobody_has_are_told(tmp_path: Path):
+    """A gated reference that applies to a misspelt method was passed over without a word, a chosen one a traceback."""
+    folder = tmp_path / "mine" / "my-block"
+    folder.mkdir(parents=True)
+    (folder / "wall.json").write_text(json.dumps(wall_data(stack(1), 0.25)))
+    case = CASE.format(value=0.25)
+    (folder / "case.toml").write_text(case.replace('["la"]', '["la", "al"]'))
+    done = drystone("compare", "--cases", "mine", "--methods", "la", cwd=tmp_path)
+    assert done.returncode == 0, done.stderr
+    assert 'reference "closed-form" applies to "al"' in done.stderr
+    (folder / "case.toml").write_text('methods = ["al"]' + case)
+    done = drystone("compare", "--cases", "mine", cwd=tmp_path)
+    assert done.returncode == 2
+    assert 'methods of case "my-block": no method is called "al"' in done.stderr
+
+
 def test_a_method_that_crashes_costs_one_row_and_not_the_run(wall: Path):
     done = drystone("compare", wall.name, "--methods", "dummy,la-associated", "--seconds", "30", cwd=wall.parent)
     assert done.returncode == 0, done.stderr

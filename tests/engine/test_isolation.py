@@ -40,6 +40,7 @@ def test_good_answer_comes_back_with_its_cost():
         ("nan_forces", Status.CRASHED, "not finite"),
         ("bad_shape", Status.CRASHED, "shape (1, 2)"),
         ("raise", Status.CRASHED, "RuntimeError: as ordered"),
+        ("refuse", Status.REFUSED, "it lacks a part. Install the part."),
         ("abort", Status.CRASHED, "SIGABRT"),
         ("exit", Status.CRASHED, "exit code 3"),
         ("eat", Status.OUT_OF_MEMORY, "memory"),
