@@ -40,7 +40,7 @@ def project_forces(problem: Problem, forces: FloatArray, multiplier: float) -> t
         polishing=True,
         verbose=False,
     )
-    result = solver.solve()
+    result = solver.solve(raise_error=False)
     value = np.asarray(result.x, dtype=float)
     if result.info.status_val not in (1, 2) or not np.all(np.isfinite(value)):
         return forces, multiplier, False

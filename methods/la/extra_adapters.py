@@ -8,7 +8,7 @@ import numpy as np
 
 from harness.model.assembly import Assembly
 from harness.model.method import Answer, Finding, Settings, Status, load_method
-from methods.la.answers import collapse_answer, not_converged
+from methods.la.answers import collapse_answer, not_converged, unbounded_answer
 from methods.la.associated import solve_associated
 from methods.la.cooperation import project_forces
 from methods.la.family import LimitAnalysisFamily
@@ -21,12 +21,17 @@ from methods.la.state import CollapseState, moving_contacts, polished, tight_con
 from methods.la.tresca import tresca_sequence
 
 
-def finite_element_answer(assembly: Assembly, name: str) -> Answer | None:
-    """The collapse answer of an installed finite-element method at its default settings, or None."""
+def finite_element_answer(assembly: Assembly, name: str) -> Answer:
+    """The answer of an installed finite-element method at its default settings."""
     method = load_method(name)
-    answer = method.solve(assembly, method.Settings())
-    usable = answer.finding is Finding.COLLAPSES and answer.forces is not None and answer.multiplier is not None
-    return answer if usable else None
+    return method.solve(assembly, method.Settings())
+
+
+def without_start(given: Answer) -> Answer:
+    """The answer where finite elements end without a collapse state to start from."""
+    if given.finding is Finding.UNBOUNDED:
+        return unbounded_answer(f"There is no collapse state to start from: {given.sentence}.")
+    return not_converged("The finite-element run gave no collapse state to start from.")
 
 
 class PaperProgramme(LimitAnalysisFamily):
@@ -49,8 +54,8 @@ class PaperProgramme(LimitAnalysisFamily):
         start = None
         if settings.start == "fe":
             given = finite_element_answer(assembly, "fe")
-            if given is None or given.forces is None:
-                return not_converged("The finite-element run gave no collapse state to start from.")
+            if given.finding is not Finding.COLLAPSES or given.forces is None:
+                return without_start(given)
             start = given.forces / problem.unit_force
         try:
             result = solve_paper_programme(problem, start, settings.max_iterations, settings.epsilons)
@@ -96,6 +101,8 @@ class TrescaSequence(LimitAnalysisFamily):
     def answer(self, assembly: Assembly, problem: Problem, newton: NewtonMatrix, settings: Any) -> Answer:
         """The sequence from the associated solution; its fixed point is a collapse state, not the least one."""
         associated = solve_associated(problem, newton)
+        if associated.outcome == "unbounded":
+            return unbounded_answer("Statically the live load can grow without limit, so the sequence has no end.")
         if associated.state is None:
             return not_converged(f"The associated programme that starts the sequence ended as {associated.outcome}.")
         result = tresca_sequence(
@@ -133,8 +140,8 @@ class FromFiniteElements(LimitAnalysisFamily):
     def answer(self, assembly: Assembly, problem: Problem, newton: NewtonMatrix, settings: Any) -> Answer:
         """FE forces projected onto equilibrium and yield, nearest mechanism, descent; and the same from cold."""
         given = finite_element_answer(assembly, settings.fe_method)
-        if given is None or given.forces is None or given.multiplier is None:
-            return not_converged("The finite-element run gave no collapse state to start from.")
+        if given.finding is not Finding.COLLAPSES or given.forces is None or given.multiplier is None:
+            return without_start(given)
         forces, _, projected = project_forces(
             problem, given.forces / problem.unit_force, given.multiplier / problem.unit_multiplier
         )

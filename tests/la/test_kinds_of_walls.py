@@ -15,9 +15,10 @@ from harness.model.case import read_case
 from harness.model.method import Finding, Status
 from harness.model.wall import Wall
 from methods.la.adapter import AssociatedLimitAnalysis, FromFiniteElements, LimitAnalysis
+from methods.la.extra_adapters import TrescaSequence
 from methods.la.settings import AssociatedSettings, FromFeSettings, SearchSettings
 from tests.la.bodies import column, running_bond
-from tests.walls import wedge
+from tests.walls import assembly, stack, wedge
 
 CASES = Path(__file__).parents[2] / "cases"
 
@@ -61,6 +62,13 @@ def test_start_from_finite_elements_never_answers_above_their_plateau(case: str)
     assert answer.status is Status.OK
     assert answer.multiplier is not None
     assert answer.multiplier <= answer.details["fe_multiplier"] * (1.0 + 1e-9)
+
+
+@pytest.mark.parametrize("method", [FromFiniteElements, TrescaSequence])
+def test_load_that_presses_the_wall_on_its_base_is_unbounded_without_a_state_to_start_from(method: Any) -> None:
+    pressed = assembly(stack(3), loads={"live": {"body": [{"per_weight": [0, -1]}]}})
+    answer = method().solve(pressed, method.Settings())
+    assert (answer.status, answer.finding) == (Status.OK, Finding.UNBOUNDED)
 
 
 def test_wall_on_which_newtons_path_finds_nothing_is_solved_with_lagged_friction_bounds() -> None:
