@@ -14,7 +14,7 @@ from harness.engine.judge import judge
 from harness.engine.symmetry import VIEWS
 from harness.model.assembly import Assembly
 from harness.model.build import build
-from harness.model.method import Finding, Method, Status, load_method
+from harness.model.method import Finding, Method, Status, load_method, method_names
 from harness.model.result import Judgement, Result, result_of
 from harness.model.wall import Wall
 
@@ -139,9 +139,13 @@ def checks() -> Iterator[tuple[str, Check]]:
 
 
 def main() -> None:
-    """Run the suite on the methods named on the command line; exit code 1 if one does not conform."""
+    """Run the suite on the methods named on the command line; exit code 1 if one does not conform, 2 if unknown."""
+    names, known = sys.argv[1:], method_names()
+    if not names or not set(names) <= set(known):
+        print(f"usage: python -m harness.conformance METHOD...; methods: {', '.join(known)}", file=sys.stderr)
+        sys.exit(2)
     bad = 0
-    for name in sys.argv[1:]:
+    for name in names:
         method = load_method(name)
         for title, check in checks():
             fault = check(method)

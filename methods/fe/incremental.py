@@ -1,24 +1,39 @@
 """Ordinary incremental Newton, as users of general finite-element codes know it: `fe-newton`.
 
-Load control with step cutting until Newton no longer converges; then displacement control, where the mean
-displacement along the live load is prescribed and the multiplier is an unknown:
-    [K  -live; live'  0] (du, dlambda) = (residual, prescribed - live'u).
-It is the contrast to the exact continuation. "Newton did not converge" is not collapse, so a multiplier is reported
-only when displacement control arrives at a mechanism whose state passes the check of an exact collapse state.
+Load control with step cutting until Newton no longer converges; then displacement control, where the displacement c'u
+of the block that has moved farthest is prescribed and the multiplier is an unknown:
+    [K  -live; c'  0] (du, dlambda) = (residual, prescribed - c'u).
+Where the states of the gaps come round in a cycle, shorter steps are taken. It is the contrast to the exact
+continuation. "Newton did not converge" is not collapse, so a multiplier is reported only when displacement control
+arrives at a mechanism whose state passes the check of an exact collapse state.
 """
 
 from __future__ import annotations
 
+from contextlib import suppress
 from dataclasses import dataclass
 
 import numpy as np
 
 from harness.model.assembly import FloatArray, IntArray
-from methods.springs.equilibrium import START, Equilibrium, newton
-from methods.springs.factor import Factor, SingularTangent, make_factor
+from methods.springs.equilibrium import Equilibrium, newton, settled
+from methods.springs.factor import Factor, SingularTangent
 from methods.springs.path_record import PathRecord, Snapshot
 from methods.springs.plateau import CollapseState, finish
 from methods.springs.wall_model import WallModel, load_scale
+
+FIRST_PUSH, LEAST_PUSH = 0.02, 1e-6
+"""First step of displacement control, as a share of the way under load control; the shortest as a share of that."""
+LONGER, SHORTER = 1.5, 0.25
+"""Factors on the step of displacement control after one that converged and one that did not."""
+CONTROLS = 6
+"""Blocks whose displacement is controlled, one after the other, where no step however short converges."""
+MOST_ITERATIONS = 60
+"""Newton iterations of one step of displacement control."""
+SHORTEST = 0.05
+"""Least share of a Newton step that is taken where states come round in a cycle."""
+SHIFT = 1e-9
+"""Inertia added to the tangent, which is singular on a plateau; the residual has none of it."""
 
 
 @dataclass(frozen=True)
@@ -39,6 +54,15 @@ class IncrementalResult:
     unbounded: bool = False
 
 
+@dataclass(frozen=True)
+class Point:
+    """Displacements u (N,), the multiplier and the states (P,) of the gaps in equilibrium."""
+
+    u: FloatArray
+    multiplier: float
+    state: IntArray
+
+
 def march(
     model: WallModel, factor: Factor, gravity: Equilibrium, first_step: float, cuts: int, displacement_steps: int
 ) -> IncrementalResult:
@@ -46,93 +70,120 @@ def march(
 
     Args:
         first_step: first step of the multiplier; cuts: how many times a step is halved before load control stops;
-        displacement_steps: steps of displacement control, each 1.3 times the one before.
+        displacement_steps: steps of displacement control, each 1.5 times the last that converged.
     """
     record = PathRecord()
-    u, multiplier, step, iterations, cut = gravity.u, 0.0, first_step, 0, 0
-    state = gravity.state
-    while cut <= cuts and multiplier < 1e6 * first_step:
-        answer = newton(model, factor, u, multiplier + step, model.history, 25)
+    point, step, iterations, cut = Point(gravity.u, 0.0, gravity.state), first_step, 0, 0
+    while cut <= cuts and point.multiplier < 1e6 * first_step:
+        answer = newton(model, factor, point.u, point.multiplier + step, model.history, 25)
         iterations += answer.iterations
         if not answer.found:
             step *= 0.5
             cut += 1
             continue
-        u, state, multiplier = answer.u, answer.state, multiplier + step
-        record.add(multiplier, float(model.live @ u), 0, 0)
+        point = Point(answer.u, point.multiplier + step, answer.state)
+        record.add(point.multiplier, float(model.live @ point.u), 0, 0)
         if cut == 0:
             step *= 1.5
-    reached = multiplier
+    reached = point.multiplier
     record.peak = reached
     if cut <= cuts:
         return IncrementalResult(reached, record, None, "load control went on to any multiplier", iterations, True)
-    travelled = float(model.live @ (u - gravity.u))
-    push = max(0.02 * abs(travelled), START)
-    failures = 0
-    for _ in range(displacement_steps):
-        goal = float(model.live @ u) + push
-        found, new_u, new_multiplier, new_state, count = _controlled(model, u, multiplier, state, goal)
-        iterations += count
-        if not found:
-            push *= 0.25
-            failures += 1
-            if failures > 8:
-                break
+    travel = point.u - gravity.u
+    if not np.any(travel):
+        with suppress(SingularTangent):
+            factor.refactor(point.state, SHIFT)
+            travel = step * factor.solve(model.live)
+    state, end, spent = _displacement_control(model, factor, point, travel, displacement_steps, record)
+    sentence = "displacement control reached a plateau"
+    if state is None:
+        sentence = (
+            f"load control stopped at {reached:.6g} and displacement control at {end:.6g}; "
+            "that Newton did not converge there is no proof of collapse"
+        )
+    return IncrementalResult(reached, record, state, sentence, iterations + spent)
+
+
+def _displacement_control(
+    model: WallModel, factor: Factor, point: Point, travel: FloatArray, steps: int, record: PathRecord
+) -> tuple[CollapseState | None, float, int]:
+    """The collapse state that displacement control leads to, or None; the last multiplier; Newton iterations.
+
+    Args:
+        point: where load control stopped; travel: (N,) how far the wall has moved under the live load.
+        steps: at most; record: gets the points that converge.
+    """
+    origin, iterations, controls = point.u - travel, 0, CONTROLS
+    direction = travel
+    control = _farthest(direction)
+    push = first = FIRST_PUSH * float(control @ direction)
+    for _ in range(steps if first > 0.0 else 0):
+        moved, spent = _controlled(model, factor, point, control, float(control @ point.u) + push)
+        iterations += spent
+        if moved is None:
+            push *= SHORTER
+            if push < LEAST_PUSH * first:
+                other = _farthest(direction)
+                controls -= 1
+                if controls == 0 or np.array_equal(other, control):
+                    break
+                control = other
+                push = first = FIRST_PUSH * abs(float(control @ (point.u - origin)))
             continue
-        flat = abs(new_multiplier - multiplier) <= 1e-8 * max(1.0, abs(multiplier))
-        direction = new_u - u
-        u, multiplier, state = new_u, new_multiplier, new_state
-        record.add(multiplier, float(model.live @ u), 0, 0)
-        record.peak = max(record.peak, multiplier)
-        push *= 1.3
-        if flat:
-            collapse = _collapse(model, u, multiplier, state, direction)
-            if collapse is not None:
-                return IncrementalResult(
-                    reached, record, collapse, "displacement control reached a plateau", iterations
-                )
-    sentence = (
-        f"load control stopped at {reached:.6g} and displacement control at {multiplier:.6g}; "
-        "that Newton did not converge there is no proof of collapse"
-    )
-    return IncrementalResult(reached, record, None, sentence, iterations)
+        flat = abs(moved.multiplier - point.multiplier) <= 1e-8 * max(1.0, abs(point.multiplier))
+        direction, point = moved.u - point.u, moved
+        record.add(point.multiplier, float(model.live @ point.u), 0, 0)
+        record.peak = max(record.peak, point.multiplier)
+        push *= LONGER
+        collapse = _collapse(model, point, direction) if flat else None
+        if collapse is not None:
+            return collapse, point.multiplier, iterations
+    return None, point.multiplier, iterations
+
+
+def _farthest(motion: FloatArray) -> FloatArray:
+    """Unit vector (N,) along the displacement of the block that moves farthest in a motion (N,)."""
+    places = motion.reshape(-1, 3)[:, :2]
+    block = int(np.argmax(np.hypot(places[:, 0], places[:, 1])))
+    control = np.zeros_like(motion)
+    control[3 * block : 3 * block + 2] = places[block] / (np.hypot(*places[block]) or 1.0)
+    return control
 
 
 def _controlled(
-    model: WallModel, u: FloatArray, multiplier: float, state: IntArray, goal: float
-) -> tuple[bool, FloatArray, float, IntArray, int]:
-    """Newton at a prescribed work displacement live'u = goal; (found, u, multiplier, state, iterations)."""
-    factor = make_factor(model)
+    model: WallModel, factor: Factor, point: Point, control: FloatArray, goal: float
+) -> tuple[Point | None, int]:
+    """Equilibrium at a prescribed displacement control'u = goal, None where Newton finds none; and its iterations."""
+    u, multiplier, state = point.u, point.multiplier, point.state
+    scale, share = load_scale(model, multiplier), 1.0
     seen: set[bytes] = set()
-    count = 0
-    for _ in range(30):
+    for count in range(MOST_ITERATIONS):
         if state.tobytes() in seen:
-            break
+            share = max(0.5 * share, SHORTEST)
         seen.add(state.tobytes())
         try:
-            factor.refactor(state, 1e-9)
+            factor.refactor(state, SHIFT)
             right = factor.solve(model.residual(u, multiplier, model.history, state))
             drive = factor.solve(model.live)
         except SingularTangent:
-            break
-        change = (goal - float(model.live @ (u + right))) / float(model.live @ drive)
-        u = u + right + change * drive
-        multiplier += change
-        count += 1
-        if not np.isfinite(u).all():
-            break
-        landed = model.states(u, model.history)
-        residual = float(np.abs(model.residual(u, multiplier, model.history, landed)).max())
-        if residual < 1e-9 * load_scale(model, multiplier):
-            return True, u, multiplier, landed, count
-        state = landed
-    return False, u, multiplier, state, count
+            return None, count
+        rise = (goal - float(control @ (u + right))) / (float(control @ drive) or np.inf)
+        step = right + rise * drive
+        if not np.isfinite(step).all():
+            return None, count
+        landed = model.states(u + step, model.history)
+        if settled(model, u + step, model.history, state, landed, scale):
+            u, multiplier = u + step, multiplier + rise
+            if np.abs(model.residual(u, multiplier, model.history, state)).max() < 1e-8 * scale:
+                return Point(u, multiplier, state), count + 1
+            continue
+        u, multiplier = u + share * step, multiplier + share * rise
+        state = landed if share == 1.0 else model.states(u, model.history)
+    return None, MOST_ITERATIONS
 
 
-def _collapse(
-    model: WallModel, u: FloatArray, multiplier: float, state: IntArray, direction: FloatArray
-) -> CollapseState | None:
+def _collapse(model: WallModel, point: Point, direction: FloatArray) -> CollapseState | None:
     """The collapse state of a wall that moves at constant multiplier, or None when it fails its check."""
-    opening, slip = model.strains(u)
+    opening, slip = model.strains(point.u)
     velocity = direction / np.abs(direction).max()
-    return finish(model, Snapshot(multiplier, opening, model.kt * slip + model.history, state, velocity))
+    return finish(model, Snapshot(point.multiplier, opening, model.kt * slip + model.history, point.state, velocity))

@@ -35,7 +35,7 @@ class NewtonSettings(GapSettings):
 
     first_step: float = Field(0.02, gt=0.0)
     cuts: int = Field(8, ge=0)
-    displacement_steps: int = Field(80, ge=0)
+    displacement_steps: int = Field(1500, ge=0)
 
 
 class ConvexSettings(GapSettings):

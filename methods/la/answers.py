@@ -17,6 +17,8 @@ from methods.la.state import CollapseState, residuals
 SIMPLEX_INTERFACES = 100
 """Interfaces up to which the simplex method decides at once whether a wall stands."""
 
+NO_MOTION = "No mechanism lets the live load do work: it cannot make the wall collapse."
+
 
 def collapse_answer(
     problem: Problem,

@@ -8,7 +8,7 @@ import numpy as np
 
 from harness.model.assembly import Assembly
 from harness.model.method import Answer, Finding, Settings, Status, load_method
-from methods.la.answers import collapse_answer, not_converged, unbounded_answer
+from methods.la.answers import NO_MOTION, collapse_answer, not_converged, unbounded_answer
 from methods.la.associated import solve_associated
 from methods.la.cooperation import project_forces
 from methods.la.family import LimitAnalysisFamily
@@ -74,7 +74,10 @@ def paper_answer(problem: Problem, newton: NewtonMatrix, result: PaperResult, st
     }
     if not (np.all(np.isfinite(result.forces)) and np.all(np.isfinite(result.rates))):
         return not_converged(f"Ipopt ended with {result.message}.", result.iterations, details)
-    state = Search(problem, newton).nearest_mechanism(result.forces, result.rates)
+    search = Search(problem, newton)
+    state = search.nearest_mechanism(result.forces, result.rates)
+    if state is None and not search.finds_motion():
+        return unbounded_answer(NO_MOTION, result.iterations, details)
     if state is None:
         return not_converged(
             f"Ipopt ended with {result.message} and no collapse state lies near its end.", result.iterations, details

@@ -11,7 +11,7 @@ import numpy as np
 
 from harness.model.errors import first_few
 from harness.model.method import Answer
-from methods.la.answers import collapse_answer, not_converged, unbounded_answer
+from methods.la.answers import NO_MOTION, collapse_answer, not_converged, unbounded_answer
 from methods.la.associated import AssociatedResult, solve_associated
 from methods.la.continuation import POOL, climb, descend_from, smooth_joints
 from methods.la.large import lagged_state, large_search
@@ -216,9 +216,8 @@ def _starting_states(
 
 
 def _nothing_found(search: Search, associated: AssociatedResult) -> Answer:
-    shape = (search.problem.n_interfaces, 4)
-    if search.kinematic.solve(np.ones(shape, dtype=bool), np.ones(shape)) is None:
-        return unbounded_answer("No mechanism lets the live load do work: it cannot make the wall collapse.")
+    if not search.finds_motion():
+        return unbounded_answer(NO_MOTION)
     if associated.outcome == "unbounded":
         return unbounded_answer(
             "Statics allows any live load, and the search found no collapse state under zero dilatancy either."

@@ -74,6 +74,11 @@ class Search:
         """Forces (m, 3) well within yield under the dead load; None if none are found."""
         return standing_forces(self.problem, self.newton)
 
+    def finds_motion(self) -> bool:
+        """Whether the wall has any mechanism on which the live load does work, whatever its forces."""
+        shape = (self.problem.n_interfaces, 4)
+        return self.kinematic.solve(np.ones(shape, dtype=bool), np.ones(shape)) is not None
+
     def adopt(self, other: Search, most: int) -> list[CollapseState]:
         """The states here of the mechanisms that were lowest in another search, whose friction may differ.
 

@@ -73,14 +73,14 @@ def newton(
         u = u + step
         iterations += 1
         landed = model.states(u, history)
-        if _settled(model, u, history, state, landed, scale):
+        if settled(model, u, history, state, landed, scale):
             residual = np.abs(model.residual(u, multiplier, history, state)).max() / scale
             return Equilibrium(bool(residual < 1e-8), u, state, float(residual), np.zeros_like(u), iterations)
         state = landed
     return Equilibrium(False, u, state, np.inf, np.zeros_like(u), iterations)
 
 
-def _settled(
+def settled(
     model: WallModel, u: FloatArray, history: FloatArray, state: IntArray, landed: IntArray, scale: float
 ) -> bool:
     """Whether the two sets of states give the same forces at u."""
@@ -115,7 +115,7 @@ def pseudo_transient(
             iterations += 1
             inner += 1
             landed = model.states(trial, history)
-            if _settled(model, trial, history, previous, landed, scale):
+            if settled(model, trial, history, previous, landed, scale):
                 converged = bool(np.isfinite(trial).all())
                 break
             previous = landed

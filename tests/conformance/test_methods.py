@@ -7,7 +7,18 @@ import pytest
 from harness.conformance import Check, checks
 from harness.model.method import load_method
 
-METHODS = ["fe", "la", "la-associated", "de"]
+METHODS = [
+    "fe",
+    "fe-newton",
+    "fe-qp",
+    "la",
+    "la-associated",
+    "la-associated-cvxpy",
+    "la-from-fe",
+    "la-paper",
+    "la-tresca",
+]
+METHODS += ["de", "de-tilt"]
 
 
 @pytest.mark.parametrize("method", METHODS)

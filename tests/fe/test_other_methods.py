@@ -22,6 +22,23 @@ def test_newton_reaches_the_plateau_of_the_single_block() -> None:
     assert answer.multiplier == pytest.approx(0.5 / 1.05, rel=1e-9)
 
 
+@pytest.mark.parametrize(("courses", "bricks", "value"), [(10, 5, 0.5056146), (20, 10, 0.4484451)])
+def test_newton_passes_snaps_by_controlling_the_block_that_moved_farthest(
+    courses: int, bricks: int, value: float
+) -> None:
+    """Controlled by the mean displacement along the live load, with whole Newton steps, it stopped on both walls."""
+    answer = IncrementalNewton().solve(running_bond(courses, bricks, 0.65), NewtonSettings())
+    assert answer.multiplier == pytest.approx(value, rel=1e-6)
+    assert answer.details["load_control_limit"] < 0.99 * value
+
+
+def test_newton_starts_where_load_control_finds_no_step_at_all() -> None:
+    """All three steps of load control are beyond the strength of the wall."""
+    answer = IncrementalNewton().solve(running_bond(10, 5, 0.65), NewtonSettings(first_step=5.0, cuts=2))
+    assert answer.details["load_control_limit"] == 0.0
+    assert answer.multiplier == pytest.approx(0.5056146, rel=1e-6)
+
+
 def test_newton_that_stops_says_so_and_gives_no_number() -> None:
     answer = IncrementalNewton().solve(running_bond(10, 5, 0.65), NewtonSettings(displacement_steps=0))
     assert (answer.status, answer.finding, answer.multiplier) == (Status.NOT_CONVERGED, Finding.NONE, None)
