@@ -34,7 +34,7 @@ FAMILY: dict[str, str] = {"fe": "Finite elements", "la": "Limit analysis", "de":
 
 NUMBER_IS: dict[str, str] = {
     "fe": "plateau of the traced path",
-    "fe-newton": "last converged load step",
+    "fe-newton": "plateau, where it arrives",
     "fe-qp": "plateau, by convex steps",
     "la": "least known collapse state",
     "la-associated": "associated maximum",
