@@ -95,7 +95,7 @@ def march(
             factor.refactor(point.state, SHIFT)
             travel = step * factor.solve(model.live)
     state, end, spent = _displacement_control(model, factor, point, travel, displacement_steps, record)
-    sentence = "displacement control reached a plateau"
+    sentence = f"displacement control reached a plateau, where load control stopped at {reached:.6g}"
     if state is None:
         sentence = (
             f"load control stopped at {reached:.6g} and displacement control at {end:.6g}; "
