@@ -19,6 +19,7 @@ from harness.model.reading import parse_wall
 from methods.fe.adapter import GapSprings
 from methods.fe.random_walls import random_wall
 from methods.fe.settings import GapSpringsSettings
+from methods.la.irregular_walls import irregular_wall
 from methods.springs.patterns import block_on_halves, running_bond
 from methods.springs.plateau import check
 from tests.walls import wall_data
@@ -198,6 +199,14 @@ def test_fe_990_bricks_end_in_an_exact_collapse_state_on_soft_pieces() -> None:
     answer = solve(running_bond(44, 22, 0.65), histories=(0.0,))
     assert answer.multiplier == pytest.approx(0.4158961784, abs=1e-9)
     assert max(answer.details["residuals"].values()) < 1e-9
+
+
+@pytest.mark.slow
+def test_fe_400_irregular_blocks_come_to_a_plateau_after_tens_of_thousands_of_kinks() -> None:
+    """Five events a point gave the first history up; commits of 1 % of the load unit were too coarse for the others."""
+    answer = solve(irregular_wall(1, 20, 20, 1.0))
+    plateaus = [history["plateau"] for history in answer.details["histories"]]
+    assert plateaus == pytest.approx([0.0793637, 0.1599892, 0.1599892], rel=1e-6)
 
 
 def test_fe_point_load_at_the_end_of_a_beam_has_the_multiplier_of_limit_analysis() -> None:
