@@ -14,14 +14,11 @@ from harness.model import geometry
 from harness.model.assembly import Assembly, FloatArray, IntArray, polygon_area
 from harness.model.errors import InputError, first_few
 from harness.model.pattern import blocks_of
-from harness.model.wall import Block, Detection, Friction, Inset, Interface, Load, Loads, PatternBase, Wall
+from harness.model.plausibility import contact_warnings, force_warnings, interface_warnings
+from harness.model.wall import Block, Detection, Friction, Inset, Interface, Load, PatternBase, Wall
 
 DEFAULT_TOLERANCE = 1e-6
 """Tolerance of contact detection as a fraction of the typical block size."""
-BESIDE = 0.05
-"""Distance from its block, in typical block sizes, beyond which a point force or an interface is worth a warning."""
-ASTRAY = 0.5
-"""Distance from its blocks, in typical block sizes, beyond which a given interface is refused."""
 
 
 @dataclass(frozen=True)
@@ -80,8 +77,6 @@ def build(wall: Wall, name: str = "wall") -> Built:
     else:
         interfaces = wall.interfaces
     block_a, block_b, face1, face2 = _faces(interfaces, index, fixed)
-    beside = [] if found else _interfaces_off_blocks(interfaces, polygons, block_a, block_b, face1, face2, size)
-    beside += _forces_off_blocks(wall.loads, polygons, index, size)
     _check_held(names, fixed, block_a, block_b, corners)
     normal = _normals(polygons, centroids, block_a, block_b, face1, face2, interfaces, trusted=found, size=size)
     joints = tuple(
@@ -117,11 +112,12 @@ def build(wall: Wall, name: str = "wall") -> Built:
             "Load a block, or leave loads.live out to ask only whether the wall stands",
             "loads.live",
         )
-    return Built(
-        assembly,
-        _explicit(wall, blocks, weight, interfaces, joints, friction),
-        _warnings(assembly, corners, size) + tuple(beside),
-    )
+    if not math.isfinite(assembly.force_scale):
+        raise InputError("its loads are too large to compute with", "Check the units", "loads")
+    warnings = [*contact_warnings(assembly, corners, size), *force_warnings(assembly, wall.loads, size)]
+    if not found:
+        warnings += interface_warnings(assembly, size)
+    return Built(assembly, _explicit(wall, blocks, weight, interfaces, joints, friction), tuple(warnings))
 
 
 def _all_blocks(wall: Wall) -> list[Block]:
@@ -259,51 +255,6 @@ def _normals(
     return np.asarray(outward * sign[:, None])
 
 
-def _interfaces_off_blocks(
-    interfaces: list[Interface],
-    polygons: tuple[FloatArray, ...],
-    block_a: IntArray,
-    block_b: IntArray,
-    face1: FloatArray,
-    face2: FloatArray,
-    size: float,
-) -> list[str]:
-    """What to say of given interfaces whose ends lie off their blocks, as over a mortar joint; too far is refused."""
-    off = np.zeros(len(interfaces))
-    for block in (block_a, block_b):
-        for end in (face1, face2):
-            off = np.maximum(off, geometry.distances(polygons, block, end))
-    if off.max(initial=0.0) > ASTRAY * size:
-        number = int(np.argmax(off))
-        raise InputError(
-            f"an end of it lies {off[number]:.3g} away from one of its blocks, whose typical size is {size:.3g}",
-            'Let "from" and "to" lie on the faces that touch',
-            f"interfaces[{number}] between {' and '.join(interfaces[number].between)}",
-        )
-    beside = np.flatnonzero(off > BESIDE * size).tolist()
-    if not beside:
-        return []
-    shown = first_few([f"interfaces[{k}] ({'/'.join(interfaces[k].between)})" for k in beside], 5)
-    return [f"{len(beside)} interface(s) end up to {off.max():.3g} away from a block: a gap, or a coordinate? {shown}"]
-
-
-def _forces_off_blocks(loads: Loads, polygons: tuple[FloatArray, ...], index: dict[str, int], size: float) -> list[str]:
-    """What to say of point forces that act beside their block; blocks that are not there are left to the loads."""
-    sentences = []
-    for where, load in (("loads.dead", loads.dead), ("loads.live", loads.live or Load())):
-        known = [(number, point) for number, point in enumerate(load.points) if point.block in index]
-        if not known:
-            continue
-        block = np.array([index[point.block] for _, point in known], dtype=np.int64)
-        off = geometry.distances(polygons, block, np.array([point.at for _, point in known]))
-        sentences += [
-            f'{where}.points[{number}] acts {distance:.3g} away from block "{point.block}": an arm, or a coordinate?'
-            for (number, point), distance in zip(known, off.tolist(), strict=True)
-            if distance > BESIDE * size
-        ]
-    return sentences
-
-
 def _inclination(start: FloatArray, end: FloatArray) -> str:
     dx, dy = abs(end - start)
     return "bed" if dx >= dy else "head"
@@ -417,21 +368,3 @@ def _explicit(
             ],
         }
     )
-
-
-def _warnings(assembly: Assembly, corners: IntArray, size: float) -> tuple[str, ...]:
-    sentences = []
-    if len(corners):
-        shown = first_few([f"{assembly.block_ids[a]}/{assembly.block_ids[b]}" for a, b in corners], 5)
-        sentences.append(f"{len(corners)} pair(s) of blocks touch only at a corner, which is no support: {shown}")
-    short = np.flatnonzero(assembly.length < 1e-3 * size)
-    if len(short):
-        p = short[int(np.argmin(assembly.length[short]))]
-        sentences.append(
-            f"{len(short)} interface(s) are shorter than a thousandth of a block; the shortest, between "
-            f"{assembly.block_ids[assembly.block_a[p]]} and {assembly.block_ids[assembly.block_b[p]]}, "
-            f"is {assembly.length[p]:.3g} long: results may depend on it"
-        )
-    if not math.isfinite(assembly.force_scale):
-        raise InputError("its loads are too large to compute with", "Check the units", "loads")
-    return tuple(sentences)

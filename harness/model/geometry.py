@@ -82,7 +82,7 @@ def typical_size(polygons: Sequence[FloatArray]) -> float:
 
 def distances(polygons: Sequence[FloatArray], which: IntArray, points: FloatArray) -> FloatArray:
     """Distance (k,) of points (k, 2) from the polygons of numbers `which` (k,), 0 within them [length]."""
-    return np.asarray(shapely.distance(_shapes(polygons)[which], shapely.points(points)))
+    return np.asarray(shapely.distance(_shapes([polygons[k] for k in which]), shapely.points(points)))
 
 
 def _shapes(polygons: Sequence[FloatArray]) -> np.ndarray:

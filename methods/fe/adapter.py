@@ -34,7 +34,7 @@ load_kernels()
 FEWEST_EVENTS, EVENTS_A_POINT = 2000, (30, 5)
 """Events up to which a history is traced: so many, and for every gap point more on the first and on those after it.
 
-Walls of 400 irregular blocks come to a plateau after 20 and 26 events a point; one without friction needs one or two.
+Two walls of 400 irregular blocks come to a plateau after 20 and 26 events a point.
 """
 LOST_ABOVE = (500, 4)
 """Once a history reached its plateau, the next are given up above this number of events and multiple of its own."""

@@ -9,7 +9,7 @@ import numpy as np
 from harness.model.assembly import FloatArray
 from harness.model.errors import first_few
 from harness.model.method import Answer, Finding, Status
-from methods.fe.convex_steps import ConvexResult
+from methods.fe.convex_steps import SETTLED, ConvexResult
 from methods.fe.histories import HistoryResult
 from methods.springs.equilibrium import Equilibrium
 from methods.springs.path_record import PathEnd, PathRecord
@@ -190,7 +190,7 @@ def bracket_answer(result: ConvexResult, forces: FloatArray, details: dict[str, 
         )
     if not (result.settles and result.fine):
         doubt = (
-            "friction limits that settle to 1e-5 of the loads are not exact enough for so small a multiplier"
+            f"friction limits that settle to {SETTLED:g} of the loads are not exact enough for so small a multiplier"
             if result.settles
             else f"at {upper:.6g} the friction limits do not settle, which is no proof of collapse"
         )

@@ -1,0 +1,76 @@
+"""What a person should hear about a wall that can be computed, but may not be the one that was meant."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from harness.model.assembly import Assembly, IntArray
+from harness.model.errors import InputError, first_few
+from harness.model.geometry import distances
+from harness.model.wall import Load, Loads
+
+BESIDE = 0.05
+"""Distance from its block, in typical block sizes, beyond which a point force or an interface is worth a warning."""
+ASTRAY = 0.5
+"""Distance from its blocks, in typical block sizes, beyond which a given interface is refused."""
+SHORT = 1e-3
+"""Length of an interface, in typical block sizes, below which it is worth a warning."""
+
+
+def contact_warnings(assembly: Assembly, corners: IntArray, size: float) -> list[str]:
+    """Sentences about contacts at corners, pairs (k, 2) of blocks, and about very short interfaces."""
+    sentences = []
+    if len(corners):
+        shown = first_few([f"{assembly.block_ids[a]}/{assembly.block_ids[b]}" for a, b in corners], 5)
+        sentences.append(f"{len(corners)} pair(s) of blocks touch only at a corner, which is no support: {shown}")
+    short = np.flatnonzero(assembly.length < SHORT * size)
+    if len(short):
+        p = short[int(np.argmin(assembly.length[short]))]
+        sentences.append(
+            f"{len(short)} interface(s) are shorter than a thousandth of a block; the shortest, between "
+            f"{' and '.join(_blocks_of(assembly, p))}, is {assembly.length[p]:.3g} long: results may depend on it"
+        )
+    return sentences
+
+
+def interface_warnings(assembly: Assembly, size: float) -> list[str]:
+    """A sentence about given interfaces whose ends lie off their blocks, as over a mortar joint.
+
+    Raises:
+        InputError: an end of one lies too far off.
+    """
+    off = np.zeros(assembly.n_interfaces)
+    for block in (assembly.block_a, assembly.block_b):
+        for end in (assembly.face1, assembly.face2):
+            off = np.maximum(off, distances(assembly.polygons, block, end))
+    if off.max(initial=0.0) > ASTRAY * size:
+        number = int(np.argmax(off))
+        raise InputError(
+            f"an end of it lies {off[number]:.3g} away from one of its blocks, whose typical size is {size:.3g}",
+            'Let "from" and "to" lie on the faces that touch',
+            f"interfaces[{number}] between {' and '.join(_blocks_of(assembly, number))}",
+        )
+    beside = np.flatnonzero(off > BESIDE * size).tolist()
+    if not beside:
+        return []
+    shown = first_few([f"interfaces[{number}] ({'/'.join(_blocks_of(assembly, number))})" for number in beside], 5)
+    return [f"{len(beside)} interface(s) end up to {off.max():.3g} away from a block: a gap, or a coordinate? {shown}"]
+
+
+def force_warnings(assembly: Assembly, loads: Loads, size: float) -> list[str]:
+    """Sentences about point forces that act beside their block."""
+    sentences = []
+    index = {name: k for k, name in enumerate(assembly.block_ids)}
+    for where, load in (("loads.dead", loads.dead), ("loads.live", loads.live or Load())):
+        for number, point in enumerate(load.points):
+            block = np.array([index[point.block]])
+            off = float(distances(assembly.polygons, block, np.array([point.at]))[0])
+            if off > BESIDE * size:
+                sentences.append(
+                    f'{where}.points[{number}] acts {off:.3g} away from block "{point.block}": an arm, or a coordinate?'
+                )
+    return sentences
+
+
+def _blocks_of(assembly: Assembly, interface: int) -> tuple[str, str]:
+    return assembly.block_ids[assembly.block_a[interface]], assembly.block_ids[assembly.block_b[interface]]
