@@ -14,12 +14,11 @@ import numpy as np
 from harness.model.assembly import FloatArray
 from harness.model.errors import first_few
 from harness.model.method import OutOfTime
-from methods.fe.commits import committed_step
 from methods.springs.continuation import Tracer
 from methods.springs.equilibrium import Equilibrium, doubled, equilibrium, first_step
 from methods.springs.factor import Factor, SingularTangent
+from methods.springs.follow import follow
 from methods.springs.gap_law import OPEN, SLIP_PLUS
-from methods.springs.jump import JUMPS, TURN, past_turn, successor
 from methods.springs.path_record import PathEnd, PathRecord
 from methods.springs.plateau import CollapseState, finish
 from methods.springs.wall_model import WallModel
@@ -28,8 +27,6 @@ DISTURBANCES = (1e-9, 1e-7, 1e-5)
 """Random initial shears, in weights of a block, tried in turn where exact ties lead a path astray."""
 LONGER = (1.0, 1.5, 2.25)
 """Multiples of its commit interval at which a history is traced, in turn while it is lost."""
-COMMIT_WITHIN = 300.0
-"""Displacements, in multiples of the first, up to which the history is still committed."""
 DOUBLE_ABOVE = 100
 """Blocks above which a path without commits starts where doubled Newton steps end, to save the early events."""
 ASTRAY = 3.0
@@ -141,7 +138,6 @@ def _trace_in_time(
         OutOfTime: the time given is over.
         SingularTangent: the path cannot be begun, or taken up again, where it stands.
     """
-    commits, worst, jumps = 0, 0.0, JUMPS
     first, start = first_step(model, factor, u, history, scale)
     if not first.found:
         sentence = f"the dead load is in equilibrium, but {start:.2g} times the live load, the least step tried, is not"
@@ -149,27 +145,8 @@ def _trace_in_time(
     if step == 0.0 and model.assembly.n_free > DOUBLE_ABOVE:
         first, start = _doubled(model, factor, first, start, history, record)
     tracer = Tracer(model, factor, first.u, start, history, first.state)
-    interval = step * scale if step > 0.0 else np.inf
-    large = COMMIT_WITHIN * tracer.first_displacement
-    turn = TURN
-    while True:
-        follow = None
-        if step > 0.0 and tracer.may_commit() and tracer.multiplier >= record.peak and tracer.extent < large:
-            follow = _commit(tracer, interval, record)
-        if follow is not None:
-            commits, tracer, end = commits + 1, follow, PathEnd.TARGET
-        else:
-            end = tracer.run(record, max_events, tracer.multiplier + interval, turn)
-        worst = max(worst, tracer.worst_residual)
-        if end == PathEnd.TURNED_DOWN:
-            tracer, turn = past_turn(tracer, record.peak, jumps)
-            jumps -= 1
-            continue
-        if end != PathEnd.TARGET:
-            break
-        if step > 0.0 and tracer.multiplier > ASTRAY * scale:
-            end = PathEnd.BREAKDOWN
-            break
+    way = follow(tracer, record, max_events, step * scale or np.inf, ASTRAY * scale)
+    tracer, end = way.tracer, way.end
     state = (
         finish(model, tracer.present(), tracer.kept)
         if end in (PathEnd.PLATEAU, PathEnd.BREAKDOWN, PathEnd.EVENTS)
@@ -180,7 +157,7 @@ def _trace_in_time(
         state, end, sentence = None, PathEnd.RUNS_DOWN, BELOW_ZERO
     elif state is None and end == PathEnd.PLATEAU:
         sentence = _not_collapse(model, tracer.present().velocity)
-    return HistoryResult(step, end, sentence, record, state, commits, worst, disturbance)
+    return HistoryResult(step, end, sentence, record, state, way.commits, way.residual, disturbance)
 
 
 def _not_collapse(model: WallModel, velocity: FloatArray) -> str:
@@ -195,17 +172,6 @@ def _not_collapse(model: WallModel, velocity: FloatArray) -> str:
             "give every block a weight, however small"
         )
     return "the last piece is a mechanism, but its forces do not pass the check of an exact collapse state"
-
-
-def _commit(tracer: Tracer, interval: float, record: PathRecord) -> Tracer | None:
-    """The tracer one interval after a commit, by a finite Newton step; None where that does not settle."""
-    follow = committed_step(tracer, interval)
-    if follow is None:
-        tracer.refresh()
-        return None
-    record.peak = max(record.peak, follow.multiplier)
-    record.add(follow.multiplier, float(tracer.model.live @ follow.u), follow.n_slip, follow.n_open)
-    return successor(follow, tracer)
 
 
 def _doubled(
