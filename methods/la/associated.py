@@ -6,7 +6,8 @@ C u = S' g, fL.u = 1, of value -f0.u; we compare the two values ourselves.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from contextlib import suppress
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -17,7 +18,7 @@ from methods.la.interior_point import PathSettings, follow_path, start_point
 from methods.la.newton_matrix import NewtonMatrix
 from methods.la.newton_step import Point
 from methods.la.problem import Problem
-from methods.la.programmes import KinematicProgramme, StaticProgramme
+from methods.la.programmes import KinematicProgramme, StaticProgramme, StaticSolution
 from methods.la.state import CollapseState, moving_contacts, polished, residuals, tight_contacts
 
 SIMPLEX_INTERFACES = 400
@@ -44,9 +45,16 @@ class AssociatedResult:
     gap: float = float("inf")
     iterations: int = 0
 
+    @property
+    def greatest(self) -> float:
+        """The multiplier (scaled) that no collapse state is above; infinite if none is known."""
+        return float("inf") if self.state is None else self.state.multiplier
+
 
 def solve_associated(problem: Problem, newton: NewtonMatrix, solver: str = "auto") -> AssociatedResult:
     """The greatest statically admissible multiplier.
+
+    There is none where forces within yield bear the live load alone: any multiple of them may be added.
 
     Args:
         problem: the scaled wall.
@@ -57,9 +65,17 @@ def solve_associated(problem: Problem, newton: NewtonMatrix, solver: str = "auto
         result = _by_interior_point(problem, newton)
         if result.outcome == "optimal" and result.gap <= 1e-9:
             return result
+        if _bears_live_load_alone(problem):
+            return AssociatedResult("unbounded", iterations=result.iterations)
         if solver == "interior" or problem.n_interfaces > MOST_SIMPLEX_INTERFACES:
             return result
     return _by_highs(problem, newton)
+
+
+def _bears_live_load_alone(problem: Problem) -> bool:
+    with suppress(RuntimeError):
+        return isinstance(StaticProgramme(replace(problem, dead=problem.live)).stands_at(0.0), StaticSolution)
+    return False
 
 
 def _by_highs(problem: Problem, newton: NewtonMatrix) -> AssociatedResult:

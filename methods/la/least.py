@@ -17,7 +17,7 @@ from methods.la.continuation import POOL, climb, descend_from, smooth_joints
 from methods.la.large import lagged_state, large_search
 from methods.la.mechanisms import mechanism_states
 from methods.la.newton_matrix import NewtonMatrix
-from methods.la.prestressed import LIGHT_UP_TO, gravity_of, light_states, prestressed_state
+from methods.la.prestressed import LIGHT_UP_TO, gravity_of, last_states, light_states
 from methods.la.problem import Problem
 from methods.la.proof import Proof, prove
 from methods.la.rational import confirm
@@ -59,6 +59,7 @@ With more, hardly any tree of 1,500 nodes comes to an end.
 """
 SAME = 1e-9
 """Relative difference of two multipliers below which the state with the smaller residuals is the better one."""
+NO_STATE = "Statics allows any live load, and the search found no collapse state under zero dilatancy either."
 LADDER = (0.55, 0.65, 0.75, 0.85, 0.925)
 SMOOTH = (0.5, 0.3, 0.0)
 """Factors on the friction of the joints that the dead load leaves unloaded, each one more start."""
@@ -113,7 +114,7 @@ def least_known(problem: Problem, newton: NewtonMatrix, settings: SearchSettings
     if below is not None:
         climbed += descend_from(search.adopt(below, POOL), search, effort, plan.descents)
     gravity = gravity_of(problem)
-    light = list(light_states(search, gravity, plan.kinks))
+    light = list(light_states(search, gravity, plan.kinks, associated.greatest))
     climbed += descend_from(light, search, effort, plan.descents)
     climbed += descend_from(list(mechanism_states(search, plan.mechanisms)), search, effort, plan.descents)
     found += light
@@ -158,25 +159,30 @@ def _large(problem: Problem, newton: NewtonMatrix, settings: SearchSettings, tol
     velocities = None if associated.state is None else associated.state.velocities
     found = large_search(problem, newton, settings.seed, velocities)
     details: dict[str, Any] = {"unknowns": 7 * problem.n_interfaces + problem.n_velocities + 1}
-    falling: list[str] = []
+    unbounded = associated.outcome == "unbounded"
+    search, falling = Search(problem, newton, settings.seed), list[str]()
+    for state in found.states:
+        search.record(state.multiplier)
     if problem.n_interfaces <= LIGHT_UP_TO:
-        search, gravity = Search(problem, newton, settings.seed), gravity_of(problem)
+        gravity = gravity_of(problem)
         falling = gravity.falling
-        for state in found.states:
-            search.record(state.multiplier)
-        for state in chain(light_states(search, gravity, LARGE_KINKS), mechanism_states(search, 0)):
+        light = light_states(search, gravity, 1 if unbounded else LARGE_KINKS, associated.greatest)
+        for state in chain(light, mechanism_states(search, 0)):
             found.add(state, 0, found.gap)
-    if not found.states:
-        led = prestressed_state(problem, newton)
-        details["kinks"] = led.kinks
-        found.add(led.state, led.steps, found.gap)
+    if not found.states and not unbounded:
+        for state in last_states(search, associated.greatest, LARGE_KINKS):
+            found.add(state, 0, found.gap)
+    found.steps += search.tally.newton_steps
+    details["kinks"] = search.tally.kinks
     details |= {"starts": len(found.states), "newton_steps": found.steps, "path_gap": found.gap}
     if associated.state is not None:
         details["associated"] = problem.to_multiplier(associated.state.multiplier)
+    if not found.states and unbounded:
+        return unbounded_answer(NO_STATE)
     if not found.states:
         answer = not_converged(
-            "No contact forces fit the mechanisms at the ends of the central paths, and the path of the wall with "
-            "springs in its joints came to no mechanism, so no collapse state is known.",
+            "No contact forces fit the mechanisms at the ends of the central paths, and no path of the wall with "
+            "springs in its joints came to a mechanism, so no collapse state is known.",
             found.steps,
             details,
         )
@@ -219,9 +225,7 @@ def _nothing_found(search: Search, associated: AssociatedResult) -> Answer:
     if not search.finds_motion():
         return unbounded_answer(NO_MOTION)
     if associated.outcome == "unbounded":
-        return unbounded_answer(
-            "Statics allows any live load, and the search found no collapse state under zero dilatancy either."
-        )
+        return unbounded_answer(NO_STATE)
     return not_converged("The search found no collapse state.", search.tally.newton_steps)
 
 

@@ -15,24 +15,24 @@ that the central path ends at, this path has both from the start.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import suppress
-from dataclasses import dataclass
-from functools import cached_property
+from dataclasses import dataclass, replace
+from functools import cached_property, partial
 
 import numpy as np
 
 from harness.model.assembly import FloatArray
 from methods.la.continuation import smoothed
 from methods.la.interior_point import PathSettings, follow_path, start_point
-from methods.la.newton_matrix import NewtonMatrix
 from methods.la.problem import Problem
 from methods.la.search import LOWER, Search
 from methods.la.state import CollapseState, moving_contacts
 from methods.springs.continuation import Tracer
 from methods.springs.equilibrium import Equilibrium, doubled, first_step, gravity_state
 from methods.springs.factor import Factor, SingularTangent, make_factor
-from methods.springs.jump import JUMPS, TURN, past_turn
+from methods.springs.follow import follow
+from methods.springs.jump import JUMPS
 from methods.springs.path_record import PathEnd, PathRecord
 from methods.springs.plateau import finish
 from methods.springs.preload import preloaded
@@ -52,6 +52,10 @@ That of gravity may jump, which may take thousands of factorisations.
 """
 RATIOS = (0.5, 5.0, 50.0)
 """kt / kn of the paths, in turn; the first is that of `fe`."""
+COMMITTED = ((0.5, 2e-3), (0.2, 2e-3), (0.05, 2e-3))
+"""kt / kn of paths from gravity with commits, and the share of the least known multiplier between two of them."""
+SHARES = (3e-3, 1e-3)
+"""The same for paths from central forces."""
 HEAVY = 3
 """Power of the exponential weights on compression: a few joints are to carry next to nothing."""
 VERTEX = ((1.0, 0.0, 0.0),)
@@ -64,18 +68,12 @@ seldom end; a tenth of central forces takes them off their limits.
 VERTICES_UP_TO = 200
 """Interfaces up to which the paths start from pure vertices.
 
-Above, none is begun where gravity leads above what is known: that marks a wall of courses, and on none of ten of those
-did a mixture lead to anything lower.
+Above, none is begun on walls of right-angled joints where gravity leads above what is known: on none of ten walls of
+courses, nor of 25 of rectangular stones of many sizes, did one lead to anything lower. Gravity is no such sign where
+joints have many directions.
 """
-
-
-@dataclass(frozen=True)
-class PrestressedResult:
-    """The collapse state at the end of the path, or None; Newton steps before it, kinks along it."""
-
-    state: CollapseState | None
-    steps: int
-    kinks: int
+RIGHT = 1e-6
+"""Sine of the angle by which joints may be off the right one."""
 
 
 @dataclass(frozen=True)
@@ -102,39 +100,27 @@ class Gravity:
         return model.end_forces(*model.forces(found.u, model.history, found.state)) / self.problem.unit_force
 
 
-def gravity_of(problem: Problem) -> Gravity:
-    """The springs under the dead load of a wall that stands by statics."""
-    model = build_model(problem.assembly, GapSettings())
+@dataclass(frozen=True)
+class Beginning:
+    """The beginning of a path, the jumps tried where it turns down, and the multiplier between two commits."""
+
+    tracer: Tracer
+    jumps: int = 0
+    interval: float = np.inf
+
+
+Start = Callable[[], Beginning | None]
+"""Makes the beginning of a path where that is possible. Raises SingularTangent."""
+
+
+def gravity_of(problem: Problem, ratio: float = RATIOS[0]) -> Gravity:
+    """The springs under the dead load of a wall that stands by statics, with kt/kn = ratio."""
+    model = build_model(problem.assembly, GapSettings(stiffness_ratio=ratio))
     factor = make_factor(model)
     return Gravity(problem, model, factor, gravity_state(model, factor))
 
 
-def prestressed_state(problem: Problem, newton: NewtonMatrix) -> PrestressedResult:
-    """The collapse state that safe forces of the wall lead to, or else, on a larger one, those of gravity.
-
-    Args:
-        problem: the scaled wall, which stands under its dead load and has a live load.
-        newton: its Newton matrix.
-    """
-    guide = smoothed(problem, 0.0) or problem
-    safe = follow_path(guide, newton, start_point(guide), SAFE)
-    kinks = 0
-    if safe.converged:
-        forces = guide.forces_of_slacks(safe.point.slack)
-        with suppress(SingularTangent):
-            state, kinks = _collapse_state(problem, _from_forces(problem, forces, safe.point.multiplier, RATIOS[0]))
-            if state is not None:
-                return PrestressedResult(state, safe.iterations, kinks)
-    if problem.n_interfaces > LIGHT_UP_TO:
-        with suppress(SingularTangent):
-            tracer = _from_gravity(gravity_of(problem))
-            if tracer is not None:
-                state, more = _collapse_state(problem, tracer)
-                return PrestressedResult(state, safe.iterations, kinks + more)
-    return PrestressedResult(None, safe.iterations, kinks)
-
-
-def light_states(search: Search, gravity: Gravity, kinks: int) -> Iterator[CollapseState]:
+def light_states(search: Search, gravity: Gravity, kinks: int, greatest: float = np.inf) -> Iterator[CollapseState]:
     """Collapse states that forces with little self-stress lead to: those of gravity, then vertices or mixtures.
 
     No other forces that fit its mechanism made any of 611 such states on walls of irregular blocks lower.
@@ -143,29 +129,71 @@ def light_states(search: Search, gravity: Gravity, kinks: int) -> Iterator[Colla
         search: of the wall, which stands under its dead load; its generator draws the vertices.
         gravity: what the dead load does to the wall.
         kinks: changes of state on all paths together after which no other is begun.
+        greatest: multiplier (scaled) that no collapse state is above.
     """
     problem = search.problem
-    spent = 0
-    for k in range(1 + 2 * problem.n_interfaces):
-        if spent >= kinks:
-            break
-        try:
-            tracer = _from_mixture(search, gravity, k - 1) if k else _from_gravity(gravity)
-            if tracer is None:
-                continue
-            state, passed = _collapse_state(problem, tracer, 0 if k else JUMPS)
-        except SingularTangent:
-            continue
-        spent += passed
-        if state is None:
-            continue
-        search.record(state.multiplier)
+    for k, state in _ends(search, _light_starts(search, gravity, greatest), kinks):
         yield state
-        if k == 0 and state.multiplier > search.least + LOWER and problem.n_interfaces > VERTICES_UP_TO:
+        above = k == 0 and state.multiplier > search.least + LOWER
+        if above and problem.n_interfaces > VERTICES_UP_TO and _right_angled(problem):
             return
 
 
-def _from_mixture(search: Search, gravity: Gravity, k: int) -> Tracer | None:
+def _light_starts(search: Search, gravity: Gravity, greatest: float) -> Iterator[Start]:
+    if search.problem.n_interfaces > VERTICES_UP_TO:
+        yield from _from_own_weight(search, gravity, greatest)
+    else:
+        yield partial(_from_gravity, gravity)
+    for k in range(2 * search.problem.n_interfaces):
+        yield partial(_from_mixture, search, gravity, k)
+
+
+def last_states(search: Search, greatest: float, kinks: int) -> Iterator[CollapseState]:
+    """Collapse states of a large wall to which nothing else led: from safe forces, central ones, and those of gravity.
+
+    Args:
+        search: of the wall, which stands under its dead load.
+        greatest: multiplier (scaled) that no collapse state is above.
+        kinks: changes of state on all paths together after which no other is begun.
+    """
+    yield from (state for _, state in _ends(search, _last_starts(search, greatest), kinks))
+
+
+def _last_starts(search: Search, greatest: float) -> Iterator[Start]:
+    yield partial(_from_safe_forces, search)
+    yield partial(_from_central_forces, search, RATIOS[0])
+    if search.problem.n_interfaces > LIGHT_UP_TO:
+        yield from _from_own_weight(search, gravity_of(search.problem), greatest)
+    for share in SHARES:
+        yield partial(_from_central_forces, search, RATIOS[0], share, greatest)
+    for ratio in RATIOS[1:]:
+        yield partial(_from_central_forces, search, ratio)
+
+
+def _ends(search: Search, starts: Iterator[Start], kinks: int) -> Iterator[tuple[int, CollapseState]]:
+    """The number of each start whose path ends in a collapse state, and the state."""
+    most = search.tally.kinks + kinks
+    for k, start in enumerate(starts):
+        if search.tally.kinks >= most:
+            return
+        state = None
+        with suppress(SingularTangent):
+            beginning = start()
+            state = None if beginning is None else _collapse_state(search, beginning)
+        if state is not None:
+            search.record(state.multiplier)
+            yield k, state
+
+
+def _right_angled(problem: Problem) -> bool:
+    """Whether all joints are parallel or at right angles to each other."""
+    assembly = problem.assembly
+    first = assembly.tangent[0]
+    off = np.minimum(abs(assembly.tangent @ first), abs(assembly.normal @ first))
+    return bool(off.max() < RIGHT)
+
+
+def _from_mixture(search: Search, gravity: Gravity, k: int) -> Beginning | None:
     """The path from the k-th mixture of a random vertex of statics, gravity's and central forces.
 
     Returns:
@@ -190,7 +218,7 @@ def _from_mixture(search: Search, gravity: Gravity, k: int) -> Tracer | None:
     return _from_forces(search.problem, forces, 0.0, RATIOS[k % len(RATIOS)])
 
 
-def _from_gravity(gravity: Gravity) -> Tracer | None:
+def _from_gravity(gravity: Gravity) -> Beginning | None:
     """The path from the forces that gravity causes in a wall without self-stress; None if there are none."""
     if not gravity.equilibrium.found:
         return None
@@ -200,35 +228,85 @@ def _from_gravity(gravity: Gravity) -> Tracer | None:
         return None
     for answer, further in doubled(model, factor, first, multiplier, model.history):
         first, multiplier = answer, further
-    return Tracer(model, factor, first.u, multiplier, model.history, first.state, certificate=CERTIFICATE)
+    tracer = Tracer(model, factor, first.u, multiplier, model.history, first.state, certificate=CERTIFICATE)
+    return Beginning(tracer, jumps=JUMPS)
 
 
-def _from_forces(problem: Problem, forces: FloatArray, multiplier: float, ratio: float) -> Tracer:
+def _from_own_weight(search: Search, gravity: Gravity, greatest: float) -> Iterator[Start]:
+    """The path from gravity's forces, then those with commits."""
+    yield partial(_from_gravity, gravity)
+    for ratio, share in COMMITTED:
+        yield partial(_from_gravity_committed, search, ratio, share, greatest)
+
+
+def _from_gravity_committed(search: Search, ratio: float, share: float, greatest: float) -> Beginning | None:
+    """The path from gravity's forces with kt/kn = ratio, with a commit every `share` of the least multiplier known.
+
+    Returns:
+        None where gravity finds no equilibrium, or neither a state nor the greatest multiplier is known.
+    """
+    gravity, least = gravity_of(search.problem, ratio), _least(search, greatest)
+    if not gravity.equilibrium.found or not 0.0 < least < np.inf:
+        return None
+    model, factor = gravity.model, gravity.factor
+    first, multiplier = first_step(model, factor, gravity.equilibrium.u, model.history, least)
+    if not first.found:
+        return None
+    tracer = Tracer(model, factor, first.u, multiplier, model.history, first.state, certificate=CERTIFICATE)
+    return Beginning(tracer, JUMPS, share * least)
+
+
+def _least(search: Search, greatest: float) -> float:
+    """The least multiplier known, or else the greatest that there may be."""
+    return min(search.least, greatest) * search.problem.unit_multiplier
+
+
+def _from_safe_forces(search: Search) -> Beginning | None:
+    """The path from forces somewhat before the end of the associated one of the wall with smooth unloaded joints."""
+    guide = smoothed(search.problem, 0.0) or search.problem
+    safe = follow_path(guide, search.newton, start_point(guide), SAFE)
+    search.tally.newton_steps += safe.iterations
+    if not safe.converged:
+        return None
+    forces = guide.forces_of_slacks(safe.point.slack)
+    return _from_forces(search.problem, forces, safe.point.multiplier, RATIOS[0])
+
+
+def _from_central_forces(
+    search: Search, ratio: float, share: float = np.inf, greatest: float = np.inf
+) -> Beginning | None:
+    """The path from forces well within yield under the dead load, with commits as from gravity if any."""
+    forces = search.central_forces
+    if forces is None:
+        return None
+    beginning = _from_forces(search.problem, forces, 0.0, ratio)
+    if share == np.inf:
+        return beginning
+    return replace(beginning, jumps=JUMPS, interval=share * _least(search, greatest))
+
+
+def _from_forces(problem: Problem, forces: FloatArray, multiplier: float, ratio: float) -> Beginning:
     """The path from scaled forces (m, 3) in equilibrium with a scaled multiplier. Raises SingularTangent."""
     model = build_model(problem.assembly, GapSettings(stiffness_ratio=ratio))
     start = multiplier * problem.unit_multiplier, problem.to_forces(forces)
-    return preloaded(model, make_factor(model), *start, CERTIFICATE)
+    return Beginning(preloaded(model, make_factor(model), *start, CERTIFICATE))
 
 
-def _collapse_state(problem: Problem, tracer: Tracer, jumps: int = 0) -> tuple[CollapseState | None, int]:
-    """The collapse state at the end of a path, or None, also below a multiplier of zero; and the kinks on the way.
-
-    Args:
-        problem: the scaled wall; tracer: the beginning of the path.
-        jumps: jumps tried where the path turns down.
-    """
-    record, model = PathRecord(), tracer.model
-    turn = TURN if jumps else np.inf
-    while (end := tracer.run(record, MOST_KINKS * model.n_points, turn=turn)) == PathEnd.TURNED_DOWN:
-        tracer, turn = past_turn(tracer, record.peak, jumps)
-        jumps -= 1
-    found = finish(model, tracer.present(), tracer.kept) if end in (PathEnd.PLATEAU, PathEnd.BREAKDOWN) else None
+def _collapse_state(search: Search, beginning: Beginning) -> CollapseState | None:
+    """The collapse state at the end of a path; None also below a multiplier of zero."""
+    problem, record, model = search.problem, PathRecord(), beginning.tracer.model
+    most = MOST_KINKS * model.n_points
+    try:
+        way = follow(beginning.tracer, record, most, beginning.interval, jumps=beginning.jumps)
+    finally:
+        search.tally.kinks += record.events
+    last = way.tracer
+    found = finish(model, last.present(), last.kept) if way.end in (PathEnd.PLATEAU, PathEnd.BREAKDOWN) else None
     if found is None or found.multiplier < 0.0:
-        return None, record.events
+        return None
     velocities = problem.from_mechanism(found.mechanism)
     velocities *= problem.live_work / float(problem.live @ velocities)
     moving = moving_contacts(problem.rates_of_velocities(velocities, False))
-    state = CollapseState(
+    return CollapseState(
         found.forces / problem.unit_force, found.multiplier / problem.unit_multiplier, velocities, moving
     )
-    return state, record.events

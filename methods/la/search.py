@@ -46,10 +46,11 @@ class Effort:
 
 @dataclass
 class Tally:
-    """What a search and those of other friction that serve it have spent: Newton steps and linear programmes."""
+    """What a search and those of other friction that serve it spent: Newton steps, programmes, kinks of springs."""
 
     newton_steps: int = 0
     programmes: int = 0
+    kinks: int = 0
 
 
 class Search:

@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from scipy.linalg import block_diag
 
-from methods.la.adapter import LimitAnalysis
+from harness.model.method import Finding
+from methods.la.adapter import AssociatedLimitAnalysis, LimitAnalysis
 from methods.la.arc import RESIDUAL, ArcPath
 from methods.la.associated import solve_associated
 from methods.la.exact import close_tight
@@ -17,7 +20,7 @@ from methods.la.newton_matrix import NewtonMatrix
 from methods.la.newton_step import NewtonStep, Point
 from methods.la.problem import make_problem
 from methods.la.region import with_all_above
-from methods.la.settings import SearchSettings
+from methods.la.settings import AssociatedSettings, SearchSettings
 from methods.la.state import residuals
 from tests.la.bodies import running_bond
 
@@ -90,6 +93,21 @@ def test_path_to_a_tiny_gap_stays_in_equilibrium() -> None:
     assert end.converged
     # In mean weights of a block; rounding of 448 blocks' forces alone is about 1e-13.
     assert end.statics <= 1e-9
+
+
+def test_vertical_force_on_one_block_of_a_large_wall_is_unbounded(monkeypatch: pytest.MonkeyPatch) -> None:
+    """The interior point meets no end there; forces that bear the live load alone tell."""
+    monkeypatch.setattr("methods.la.associated.SIMPLEX_INTERFACES", 100)
+    monkeypatch.setattr("methods.la.associated.MOST_SIMPLEX_INTERFACES", 100)
+    monkeypatch.setattr("methods.la.least.SIMPLEX_SEARCH", 100)
+    wall = running_bond(10, 8, 0.2, 0.65)
+    live = np.zeros_like(wall.live)
+    live[wall.centroid[:, 1].argmax(), 1] = -1.0
+    wall = replace(wall, live=live)
+    assert make_problem(wall).n_interfaces > 200
+    for method, settings in ((AssociatedLimitAnalysis(), AssociatedSettings()), (LimitAnalysis(), SearchSettings())):
+        answer = method.solve(wall, settings)
+        assert answer.finding == Finding.UNBOUNDED, answer.sentence
 
 
 def test_what_rests_on_a_moving_block_moves() -> None:

@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+from itertools import islice
+
+import numpy as np
 import pytest
 
 from harness.model.assembly import Assembly
@@ -9,7 +12,7 @@ from methods.la.adapter import LimitAnalysis
 from methods.la.associated import solve_associated
 from methods.la.irregular_walls import drawn, irregular_wall
 from methods.la.newton_matrix import NewtonMatrix
-from methods.la.prestressed import gravity_of, light_states, prestressed_state
+from methods.la.prestressed import gravity_of, last_states, light_states
 from methods.la.problem import make_problem
 from methods.la.search import Search
 from methods.la.settings import SearchSettings
@@ -28,8 +31,7 @@ WALLS = {
 def test_safe_forces_lead_to_an_exact_state_between_the_least_known_and_the_greatest(wall: Assembly) -> None:
     problem = make_problem(wall)
     newton = NewtonMatrix(problem)
-    state = prestressed_state(problem, newton).state
-    assert state is not None
+    state = next(last_states(Search(problem, newton), np.inf, 1))
     assert max(residuals(problem, polished(problem, newton, state)).values()) <= 1e-12
     associated = solve_associated(problem, newton).state
     assert associated is not None
@@ -58,10 +60,31 @@ def test_forces_with_little_self_stress_lead_to_exact_states_within_statics(wall
 def test_mixtures_of_forces_lead_below_gravity_on_a_wall_of_hundreds_of_joints() -> None:
     problem = make_problem(irregular_wall(5003, 9, 10, 1.13))
     newton = NewtonMatrix(problem)
-    gravity, *mixed = light_states(Search(problem, newton), gravity_of(problem), 10000)
+    gravity, *mixed = light_states(Search(problem, newton), gravity_of(problem), 12000)
     lowest = min(mixed, key=lambda state: state.multiplier)
     assert lowest.multiplier < 0.9 * gravity.multiplier
     assert max(residuals(problem, polished(problem, newton, lowest)).values()) <= 1e-12
+
+
+def test_committed_histories_lead_below_the_wall_without_history() -> None:
+    """Of walls of many directions of joints; above, `fe` reports such a spread over its histories."""
+    problem = make_problem(irregular_wall(5003, 9, 10, 1.13))
+    newton = NewtonMatrix(problem)
+    gravity, *committed = islice(light_states(Search(problem, newton), gravity_of(problem), 12000), 4)
+    for state in committed:
+        assert state.multiplier < 0.95 * gravity.multiplier
+        assert max(residuals(problem, polished(problem, newton, state)).values()) <= 1e-12
+
+
+def test_last_resort_leads_to_exact_states_within_statics() -> None:
+    problem = make_problem(irregular_wall(5003, 9, 10, 1.13))
+    newton = NewtonMatrix(problem)
+    greatest = solve_associated(problem, newton).greatest
+    states = list(last_states(Search(problem, newton), greatest, 5000))
+    assert len(states) > 3
+    for state in states:
+        assert max(residuals(problem, polished(problem, newton, state)).values()) <= 1e-12
+        assert 0.0 <= state.multiplier <= greatest * (1.0 + 1e-9)
 
 
 def test_wall_whose_central_paths_lead_nowhere_gets_its_state_from_the_springs(monkeypatch: pytest.MonkeyPatch) -> None:
