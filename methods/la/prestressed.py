@@ -5,8 +5,8 @@ change of force: an exact collapse state under zero dilatancy, whatever the stif
 depends on the self-stress it starts with.
 
 The forces of gravity on a wall without any, random vertices of statics of least weighted compression, and mixtures of
-both with central forces lead to low states of walls of irregular blocks. Central paths end high there: they keep all
-the self-stress that friction allows.
+both with central forces lead to low states of walls of irregular blocks; so do friction histories that are committed on
+the way from gravity. Central paths end high there: they keep all the self-stress that friction allows.
 
 On the largest walls a point on the associated path somewhat before its end has forces within yield by a margin; with
 the joints smooth that the dead load leaves unloaded, they lead to low states too. Where no forces fit the mechanisms
@@ -121,7 +121,9 @@ def gravity_of(problem: Problem, ratio: float = RATIOS[0]) -> Gravity:
 
 
 def light_states(search: Search, gravity: Gravity, kinks: int, greatest: float = np.inf) -> Iterator[CollapseState]:
-    """Collapse states that forces with little self-stress lead to: those of gravity, then vertices or mixtures.
+    """Collapse states that forces with little self-stress lead to: gravity's, then vertices or mixtures.
+
+    On walls of many interfaces those of gravity with committed histories come between.
 
     No other forces that fit its mechanism made any of 611 such states on walls of irregular blocks lower.
 
@@ -140,10 +142,7 @@ def light_states(search: Search, gravity: Gravity, kinks: int, greatest: float =
 
 
 def _light_starts(search: Search, gravity: Gravity, greatest: float) -> Iterator[Start]:
-    if search.problem.n_interfaces > VERTICES_UP_TO:
-        yield from _from_own_weight(search, gravity, greatest)
-    else:
-        yield partial(_from_gravity, gravity)
+    yield from _from_own_weight(search, gravity, greatest, search.problem.n_interfaces > VERTICES_UP_TO)
     for k in range(2 * search.problem.n_interfaces):
         yield partial(_from_mixture, search, gravity, k)
 
@@ -163,7 +162,7 @@ def _last_starts(search: Search, greatest: float) -> Iterator[Start]:
     yield partial(_from_safe_forces, search)
     yield partial(_from_central_forces, search, RATIOS[0])
     if search.problem.n_interfaces > LIGHT_UP_TO:
-        yield from _from_own_weight(search, gravity_of(search.problem), greatest)
+        yield from _from_own_weight(search, gravity_of(search.problem), greatest, True)
     for share in SHARES:
         yield partial(_from_central_forces, search, RATIOS[0], share, greatest)
     for ratio in RATIOS[1:]:
@@ -218,24 +217,30 @@ def _from_mixture(search: Search, gravity: Gravity, k: int) -> Beginning | None:
     return _from_forces(search.problem, forces, 0.0, RATIOS[k % len(RATIOS)])
 
 
-def _from_gravity(gravity: Gravity) -> Beginning | None:
-    """The path from the forces that gravity causes in a wall without self-stress; None if there are none."""
+def _from_gravity(gravity: Gravity, scale: float, interval: float = np.inf) -> Beginning | None:
+    """The path from the forces that gravity causes in a wall without self-stress; None if there are none.
+
+    Args:
+        gravity: what the dead load does; scale: a multiplier of the order of collapse.
+        interval: multiplier between two commits of the history.
+    """
     if not gravity.equilibrium.found:
         return None
     model, factor = gravity.model, gravity.factor
-    first, multiplier = first_step(model, factor, gravity.equilibrium.u, model.history, gravity.problem.unit_multiplier)
+    first, multiplier = first_step(model, factor, gravity.equilibrium.u, model.history, scale)
     if not first.found:
         return None
-    for answer, further in doubled(model, factor, first, multiplier, model.history):
-        first, multiplier = answer, further
+    if interval == np.inf:
+        for answer, further in doubled(model, factor, first, multiplier, model.history):
+            first, multiplier = answer, further
     tracer = Tracer(model, factor, first.u, multiplier, model.history, first.state, certificate=CERTIFICATE)
-    return Beginning(tracer, jumps=JUMPS)
+    return Beginning(tracer, JUMPS, interval)
 
 
-def _from_own_weight(search: Search, gravity: Gravity, greatest: float) -> Iterator[Start]:
-    """The path from gravity's forces, then those with commits."""
-    yield partial(_from_gravity, gravity)
-    for ratio, share in COMMITTED:
+def _from_own_weight(search: Search, gravity: Gravity, greatest: float, committed: bool) -> Iterator[Start]:
+    """The path from gravity's forces, then those with commits if asked for."""
+    yield partial(_from_gravity, gravity, search.problem.unit_multiplier)
+    for ratio, share in COMMITTED if committed else ():
         yield partial(_from_gravity_committed, search, ratio, share, greatest)
 
 
@@ -245,15 +250,8 @@ def _from_gravity_committed(search: Search, ratio: float, share: float, greatest
     Returns:
         None where gravity finds no equilibrium, or neither a state nor the greatest multiplier is known.
     """
-    gravity, least = gravity_of(search.problem, ratio), _least(search, greatest)
-    if not gravity.equilibrium.found or not 0.0 < least < np.inf:
-        return None
-    model, factor = gravity.model, gravity.factor
-    first, multiplier = first_step(model, factor, gravity.equilibrium.u, model.history, least)
-    if not first.found:
-        return None
-    tracer = Tracer(model, factor, first.u, multiplier, model.history, first.state, certificate=CERTIFICATE)
-    return Beginning(tracer, JUMPS, share * least)
+    least = _least(search, greatest)
+    return _from_gravity(gravity_of(search.problem, ratio), least, share * least) if 0.0 < least < np.inf else None
 
 
 def _least(search: Search, greatest: float) -> float:
