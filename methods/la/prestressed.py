@@ -161,12 +161,12 @@ def last_states(search: Search, greatest: float, kinks: int) -> Iterator[Collaps
 def _last_starts(search: Search, greatest: float) -> Iterator[Start]:
     yield partial(_from_safe_forces, search)
     yield partial(_from_central_forces, search, RATIOS[0])
-    if search.problem.n_interfaces > LIGHT_UP_TO:
-        yield from _from_own_weight(search, gravity_of(search.problem), greatest, True)
     for share in SHARES:
         yield partial(_from_central_forces, search, RATIOS[0], share, greatest)
     for ratio in RATIOS[1:]:
         yield partial(_from_central_forces, search, ratio)
+    if search.problem.n_interfaces > LIGHT_UP_TO:
+        yield from _from_own_weight(search, gravity_of(search.problem), greatest, True)
 
 
 def _ends(search: Search, starts: Iterator[Start], kinks: int) -> Iterator[tuple[int, CollapseState]]:

@@ -1,0 +1,27 @@
+"""Equilibrium under the dead load, and what is said where none is found."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from methods.la.irregular_walls import drawn
+from methods.springs.equilibrium import MOST_STEPS, equilibrium, gravity_state
+from methods.springs.factor import make_factor
+from methods.springs.settings import GapSettings
+from methods.springs.wall_model import build_model
+
+
+def test_wall_that_takes_long_to_come_to_rest_is_not_said_to_fall() -> None:
+    """160 irregular blocks on springs soft in shear: undecided after few steps, in equilibrium after many."""
+    model = build_model(drawn(10, 9, 16), GapSettings(stiffness_ratio=0.002))
+    early = equilibrium(model, make_factor(model), np.zeros(model.n_unknowns), 0.0, model.history, MOST_STEPS)
+    assert not early.found
+    assert not np.any(early.rate)
+    assert gravity_state(model, make_factor(model)).found
+
+
+def test_wall_that_statics_does_not_let_stand_moves_without_end() -> None:
+    model = build_model(drawn(3, 9, 16), GapSettings())
+    fall = gravity_state(model, make_factor(model))
+    assert not fall.found
+    assert model.dead @ fall.rate > 0.0
