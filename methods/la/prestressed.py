@@ -142,13 +142,15 @@ def light_states(search: Search, gravity: Gravity, kinks: int, greatest: float =
 
 
 def _light_starts(search: Search, gravity: Gravity, greatest: float) -> Iterator[Start]:
-    yield from _from_own_weight(search, gravity, greatest, search.problem.n_interfaces > VERTICES_UP_TO)
+    yield partial(_from_gravity, gravity, search.problem.unit_multiplier)
+    if search.problem.n_interfaces > VERTICES_UP_TO:
+        yield from _committed(search, greatest)
     for k in range(2 * search.problem.n_interfaces):
         yield partial(_from_mixture, search, gravity, k)
 
 
 def last_states(search: Search, greatest: float, kinks: int) -> Iterator[CollapseState]:
-    """Collapse states of a large wall to which nothing else led: from safe forces, central ones, and those of gravity.
+    """Collapse states of a large wall to which nothing else led: from safe forces, central ones, and gravity's.
 
     Args:
         search: of the wall, which stands under its dead load.
@@ -161,12 +163,12 @@ def last_states(search: Search, greatest: float, kinks: int) -> Iterator[Collaps
 def _last_starts(search: Search, greatest: float) -> Iterator[Start]:
     yield partial(_from_safe_forces, search)
     yield partial(_from_central_forces, search, RATIOS[0])
+    if search.problem.n_interfaces > LIGHT_UP_TO:
+        yield from _committed(search, greatest)
     for share in SHARES:
         yield partial(_from_central_forces, search, RATIOS[0], share, greatest)
     for ratio in RATIOS[1:]:
         yield partial(_from_central_forces, search, ratio)
-    if search.problem.n_interfaces > LIGHT_UP_TO:
-        yield from _from_own_weight(search, gravity_of(search.problem), greatest, True)
 
 
 def _ends(search: Search, starts: Iterator[Start], kinks: int) -> Iterator[tuple[int, CollapseState]]:
@@ -237,10 +239,8 @@ def _from_gravity(gravity: Gravity, scale: float, interval: float = np.inf) -> B
     return Beginning(tracer, JUMPS, interval)
 
 
-def _from_own_weight(search: Search, gravity: Gravity, greatest: float, committed: bool) -> Iterator[Start]:
-    """The path from gravity's forces, then those with commits if asked for."""
-    yield partial(_from_gravity, gravity, search.problem.unit_multiplier)
-    for ratio, share in COMMITTED if committed else ():
+def _committed(search: Search, greatest: float) -> Iterator[Start]:
+    for ratio, share in COMMITTED:
         yield partial(_from_gravity_committed, search, ratio, share, greatest)
 
 

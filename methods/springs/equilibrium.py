@@ -32,10 +32,12 @@ MOST_STEPS = 400
 """Pseudo-transient steps from one equilibrium to another."""
 MOST_STEPS_AT_FIRST = 3000
 """The same to the one under the dead load, which takes some 1,500 on walls of 900 irregular blocks."""
+SLOWEST, FAR_OFF = 1e-12, 1e8
+"""Share of the inertia, and displacement for each unknown, at which a wall that still moves falls."""
 SPEEDS_UP = 0.25
-"""Share of all work of the loads above which the step on which they did most shows a wall that falls.
+"""Share of all work of the loads above which the step on which they did most shows a wall that falls, too.
 
-Of one that falls each step does 1.4 to 4 times the work of the one before.
+Of one that falls each step does 1.4 to 4 times the work of the one before, while Newton converges.
 """
 FURTHEST = 1e6
 """Multiplier beyond which nothing is doubled."""
@@ -103,14 +105,14 @@ def pseudo_transient(
     """Implicit steps sigma M (u - u_n) = loads - F(u), with sigma lowered as they converge, then plain Newton.
 
     A wall without equilibrium keeps moving, faster and faster: the step on which the loads do most work is then its
-    velocity field. The last ones may be rounding. One neither at rest nor speeding up in `limit` steps is undecided.
+    velocity field. The last ones may be rounding. One that neither rests nor goes far off nor speeds up is undecided.
     """
     scale = load_scale(model, multiplier)
     sigma, steps, iterations = 1.0, 0, 0
     loads = model.dead + multiplier * model.live
     rate, fall = np.zeros_like(u), np.zeros_like(u)
     state = model.states(u, history, not np.any(u))
-    while steps < limit and sigma > 1e-12:
+    while steps < limit and sigma > SLOWEST:
         trial, previous = u.copy(), state
         converged = False
         inner = 0
@@ -144,11 +146,12 @@ def pseudo_transient(
             residual = float(np.abs(model.residual(u, multiplier, history, state)).max()) / scale
             if residual < SETTLED:
                 return Equilibrium(True, u, state, residual, np.zeros_like(u), iterations)
-        if np.abs(u).max() > 1e8 * scale * len(u):
+        if np.abs(u).max() > FAR_OFF * scale * len(u):
             break
         sigma *= 0.25 if inner <= 4 else 0.7
-    speeds_up = float(loads @ fall) > SPEEDS_UP * float(loads @ u)
-    return Equilibrium(False, u, state, np.inf, fall if speeds_up else np.zeros_like(u), iterations)
+    far_off = sigma <= SLOWEST or bool(np.abs(u).max() > FAR_OFF * scale * len(u))
+    falls = far_off or float(loads @ fall) > SPEEDS_UP * float(loads @ u)
+    return Equilibrium(False, u, state, np.inf, fall if falls else np.zeros_like(u), iterations)
 
 
 def equilibrium(
