@@ -18,6 +18,7 @@ SIMPLEX_INTERFACES = 100
 """Interfaces up to which the simplex method decides at once whether a wall stands."""
 
 NO_MOTION = "No mechanism lets the live load do work: it cannot make the wall collapse."
+NO_STATE = "Statics allows any live load, and the search found no collapse state under zero dilatancy either."
 
 
 def collapse_answer(

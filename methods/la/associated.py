@@ -65,7 +65,7 @@ def solve_associated(problem: Problem, newton: NewtonMatrix, solver: str = "auto
         result = _by_interior_point(problem, newton)
         if result.outcome == "optimal" and result.gap <= 1e-9:
             return result
-        if _bears_live_load_alone(problem):
+        if result.outcome != "optimal" and _bears_live_load_alone(problem):
             return AssociatedResult("unbounded", iterations=result.iterations)
         if solver == "interior" or problem.n_interfaces > MOST_SIMPLEX_INTERFACES:
             return result

@@ -11,7 +11,7 @@ import numpy as np
 
 from harness.model.errors import first_few
 from harness.model.method import Answer
-from methods.la.answers import NO_MOTION, collapse_answer, not_converged, unbounded_answer
+from methods.la.answers import NO_MOTION, NO_STATE, collapse_answer, not_converged, unbounded_answer
 from methods.la.associated import AssociatedResult, solve_associated
 from methods.la.continuation import POOL, climb, descend_from, smooth_joints
 from methods.la.large import lagged_state, large_search
@@ -59,7 +59,6 @@ With more, hardly any tree of 1,500 nodes comes to an end.
 """
 SAME = 1e-9
 """Relative difference of two multipliers below which the state with the smaller residuals is the better one."""
-NO_STATE = "Statics allows any live load, and the search found no collapse state under zero dilatancy either."
 LADDER = (0.55, 0.65, 0.75, 0.85, 0.925)
 SMOOTH = (0.5, 0.3, 0.0)
 """Factors on the friction of the joints that the dead load leaves unloaded, each one more start."""
@@ -160,7 +159,8 @@ def _large(problem: Problem, newton: NewtonMatrix, settings: SearchSettings, tol
     found = large_search(problem, newton, settings.seed, velocities)
     details: dict[str, Any] = {"unknowns": 7 * problem.n_interfaces + problem.n_velocities + 1}
     unbounded = associated.outcome == "unbounded"
-    search, falling = Search(problem, newton, settings.seed), list[str]()
+    falling: list[str] = []
+    search = Search(problem, newton, settings.seed)
     for state in found.states:
         search.record(state.multiplier)
     if problem.n_interfaces <= LIGHT_UP_TO:
@@ -178,7 +178,7 @@ def _large(problem: Problem, newton: NewtonMatrix, settings: SearchSettings, tol
     if associated.state is not None:
         details["associated"] = problem.to_multiplier(associated.state.multiplier)
     if not found.states and unbounded:
-        return unbounded_answer(NO_STATE)
+        return _with_falling_blocks(unbounded_answer(NO_STATE), falling)
     if not found.states:
         answer = not_converged(
             "No contact forces fit the mechanisms at the ends of the central paths, and no path of the wall with "

@@ -52,10 +52,10 @@ That of gravity may jump, which may take thousands of factorisations.
 """
 RATIOS = (0.5, 5.0, 50.0)
 """kt / kn of the paths, in turn; the first is that of `fe`."""
-COMMITTED = ((0.5, 2e-3), (0.2, 2e-3), (0.05, 2e-3))
+COMMITTED, SHARE = (0.5, 0.2, 0.05), 2e-3
 """kt / kn of paths from gravity with commits, and the share of the least known multiplier between two of them."""
 SHARES = (3e-3, 1e-3)
-"""The same for paths from central forces."""
+"""Such shares for paths from central forces."""
 HEAVY = 3
 """Power of the exponential weights on compression: a few joints are to carry next to nothing."""
 VERTEX = ((1.0, 0.0, 0.0),)
@@ -240,18 +240,18 @@ def _from_gravity(gravity: Gravity, scale: float, interval: float = np.inf) -> B
 
 
 def _committed(search: Search, greatest: float) -> Iterator[Start]:
-    for ratio, share in COMMITTED:
-        yield partial(_from_gravity_committed, search, ratio, share, greatest)
+    for ratio in COMMITTED:
+        yield partial(_from_gravity_committed, search, ratio, greatest)
 
 
-def _from_gravity_committed(search: Search, ratio: float, share: float, greatest: float) -> Beginning | None:
-    """The path from gravity's forces with kt/kn = ratio, with a commit every `share` of the least multiplier known.
+def _from_gravity_committed(search: Search, ratio: float, greatest: float) -> Beginning | None:
+    """The path from gravity's forces with kt/kn = ratio, with a commit every SHARE of the least multiplier known.
 
     Returns:
         None where gravity finds no equilibrium, or neither a state nor the greatest multiplier is known.
     """
     least = _least(search, greatest)
-    return _from_gravity(gravity_of(search.problem, ratio), least, share * least) if 0.0 < least < np.inf else None
+    return _from_gravity(gravity_of(search.problem, ratio), least, SHARE * least) if 0.0 < least < np.inf else None
 
 
 def _least(search: Search, greatest: float) -> float:

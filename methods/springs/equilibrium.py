@@ -108,11 +108,12 @@ def pseudo_transient(
     velocity field. The last ones may be rounding. One that neither rests nor goes far off nor speeds up is undecided.
     """
     scale = load_scale(model, multiplier)
+    furthest = FAR_OFF * scale * len(u)
     sigma, steps, iterations = 1.0, 0, 0
     loads = model.dead + multiplier * model.live
     rate, fall = np.zeros_like(u), np.zeros_like(u)
     state = model.states(u, history, not np.any(u))
-    while steps < limit and sigma > SLOWEST:
+    while steps < limit and sigma > SLOWEST and np.abs(u).max() <= furthest:
         trial, previous = u.copy(), state
         converged = False
         inner = 0
@@ -146,10 +147,8 @@ def pseudo_transient(
             residual = float(np.abs(model.residual(u, multiplier, history, state)).max()) / scale
             if residual < SETTLED:
                 return Equilibrium(True, u, state, residual, np.zeros_like(u), iterations)
-        if np.abs(u).max() > FAR_OFF * scale * len(u):
-            break
         sigma *= 0.25 if inner <= 4 else 0.7
-    far_off = sigma <= SLOWEST or bool(np.abs(u).max() > FAR_OFF * scale * len(u))
+    far_off = sigma <= SLOWEST or np.abs(u).max() > furthest
     falls = far_off or float(loads @ fall) > SPEEDS_UP * float(loads @ u)
     return Equilibrium(False, u, state, np.inf, fall if falls else np.zeros_like(u), iterations)
 
