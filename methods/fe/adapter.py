@@ -20,7 +20,7 @@ from methods.fe.answers import (
     stands,
 )
 from methods.fe.convex_steps import bracket_collapse
-from methods.fe.histories import HistoryResult, trace_history, with_initial_shear
+from methods.fe.histories import LARGE_ABOVE, HistoryResult, trace_history, with_initial_shear
 from methods.fe.incremental import march
 from methods.fe.settings import ConvexSettings, GapSpringsSettings, NewtonSettings
 from methods.springs.equilibrium import equilibrium, gravity_state
@@ -34,7 +34,8 @@ load_kernels()
 FEWEST_EVENTS, EVENTS_A_POINT = 2000, (30, 5)
 """Events up to which a history is traced: so many, and for every gap point more on the first and on those after it.
 
-Two walls of 400 irregular blocks come to a plateau after 20 and 26 events a point.
+Two walls of 400 irregular blocks come to a plateau after 20 and 26 events a point. On large walls the first has no more
+than the others: those in courses need 1 to 3.5 a point.
 """
 LOST_ABOVE = (500, 4)
 """Once a history reached its plateau, the next are given up above this number of events and multiple of its own."""
@@ -73,7 +74,7 @@ class GapSprings:
         results: list[HistoryResult] = []
         scale = _unit(model.assembly)
         limits = [settings.max_events or FEWEST_EVENTS + count * model.n_points for count in EVENTS_A_POINT]
-        limit = limits[0]
+        limit = limits[model.assembly.n_free > LARGE_ABOVE]
         for step in chosen_histories(model, settings):
             result = trace_history(model, factor, gravity, step, scale, limit)
             results.append(result)

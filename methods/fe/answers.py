@@ -86,6 +86,7 @@ def collapse_answer(model: WallModel, results: list[HistoryResult], factorisatio
                 "commits": r.commits,
                 "path_residual": r.residual,
                 "disturbance": r.disturbance,
+                "raised_to": r.raised_to,
                 "residuals": r.state.residuals if r.state else None,
             }
             for r in results
@@ -133,6 +134,8 @@ def collapse_answer(model: WallModel, results: list[HistoryResult], factorisatio
     sentence = (
         f"the wall collapses at {best.state.multiplier:.6g} times the live load (plateau; peak {best.record.peak:.6g})"
     )
+    if best.raised_to is not None:
+        sentence += f"; up to {best.raised_to:.4g} the load was raised in finite steps from rest to rest"
     if spread > WIDE:
         sentence += (
             f"; friction histories that nobody can know differ by {100.0 * spread:.1f} %, "

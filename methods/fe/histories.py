@@ -7,11 +7,13 @@ from data nobody can know.
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass, replace
+from functools import partial
 
 import numpy as np
 
-from harness.model.assembly import FloatArray
+from harness.model.assembly import FloatArray, IntArray
 from harness.model.errors import first_few
 from harness.model.method import OutOfTime
 from methods.springs.continuation import Tracer
@@ -19,6 +21,7 @@ from methods.springs.equilibrium import Equilibrium, doubled, equilibrium, first
 from methods.springs.factor import Factor, SingularTangent
 from methods.springs.follow import follow
 from methods.springs.gap_law import OPEN, SLIP_PLUS
+from methods.springs.lagged_limits import SlowMotion
 from methods.springs.path_record import PathEnd, PathRecord
 from methods.springs.plateau import CollapseState, finish
 from methods.springs.wall_model import WallModel
@@ -27,6 +30,8 @@ DISTURBANCES = (1e-9, 1e-7, 1e-5)
 """Random initial shears, in weights of a block, tried in turn where exact ties lead a path astray."""
 LONGER = (1.0, 1.5, 2.25)
 """Multiples of its commit interval at which a history is traced, in turn while it is lost."""
+LARGE_ABOVE = 500
+"""Blocks above which a path of too many kinks is given up early, and not traced again with disturbed shears."""
 DOUBLE_ABOVE = 100
 """Blocks above which a path without commits starts where doubled Newton steps end, to save the early events."""
 ASTRAY = 3.0
@@ -52,6 +57,7 @@ class HistoryResult:
         step: commit interval as a share of the multiplier scale; 0 for none.
         end: why the path ended; sentence: what a reader should know about it.
         record: the path; state: the collapse state when a plateau was reached and passed its check, else None.
+        raised_to: multiplier up to which the load was raised in finite steps, None if the path is exact from the start.
     """
 
     step: float
@@ -62,6 +68,7 @@ class HistoryResult:
     commits: int
     residual: float
     disturbance: float
+    raised_to: float | None = None
 
 
 def trace_history(
@@ -71,7 +78,9 @@ def trace_history(
 
     Where exact ties lead a path without commits astray it is traced again with the initial shears disturbed by 1e-9,
     1e-7 and 1e-5 of a block's weight: data nobody knows, and the end is an exact collapse state all the same. A lost
-    history with commits is traced again with longer intervals, which the result then names.
+    history with commits is traced again with longer intervals, which the result then names. Where a path without
+    commits has not ended after so many events, the load is raised in finite steps instead
+    (`methods.springs.lagged_limits`), and the path goes on from there.
 
     Args:
         model: the wall; factor: its tangent; gravity: equilibrium under the dead load.
@@ -84,14 +93,43 @@ def trace_history(
             break
     if step > 0.0:
         return result
+    large = model.assembly.n_free > LARGE_ABOVE
     for disturbance in DISTURBANCES:
-        if not _lost(result):
+        if not _lost(result) or (large and result.end == PathEnd.EVENTS):
             break
         noise = np.random.default_rng(1995).uniform(-disturbance, disturbance, model.n_points)
         start = equilibrium(model, factor, gravity.u, 0.0, model.history + noise)
         if start.found:
             result = _trace(model, factor, start.u, model.history + noise, step, scale, max_events, disturbance)
+    if result.end == PathEnd.EVENTS and result.state is None:
+        record = PathRecord()
+        trace = partial(_raised, model, factor, gravity, scale, max_events, record)
+        raised = _as_far_as_possible(trace, 0.0, 0.0, record)
+        return raised if raised.state is not None or raised.end == PathEnd.TIME else result
     return result
+
+
+def _raised(
+    model: WallModel, factor: Factor, gravity: Equilibrium, scale: float, max_events: int, record: PathRecord
+) -> HistoryResult:
+    """Trace a path into the record from the multiplier that the load can be raised to in finite steps.
+
+    Raises:
+        OutOfTime: the time given is over.
+        SingularTangent: the path cannot be taken up where the wall is at rest.
+    """
+    motion = SlowMotion(model, gravity.u, 0.0, model.history)
+    for rest in motion.raise_load(scale):
+        _note(record, model, rest.multiplier, rest.u, model.states(rest.u, motion.history()))
+        record.peak = rest.multiplier
+    rest, history = motion.rest, motion.history()
+    tracer = Tracer(model, factor, rest.u, rest.multiplier, history, model.states(rest.u, history))
+    result = _followed(tracer, record, 0.0, scale, np.inf, max_events, 0.0)
+    sentence = (
+        f"{result.sentence}; up to {rest.multiplier:.4g} the load was raised in finite steps, "
+        f"because the exact path from the dead load had not ended after {max_events} changes of state"
+    )
+    return replace(result, sentence=sentence, raised_to=rest.multiplier)
 
 
 def _lost(result: HistoryResult) -> bool:
@@ -110,8 +148,16 @@ def _trace(
 ) -> HistoryResult:
     """Trace one history from displacements u with the initial history h, as far as the time allows."""
     record = PathRecord()
+    trace = partial(_trace_in_time, model, factor, u, history, step, scale, max_events, disturbance, record)
+    return _as_far_as_possible(trace, step, disturbance, record)
+
+
+def _as_far_as_possible(
+    trace: Callable[[], HistoryResult], step: float, disturbance: float, record: PathRecord
+) -> HistoryResult:
+    """What a trace leads to, or how far its record came where the time is over or the path is lost."""
     try:
-        return _trace_in_time(model, factor, u, history, step, scale, max_events, disturbance, record)
+        return trace()
     except OutOfTime:
         end, sentence = PathEnd.TIME, SENTENCES[PathEnd.TIME]
         if record.multiplier:
@@ -145,7 +191,21 @@ def _trace_in_time(
     if step == 0.0 and model.assembly.n_free > DOUBLE_ABOVE:
         first, start = _doubled(model, factor, first, start, history, record)
     tracer = Tracer(model, factor, first.u, start, history, first.state)
-    way = follow(tracer, record, max_events, step * scale or np.inf, ASTRAY * scale)
+    return _followed(tracer, record, step, scale, ASTRAY * scale, max_events, disturbance)
+
+
+def _followed(
+    tracer: Tracer,
+    record: PathRecord,
+    step: float,
+    scale: float,
+    highest: float,
+    max_events: int,
+    disturbance: float,
+) -> HistoryResult:
+    """What following a path from where the tracer stands leads to. Raises OutOfTime and SingularTangent as above."""
+    model = tracer.model
+    way = follow(tracer, record, max_events, step * scale or np.inf, highest)
     tracer, end = way.tracer, way.end
     state = (
         finish(model, tracer.present(), tracer.kept)
@@ -180,9 +240,14 @@ def _doubled(
     """The last of the doubled equilibria from the first, and its multiplier; all are recorded."""
     for answer, multiplier in doubled(model, factor, first, start, history):
         first, start = answer, multiplier
-        slipping = int(np.count_nonzero(first.state >= SLIP_PLUS))
-        record.add(start, float(model.live @ first.u), slipping, int(np.count_nonzero(first.state == OPEN)))
+        _note(record, model, start, first.u, first.state)
     return first, start
+
+
+def _note(record: PathRecord, model: WallModel, multiplier: float, u: FloatArray, state: IntArray) -> None:
+    """Add an equilibrium to the record."""
+    slipping = int(np.count_nonzero(state >= SLIP_PLUS))
+    record.add(multiplier, float(model.live @ u), slipping, int(np.count_nonzero(state == OPEN)))
 
 
 def with_initial_shear(model: WallModel, gravity: Equilibrium, share: float, seed: int) -> WallModel:

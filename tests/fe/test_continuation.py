@@ -209,6 +209,20 @@ def test_fe_400_irregular_blocks_come_to_a_plateau_after_tens_of_thousands_of_ki
     assert plateaus == pytest.approx([0.0793637, 0.1599892, 0.1599892], rel=1e-6)
 
 
+def test_fe_path_of_too_many_kinks_is_begun_where_the_load_can_be_raised_to() -> None:
+    """55 bricks, whose exact path has 376 kinks: 94 are left, to a state that the history of the motion differs by."""
+    answer = solve(running_bond(10, 5, 0.65), histories=(0.0,), max_events=150)
+    history = answer.details["histories"][0]
+    assert history["raised_to"] == pytest.approx(0.9 * history["plateau"], rel=0.1)
+    assert "raised in finite steps" in history["sentence"]
+    assert "raised in finite steps" in answer.sentence
+    assert history["events"] < 150
+    assert answer.details["peak"] >= history["raised_to"]
+    assert max(answer.details["residuals"].values()) < 1e-9
+    assert answer.multiplier == pytest.approx(0.505615, rel=2e-3)
+    assert answer.path["multiplier"][0] < answer.path["multiplier"][-1]
+
+
 def test_fe_point_load_at_the_end_of_a_beam_has_the_multiplier_of_limit_analysis() -> None:
     # A jump from a path that had turned down led to a state whose tangent is singular, and the method raised.
     data = json.loads((CASES / "panel-4x4-3-f0" / "wall.json").read_text(encoding="utf-8"))
