@@ -14,7 +14,8 @@ class GapSpringsSettings(GapSettings):
         histories: how often the friction history is committed, as fractions of the multiplier reached; 0: never.
             None: none, 1 % and 0.2 % up to 1,200 blocks, none alone above.
         max_events: changes of state after which one history is given up; None: 2,000 and, for every gap
-            point, 30 on the first history and 5 on those after it.
+            point, 30 on the first history (5 above 500 blocks) and 5 on those after it. Where the first is given up,
+            the load is raised in finite steps and the path goes on from there, with as many changes again.
         friction_cap: friction coefficients above this are lowered to it while the path is traced; the final state is
             checked with the true ones, and traced again with them if it does not hold. Coefficients such as 1000,
             which stand for "no sliding", would otherwise make the path stiff for nothing.

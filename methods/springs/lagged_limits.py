@@ -20,6 +20,7 @@ import numpy as np
 
 from harness.model.assembly import FloatArray
 from methods.numerics.vectors import largest
+from methods.springs.equilibrium import FURTHEST
 from methods.springs.factor import SingularTangent, make_factor
 from methods.springs.gap_law import STICK
 from methods.springs.wall_model import WallModel, load_scale, point_strains
@@ -40,6 +41,8 @@ FLAT = 0.5
 """Share of the slope at the start of a line search that is small enough at its end."""
 FIRST_RISE, WIDTH = 1.0 / 64.0, 0.1
 """First rise of the multiplier as a share of its scale; width, over the upper end, of a bracket narrow enough."""
+LOWEST = 1e-3
+"""Share of the scale below which a multiplier without rest is not halved again."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -86,11 +89,11 @@ class SlowMotion:
             scale: a multiplier of the order of collapse.
         """
         rise, highest = FIRST_RISE * scale, np.inf
-        while True:
+        while highest - self.rest.multiplier >= WIDTH * highest and LOWEST * scale < highest:
             goal = self.rest.multiplier + rise
             if goal >= highest:
                 goal = 0.5 * (self.rest.multiplier + highest)
-            if highest - self.rest.multiplier < WIDTH * highest < np.inf or goal > scale / AT_REST:
+            if goal > FURTHEST * scale:
                 return
             if self.move(goal):
                 rise *= 2.0

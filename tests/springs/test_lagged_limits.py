@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -52,3 +54,14 @@ def test_the_load_is_raised_to_near_the_plateau_and_no_further() -> None:
     raised = [rest.multiplier for rest in motion.raise_load(1.0)]
     assert raised == sorted(raised)
     assert 0.9 * 0.505615 < raised[-1] < 0.50575
+
+
+def test_a_load_that_is_far_too_large_at_once_is_given_up() -> None:
+    """The least multiplier tried of this scale is 1,000 and more, where 55 bricks bear .5."""
+    assert not list(standing(running_bond(10, 5, 0.65)).raise_load(1e6))
+
+
+def test_a_load_that_presses_down_is_raised_no_further_than_to_a_million_times_its_scale() -> None:
+    wall = running_bond(4, 2, 0.65)
+    raised = [rest.multiplier for rest in standing(replace(wall, live=wall.dead)).raise_load(1.0)]
+    assert 1e5 < raised[-1] <= 1e6
