@@ -102,9 +102,7 @@ def trace_history(
         if start.found:
             result = _trace(model, factor, start.u, model.history + noise, step, scale, max_events, disturbance)
     if result.end == PathEnd.EVENTS and result.state is None:
-        record = PathRecord()
-        trace = partial(_raised, model, factor, gravity, scale, max_events, record)
-        raised = _as_far_as_possible(trace, 0.0, 0.0, record)
+        raised = _as_far_as_possible(partial(_raised, model, factor, gravity, scale, max_events), 0.0, 0.0)
         return raised if raised.state is not None or raised.end == PathEnd.TIME else result
     return result
 
@@ -147,17 +145,15 @@ def _trace(
     disturbance: float,
 ) -> HistoryResult:
     """Trace one history from displacements u with the initial history h, as far as the time allows."""
+    trace = partial(_trace_in_time, model, factor, u, history, step, scale, max_events, disturbance)
+    return _as_far_as_possible(trace, step, disturbance)
+
+
+def _as_far_as_possible(trace: Callable[[PathRecord], HistoryResult], step: float, disturbance: float) -> HistoryResult:
+    """What a trace into a record leads to, or how far the record came where the time is over or the path is lost."""
     record = PathRecord()
-    trace = partial(_trace_in_time, model, factor, u, history, step, scale, max_events, disturbance, record)
-    return _as_far_as_possible(trace, step, disturbance, record)
-
-
-def _as_far_as_possible(
-    trace: Callable[[], HistoryResult], step: float, disturbance: float, record: PathRecord
-) -> HistoryResult:
-    """What a trace leads to, or how far its record came where the time is over or the path is lost."""
     try:
-        return trace()
+        return trace(record)
     except OutOfTime:
         end, sentence = PathEnd.TIME, SENTENCES[PathEnd.TIME]
         if record.multiplier:

@@ -70,7 +70,7 @@ class SlowMotion:
 
     def __init__(self, model: WallModel, u: FloatArray, multiplier: float, history: FloatArray) -> None:
         opening, slip = model.strains(u)
-        limit = model.mu * np.maximum(-model.kn * opening, 0.0)
+        limit = _limits(model, opening)
         shear = np.clip(model.kt * slip + history, -limit, limit)
         self.model = model
         self.rest = Rest(multiplier, u, opening, shear, limit)
@@ -115,7 +115,7 @@ class SlowMotion:
                     return False
                 continue
             inertia = sigma * largest(model.inertia * (after.u - now.u))
-            lag = model.mu * np.maximum(-model.kn * after.opening, 0.0) - now.limit
+            lag = _limits(model, after.opening) - now.limit
             if max(inertia, largest(lag)) < AT_REST * scale:
                 self.rest = replace(after, limit=now.limit + lag)
                 return True
@@ -160,3 +160,8 @@ class SlowMotion:
         """Loads minus internal forces (N,) at openings g and trial shears tau (P,) under the limits of now."""
         shear = np.clip(trial, -now.limit, now.limit)
         return self.model.out_of_balance(np.minimum(opening, 0.0), shear, self._stick, now.multiplier)
+
+
+def _limits(model: WallModel, opening: FloatArray) -> FloatArray:
+    """Friction limits mu N (P,) at openings g (P,)."""
+    return model.mu * np.maximum(-model.kn * opening, 0.0)
