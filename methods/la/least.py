@@ -119,7 +119,7 @@ def least_known(problem: Problem, newton: NewtonMatrix, settings: SearchSettings
     found += light
     if not found and not climbed:
         return _with_falling_blocks(_nothing_found(search, associated), gravity.falling)
-    best = min(found + climbed, key=lambda state: state.multiplier)
+    best = least_of(problem, found + climbed)
     joined = search.as_one_block(best)
     if joined is not None and joined.multiplier < best.multiplier:
         best = search.descend(joined, effort)
@@ -132,6 +132,13 @@ def least_known(problem: Problem, newton: NewtonMatrix, settings: SearchSettings
         problem, search, best, (found, climbed), (associated, proof), tolerance, settings.rational_interfaces
     )
     return _with_falling_blocks(replace(answer, path=_path(search, began)), gravity.falling)
+
+
+def least_of(problem: Problem, states: list[CollapseState]) -> CollapseState:
+    """The most exact of the states with the least multiplier, but for rounding."""
+    least = min(state.multiplier for state in states)
+    same = (state for state in states if state.multiplier <= least + SAME * abs(least))
+    return min(same, key=lambda state: max(residuals(problem, state).values()))
 
 
 def _with_falling_blocks(answer: Answer, falling: list[str]) -> Answer:
@@ -189,9 +196,7 @@ def _large(problem: Problem, newton: NewtonMatrix, settings: SearchSettings, tol
         return _with_falling_blocks(answer, falling)
     values = [problem.to_multiplier(state.multiplier) for state in found.states]
     details["start_values"] = values
-    least = min(state.multiplier for state in found.states)
-    same = (state for state in found.states if state.multiplier <= least + SAME * abs(least))
-    best = polished(problem, newton, min(same, key=lambda state: max(residuals(problem, state).values())))
+    best = polished(problem, newton, least_of(problem, found.states))
     sentence = (
         f"The least collapse multiplier known is {problem.to_multiplier(best.multiplier):.7g}, without descent "
         "because of the size of the wall. It is not proved to be the least."

@@ -16,10 +16,12 @@ from methods.la.exact import close_tight
 from methods.la.feasible_pair import FEASIBLE, feasible_pair
 from methods.la.interior_point import PathSettings, follow_path, start_point
 from methods.la.large import large_search
+from methods.la.least import least_of
 from methods.la.newton_matrix import NewtonMatrix
 from methods.la.newton_step import NewtonStep, Point
 from methods.la.problem import make_problem
 from methods.la.region import with_all_above
+from methods.la.search import Search
 from methods.la.settings import AssociatedSettings, SearchSettings
 from methods.la.state import residuals
 from tests.la.bodies import running_bond
@@ -143,3 +145,15 @@ def test_wall_of_thousands_of_blocks_has_an_exact_state(courses: int, bricks: in
     assert answer.multiplier is not None
     assert answer.multiplier < by_springs
     assert max(answer.details["residuals"].values()) <= 1e-12
+
+
+def test_least_state_is_the_most_exact_of_those_that_differ_by_rounding_only() -> None:
+    """It was the lowest to the last digit, and a wall had no answer where that one state was not exact enough."""
+    problem = make_problem(running_bond(7, 3, 0.4, 0.65))
+    state = Search(problem, NewtonMatrix(problem)).interior()
+    assert state is not None
+    rough = replace(state, multiplier=state.multiplier * (1.0 - 1e-12), velocities=state.velocities * (1.0 + 1e-9))
+    lower = replace(rough, multiplier=0.9 * state.multiplier)
+    assert max(residuals(problem, state).values()) < max(residuals(problem, rough).values())
+    assert least_of(problem, [rough, state]) is state
+    assert least_of(problem, [rough, state, lower]) is lower
