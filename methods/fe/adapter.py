@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 from typing import Any, ClassVar
 
 import numpy as np
@@ -71,13 +72,14 @@ class GapSprings:
             gravity = equilibrium(model, factor, gravity.u, 0.0, model.history)
             if not gravity.found:
                 return gravity_failure(model, gravity)
-        results: list[HistoryResult] = []
+        results, start = list[HistoryResult](), gravity
         scale = _unit(model.assembly)
         limits = [settings.max_events or FEWEST_EVENTS + count * model.n_points for count in EVENTS_A_POINT]
         limit = limits[model.assembly.n_free > LARGE_ABOVE]
         for step in chosen_histories(model, settings):
-            result = trace_history(model, factor, gravity, step, scale, limit)
+            result = trace_history(model, factor, start, step, scale, limit)
             results.append(result)
+            start = result.raised or start
             if result.end in (PathEnd.UNBOUNDED, PathEnd.TIME):
                 break
             limit = min(limit, limits[1])
@@ -120,6 +122,7 @@ class IncrementalNewton:
         if not assembly.has_live_load:
             return stands(model, gravity)
         first_step = settings.first_step * _unit(assembly)
+        model = replace(model, history=gravity.history)
         result = march(model, factor, gravity, first_step, settings.cuts, settings.displacement_steps)
         details = {"load_control_limit": result.load_control, "gap_points": model.n_points}
         if result.state is not None:

@@ -11,7 +11,7 @@ from harness.model.errors import first_few
 from harness.model.method import Answer, Finding, Status
 from methods.fe.convex_steps import SETTLED, ConvexResult
 from methods.fe.histories import HistoryResult
-from methods.springs.equilibrium import Equilibrium
+from methods.springs.newton import FALLING, Equilibrium
 from methods.springs.path_record import PathEnd, PathRecord
 from methods.springs.plateau import CollapseState
 from methods.springs.wall_model import WallModel
@@ -37,7 +37,7 @@ def gravity_failure(model: WallModel, gravity: Equilibrium) -> Answer:
 def falling(model: WallModel, rate: FloatArray, why: str, iterations: int) -> Answer:
     """The answer for a wall that falls under its dead load along displacements (N,), which are approximate."""
     motion = model.block_displacements(rate)
-    blocks = model.moving_blocks(motion)
+    blocks = model.moving_blocks(motion, FALLING)
     return Answer(
         Status.OK,
         Finding.FALLS,
@@ -51,7 +51,7 @@ def falling(model: WallModel, rate: FloatArray, why: str, iterations: int) -> An
 
 def stands(model: WallModel, gravity: Equilibrium) -> Answer:
     """The answer for a wall without live load that is in equilibrium under its dead load, with its gap forces."""
-    normal, shear = model.forces(gravity.u, model.history, gravity.state)
+    normal, shear = model.forces(gravity.u, gravity.history, gravity.state)
     return standing_answer(
         model.end_forces(normal, shear), gravity.iterations, {"path_status": "stands", "residual": gravity.residual}
     )
@@ -86,7 +86,7 @@ def collapse_answer(model: WallModel, results: list[HistoryResult], factorisatio
                 "commits": r.commits,
                 "path_residual": r.residual,
                 "disturbance": r.disturbance,
-                "raised_to": r.raised_to,
+                "raised_to": r.raised.multiplier if r.raised else None,
                 "residuals": r.state.residuals if r.state else None,
             }
             for r in results
@@ -134,8 +134,8 @@ def collapse_answer(model: WallModel, results: list[HistoryResult], factorisatio
     sentence = (
         f"the wall collapses at {best.state.multiplier:.6g} times the live load (plateau; peak {best.record.peak:.6g})"
     )
-    if best.raised_to is not None:
-        sentence += f"; up to {best.raised_to:.4g} the load was raised in finite steps from rest to rest"
+    if best.raised is not None:
+        sentence += f"; up to {best.raised.multiplier:.4g} the load was raised in finite steps from rest to rest"
     if spread > WIDE:
         sentence += (
             f"; friction histories that nobody can know differ by {100.0 * spread:.1f} %, "

@@ -13,17 +13,18 @@ from functools import partial
 
 import numpy as np
 
-from harness.model.assembly import FloatArray, IntArray
+from harness.model.assembly import FloatArray
 from harness.model.errors import first_few
 from harness.model.method import OutOfTime
 from methods.springs.continuation import Tracer
-from methods.springs.equilibrium import Equilibrium, doubled, equilibrium, first_step
+from methods.springs.equilibrium import doubled, equilibrium, first_step
 from methods.springs.factor import Factor, SingularTangent
 from methods.springs.follow import follow
 from methods.springs.gap_law import OPEN, SLIP_PLUS
-from methods.springs.lagged_limits import SlowMotion
+from methods.springs.newton import Equilibrium
 from methods.springs.path_record import PathEnd, PathRecord
 from methods.springs.plateau import CollapseState, finish
+from methods.springs.slow_motion import SlowMotion
 from methods.springs.wall_model import WallModel
 
 DISTURBANCES = (1e-9, 1e-7, 1e-5)
@@ -57,7 +58,7 @@ class HistoryResult:
         step: commit interval as a share of the multiplier scale; 0 for none.
         end: why the path ended; sentence: what a reader should know about it.
         record: the path; state: the collapse state when a plateau was reached and passed its check, else None.
-        raised_to: multiplier up to which the load was raised in finite steps, None if the path is exact from the start.
+        raised: the rest up to which the load was raised in finite steps, None if the path is exact from the start.
     """
 
     step: float
@@ -68,41 +69,41 @@ class HistoryResult:
     commits: int
     residual: float
     disturbance: float
-    raised_to: float | None = None
+    raised: Equilibrium | None = None
 
 
 def trace_history(
-    model: WallModel, factor: Factor, gravity: Equilibrium, step: float, scale: float, max_events: int
+    model: WallModel, factor: Factor, start: Equilibrium, step: float, scale: float, max_events: int
 ) -> HistoryResult:
-    """Trace one history from the gravity state.
+    """Trace one history from the gravity state, or from the rest that another raised the load to.
 
     Where exact ties lead a path without commits astray it is traced again with the initial shears disturbed by 1e-9,
     1e-7 and 1e-5 of a block's weight: data nobody knows, and the end is an exact collapse state all the same. A lost
     history with commits is traced again with longer intervals, which the result then names. Where a path without
     commits has not ended after so many events, the load is raised in finite steps instead
-    (`methods.springs.lagged_limits`), and the path goes on from there.
+    (`methods.springs.slow_motion`), and the path goes on from there.
 
     Args:
-        model: the wall; factor: its tangent; gravity: equilibrium under the dead load.
+        model: the wall; factor: its tangent; start: equilibrium under the dead load, or at the rest.
         step: commit interval as a share of `scale`, 0 for no history; scale: a multiplier of the order of collapse.
         max_events: changes of state after which the history is given up.
     """
     for longer in LONGER:
-        result = _trace(model, factor, gravity.u, model.history, longer * step, scale, max_events, 0.0)
+        result = _trace(model, factor, start, longer * step, scale, max_events, 0.0)
         if step == 0.0 or not _lost(result):
             break
-    if step > 0.0:
+    if step > 0.0 or result.raised is not None:
         return result
     large = model.assembly.n_free > LARGE_ABOVE
     for disturbance in DISTURBANCES:
         if not _lost(result) or (large and result.end == PathEnd.EVENTS):
             break
         noise = np.random.default_rng(1995).uniform(-disturbance, disturbance, model.n_points)
-        start = equilibrium(model, factor, gravity.u, 0.0, model.history + noise)
-        if start.found:
-            result = _trace(model, factor, start.u, model.history + noise, step, scale, max_events, disturbance)
+        disturbed = equilibrium(model, factor, start.u, 0.0, start.history + noise)
+        if disturbed.found:
+            result = _trace(model, factor, disturbed, step, scale, max_events, disturbance)
     if result.end == PathEnd.EVENTS and result.state is None:
-        raised = _as_far_as_possible(partial(_raised, model, factor, gravity, scale, max_events), 0.0, 0.0)
+        raised = _as_far_as_possible(partial(_raised, model, factor, start, scale, max_events), 0.0, 0.0)
         return raised if raised.state is not None or raised.end == PathEnd.TIME else result
     return result
 
@@ -116,18 +117,27 @@ def _raised(
         OutOfTime: the time given is over.
         SingularTangent: the path cannot be taken up where the wall is at rest.
     """
-    motion = SlowMotion(model, gravity.u, 0.0, model.history)
-    for rest in motion.raise_load(scale):
-        _note(record, model, rest.multiplier, rest.u, model.states(rest.u, motion.history()))
+    rest = gravity
+    for rest in SlowMotion(model, factor, gravity, True).raise_load(scale):
+        _note(record, model, rest)
         record.peak = rest.multiplier
-    rest, history = motion.rest, motion.history()
-    tracer = Tracer(model, factor, rest.u, rest.multiplier, history, model.states(rest.u, history))
-    result = _followed(tracer, record, 0.0, scale, np.inf, max_events, 0.0)
-    sentence = (
-        f"{result.sentence}; up to {rest.multiplier:.4g} the load was raised in finite steps, "
-        f"because the exact path from the dead load had not ended after {max_events} changes of state"
-    )
-    return replace(result, sentence=sentence, raised_to=rest.multiplier)
+    return _resumed(model, factor, rest, 0.0, scale, max_events, record)
+
+
+def _resumed(
+    model: WallModel,
+    factor: Factor,
+    rest: Equilibrium,
+    step: float,
+    scale: float,
+    max_events: int,
+    record: PathRecord,
+) -> HistoryResult:
+    """Trace a path into the record from the rest that the load was raised to. Raises as `_raised` does."""
+    tracer = Tracer(model, factor, rest.u, rest.multiplier, rest.history, rest.state)
+    result = _followed(tracer, record, step, scale, max_events, 0.0)
+    sentence = f"{result.sentence}; up to {rest.multiplier:.4g} the load was raised in finite steps"
+    return replace(result, sentence=sentence, raised=rest)
 
 
 def _lost(result: HistoryResult) -> bool:
@@ -137,15 +147,14 @@ def _lost(result: HistoryResult) -> bool:
 def _trace(
     model: WallModel,
     factor: Factor,
-    u: FloatArray,
-    history: FloatArray,
+    start: Equilibrium,
     step: float,
     scale: float,
     max_events: int,
     disturbance: float,
 ) -> HistoryResult:
-    """Trace one history from displacements u with the initial history h, as far as the time allows."""
-    trace = partial(_trace_in_time, model, factor, u, history, step, scale, max_events, disturbance)
+    """Trace one history from an equilibrium, as far as the time allows."""
+    trace = partial(_trace_in_time, model, factor, start, step, scale, max_events, disturbance)
     return _as_far_as_possible(trace, step, disturbance)
 
 
@@ -166,8 +175,7 @@ def _as_far_as_possible(trace: Callable[[PathRecord], HistoryResult], step: floa
 def _trace_in_time(
     model: WallModel,
     factor: Factor,
-    u: FloatArray,
-    history: FloatArray,
+    start: Equilibrium,
     step: float,
     scale: float,
     max_events: int,
@@ -180,14 +188,20 @@ def _trace_in_time(
         OutOfTime: the time given is over.
         SingularTangent: the path cannot be begun, or taken up again, where it stands.
     """
-    first, start = first_step(model, factor, u, history, scale)
+    if start.multiplier > 0.0:
+        _note(record, model, start)
+        record.peak = start.multiplier
+        return _resumed(model, factor, start, step, scale, max_events, record)
+    first = first_step(model, factor, start, scale)
     if not first.found:
-        sentence = f"the dead load is in equilibrium, but {start:.2g} times the live load, the least step tried, is not"
+        least = f"{first.multiplier:.2g} times the live load, the least step tried"
+        sentence = f"the dead load is in equilibrium, but {least}, is not"
         return HistoryResult(step, PathEnd.BREAKDOWN, sentence, record, None, 0, 0.0, disturbance)
     if step == 0.0 and model.assembly.n_free > DOUBLE_ABOVE:
-        first, start = _doubled(model, factor, first, start, history, record)
-    tracer = Tracer(model, factor, first.u, start, history, first.state)
-    return _followed(tracer, record, step, scale, ASTRAY * scale, max_events, disturbance)
+        for first in doubled(model, factor, first):  # noqa: B020
+            _note(record, model, first)
+    tracer = Tracer(model, factor, first.u, first.multiplier, first.history, first.state)
+    return _followed(tracer, record, step, scale, max_events, disturbance)
 
 
 def _followed(
@@ -195,13 +209,12 @@ def _followed(
     record: PathRecord,
     step: float,
     scale: float,
-    highest: float,
     max_events: int,
     disturbance: float,
 ) -> HistoryResult:
     """What following a path from where the tracer stands leads to. Raises OutOfTime and SingularTangent as above."""
     model = tracer.model
-    way = follow(tracer, record, max_events, step * scale or np.inf, highest)
+    way = follow(tracer, record, max_events, step * scale or np.inf, ASTRAY * scale)
     tracer, end = way.tracer, way.end
     state = (
         finish(model, tracer.present(), tracer.kept)
@@ -230,24 +243,14 @@ def _not_collapse(model: WallModel, velocity: FloatArray) -> str:
     return "the last piece is a mechanism, but its forces do not pass the check of an exact collapse state"
 
 
-def _doubled(
-    model: WallModel, factor: Factor, first: Equilibrium, start: float, history: FloatArray, record: PathRecord
-) -> tuple[Equilibrium, float]:
-    """The last of the doubled equilibria from the first, and its multiplier; all are recorded."""
-    for answer, multiplier in doubled(model, factor, first, start, history):
-        first, start = answer, multiplier
-        _note(record, model, start, first.u, first.state)
-    return first, start
-
-
-def _note(record: PathRecord, model: WallModel, multiplier: float, u: FloatArray, state: IntArray) -> None:
+def _note(record: PathRecord, model: WallModel, rest: Equilibrium) -> None:
     """Add an equilibrium to the record."""
-    slipping = int(np.count_nonzero(state >= SLIP_PLUS))
-    record.add(multiplier, float(model.live @ u), slipping, int(np.count_nonzero(state == OPEN)))
+    slipping = int(np.count_nonzero(rest.state >= SLIP_PLUS))
+    record.add(rest.multiplier, float(model.live @ rest.u), slipping, int(np.count_nonzero(rest.state == OPEN)))
 
 
 def with_initial_shear(model: WallModel, gravity: Equilibrium, share: float, seed: int) -> WallModel:
     """The model with shears frozen in before the live load: a random share of what friction holds under gravity."""
-    normal, _ = model.forces(gravity.u, model.history, gravity.state)
+    normal, _ = model.forces(gravity.u, gravity.history, gravity.state)
     noise = np.random.default_rng(seed).uniform(-share, share, model.n_points)
     return replace(model, history=noise * model.mu * normal)

@@ -16,8 +16,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from harness.model.assembly import FloatArray, IntArray
-from methods.springs.equilibrium import Equilibrium, newton, settled
 from methods.springs.factor import Factor, SingularTangent
+from methods.springs.newton import Equilibrium, newton, settled
 from methods.springs.path_record import PathRecord, Snapshot
 from methods.springs.plateau import CollapseState, finish
 from methods.springs.wall_model import WallModel, load_scale

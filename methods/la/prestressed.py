@@ -29,10 +29,11 @@ from methods.la.problem import Problem
 from methods.la.search import LOWER, Search
 from methods.la.state import CollapseState, moving_contacts
 from methods.springs.continuation import Tracer
-from methods.springs.equilibrium import Equilibrium, doubled, first_step, gravity_state
+from methods.springs.equilibrium import doubled, first_step, gravity_state
 from methods.springs.factor import Factor, SingularTangent, make_factor
 from methods.springs.follow import follow
 from methods.springs.jump import JUMPS
+from methods.springs.newton import FALLING, Equilibrium
 from methods.springs.path_record import PathEnd, PathRecord
 from methods.springs.plateau import finish
 from methods.springs.preload import preloaded
@@ -89,7 +90,7 @@ class Gravity:
     def falling(self) -> list[str]:
         """Names of the blocks that fall; none where there is equilibrium, or the search for it did not end."""
         motion = self.model.block_displacements(self.equilibrium.rate)
-        return [] if self.equilibrium.found else self.model.moving_blocks(motion)
+        return [] if self.equilibrium.found else self.model.moving_blocks(motion, FALLING)
 
     @cached_property
     def forces(self) -> FloatArray | None:
@@ -97,7 +98,7 @@ class Gravity:
         model, found = self.model, self.equilibrium
         if not found.found:
             return None
-        return model.end_forces(*model.forces(found.u, model.history, found.state)) / self.problem.unit_force
+        return model.end_forces(*model.forces(found.u, found.history, found.state)) / self.problem.unit_force
 
 
 @dataclass(frozen=True)
@@ -229,13 +230,13 @@ def _from_gravity(gravity: Gravity, scale: float, interval: float = np.inf) -> B
     if not gravity.equilibrium.found:
         return None
     model, factor = gravity.model, gravity.factor
-    first, multiplier = first_step(model, factor, gravity.equilibrium.u, model.history, scale)
+    first = first_step(model, factor, gravity.equilibrium, scale)
     if not first.found:
         return None
     if interval == np.inf:
-        for answer, further in doubled(model, factor, first, multiplier, model.history):
-            first, multiplier = answer, further
-    tracer = Tracer(model, factor, first.u, multiplier, model.history, first.state, certificate=CERTIFICATE)
+        for further in doubled(model, factor, first):
+            first = further
+    tracer = Tracer(model, factor, first.u, first.multiplier, first.history, first.state, certificate=CERTIFICATE)
     return Beginning(tracer, JUMPS, interval)
 
 

@@ -33,11 +33,11 @@ def past_turn(tracer: Tracer, peak: float, jumps: int) -> tuple[Tracer, float]:
 def _jump(tracer: Tracer, peak: float) -> Tracer | None:
     """The tracer just above the peak, at the equilibrium that the springs come to from where it is; None if at none."""
     above = peak * (1.0 + 1e-3) + 1e-9
-    answer = equilibrium(tracer.model, tracer.factor, tracer.u, above, tracer.history)
+    answer = equilibrium(tracer.model, tracer.factor, tracer.u, above, tracer.history, commits=True)
     if not answer.found:
         return None
     try:
-        follow = Tracer(tracer.model, tracer.factor, answer.u, above, tracer.history, answer.state)
+        follow = Tracer(tracer.model, tracer.factor, answer.u, above, answer.history, answer.state)
     except SingularTangent:
         return None
     return successor(follow, tracer)

@@ -46,7 +46,7 @@ class WallModel:
         history: (P,) initial h = T0 - kt s0; initial_opening: (P,) at no displacement, negative where a point carries
             compression before anything has moved.
         dead, live: (N,) dimensionless loads.
-        inertia: (N,) dimensionless masses for pseudo-transient steps.
+        inertia: (N,) dimensionless masses for slow motion.
         column_start, row_index: CSC pattern of the tangent; slot: (m, 36) where each interface adds to its values.
         force, length, displacement: what one unit inside is worth outside.
     """
@@ -150,10 +150,10 @@ class WallModel:
         out[:, 2] /= self.length
         return out
 
-    def moving_blocks(self, motion: FloatArray) -> list[str]:
-        """Names of the blocks that move in a motion (n, 3): faster than a millionth of the fastest."""
+    def moving_blocks(self, motion: FloatArray, slowest: float = 1e-6) -> list[str]:
+        """Names of the blocks that move in a motion (n, 3): faster than this share of the fastest."""
         speed = np.abs(motion * np.array([1.0, 1.0, self.length])).max(axis=1)
-        return [self.assembly.block_ids[i] for i in np.flatnonzero(speed > 1e-6 * speed.max(initial=0.0))]
+        return [self.assembly.block_ids[i] for i in np.flatnonzero(speed > slowest * speed.max(initial=0.0))]
 
 
 def build_model(assembly: Assembly, settings: GapSettings, friction_cap: float = np.inf) -> WallModel:

@@ -201,18 +201,20 @@ def test_fe_990_bricks_end_in_an_exact_collapse_state_on_soft_pieces() -> None:
     assert max(answer.details["residuals"].values()) < 1e-9
 
 
-@pytest.mark.slow
-def test_fe_400_irregular_blocks_come_to_a_plateau_after_tens_of_thousands_of_kinks() -> None:
-    """Five events a point gave the first history up; commits of 1 % of the load unit were too coarse for the others."""
+def test_fe_400_irregular_blocks_come_to_one_plateau_under_three_histories() -> None:
+    """They ended 102 % apart, the first after 60,000 kinks, while jumps kept the friction history from before them."""
     answer = solve(irregular_wall(1, 20, 20, 1.0))
     plateaus = [history["plateau"] for history in answer.details["histories"]]
-    assert plateaus == pytest.approx([0.0793637, 0.1599892, 0.1599892], rel=1e-6)
+    assert plateaus == pytest.approx([0.1599892] * 3, rel=1e-6)
 
 
 def test_fe_path_of_too_many_kinks_is_begun_where_the_load_can_be_raised_to() -> None:
-    """55 bricks, whose exact path has 376 kinks: 94 are left, to a state that the history of the motion differs by."""
-    answer = solve(running_bond(10, 5, 0.65), histories=(0.0,), max_events=150)
-    history = answer.details["histories"][0]
+    """55 bricks, whose exact path has 376 kinks: 94 are left, to a state that the history of the motion differs by.
+
+    The histories after it begin at the same rest.
+    """
+    answer = solve(running_bond(10, 5, 0.65), histories=(0.0, 0.01), max_events=150)
+    history, committed = answer.details["histories"]
     assert history["raised_to"] == pytest.approx(0.9 * history["plateau"], rel=0.1)
     assert "raised in finite steps" in history["sentence"]
     assert "raised in finite steps" in answer.sentence
@@ -220,6 +222,8 @@ def test_fe_path_of_too_many_kinks_is_begun_where_the_load_can_be_raised_to() ->
     assert answer.details["peak"] >= history["raised_to"]
     assert max(answer.details["residuals"].values()) < 1e-9
     assert answer.multiplier == pytest.approx(0.505615, rel=2e-3)
+    assert committed["raised_to"] == history["raised_to"]
+    assert committed["plateau"] == pytest.approx(0.505615, rel=2e-3)
     assert answer.path["multiplier"][0] < answer.path["multiplier"][-1]
 
 

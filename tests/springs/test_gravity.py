@@ -5,16 +5,16 @@ from __future__ import annotations
 import numpy as np
 
 from methods.la.irregular_walls import drawn
-from methods.springs.equilibrium import MOST_STEPS, equilibrium, gravity_state
+from methods.springs.equilibrium import equilibrium, gravity_state
 from methods.springs.factor import make_factor
 from methods.springs.settings import GapSettings
 from methods.springs.wall_model import build_model
 
 
 def test_wall_that_takes_long_to_come_to_rest_is_not_said_to_fall() -> None:
-    """160 irregular blocks on springs soft in shear: undecided after few steps, in equilibrium after many."""
+    """160 irregular blocks on springs soft in shear: undecided after few steps, in equilibrium after more."""
     model = build_model(drawn(10, 9, 16), GapSettings(stiffness_ratio=0.002))
-    early = equilibrium(model, make_factor(model), np.zeros(model.n_unknowns), 0.0, model.history, MOST_STEPS)
+    early = equilibrium(model, make_factor(model), np.zeros(model.n_unknowns), 0.0, model.history, 100)
     assert not early.found
     assert not np.any(early.rate)
     assert gravity_state(model, make_factor(model)).found
