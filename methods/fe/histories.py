@@ -198,7 +198,8 @@ def _trace_in_time(
         sentence = f"the dead load is in equilibrium, but {least}, is not"
         return HistoryResult(step, PathEnd.BREAKDOWN, sentence, record, None, 0, 0.0, disturbance)
     if step == 0.0 and model.assembly.n_free > DOUBLE_ABOVE:
-        for first in doubled(model, factor, first):  # noqa: B020
+        for further in doubled(model, factor, first):
+            first = further
             _note(record, model, first)
     tracer = Tracer(model, factor, first.u, first.multiplier, first.history, first.state)
     return _followed(tracer, record, step, scale, max_events, disturbance)

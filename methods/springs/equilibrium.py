@@ -10,7 +10,7 @@ import numpy as np
 from harness.model.assembly import FloatArray
 from methods.springs.factor import Factor
 from methods.springs.newton import Equilibrium, newton
-from methods.springs.slow_motion import NEWTON_STEPS, SlowMotion
+from methods.springs.slow_motion import FURTHEST, NEWTON_STEPS, SlowMotion
 from methods.springs.wall_model import WallModel
 
 START = 1e-3
@@ -21,8 +21,6 @@ MOST_SHORTER = 5
 """First steps tried after the longest one: a wall may collapse at a multiplier below it."""
 NEWTON_STEPS_AT_FIRST = 10_000
 """Newton steps of the motion to rest under the dead load, at most."""
-FURTHEST = 1e6
-"""Multiplier beyond which nothing is doubled."""
 
 
 def equilibrium(
@@ -69,7 +67,7 @@ def first_step(model: WallModel, factor: Factor, rest: Equilibrium, scale: float
 
 
 def doubled(model: WallModel, factor: Factor, first: Equilibrium) -> Iterator[Equilibrium]:
-    """Equilibria at 2, 4, 8, ... times the multiplier of a first one, as far as Newton converges.
+    """Equilibria at 2, 4, 8, ... times the multiplier of a first one, as far as Newton converges; at most to FURTHEST.
 
     Without commits the law has no history, so they lie on the path from the first.
     """
