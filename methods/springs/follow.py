@@ -41,7 +41,7 @@ def follow(
         max_events: changes of state after which the path is given up.
         interval: multiplier between two commits of the history; infinite for none.
         highest: multiplier above which a path with commits counts as lost.
-        jumps: most jumps tried where the path turns down.
+        jumps: most jumps tried where the path turns down; none at a peak from which one was tried in vain.
 
     Raises:
         SingularTangent: the path cannot be taken up again where it stands.
@@ -49,7 +49,7 @@ def follow(
     """
     committing, large = interval < np.inf, COMMIT_WITHIN * tracer.first_displacement
     turn = TURN if jumps > 0 else np.inf
-    commits, residual = 0, 0.0
+    commits, residual, hopeless = 0, 0.0, -np.inf
     while True:
         after = None
         if committing and tracer.may_commit() and tracer.multiplier >= record.peak and tracer.extent < large:
@@ -60,8 +60,10 @@ def follow(
             end = tracer.run(record, max_events, tracer.multiplier + interval, turn)
         residual = max(residual, tracer.worst_residual)
         if end == PathEnd.TURNED_DOWN:
-            tracer, turn = past_turn(tracer, record.peak, jumps)
+            tracer, turn = past_turn(tracer, record.peak, jumps if record.peak > hopeless else 0)
             jumps -= 1
+            if turn == np.inf:
+                hopeless = record.peak
         elif end != PathEnd.TARGET:
             return Followed(tracer, end, commits, residual)
         elif tracer.multiplier > highest:
