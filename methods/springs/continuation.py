@@ -23,6 +23,7 @@ from methods.springs.plateau import CERTIFICATE, worst_residual
 from methods.springs.tolerances import (
     DRIFT,
     ELASTIC,
+    ELSEWHERE,
     ENOUGH,
     FAR,
     GLANCE,
@@ -43,8 +44,8 @@ class Tracer:
         u, multiplier, state: where the path is; history: (P,) frozen-in shears h.
         opening, trial: (P,) g and tau there; largest: the largest displacement.
         direction: of the present piece.
-        kept: the last mechanism on the way that is an exact collapse state but for rounding; kept_at: the extent
-            there; kept_holds: whether its residuals pass the certificate.
+        kept: the last mechanism on the way that is an exact collapse state but for rounding; kept_holds: whether its
+            residuals pass the certificate; looked_at: the extent where they were last looked at.
     """
 
     def __init__(
@@ -76,7 +77,7 @@ class Tracer:
         self.largest = largest(self.u)
         self.first_displacement = self.largest + 1.0 + largest(model.initial_opening)
         self.kept: Snapshot | None = None
-        self.kept_at, self.kept_holds = 0.0, False
+        self.kept_holds, self.looked_at = False, 0.0
         self.turns: set[tuple[int, int, float]] = set()
         self.direction = Direction(model, factor)
         if factorised:
@@ -103,11 +104,15 @@ class Tracer:
         self._remove_drift()
 
     def _remove_drift(self) -> None:
-        """Bring the gaps back into equilibrium, along no soft piece; the rates are measured again where they move."""
+        """Bring the gaps back into equilibrium, along no soft piece; the rates are measured again where they move.
+
+        Raises:
+            SingularTangent: they are so far from it that equilibrium found again would be another path's.
+        """
         residual = self._out_of_balance()
         worst = largest(residual) / self.scale
         self.worst_residual = max(self.worst_residual, worst)
-        moved = False
+        moved, lost = False, worst > ELSEWHERE
         for _ in range(2):
             if worst < 1e-14:
                 break
@@ -122,7 +127,7 @@ class Tracer:
                 break
         if moved:
             self.direction.measure()
-        if min(worst, self.worst_residual) > LOST:
+        if lost or min(worst, self.worst_residual) > LOST:
             raise SingularTangent("the path was lost to rounding")
 
     def _out_of_balance(self) -> FloatArray:
@@ -230,11 +235,12 @@ class Tracer:
             return False
         if ahead > FAR * size:
             return True
-        if size < GROWN * self.kept_at:
+        if size < GROWN * self.looked_at:
             return False
+        self.looked_at = size
         holds = worst_residual(model, self.present()) <= self.certificate
         if holds or not self.kept_holds:
-            self.kept, self.kept_at, self.kept_holds = deepcopy(self.present()), size, holds
+            self.kept, self.kept_holds = deepcopy(self.present()), holds
         return holds and size > ENOUGH * self.first_displacement
 
     def _advance(self, velocity: FloatArray, speed: float, step: float) -> None:

@@ -32,6 +32,7 @@ from methods.springs.tolerances import (
     CROOKED,
     FREE,
     MOST,
+    SLIGHT,
     SOFT,
     STEEP,
     STRAIGHT,
@@ -88,28 +89,62 @@ class Direction:
             SingularTangent: the tangent is singular, or the velocity cannot be refined.
         """
         before, rising = self.velocity, self.speed
-        self.pins = [int(np.argmax(np.abs(before)))] if self.size > FREE else []
         for careful in (False, True):
-            self._factorise(state, careful)
-            self._solve(before, rising)
-            if crossed is not None:
-                self._keep_crossing(*crossed)
+            self.velocity, self.speed = before, rising
+            self._solve_pinned(state, careful)
             if self.straighten(state, extent):
+                if crossed is not None and self._leads_back(*crossed):
+                    self.velocity, self.tail, self.speed = -self.velocity, -self.tail, -self.speed
+                    self.measure()
                 return
             if self.factor.careful:
                 break
         raise SingularTangent("the direction of the path was lost to rounding")
 
+    def _solve_pinned(self, state: IntArray, careful: bool) -> None:
+        """Solve for the velocity, its fastest displacement pinned where the piece turns out to be soft."""
+        for _ in range(MOST):
+            before, rising = self.velocity, self.speed
+            self.pins = [int(np.argmax(np.abs(before)))] if self.size > FREE else []
+            self._factorise(state, careful)
+            self._solve(before, rising)
+            if self._is_pinned_right():
+                return
+
+    def _is_pinned_right(self) -> bool:
+        """Whether a soft piece is pinned, where it moves."""
+        if not self.pins:
+            return self.size <= FREE
+        return bool(abs(self.velocity[self.pins[0]]) >= WEAK * largest(self.velocity))
+
     def _factorise(self, state: IntArray, careful: bool) -> None:
-        """Factorise the tangent, and where a pinned one is still soft, pin the softest motion as well."""
+        """Factorise the tangent, and where a pinned one is still soft, pin the softest motion as well.
+
+        One without any stiffness left is pinned first: whatever the load does, the wall moves along it.
+        """
         while True:
-            self.factor.refactor(state, pins=self.pins, careful=careful)
-            self.response = self.factor.solve(self.model.live)
+            try:
+                self.factor.refactor(state, pins=self.pins, careful=careful)
+                self.response = self.factor.solve(self.model.live)
+            except SingularTangent:
+                self._pin_first(state, careful)
+                continue
             softest = int(np.argmax(np.abs(self.response)))
             if not self.pins or not self._is_soft() or softest in self.pins or len(self.pins) == MOST:
                 break
             self.pins.append(softest)
         self.shapes = [self._shape(pin, state) for pin in self.pins[1:]]
+
+    def _pin_first(self, state: IntArray, careful: bool) -> None:
+        """Pin a motion without stiffness before all others. Raises SingularTangent where none or all may be pinned."""
+        singular = SingularTangent("the tangent is singular in these states")
+        if not 0 < len(self.pins) < MOST:
+            raise singular
+        self.factor.refactor(state, SLIGHT, careful, self.pins)
+        softest = int(np.argmax(np.abs(self.factor.solve(self.model.live))))
+        if softest in self.pins:
+            raise singular
+        self.pins.insert(0, softest)
 
     def _is_soft(self) -> bool:
         """Whether the response to the live load shows a soft motion that is not pinned."""
@@ -138,12 +173,11 @@ class Direction:
         if sense < 0.0:
             self.velocity, self.speed = -self.velocity, -self.speed
 
-    def _keep_crossing(self, change: Change, rate: float) -> None:
-        """Turn the velocity round if it leads back over the kink just crossed, and does so beyond rounding."""
+    def _leads_back(self, change: Change, rate: float) -> bool:
+        """Whether the velocity leads back, beyond rounding, over the kink just crossed with a rate b'v."""
         index, _, b = self.model.change(*change)
         along = float(b @ self.velocity[index])
-        if abs(along) > CLEAR * largest(self.velocity) and along * rate < 0.0:
-            self.velocity, self.speed = -self.velocity, -self.speed
+        return abs(along) > CLEAR * largest(self.velocity) and along * rate < 0.0
 
     def _hold(self, x: FloatArray, held: float = 0.0) -> tuple[FloatArray, float]:
         """Add m responses to the live load and shapes of the pins to x, so that the springs of the pins carry nothing.
@@ -223,7 +257,7 @@ class Direction:
             self.speed /= unit
         if self.factor.count >= self.factor.capacity - 1 or not 1.0 / STEEP < abs(1.0 + along) < STEEP:
             return False
-        if abs(self.velocity[self.pins[0]]) < WEAK if self.pins else self.size > FREE:
+        if not self._is_pinned_right():
             return False
         self.factor.update(y, index, b, 1.0 + along)
         if self.pins:
@@ -235,16 +269,19 @@ class Direction:
                 shape.tail -= y * (float(b @ shape.tail[index]) / (1.0 + along))
                 self._refine(shape, state, 1)
         if self.pins or look:
-            return self.straighten(state, extent)
+            return self.straighten(state, extent, strict=True) and not self._leads_back(change, crossing)
         self.measure()
         return True
 
-    def straighten(self, state: IntArray, extent: float) -> bool:
-        """Measure the gap rates, and refine the velocity while K v = l live is not met. False: it stays bent."""
+    def straighten(self, state: IntArray, extent: float, strict: bool = False) -> bool:
+        """Measure the gap rates, and refine the velocity while K v = l live is not met. False: it stays bent.
+
+        A defect that refinement no longer lowers is borne, unless a soft piece is to be strictly straight.
+        """
         self.fine = bool(self.shapes) or (bool(self.pins) and extent > COARSE)
         self.measure()
         if self.pins:
-            enough, bearable = STRAIGHT / extent, BEARABLE / extent
+            enough, bearable = STRAIGHT / extent, (STRAIGHT if strict else BEARABLE) / extent
         else:
             enough, bearable = BENT * self.live_size * abs(self.speed), CROOKED * self.live_size * abs(self.speed)
         previous = np.inf

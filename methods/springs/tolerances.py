@@ -22,6 +22,8 @@ BEARABLE = 1e-4
 """The same when refinement no longer helps, above which the tangent is factorised afresh."""
 SOFT = 1e8
 """A response of the pinned wall to the live load this many times the first one is a soft motion to be pinned too."""
+SLIGHT = 1e-9
+"""Share of the inertia added to a singular tangent to see which motion has no stiffness."""
 MOST = 4
 """Pins at most."""
 CLEAR = 1e-6
@@ -40,6 +42,8 @@ GROWN = 1.1
 """By how much displacements grow from one check of a mechanism to the next."""
 LOST = 1e-5
 """Out-of-balance force (share of the load scale) at which the path counts as lost."""
+ELSEWHERE = 1e-2
+"""The same from which equilibrium, found again, would be another path's."""
 GLANCE = 4
 """Changes of state between two looks at how straight the direction is, while it is not pinned."""
 LOOK = 8

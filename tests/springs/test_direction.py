@@ -9,7 +9,7 @@ from harness.model.assembly import FloatArray, IntArray
 from methods.fe.settings import GapSpringsSettings
 from methods.springs.direction import Direction
 from methods.springs.factor import DenseFactor, SparseFactor
-from methods.springs.gap_law import SLIP_PLUS, STICK, neighbour_states
+from methods.springs.gap_law import OPEN, SLIP_PLUS, STICK, neighbour_states
 from methods.springs.patterns import block_on_halves, running_bond
 from methods.springs.tolerances import MOST
 from methods.springs.wall_model import WallModel, build_model
@@ -102,3 +102,22 @@ def test_where_the_tangent_is_singular_the_velocity_is_its_null_vector(kind: Kin
     assert way.pins
     assert abs(way.speed) < 1e-25
     assert np.abs(tangent @ way.velocity).max() < 1e-14 * np.abs(way.velocity).max()
+
+
+@pytest.mark.parametrize("kind", [DenseFactor, SparseFactor])
+def test_a_motion_without_stiffness_is_pinned_before_a_soft_one(rough: WallModel, kind: Kind) -> None:
+    """The brick at the upper right comes loose and slides freely where another motion is pinned already."""
+    state = sticking(rough)
+    way = Direction(rough, kind(rough))
+    way.solve_anew(state, EXTENT)
+    way.elastic *= 1e-6
+    way.solve_anew(state, EXTENT)
+    assembly = rough.assembly
+    block = int(assembly.free[np.argmax(assembly.centroid[assembly.free].sum(axis=1))])
+    own = ((assembly.block_a == block) | (assembly.block_b == block))[rough.interface]
+    bed = (np.abs(assembly.normal[:, 1]) > 0.5)[rough.interface]
+    state[own & bed], state[own & ~bed] = SLIP_PLUS, OPEN
+    way.solve_anew(state, EXTENT)
+    speeds = np.abs(rough.block_displacements(way.velocity)).max(axis=1)
+    assert np.flatnonzero(speeds > 1e-9 * speeds.max()).tolist() == [block]
+    assert abs(way.speed) < 1e-20
