@@ -72,18 +72,19 @@ def first_bracket(
 ) -> tuple[Tuning, Bracket]:
     """The first order's bracket, and the tuning that gave it: the first that converges, else the one that got nearest.
 
-    The tunings decide only how fast a wall settles; a bracket of either is a bracket.
+    The tunings decide only how fast a wall settles; a bracket of either is a bracket. A wall falls under its dead load
+    only where it moves with every tuning: what one of them holds, stands.
     """
     name, blocks, joints = order
-    tried: list[tuple[float, int, Tuning, Bracket]] = []
+    tried: list[tuple[tuple[bool, float, bool, int], Tuning, Bracket]] = []
     for k, tuning in enumerate(candidates):
         engine = make_engine(blocks, joints, tuning)
         found = Search(engine, settings, assembly.load_unit, name).run(assembly.has_live_load)
-        if found.told(assembly.has_live_load):
+        if found.held is not None and found.told(assembly.has_live_load):
             return tuning, found
         width = 1.0 if found.width is None else found.width
-        tried.append((width + (1.0 if found.held is None else 0.0), k, tuning, found))
-    _, _, tuning, found = min(tried, key=lambda item: item[:2])
+        tried.append(((found.held is None, width, found.moving is None, k), tuning, found))
+    _, tuning, found = min(tried, key=lambda item: item[0])
     return tuning, found
 
 

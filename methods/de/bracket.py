@@ -70,6 +70,9 @@ class Bracket:
         return self.width is not None and self.width <= LOOSE
 
 
+ROUNDS = 4
+"""Bisections at most, each above the highest multiplier held so far."""
+
 CREEPING = 2e-3
 """Accuracy below a state that could not be told: just under collapse a wall creeps, and narrower costs much."""
 
@@ -98,7 +101,7 @@ class Search:
         if self._try(0.0).state is State.HELD and ask_multiplier:
             self._climb()
             if not self.found.capped:
-                self._bisect()
+                self._narrow()
         self.found.steps = self.engine.steps
         return self.found
 
@@ -137,11 +140,20 @@ class Search:
                 self.found.capped = True
                 return
 
+    def _narrow(self) -> None:
+        """Bisect until the bracket is not loose: again above what turned out to be held beyond an undecided hold."""
+        for _ in range(ROUNDS):
+            self._bisect()
+            if self._spent() or self.found.told(True):
+                return
+
     def _bisect(self) -> None:
         """Narrow [held, lowest not held] to the accuracy; then settle an undecided hold in between, if any."""
         found = self.found
-        top = [m for m in (found.moving, *found.undecided) if m is not None]
-        if not top or found.held is None:
+        if found.held is None:
+            return
+        top = [m for m in (found.moving, *found.undecided) if m is not None and m > found.held]
+        if not top:
             return
         high = min(top)
         told = found.moving == high

@@ -45,6 +45,14 @@ class Engine(Protocol):
         """
         ...
 
+    def surplus(self, velocity: FloatArray) -> float:
+        """Power of the loads less that of the damping, in the units of `velocity` and `unbalance`.
+
+        Friction takes power too. A wall that moves on, or comes back, has a mean of at least zero: what shakes in place
+        with less is fed by the contact solver's errors.
+        """
+        ...
+
     def save(self) -> FloatArray:
         """The contact state, to be given to `restore`."""
         ...

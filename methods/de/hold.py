@@ -20,6 +20,10 @@ STEADY = 0.003
 STEADY_CHECKS = 4
 """Checks in a row that must find a steady velocity field, or a residual small enough to hold (two of them)."""
 
+ALIKE, UNSLOWED = 0.9, 0.9
+"""Least cosine between the mean velocity fields of two quarters of a hold, and least ratio of the speeds along the
+first, of an unsteady motion that goes on."""
+
 
 class State(StrEnum):
     """What a hold showed."""
@@ -37,7 +41,7 @@ class Hold:
         state: held, moving or undecided.
         residual: largest out-of-balance force at the end, as a part of the mean dead load of a block.
         steps: time steps made.
-        velocity: (n, 3) velocity field at the end, scaled as `Engine.velocity`.
+        velocity: (n, 3) velocity field at the end, its mean if unsteady, scaled as `Engine.velocity`.
     """
 
     state: State
@@ -50,7 +54,7 @@ def hold(engine: Engine, settings: HoldSettings, limit: int | None = None) -> Ho
     """Let the engine settle under its present load.
 
     Held: the residual stays below `held_residual` at two checks in a row. Moving: the velocity field is steady over
-    four checks above `moving_residual`; at the end of the hold an unsteady motion that never slowed down counts too.
+    four checks above `moving_residual`; at the end of the hold an unsteady motion that goes on counts too (`lasting`).
     Undecided: anything else when `hold_steps` relaxation times are over.
 
     Args:
@@ -62,13 +66,17 @@ def hold(engine: Engine, settings: HoldSettings, limit: int | None = None) -> Ho
     limit = hold_limit(engine, settings) if limit is None else limit
     start = engine.steps
     velocity = engine.velocity()
+    velocities: list[FloatArray] = []
     residuals: list[float] = []
+    surpluses: list[float] = []
     low = steady = 0
     while engine.steps - start < limit:
         engine.advance(check)
         before, velocity = velocity, engine.velocity()
         residual = engine.unbalance(velocity)
+        velocities.append(velocity)
         residuals.append(residual)
+        surpluses.append(engine.surplus(velocity))
         low = low + 1 if residual < settings.held_residual else 0
         if low == 2:
             return Hold(State.HELD, residual, engine.steps - start, velocity)
@@ -79,7 +87,8 @@ def hold(engine: Engine, settings: HoldSettings, limit: int | None = None) -> Ho
         steady = steady + 1 if still else 0
         if steady == STEADY_CHECKS or residual > RUNAWAY or not np.isfinite(residual):
             return Hold(State.MOVING, residual, engine.steps - start, velocity)
-    state = State.MOVING if lasting(residuals, settings) else State.UNDECIDED
+    motion = lasting(velocities, residuals, surpluses, settings)
+    state, velocity = (State.UNDECIDED, velocity) if motion is None else (State.MOVING, motion)
     return Hold(state, residuals[-1] if residuals else float("inf"), engine.steps - start, velocity)
 
 
@@ -88,14 +97,23 @@ def hold_limit(engine: Engine, settings: HoldSettings) -> int:
     return int(settings.hold_steps * max(engine.relaxation, 3.0 * engine.courses, 100.0))
 
 
-def lasting(residuals: list[float], settings: HoldSettings) -> bool:
-    """Whether an unsteady motion goes on: large, and no smaller in the last quarter of the hold than in the third."""
-    n = len(residuals)
-    if n < 16:
-        return False
-    third, last = np.array(residuals[n // 2 : 3 * n // 4]), np.array(residuals[3 * n // 4 :])
-    large = min(third.min(), last.min()) > 50.0 * settings.moving_residual
-    return bool(large and last.mean() >= 0.99 * third.mean() and last.max() >= 0.99 * third.max())
+def lasting(
+    velocities: list[FloatArray], residuals: list[float], surpluses: list[float], settings: HoldSettings
+) -> FloatArray | None:
+    """The mean velocity field (n, 3) of an unsteady motion that goes on, None where there is none.
+
+    Such a motion is large, and in the last quarter of the hold it is that of the third. Contacts that chatter make
+    every single velocity field another one; their means over a quarter of the hold tell a wall that moves along one
+    mechanism at one speed from one that shakes where it stands. What drives it are the loads (`Engine.surplus`).
+    """
+    half, n = len(residuals) // 2, len(residuals)
+    if n < 16 or min(residuals[half:]) <= 50.0 * settings.moving_residual or np.mean(surpluses[half:]) < 0.0:
+        return None
+    third = np.mean(velocities[half : 3 * n // 4], axis=0)
+    last: FloatArray = np.mean(velocities[3 * n // 4 :], axis=0)
+    common, size = float(np.sum(third * last)), float(np.linalg.norm(third))
+    alike = common >= ALIKE * size * float(np.linalg.norm(last))
+    return last if alike and common >= UNSLOWED * size**2 else None
 
 
 def settle(engine: Engine, settings: HoldSettings) -> float:
