@@ -134,7 +134,7 @@ def _resumed(
     record: PathRecord,
 ) -> HistoryResult:
     """Trace a path into the record from the rest that the load was raised to. Raises as `_raised` does."""
-    tracer = Tracer(model, factor, rest.u, rest.multiplier, rest.history, rest.state)
+    tracer = Tracer.from_rest(model, factor, rest)
     result = _followed(tracer, record, step, scale, max_events, 0.0)
     sentence = f"{result.sentence}; up to {rest.multiplier:.4g} the load was raised in finite steps"
     return replace(result, sentence=sentence, raised=rest)
@@ -201,7 +201,7 @@ def _trace_in_time(
         for further in doubled(model, factor, first):
             first = further
             _note(record, model, first)
-    tracer = Tracer(model, factor, first.u, first.multiplier, first.history, first.state)
+    tracer = Tracer.from_rest(model, factor, first)
     return _followed(tracer, record, step, scale, max_events, disturbance)
 
 

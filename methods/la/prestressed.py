@@ -236,7 +236,7 @@ def _from_gravity(gravity: Gravity, scale: float, interval: float = np.inf) -> B
     if interval == np.inf:
         for further in doubled(model, factor, first):
             first = further
-    tracer = Tracer(model, factor, first.u, first.multiplier, first.history, first.state, certificate=CERTIFICATE)
+    tracer = Tracer.from_rest(model, factor, first, CERTIFICATE)
     return Beginning(tracer, JUMPS, interval)
 
 

@@ -18,6 +18,7 @@ from methods.springs.direction import Direction
 from methods.springs.factor import Change, Factor, SingularTangent
 from methods.springs.gap_law import OPEN, SLIP_PLUS, STICK, gap_forces
 from methods.springs.kinks import advance, coming_kinks, live_rate, next_kink, strain_rates
+from methods.springs.newton import Equilibrium
 from methods.springs.path_record import PathEnd, PathRecord, Snapshot
 from methods.springs.plateau import CERTIFICATE, worst_residual
 from methods.springs.tolerances import (
@@ -84,6 +85,11 @@ class Tracer:
             self.direction.solve_first(self.state)
         else:
             self.refresh()
+
+    @classmethod
+    def from_rest(cls, model: WallModel, factor: Factor, rest: Equilibrium, certificate: float = CERTIFICATE) -> Tracer:
+        """The path that goes on from a state of equilibrium."""
+        return cls(model, factor, rest.u, rest.multiplier, rest.history, rest.state, certificate=certificate)
 
     @property
     def extent(self) -> float:

@@ -37,7 +37,7 @@ def _jump(tracer: Tracer, peak: float) -> Tracer | None:
     if not answer.found:
         return None
     try:
-        follow = Tracer(tracer.model, tracer.factor, answer.u, above, answer.history, answer.state)
+        follow = Tracer.from_rest(tracer.model, tracer.factor, answer)
     except SingularTangent:
         return None
     return successor(follow, tracer)

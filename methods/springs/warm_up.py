@@ -26,7 +26,7 @@ def load_kernels() -> None:
     factor = SparseFactor(model)
     gravity = gravity_state(model, factor)
     first = first_step(model, factor, gravity, 1.0)
-    tracer = Tracer(model, factor, first.u, first.multiplier, first.history, first.state)
+    tracer = Tracer.from_rest(model, factor, first)
     tracer.run(PathRecord(), 100)
     finish(model, tracer.present(), tracer.kept)
     rates = np.empty(model.n_points), np.empty(model.n_points)
