@@ -143,8 +143,9 @@ class Search:
     def _narrow(self) -> None:
         """Bisect until the bracket is not loose: again above what turned out to be held beyond an undecided hold."""
         for _ in range(ROUNDS):
+            held = self.found.held
             self._bisect()
-            if self._spent() or self.found.told(True):
+            if self._spent() or self.found.told(True) or self.found.held == held:
                 return
 
     def _bisect(self) -> None:

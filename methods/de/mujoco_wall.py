@@ -29,21 +29,25 @@ TIME_STEP = 1e-4
 RADIUS = 0.05
 """Radius of a contact sphere, in unit lengths. It does not matter: the sphere touches a flat face at one point."""
 
-STIFFNESS, DAMPING = 0.1, 1.8
+STIFFNESS, DAMPING = 0.05, 1.8
 """How a contact is pulled back: acceleration -(DAMPING v + STIFFNESS r / TIME_STEP) / TIME_STEP, r the penetration.
 
 Overdamped: contacts that rebound keep the head joints of a wall chattering. With a stiffness of 0.25 walls of more than
-50 bricks shook for ever under their dead load.
+50 bricks shook for ever under their dead load, with 0.1 those of more than 200.
 """
 
-WALL, CHAIN = (Tuning(0.0, 0.99), 0.9), (Tuning(0.4, 0.98), 0.97)
-"""Tuning and impedance for walls, and for chains of blocks, whose slow modes want stiff contacts and light tops."""
+LIGHT_TOP, UNIFORM = Tuning(0.4, 0.98), Tuning(0.0, 0.99)
+"""Masses that fall from course to course, over at most exp(-TOTAL_DECAY), and masses in proportion to areas."""
+
+TOTAL_DECAY = 4.0
+
+WALL, CHAIN = 0.9, 0.97
+"""Impedance for walls, and for chains of blocks, whose slow modes want stiffer contacts."""
 
 FORCE_STEPS = 200
 """Time steps over which contact forces are averaged."""
 
 SOLVER_TOLERANCE = 1e-14
-
 
 OVERLAP = 1e-12
 """By which a sphere starts inside its face, in unit lengths, so that rounding does not decide which contacts start."""
@@ -72,15 +76,13 @@ def load_mujoco() -> Any:
 
 
 def mujoco_tunings(assembly: Assembly, settings: MujocoSettings) -> list[tuple[Tuning, float]]:
-    """Tunings with their impedances, in the order in which they are tried; see WALL and CHAIN."""
+    """Tunings with their impedances, in the order in which they are tried: light tops first."""
     course = courses(assembly)
-    light_top = min(CHAIN[0].mass_decay, 4.0 / max(int(course.max(initial=1)), 1))
-    chain = replace(CHAIN[0], mass_decay=light_top), CHAIN[1]
-    pairs = [chain, WALL] if is_chain(course) else [WALL, chain]
+    soft = settings.impedance or (CHAIN if is_chain(course) else WALL)
     if settings.mass_decay is not None:
-        tuning, soft = pairs[0]
-        pairs = [(replace(tuning, mass_decay=settings.mass_decay), soft)]
-    return [(tuning, settings.impedance or soft) for tuning, soft in pairs]
+        return [(replace(LIGHT_TOP, mass_decay=settings.mass_decay), soft)]
+    decay = min(LIGHT_TOP.mass_decay, TOTAL_DECAY / max(int(course.max(initial=1)), 1))
+    return [(replace(LIGHT_TOP, mass_decay=decay), soft), (UNIFORM, settings.impedance or WALL)]
 
 
 class MujocoWall:
