@@ -69,4 +69,4 @@ class MujocoSettings(HoldSettings):
     force_residual: float = Field(default=1e-6, gt=0.0, lt=1.0)
     friction_ratio: float = Field(default=2e3, ge=100.0)
     hold_steps: int = Field(default=60, ge=1)
-    work: int = Field(default=20_000_000, ge=1)
+    work: int = Field(default=60_000_000, ge=1)
