@@ -32,15 +32,19 @@ def tunings(course: IntArray, mass_decay: float | None) -> list[Tuning]:
     """Tunings to choose from at multiplier zero: for walls, and for chains of blocks as arches are.
 
     Walls: masses fall by exp(-0.4) a course, over at most exp(-14); damping 1 - 0.2 / courses between 0.95 and 0.9975.
-    Chains: masses fall over exp(-4) in all, damping 0.98; a chain is offered this tuning first. A mass decay that is
-    given leaves one tuning.
+    Chains: `light_top`; a chain is offered this tuning first. A mass decay that is given leaves one tuning.
     """
     tallest = max(int(course.max(initial=1)), 1)
     keep = float(np.clip(1.0 - 0.2 / tallest, 0.95, 0.9975))
     if mass_decay is not None:
         return [Tuning(mass_decay, keep)]
-    wall, chain = Tuning(min(0.4, 14.0 / tallest), keep), Tuning(min(0.4, 4.0 / tallest), 0.98)
+    wall, chain = Tuning(min(0.4, 14.0 / tallest), keep), light_top(course)
     return [chain, wall] if is_chain(course) else [wall, chain]
+
+
+def light_top(course: IntArray) -> Tuning:
+    """Masses that fall by exp(-0.4) a course, over at most exp(-4) in all; damping 0.98."""
+    return Tuning(min(0.4, 4.0 / max(int(course.max(initial=1)), 1)), 0.98)
 
 
 def is_chain(course: IntArray) -> bool:

@@ -18,7 +18,7 @@ import numpy as np
 
 from harness.model.assembly import Assembly, FloatArray, IntArray
 from harness.model.errors import InputError
-from methods.de.courses import Tuning, courses, is_chain, masses
+from methods.de.courses import Tuning, courses, is_chain, light_top, masses
 from methods.de.settings import MujocoSettings
 from methods.de.space import polygon_gyration
 from methods.de.strips import DEPTH, OVERHANG, require_lengths
@@ -36,12 +36,10 @@ Overdamped: contacts that rebound keep the head joints of a wall chattering. Wit
 50 bricks shook for ever under their dead load, with 0.1 those of more than 200.
 """
 
-LIGHT_TOP, UNIFORM = Tuning(0.4, 0.98), Tuning(0.0, 0.99)
-"""Masses that fall from course to course, over at most exp(-TOTAL_DECAY), and masses in proportion to areas."""
+UNIFORM = Tuning(0.0, 0.99)
+"""Masses in proportion to areas, for what does not settle with light tops."""
 
-TOTAL_DECAY = 4.0
-
-WALL, CHAIN = 0.9, 0.97
+WALL_IMPEDANCE, CHAIN_IMPEDANCE = 0.9, 0.97
 """Impedance for walls, and for chains of blocks, whose slow modes want stiffer contacts."""
 
 FORCE_STEPS = 200
@@ -78,11 +76,11 @@ def load_mujoco() -> Any:
 def mujoco_tunings(assembly: Assembly, settings: MujocoSettings) -> list[tuple[Tuning, float]]:
     """Tunings with their impedances, in the order in which they are tried: light tops first."""
     course = courses(assembly)
-    soft = settings.impedance or (CHAIN if is_chain(course) else WALL)
+    tuning = light_top(course)
+    impedance = settings.impedance or (CHAIN_IMPEDANCE if is_chain(course) else WALL_IMPEDANCE)
     if settings.mass_decay is not None:
-        return [(replace(LIGHT_TOP, mass_decay=settings.mass_decay), soft)]
-    decay = min(LIGHT_TOP.mass_decay, TOTAL_DECAY / max(int(course.max(initial=1)), 1))
-    return [(replace(LIGHT_TOP, mass_decay=decay), soft), (UNIFORM, settings.impedance or WALL)]
+        return [(replace(tuning, mass_decay=settings.mass_decay), impedance)]
+    return [(tuning, impedance), (UNIFORM, settings.impedance or WALL_IMPEDANCE)]
 
 
 class MujocoWall:
