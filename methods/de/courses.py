@@ -34,7 +34,7 @@ def tunings(course: IntArray, mass_decay: float | None) -> list[Tuning]:
     Walls: masses fall by exp(-0.4) a course, over at most exp(-14); damping 1 - 0.2 / courses between 0.95 and 0.9975.
     Chains: `light_top`; a chain is offered this tuning first. A mass decay that is given leaves one tuning.
     """
-    tallest = max(int(course.max(initial=1)), 1)
+    tallest = number_of_courses(course)
     keep = float(np.clip(1.0 - 0.2 / tallest, 0.95, 0.9975))
     if mass_decay is not None:
         return [Tuning(mass_decay, keep)]
@@ -42,14 +42,19 @@ def tunings(course: IntArray, mass_decay: float | None) -> list[Tuning]:
     return [chain, wall] if is_chain(course) else [wall, chain]
 
 
+def number_of_courses(course: IntArray) -> int:
+    """Courses of the tallest part of a wall, at least one."""
+    return int(course.max(initial=1))
+
+
 def light_top(course: IntArray) -> Tuning:
     """Masses that fall by exp(-0.4) a course, over at most exp(-4) in all; damping 0.98."""
-    return Tuning(min(0.4, 4.0 / max(int(course.max(initial=1)), 1)), 0.98)
+    return Tuning(min(0.4, 4.0 / number_of_courses(course)), 0.98)
 
 
 def is_chain(course: IntArray) -> bool:
     """Whether there are few blocks a course, as in stacks and arches."""
-    return bool(np.count_nonzero(course) <= CHAIN * max(int(course.max(initial=1)), 1))
+    return bool(np.count_nonzero(course) <= CHAIN * number_of_courses(course))
 
 
 def courses(assembly: Assembly) -> IntArray:

@@ -18,7 +18,7 @@ import numpy as np
 
 from harness.model.assembly import Assembly, FloatArray, IntArray
 from harness.model.errors import InputError
-from methods.de.courses import Tuning, courses, is_chain, light_top, masses
+from methods.de.courses import Tuning, courses, is_chain, light_top, masses, number_of_courses
 from methods.de.settings import MujocoSettings
 from methods.de.space import polygon_gyration
 from methods.de.strips import DEPTH, OVERHANG, require_lengths
@@ -120,7 +120,7 @@ class MujocoWall:
         self._force = assembly.force_scale / max(assembly.n_free, 1)
         course = courses(assembly)
         self.relaxation = 1.0 / (1.0 - tuning.damping)
-        self.courses = int(course.max(initial=1))
+        self.courses = number_of_courses(course)
         self._blocks = blocks
         self._drag = (1.0 / tuning.damping - 1.0) / TIME_STEP
         corners = [(assembly.polygons[i] - assembly.centroid[i]) / self._unit for i in blocks]

@@ -16,7 +16,7 @@ import pymunk
 from pymunk import batch
 
 from harness.model.assembly import Assembly, FloatArray, IntArray
-from methods.de.courses import Tuning, courses, masses
+from methods.de.courses import Tuning, courses, masses, number_of_courses
 from methods.de.strips import ROUNDING, build_strips
 
 TIME_STEP = 1e-2
@@ -50,7 +50,7 @@ class StripSpace:
         self._force = assembly.force_scale / max(assembly.n_free, 1)
         course = courses(assembly)
         self.relaxation = 1.0 / (1.0 - tuning.damping)
-        self.courses = int(course.max(initial=1))
+        self.courses = number_of_courses(course)
         self._blocks = blocks
         self._space = pymunk.Space()
         self._space.iterations = iterations
