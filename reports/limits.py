@@ -47,6 +47,8 @@ KNOWN_LIMITS: list[tuple[str, list[str]]] = [
             "them. On the single block with two frictions that alone spans the whole range of limit analysis.",
             "Damping removes inertia: what is found is quasi-static. Walls of many courses need many steps, and holds "
             "that could not be told are counted as undecided, never as held.",
+            "Joints that give, round corners and blocks that lean (de-soft) lower the multiplier; how much depends on "
+            "a stiffness that drawings do not tell. Its sentence names stiffness and rounding.",
         ],
     ),
 ]

@@ -21,6 +21,7 @@ from __future__ import annotations
 import numpy as np
 
 from harness.model.assembly import Assembly, FloatArray
+from harness.model.displaced import DisplacedState
 from harness.model.method import Finding, Status
 from harness.model.result import Judgement, Result, normalised_mechanism, relative_velocities
 
@@ -54,6 +55,29 @@ def yield_violation(assembly: Assembly, forces: FloatArray) -> float:
     excess = abs(forces[:, 2]) - assembly.friction * normal.sum(axis=1)
     worst = max(0.0, float((-normal).max(initial=0.0)), float(excess.max(initial=0.0)))
     return worst / assembly.force_scale
+
+
+def displaced_residuals(assembly: Assembly, state: DisplacedState, multiplier: float) -> dict[str, float]:
+    """Equilibrium and yield of a wall at rest where its blocks have moved to, under loads that keep their directions.
+
+    Args:
+        assembly: the wall before it moved; state: its contacts and forces; multiplier: of the live load.
+    """
+    balance = assembly.dead + multiplier * assembly.live
+    a, b = assembly.block_a[state.interface], assembly.block_b[state.interface]
+    for block, force in ((state.onto, state.force), (a + b - state.onto, -state.force)):
+        arm = state.point - assembly.centroid[block] - state.places[block, :2]
+        moment = arm[:, 0] * force[:, 1] - arm[:, 1] * force[:, 0]
+        np.add.at(balance, block, np.column_stack([force, moment]))
+    balance[:, 2] /= assembly.length_scale
+    normal = (state.force * state.normal).sum(axis=1)
+    shear = abs(state.force[:, 1] * state.normal[:, 0] - state.force[:, 0] * state.normal[:, 1])
+    excess = shear - assembly.friction[state.interface] * normal
+    worst = max(0.0, float((-normal).max(initial=0.0)), float(excess.max(initial=0.0)))
+    return {
+        "equilibrium": float(abs(balance[assembly.free]).max(initial=0.0)) / assembly.force_scale,
+        "yield": worst / assembly.force_scale,
+    }
 
 
 def power(load: FloatArray, mechanism: FloatArray) -> float:
@@ -130,6 +154,10 @@ def judge(assembly: Assembly, result: Result, tolerance: float) -> Judgement:
     at = result.forces_multiplier
     if result.finding is Finding.STANDS or at is None:
         at = 0.0
+    moved = DisplacedState.of(result.details)
+    if forces is None and moved is not None:
+        what = f"Equilibrium and yield of the contact forces where the blocks have moved to, at multiplier {at:.6g},"
+        return _decide(displaced_residuals(assembly, moved, at), tolerance, what)
     if forces is None:
         return Judgement(
             tolerance=tolerance,

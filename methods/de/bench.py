@@ -1,4 +1,4 @@
-"""Benchmark of `de` on the walls its accuracy is asked about; `python -m methods.de.bench [small | all]`.
+"""Benchmark on the walls that accuracy is asked about; `python -m methods.de.bench [small | all] [METHOD]`, else `de`.
 
 Prints one row a wall: error of the reported multiplier, spread over orders, CPU seconds for one order and in all,
 beside what the project's first study of pymunk reached. The reference of a running bond is the greatest multiplier
@@ -18,9 +18,8 @@ from scipy.optimize import linprog
 
 from harness.model.assembly import Assembly
 from harness.model.build import build
+from harness.model.method import load_method
 from harness.model.wall import Wall
-from methods.de.adapter import DampedHolds
-from methods.de.settings import HoldSettings
 
 PUSH = {"live": {"body": [{"per_weight": [1, 0]}]}}
 
@@ -84,18 +83,19 @@ def cases(size: str) -> Iterator[tuple[str, Assembly, float, str]]:
 
 def main() -> None:
     """Print the table."""
-    size = sys.argv[1] if len(sys.argv) > 1 else "small"
+    size, name_of_method, *_ = [*sys.argv[1:], *["small", "de"][len(sys.argv) - 1 :]]
+    method = load_method(name_of_method)
     print("| wall | blocks | reference | error % | bracket % | spread % | undecided | s an order | s in all | before |")
     print("|---|---|---|---|---|---|---|---|---|---|")
     for name, assembly, reference, before in cases(size):
         start = time.process_time()
-        answer = DampedHolds().solve(assembly, HoldSettings())
+        answer = method.solve(assembly, method.Settings())
         seconds = time.process_time() - start
-        orders = answer.details["orders"]
+        orders = answer.details.get("orders", ())
         error = "-" if answer.multiplier is None else f"{100 * (answer.multiplier / reference - 1):+.3f}"
         low, high = answer.bracket or (float("nan"), float("nan"))
         bracket = f"{100 * (low / reference - 1):+.2f} {100 * (high / reference - 1):+.2f}"
-        spread = answer.details["spread"]
+        spread = answer.details.get("spread")
         print(
             f"| {name} | {assembly.n_free} | {reference:.6f} | {error} | {bracket} "
             f"| {100 * spread if spread is not None else float('nan'):.3f} | {answer.details['undecided']} "

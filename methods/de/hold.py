@@ -111,9 +111,13 @@ def lasting(
         return None
     third = np.mean(velocities[half : 3 * n // 4], axis=0)
     last: FloatArray = np.mean(velocities[3 * n // 4 :], axis=0)
+    return last if goes_on(third, last) else None
+
+
+def goes_on(third: FloatArray, last: FloatArray) -> bool:
+    """Whether a motion goes on: in the last quarter of a hold along that of the third, and hardly slower."""
     common, size = float(np.sum(third * last)), float(np.linalg.norm(third))
-    alike = common >= ALIKE * size * float(np.linalg.norm(last))
-    return last if alike and common >= UNSLOWED * size**2 else None
+    return common >= ALIKE * size * float(np.linalg.norm(last)) and common >= UNSLOWED * size**2
 
 
 def settle(engine: Engine, settings: HoldSettings) -> float:

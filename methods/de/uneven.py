@@ -14,6 +14,7 @@ import numpy as np
 from harness.model.assembly import Assembly, FloatArray
 from methods.de.bodies import BlockSpace
 from methods.de.defects import Faces, block_height
+from methods.de.loading import raise_until_it_falls
 
 SETTLING_DAMPING = 0.01
 """Part of the velocity kept by a unit of time sqrt(length scale / gravity) while the wall settles."""
@@ -140,20 +141,21 @@ def load_uneven(
     rest, at_rest = come_to_rest(space, most_steps, np.inf)
     if not at_rest:
         return Loading(None, 0.0, 0.0)
-    first, stood, fell = rest, 0.0, None
-    while fell is None or fell - stood > accuracy:
-        trial = stood + step if fell is None else (stood + fell) / 2.0
-        if trial > greatest:
-            break
-        if fell is not None:
+    first, fallen = rest, False
+
+    def rests(trial: float) -> bool:
+        nonlocal space, rest, fallen
+        if fallen:
             space = BlockSpace(assembly, outlines, SETTLING_DAMPING)
             space.put(rest)
         space.load(trial)
         places, at_rest = come_to_rest(space, most_steps, reach)
         if at_rest:
-            rest, stood = places, trial
-        else:
-            fell = trial
+            rest = places
+        fallen = fallen or not at_rest
+        return at_rest
+
+    stood, fell = raise_until_it_falls(rests, greatest, step, accuracy)
     return Loading(stood, fell, float(np.abs(rest - first)[:, :2].max()) / assembly.length_scale)
 
 

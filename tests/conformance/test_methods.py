@@ -18,7 +18,7 @@ METHODS = [
     "la-paper",
     "la-tresca",
 ]
-METHODS += ["de", "de-tilt"]
+METHODS += ["de", "de-soft", "de-tilt"]
 
 
 @pytest.mark.parametrize("method", METHODS)

@@ -1,0 +1,30 @@
+"""Raise the live load on a wall that keeps its displacements, until it no longer comes to rest."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+Rests = Callable[[float], bool]
+"""Whether the wall comes to rest at a multiplier, from where it rested last. If not, it is put back there."""
+
+
+def raise_until_it_falls(
+    rests: Rests, greatest: float, step: float, accuracy: float, growth: float = 0.0
+) -> tuple[float, float | None]:
+    """The highest multiplier at which the wall came to rest and the lowest at which it did not.
+
+    Args:
+        rests: holds the wall at a multiplier; it rests at zero.
+        greatest: multiplier at which the loading ends; the second one is None where the wall rests up to there.
+        step: load step.
+        accuracy: the two are narrowed to this difference.
+        growth: share of itself by which the multiplier may grow in one step, where that is more than `step`.
+    """
+    stood, fell = 0.0, None
+    while stood < greatest if fell is None else fell - stood > accuracy:
+        trial = min(stood + max(step, growth * stood), greatest) if fell is None else (stood + fell) / 2.0
+        if rests(trial):
+            stood = trial
+        else:
+            fell = trial
+    return stood, fell

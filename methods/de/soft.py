@@ -1,0 +1,254 @@
+"""`de-soft`: distinct elements with deformable joints and rounded corners, at large displacements.
+
+This is the kind of distinct elements that UDEC made common: joints have a stiffness, blocks that lean add to the load
+(P-Delta), and corners roll. With stiff joints and small rounds it comes to the multiplier of the other methods; what
+softer joints and larger rounds take from it is the finding.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import Any, ClassVar
+
+import numpy as np
+from pydantic import Field
+
+from harness.model.assembly import Assembly, FloatArray
+from harness.model.method import Answer, Finding, Settings, Status
+from methods.de.bracket import LOOSE
+from methods.de.courses import courses, number_of_courses
+from methods.de.hold import State, goes_on
+from methods.de.loading import raise_until_it_falls
+from methods.de.soft_wall import SoftWall
+
+STIFF = 1e6
+"""Stiffness of joints where none is given, in mean dead loads of a block over the square of the length scale."""
+ROUND = 2e-4
+"""Radius of corners where none is given, in length scales."""
+AWAY = 300.0
+"""Multiple of what the blocks had moved at the last rest that is far enough for a fall too, as joints may be stiff."""
+LOOK = 500
+"""Time steps from one look at a hold to the next."""
+LOW = 7
+"""Courses up to which a hold is no longer than `hold_steps`; above, with the square of the courses."""
+BEYOND = 2e-3
+"""First relative rise above a multiplier that could not be told; it doubles until the wall falls."""
+
+
+class SoftSettings(Settings):
+    """The joints, the corners, and how the load is raised.
+
+    Attributes:
+        stiffness: of the joints across, per length of joint [force/length^2], half of it at each end. None: a million
+            mean dead loads of a block over the square of the length scale, as good as rigid.
+        shear_ratio: stiffness along the joints over stiffness across.
+        rounding: radius of the corners [length] where contact points are not set in farther; a contact point that is
+            set in rounds its corner by as much. None: 2e-4 length scales (mean square root of the areas).
+        load_step: load step as a share of the dead load; load_growth: as a share of the multiplier, where that is more.
+        load_cap: live load, as a multiple of the dead load, at which the search for a collapse is given up.
+        accuracy: the bracket is narrowed to this live load, as a share of the dead load.
+        held_residual: largest force out of balance of a wall at rest, as a part of the mean dead load of a block.
+        reach: a wall falls when a block has moved by this many length scales under one load, or by 300 times as much as
+            any had until then; also when its motion goes on at the end of a hold.
+        hold_steps: most time steps under one load on a wall of up to 7 courses; higher walls get more, with the square
+            of the courses, and all ten times as many under the dead load alone.
+    """
+
+    stiffness: float | None = Field(default=None, gt=0.0)
+    shear_ratio: float = Field(default=1.0, gt=0.0)
+    rounding: float | None = Field(default=None, gt=0.0)
+    load_step: float = Field(default=0.01, gt=0.0, le=1.0)
+    load_growth: float = Field(default=0.02, ge=0.0, le=1.0)
+    load_cap: float = Field(default=100.0, gt=0.0)
+    accuracy: float = Field(default=5e-4, gt=0.0, le=0.1)
+    held_residual: float = Field(default=1e-6, gt=0.0, lt=1.0)
+    reach: float = Field(default=0.25, gt=0.0)
+    hold_steps: int = Field(default=100_000, ge=LOOK)
+
+
+@dataclass(eq=False)
+class Holds:
+    """The wall held under one multiplier after another, from rest to rest.
+
+    Attributes:
+        wall, settings: what is held, and how.
+        rest: the last rest.
+        motion: (n, 3) displacements of the last fall under one load.
+        undecided: multipliers at which the wall neither rested nor fell.
+        path: multiplier and displacement of the live load at every rest.
+    """
+
+    wall: SoftWall
+    settings: SoftSettings
+    rest: tuple[FloatArray, FloatArray] = field(init=False)
+    motion: FloatArray | None = None
+    undecided: list[float] = field(default_factory=list)
+    path: dict[str, list[float]] = field(default_factory=lambda: {"multiplier": [], "live_displacement": []})
+
+    def __post_init__(self) -> None:
+        """The wall as it is."""
+        self.rest = self.wall.save()
+        high = number_of_courses(courses(self.wall.assembly)) / LOW
+        self._looks = int(self.settings.hold_steps * max(1.0, high**2)) // LOOK
+
+    def rests(self, multiplier: float) -> bool:
+        """Whether the wall comes to rest at a multiplier; if not it is put back where it rested last."""
+        return self.hold(multiplier) is State.HELD
+
+    def hold(self, multiplier: float) -> State:
+        """Hold the wall at a multiplier from its last rest, and note what came of it."""
+        wall = self.wall
+        wall.load(multiplier)
+        state = self._settled(self._looks * (1 if multiplier else 10))
+        if state is State.HELD:
+            self.rest = wall.save()
+            self.path["multiplier"].append(multiplier)
+            self.path["live_displacement"].append(_live_displacement(wall))
+            return state
+        if state is State.MOVING:
+            self.motion = wall.places - self.rest[0]
+        else:
+            self.undecided.append(multiplier)
+        wall.restore(self.rest)
+        return state
+
+    def _settled(self, looks: int) -> State:
+        """Whether the wall comes to rest under its load, falls, or does neither within so many looks."""
+        wall, settings = self.wall, self.settings
+        before = self.rest[0]
+        far = settings.reach * wall.assembly.length_scale
+        if np.any(before[:, :2]):
+            far = min(far, AWAY * float(np.abs(before[:, :2]).max()))
+        half = three_quarters = before
+        for look in range(looks):
+            half = wall.places.copy() if look == looks // 2 else half
+            three_quarters = wall.places.copy() if look == 3 * looks // 4 else three_quarters
+            residual = wall.advance(LOOK)
+            if not np.abs(wall.places - before)[:, :2].max(initial=0.0) < far:
+                return State.MOVING
+            if residual < settings.held_residual:
+                return State.HELD
+        goes = goes_on(three_quarters - half, wall.places - three_quarters)
+        return State.MOVING if goes else State.UNDECIDED
+
+
+class DeformableJoints:
+    """Distinct elements with deformable joints and rounded corners (`de-soft`)."""
+
+    name: ClassVar[str] = "de-soft"
+    family: ClassVar[str] = "de"
+    title: ClassVar[str] = "distinct elements, deformable joints"
+    tolerance: ClassVar[float] = 1e-5
+    Settings: ClassVar[type[Settings]] = SoftSettings
+
+    def solve(self, assembly: Assembly, settings: SoftSettings) -> Answer:
+        """The bracket [rested, fell] as the live load grows from rest to rest."""
+        if assembly.n_free == 0:
+            return Answer(Status.OK, Finding.STANDS, "every block is fixed: nothing can move")
+        mean, unit = assembly.force_scale / assembly.n_free, assembly.load_unit
+        stiffness = settings.stiffness or STIFF * mean / assembly.length_scale**2
+        rounding = settings.rounding or ROUND * assembly.length_scale
+        wall = SoftWall(assembly, stiffness, settings.shear_ratio, rounding)
+        holds = Holds(wall, settings)
+        joints = _described(wall, stiffness, settings.shear_ratio)
+        answer = self._at_zero(assembly, holds, joints)
+        if answer is None:
+            cap = settings.load_cap * unit
+            stood, fell = raise_until_it_falls(
+                holds.rests, cap, settings.load_step * unit, settings.accuracy * unit, settings.load_growth
+            )
+            if fell is not None:
+                stood, fell = _in_small_steps(holds, stood, settings.accuracy * unit)
+            answer = _concluded(holds, joints, stood, fell, cap)
+        answer.iterations, answer.path, answer.flow = wall.steps, holds.path, "approximate"
+        answer.forces_multiplier = holds.path["multiplier"][-1] if holds.path["multiplier"] else None
+        if answer.finding in (Finding.COLLAPSES, Finding.FALLS):
+            answer.mechanism = holds.motion
+        answer.details |= _told(holds, stiffness)
+        return answer
+
+    def _at_zero(self, assembly: Assembly, holds: Holds, joints: str) -> Answer | None:
+        """The answer where the dead load decides; None where the wall stands it and a live load follows."""
+        state = holds.hold(0.0)
+        if state is State.MOVING:
+            return Answer(Status.OK, Finding.FALLS, f"falls under its dead load, with {joints}")
+        if state is State.UNDECIDED:
+            sentence = "whether the dead load is held is not decided: the wall neither came to rest nor fell"
+            return Answer(Status.NOT_CONVERGED, Finding.NONE, sentence)
+        if not assembly.has_live_load:
+            return Answer(Status.OK, Finding.STANDS, f"comes to rest under its dead load, with {joints}")
+        return None
+
+
+def _in_small_steps(holds: Holds, stood: float, step: float) -> tuple[float, float]:
+    """On from the last rest as long as the wall comes to rest: after smaller steps it swings less, and bears more."""
+    while holds.rests(stood + step):
+        stood += step
+    return stood, stood + step
+
+
+def _concluded(holds: Holds, joints: str, stood: float, fell: float | None, cap: float) -> Answer:
+    """The answer for a wall that stands its dead load."""
+    if fell is None:
+        sentence = (
+            f"rested up to the cap: the live load was raised to {cap:.6g}, with {joints}; larger ones were not tried"
+        )
+        return Answer(Status.OK, Finding.UNBOUNDED, sentence, details={"cap": cap})
+    if fell in holds.undecided:
+        fell = _fall_above(holds, fell, cap)
+    if fell is None:
+        sentence = f"came to rest at {stood:.6g} and neither rested nor fell above it, with {joints}"
+        return Answer(Status.NOT_CONVERGED, Finding.NONE, sentence)
+    moved = holds.path["live_displacement"][-1]
+    sentence = (
+        f"came to rest at {stood:.6g} and fell at {fell:.6g}, with {joints}; the live load had moved by {moved:.3g} "
+        "at the last rest"
+    )
+    loose = fell - stood > LOOSE * fell
+    if loose:
+        sentence += "; not converged: between them it neither rested nor fell"
+    return Answer(
+        Status.NOT_CONVERGED if loose else Status.OK,
+        Finding.COLLAPSES,
+        sentence,
+        multiplier=0.5 * (stood + fell),
+        bracket=(stood, fell),
+        bracket_meaning="[highest multiplier at which it came to rest, lowest at which it fell]",
+    )
+
+
+def _fall_above(holds: Holds, multiplier: float, cap: float) -> float | None:
+    """The lowest multiplier tried above one that could not be told at which the wall falls; None up to the cap."""
+    rise = BEYOND * multiplier
+    while multiplier + rise <= cap:
+        if holds.hold(multiplier + rise) is State.MOVING:
+            return multiplier + rise
+        rise *= 2.0
+    return None
+
+
+def _described(wall: SoftWall, stiffness: float, ratio: float) -> str:
+    """The joints and corners in words."""
+    least, most = wall.contacts.radius.min(), wall.contacts.radius.max()
+    radius = f"{most:.4g}" if most - least < 1e-9 * most else f"{least:.4g} to {most:.4g}"
+    return f"joints of stiffness {stiffness:.4g} across and {ratio:g} times that along, corners rounded by {radius}"
+
+
+def _told(holds: Holds, stiffness: float) -> dict[str, Any]:
+    """What the details tell of the last rest."""
+    wall = holds.wall
+    wall.restore(holds.rest)
+    return {
+        "stiffness": stiffness,
+        "rounding": float(wall.contacts.radius.max()),
+        "undecided": len(holds.undecided),
+        "undecided_at": holds.undecided,
+        **wall.state().as_details(),
+    }
+
+
+def _live_displacement(wall: SoftWall) -> float:
+    """Work of the live load so far over the sum of its magnitudes [length]."""
+    live = wall.assembly.live
+    size = float(np.linalg.norm(live[:, :2], axis=1).sum())
+    return float((live * wall.places).sum()) / size if size > 0.0 else 0.0

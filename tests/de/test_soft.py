@@ -1,0 +1,103 @@
+"""Requirements on `de-soft`: closed forms of soft joints, the limit of stiff ones, and a state that can be judged."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from harness.engine.judge import displaced_residuals, judge
+from harness.model.displaced import DisplacedState
+from harness.model.method import Finding, Status
+from harness.model.result import result_of
+from methods.de.loading import raise_until_it_falls
+from methods.de.soft import DeformableJoints, SoftSettings
+from tests.walls import assembly, running_bond, stack
+
+
+def soft(wall, **settings):
+    return DeformableJoints().solve(wall, SoftSettings(**settings))
+
+
+@pytest.mark.parametrize("radius", [1e-5, 0.01])
+@pytest.mark.parametrize("lean", [0.001, 0.005, 0.02])
+def test_a_block_on_soft_joints_topples_as_it_leans(lean, radius):
+    # b = 0.2, h = 0.4, contacts b' = b - 2 r apart, stiffness K at each. One end lifts when the other carries the
+    # weight W: the block has sunk there by W / K, leans by W / (K b'), rolls on a corner of the ground, and has slid
+    # by lambda W / K over it. About that corner: lambda (h / 2 + W / K) = b' / 2 - (h / 2 - r) W / (K b').
+    wall = assembly(stack(1, 0.2, 0.4), 0.9)
+    end = wall.force_scale / (0.2 * lean)
+    answer = soft(wall, stiffness=2.0 * end / 0.2, rounding=radius, accuracy=1e-4)
+    apart, sunk = 0.2 - 2.0 * radius, 0.2 * lean
+    expected = (apart / 2.0 - (0.2 - radius) * sunk / apart) / (0.2 + sunk)
+    # The bracket is 1e-4 wide; beyond it there are terms of the order of lean^2.
+    assert answer.multiplier == pytest.approx(expected, abs=1e-4 + lean**2)
+
+
+def test_with_stiff_joints_rounded_corners_are_contact_points_set_in():
+    # Block of 0.2 x 0.4 with corners of 0.01: (b / 2 - r) / (h / 2), and the bracket is 5e-4 wide.
+    wall = assembly(stack(1, 0.2, 0.4), 0.9, contact_inset={"length": 0.01})
+    answer = soft(wall)
+    assert answer.multiplier == pytest.approx(0.45, abs=5e-4)
+    assert "rounded by 0.01" in answer.sentence
+
+
+def test_softer_joints_make_a_wall_weaker_and_stiff_ones_come_to_the_plateau_of_unloaded_head_joints():
+    wall = assembly(running_bond(6, 3), 0.65)
+    unit = wall.force_scale / wall.n_free / wall.length_scale**2
+    found = [soft(wall, stiffness=k * unit).multiplier for k in (1e3, 1e4, 1e6)]
+    assert found == sorted(found)
+    # 13/23; the bracket is 0.001 wide, and corners rounded by 2e-4 length scales take 0.1 %.
+    assert found[-1] == pytest.approx(13 / 23, rel=2e-3)
+    assert found[0] < 0.9 * found[-1]
+
+
+def test_the_state_at_rest_is_judged_where_the_blocks_have_moved_to():
+    wall = assembly(running_bond(6, 3), 0.65)
+    unit = wall.force_scale / wall.n_free / wall.length_scale**2
+    answer = soft(wall, stiffness=1e3 * unit)
+    result = result_of(answer, wall, case="wall", method="de-soft", family="de")
+    assert judge(wall, result, DeformableJoints.tolerance).accepted is True
+    state = DisplacedState.of(answer.details)
+    # The blocks have moved so far that the state is none where they were: the judge would see that.
+    assert np.abs(state.places[:, 0]).max() > 1e-3
+    back = replace(state, places=np.zeros_like(state.places))
+    assert displaced_residuals(wall, back, answer.forces_multiplier)["equilibrium"] > 1e-4
+    more = replace(state, force=1.001 * state.force)
+    assert displaced_residuals(wall, more, answer.forces_multiplier)["equilibrium"] > 1e-5
+    sheared = state.force[:, ::-1] * np.array([-1.0, 1.0])
+    assert displaced_residuals(wall, replace(state, force=sheared), answer.forces_multiplier)["yield"] > 1e-3
+
+
+def test_the_end_says_what_was_not_found():
+    wall = assembly(stack(2), 0.5)
+    short = soft(assembly(running_bond(6, 3), 0.65), hold_steps=500, held_residual=1e-12)
+    assert (short.status, short.finding, short.multiplier) == (Status.NOT_CONVERGED, Finding.NONE, None)
+    very_soft = soft(wall, stiffness=1e-2 * wall.force_scale / wall.length_scale**2)
+    assert (very_soft.status, very_soft.finding, very_soft.multiplier) == (Status.OK, Finding.FALLS, None)
+    assert "stiffness" in very_soft.sentence
+
+
+def test_repeats_are_bit_identical():
+    wall = assembly(running_bond(4, 2), 0.65)
+    one, two = soft(wall), soft(wall)
+    assert one.bracket == two.bracket
+    assert one.details == two.details
+
+
+@pytest.mark.parametrize("critical", [0.237, 0.5, 1.03])
+def test_the_load_is_raised_until_the_wall_falls_and_the_bracket_narrowed(critical):
+    tried = []
+
+    def rests(multiplier):
+        tried.append(multiplier)
+        return multiplier < critical
+
+    stood, fell = raise_until_it_falls(rests, 1.0, 0.02, 1e-3)
+    if critical > 1.0:
+        assert fell is None
+        assert stood == pytest.approx(1.0)
+    else:
+        assert stood < critical <= fell <= stood + 1e-3
+    assert len(tried) < 60
