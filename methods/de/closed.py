@@ -1,8 +1,9 @@
-"""`de-closed`: distinct elements find which contacts of an uneven wall are closed, FE and LA then load that structure.
+"""`de-closed`: distinct elements find which contacts of an uneven wall are closed, finite elements then load the wall.
 
 C. Baggio and P. Trovalusci (1995) end by asking for this division of labour: the contacts of the imperfect wall are
-found once, under its dead load, and the cheaper methods analyse the wall with those contacts alone under the live
-load. Gaps that would close while the live load grows stay open here; `de-uneven` lets them close.
+found once, under its dead load, and a cheaper method loads it. Gaps that close while the live load grows must be handed
+over with the contacts: the springs close them as they do. What FE and LA say of the contacts alone that are closed
+under the dead load, and nothing closes, stands beside that.
 """
 
 from __future__ import annotations
@@ -10,22 +11,29 @@ from __future__ import annotations
 import time
 from typing import Any, ClassVar
 
+from pydantic import Field
+
 from harness.model.assembly import Assembly
 from harness.model.method import Answer, Finding, Settings, Status, load_method
-from methods.de.imperfect import UnevenSettings
-from methods.de.uneven import load_uneven, settle_uneven
+from methods.de.gapped import GappedWall, load_gapped
+from methods.de.imperfect import BRACKET_MEANING, UnevenSettings
+from methods.de.uneven import load_uneven, settle_uneven, uneven_blocks
+
+REACH = 0.25
+"""Length scales that a block of a wall that falls moves under one load."""
 
 
 class ClosedSettings(UnevenSettings):
-    """The defects, and who analyses the structure of closed contacts.
+    """The defects, how finely the multiplier is sought, and what stands beside the answer.
 
     Attributes:
-        main: method whose multiplier is the answer; others: methods that analyse the same structure beside it.
+        step: load step.
+        alone: methods that analyse the contacts closed under the dead load alone.
         compare: also load the same uneven wall with distinct elements alone, as `de-uneven` does, for value and cost.
     """
 
-    main: str = "fe"
-    others: tuple[str, ...] = ("la",)
+    step: float = Field(default=0.02, gt=0.0, le=1.0)
+    alone: tuple[str, ...] = ("fe", "la")
     compare: bool = True
 
 
@@ -34,61 +42,71 @@ class ClosedContacts:
 
     name: ClassVar[str] = "de-closed"
     family: ClassVar[str] = "de"
-    title: ClassVar[str] = "distinct elements find the contacts, FE and LA load them"
+    title: ClassVar[str] = "distinct elements find contacts and gaps, FE loads them"
     tolerance: ClassVar[float] = 1e-6
     Settings: ClassVar[type[Settings]] = ClosedSettings
 
     def solve(self, assembly: Assembly, settings: ClosedSettings) -> Answer:
-        """Settle the uneven wall, then analyse the wall with its closed contacts under the live load."""
+        """Settle the uneven wall, then load it with springs in its contacts and gaps."""
         if not assembly.has_live_load:
-            return Answer(Status.REFUSED, Finding.NONE, "The closed contacts are then loaded: give a live load.")
+            return Answer(Status.REFUSED, Finding.NONE, "The contacts are then loaded: give a live load.")
         began = time.process_time()
         settled = settle_uneven(assembly, settings.size, settings.faces, settings.seed)
-        seconds = time.process_time() - began
         details: dict[str, Any] = {
-            "settling": {"at_rest": settled.at_rest, "cpu_seconds": seconds},
+            "settling": {"at_rest": settled.at_rest, "cpu_seconds": time.process_time() - began},
             "interfaces": {"perfect": assembly.n_interfaces, "closed": settled.assembly.n_interfaces},
             "single_points": settled.single_points,
         }
         wall = settings.wall
         if not settled.at_rest:
-            sentence = f"{wall} did not come to rest under its dead load, so its closed contacts are not known."
+            sentence = f"{wall} did not come to rest under its dead load, so its contacts are not known."
             return Answer(Status.NOT_CONVERGED, Finding.NONE, sentence, details=details)
-        answers = {name: _analysed(name, settled.assembly) for name in (settings.main, *settings.others)}
-        details["analyses"] = {name: found for name, (_, found) in answers.items()}
+        outlines = uneven_blocks(assembly, settings.size, settings.faces, settings.seed)
+        try:
+            gapped = GappedWall(assembly, outlines, settled.settlement, REACH)
+        except ValueError as error:
+            return Answer(Status.REFUSED, Finding.NONE, f"Its gaps cannot be measured: {error}.")
+        began = time.process_time()
+        loaded = load_gapped(gapped, settings.greatest, settings.step, settings.accuracy)
+        details["loading"] = {"cpu_seconds": time.process_time() - began, "drift": gapped.drift}
+        details["analyses"] = {name: _analysed(name, settled.assembly) for name in settings.alone}
         if settings.compare:
             details["distinct_elements"] = _loaded(assembly, settings)
-        main, _ = answers[settings.main]
-        details["state"] = _state(settled.assembly, main)
-        told = main.finding in (Finding.COLLAPSES, Finding.UNBOUNDED)
-        return Answer(
-            main.status if told else Status.NOT_CONVERGED,
-            main.finding if told else Finding.NONE,
-            f"{wall} has {settled.assembly.n_interfaces} closed contacts under its dead load, "
-            f"{settled.single_points} of them at one point; with these alone {settings.main} says: {main.sentence}",
-            multiplier=main.multiplier,
-            flow="approximate",
-            iterations=main.iterations,
-            details=details,
-        )
+        answer = _concluded(wall, loaded)
+        if loaded is not None:
+            answer.forces_multiplier = loaded[0]
+            details |= gapped.state().as_details()
+        answer.details = details
+        return answer
 
 
-def _state(structure: Assembly, answer: Answer) -> dict[str, Any]:
-    """The closed contacts and the forces (n1, n2, s) on them: what a check of the answer needs."""
-    contacts = ("block_a", "block_b", "end1", "end2", "normal", "friction")
-    return {
-        **{name: getattr(structure, name).tolist() for name in contacts},
-        "forces": None if answer.forces is None else answer.forces.tolist(),
-        "multiplier": answer.multiplier if answer.forces_multiplier is None else answer.forces_multiplier,
-    }
+def _concluded(wall: str, loaded: tuple[float, float | None] | None) -> Answer:
+    """What the loading says, without details."""
+    if loaded is None:
+        sentence = f"{wall} came to rest in distinct elements, but springs in its contacts found no rest."
+        return Answer(Status.NOT_CONVERGED, Finding.NONE, sentence)
+    stood, fell = loaded
+    if fell is None:
+        sentence = f"{wall} stood at {stood:.6g}, the greatest multiplier asked."
+        return Answer(Status.NOT_CONVERGED, Finding.NONE, sentence)
+    return Answer(
+        Status.OK,
+        Finding.COLLAPSES,
+        f"{wall}, with springs in the contacts and gaps that distinct elements found, came to rest at {stood:.6g} and "
+        f"did not at {fell:.6g}.",
+        multiplier=0.5 * (stood + fell),
+        bracket=(stood, fell),
+        bracket_meaning=BRACKET_MEANING,
+        flow="approximate",
+    )
 
 
-def _analysed(name: str, structure: Assembly) -> tuple[Answer, dict[str, Any]]:
-    """The answer of a method on the structure of closed contacts, and what is told of it."""
+def _analysed(name: str, structure: Assembly) -> dict[str, Any]:
+    """What a method says of the structure of closed contacts alone."""
     method = load_method(name)
     began = time.process_time()
     answer = method.solve(structure, method.Settings())
-    return answer, {
+    return {
         "status": str(answer.status),
         "finding": str(answer.finding),
         "multiplier": answer.multiplier,

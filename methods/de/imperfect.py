@@ -11,6 +11,8 @@ from harness.model.method import Answer, Finding, Settings, Status
 from methods.de.defects import Faces
 from methods.de.uneven import load_uneven
 
+BRACKET_MEANING = "[highest multiplier at which it came to rest, lowest at which it did not]"
+
 
 class UnevenSettings(Settings):
     """The defects of planarity and how finely the multiplier is sought.
@@ -65,7 +67,7 @@ class UnevenBlocks:
             f"{wall} came to rest at {found.stood:.6g} and did not at {found.fell:.6g}.",
             multiplier=0.5 * (found.stood + found.fell),
             bracket=(found.stood, found.fell),
-            bracket_meaning="[highest multiplier at which it came to rest, lowest at which it did not]",
+            bracket_meaning=BRACKET_MEANING,
             flow="approximate",
             details={"drift": found.drift},
         )

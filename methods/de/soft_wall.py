@@ -21,14 +21,13 @@ import numpy as np
 
 from harness.model.assembly import Assembly, FloatArray, IntArray
 from harness.model.displaced import DisplacedState
+from methods.de.edges import SAME, edge_of
 from methods.numerics.compiled import compiled
 
 TIME_STEP = 0.5
 """Time step; with masses of a quarter of the stiffness around a block the fastest oscillation takes 4.4."""
 DAMPING = 0.8
 """Force of the damping as a share of the force out of balance (Cundall 1987)."""
-SAME = 1e-6
-"""Distance, in length scales, at which the end of an interface is a corner of a block."""
 
 
 class Contacts(NamedTuple):
@@ -83,7 +82,7 @@ def contacts_of(assembly: Assembly, stiffness: float, shear_ratio: float, least_
             along = (far - end) / length
             radius = max(float(np.linalg.norm(point - end)), least_radius)
             corner, face, normal = int(assembly.block_a[p]), int(assembly.block_b[p]), assembly.normal[p]
-            own, other = (_edge(assembly, block, end, along, length) for block in (corner, face))
+            own, other = (_extent(assembly, block, p, end, along) for block in (corner, face))
             if abs(own[0]) > small >= abs(other[0]):
                 corner, face, normal, own, other = face, corner, -normal, other, own
             shared = abs(own[0]) <= small >= abs(other[0])
@@ -120,21 +119,15 @@ def contacts_of(assembly: Assembly, stiffness: float, shear_ratio: float, least_
     )
 
 
-def _edge(assembly: Assembly, block: int, end: FloatArray, along: FloatArray, length: float) -> tuple[float, float]:
-    """From where to where a block's edge runs on which an interface lies, along it from its end [length].
+def _extent(assembly: Assembly, block: int, p: int, end: FloatArray, along: FloatArray) -> tuple[float, float]:
+    """From where to where a block's edge runs on which interface p lies, along it from one of its ends [length].
 
     Where the interface lies on no edge of the block, it is itself the edge.
     """
-    small = SAME * assembly.length_scale
-    across = np.array([-along[1], along[0]])
-    polygon = assembly.polygons[block] - end
-    for one, two in zip(polygon, np.roll(polygon, -1, axis=0), strict=True):
-        if max(abs(one @ across), abs(two @ across)) > small:
-            continue
-        low, high = sorted((float(one @ along), float(two @ along)))
-        if low - small <= 0.5 * length <= high + small:
-            return low, high
-    return 0.0, length
+    edge = edge_of(assembly, block, p)
+    ends = np.array([assembly.face1[p], assembly.face2[p]]) if edge is None else assembly.polygons[block][list(edge)]
+    low, high = sorted(((ends - end) @ along).tolist())
+    return low, high
 
 
 class SoftWall:
