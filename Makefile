@@ -27,7 +27,8 @@ check: $(READY)  ## the reference regression, quick tier
 bench: $(READY)  ## measured values and CPU seconds of every method, beside the figures to beat
 	$(RUN)/python -m methods.la.bench
 	$(RUN)/python -m methods.fe.bench
-	$(RUN)/python -m methods.de.bench
+	$(RUN)/python -m methods.de.bench small de
+	$(RUN)/python -m methods.de.bench small de-soft
 
 lint: $(READY)  ## style, types and the layer contract
 	$(BIN)/ruff check .
