@@ -73,7 +73,7 @@ def contacts_of(assembly: Assembly, stiffness: float, shear_ratio: float, least_
         shear_ratio: stiffness along over stiffness across.
         least_radius: of a corner [length].
     """
-    rows: list[tuple[int, int, FloatArray, FloatArray, float, float, FloatArray, float, float, float]] = []
+    rows: list[Contacts] = []
     small = SAME * assembly.length_scale
     for p in range(assembly.n_interfaces):
         faces = np.array([assembly.face1[p], assembly.face2[p]])
@@ -81,42 +81,28 @@ def contacts_of(assembly: Assembly, stiffness: float, shear_ratio: float, least_
         for end, far, point in ((*faces, assembly.end1[p]), (*faces[::-1], assembly.end2[p])):
             along = (far - end) / length
             radius = max(float(np.linalg.norm(point - end)), least_radius)
-            corner, face, normal = int(assembly.block_a[p]), int(assembly.block_b[p]), assembly.normal[p]
+            corner, face, normal = assembly.block_a[p], assembly.block_b[p], assembly.normal[p]
             own, other = (_extent(assembly, block, p, end, along) for block in (corner, face))
             if abs(own[0]) > small >= abs(other[0]):
                 corner, face, normal, own, other = face, corner, -normal, other, own
             shared = abs(own[0]) <= small >= abs(other[0])
-            under = radius * normal
-            rows.append(
-                (
-                    corner,
-                    face,
-                    end + radius * along - under - assembly.centroid[corner],
-                    end + (other[0] + radius) * along + under - assembly.centroid[face],
-                    max(other[1] - other[0] - 2.0 * radius, 0.0),
-                    max(own[1] - own[0] - 2.0 * radius, 0.0) if shared else -1.0,
-                    along,
-                    float(np.sign(along[0] * normal[1] - along[1] * normal[0])),
-                    radius,
-                    0.5 * length,
-                )
-            )
-    columns = list(zip(*rows, strict=True))
-    kn = stiffness * np.array(columns[9])
-    return Contacts(
-        corner=np.array(columns[0], dtype=np.int64),
-        face=np.array(columns[1], dtype=np.int64),
-        centre=np.array(columns[2]),
-        start=np.array(columns[3]),
-        reach=np.array(columns[4]),
-        own_reach=np.array(columns[5]),
-        along=np.array(columns[6]),
-        side=np.array(columns[7]),
-        radius=np.array(columns[8]),
-        kn=kn,
-        kt=shear_ratio * kn,
-        friction=np.repeat(assembly.friction, 2),
-    )
+            kn = 0.5 * length * stiffness
+            contact = {
+                "corner": corner,
+                "face": face,
+                "centre": end + radius * (along - normal) - assembly.centroid[corner],
+                "start": end + (other[0] + radius) * along + radius * normal - assembly.centroid[face],
+                "reach": max(other[1] - other[0] - 2.0 * radius, 0.0),
+                "own_reach": max(own[1] - own[0] - 2.0 * radius, 0.0) if shared else -1.0,
+                "along": along,
+                "side": np.sign(along[0] * normal[1] - along[1] * normal[0]),
+                "radius": radius,
+                "kn": kn,
+                "kt": shear_ratio * kn,
+                "friction": assembly.friction[p],
+            }
+            rows.append(Contacts(**{name: np.asarray(value) for name, value in contact.items()}))
+    return Contacts(*(np.array(column) for column in zip(*rows, strict=True)))
 
 
 def _extent(assembly: Assembly, block: int, p: int, end: FloatArray, along: FloatArray) -> tuple[float, float]:
