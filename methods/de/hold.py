@@ -114,10 +114,10 @@ def lasting(
     return last if goes_on(third, last) else None
 
 
-def goes_on(third: FloatArray, last: FloatArray) -> bool:
-    """Whether a motion goes on: in the last quarter of a hold along that of the third, and hardly slower."""
+def goes_on(third: FloatArray, last: FloatArray, speed: float = UNSLOWED) -> bool:
+    """Whether a motion goes on: in the last quarter of a hold along that of the third, at `speed` times its speed."""
     common, size = float(np.sum(third * last)), float(np.linalg.norm(third))
-    return common >= ALIKE * size * float(np.linalg.norm(last)) and common >= UNSLOWED * size**2
+    return common >= ALIKE * size * float(np.linalg.norm(last)) and common >= speed * size**2
 
 
 def settle(engine: Engine, settings: HoldSettings) -> float:

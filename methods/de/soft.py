@@ -27,6 +27,11 @@ ROUND = 2e-4
 """Radius of corners where none is given, in length scales."""
 AWAY = 300.0
 """Multiple of what the blocks had moved at the last rest that is far enough for a fall too, as joints may be stiff."""
+FASTER = 1.0
+"""Ratio of its displacements in the last and the third quarter of a hold from which a motion goes on.
+
+What falls is damped against its acceleration only and does not slow down; what creeps to rest does.
+"""
 LOOK = 500
 """Time steps from one look at a hold to the next."""
 LOW = 7
@@ -49,7 +54,7 @@ class SoftSettings(Settings):
         accuracy: the bracket is narrowed to this live load, as a share of the dead load.
         held_residual: largest force out of balance of a wall at rest, as a part of the mean dead load of a block.
         reach: a wall falls when a block has moved by this many length scales under one load, or by 300 times as much as
-            any had until then; also when its motion goes on at the end of a hold.
+            any had until then; also when its motion has not slowed down by the end of a hold.
         hold_steps: most time steps under one load on a wall of up to 7 courses; higher walls get more, with the square
             of the courses, and all ten times as many under the dead load alone.
     """
@@ -128,7 +133,7 @@ class Holds:
                 return State.MOVING
             if residual < settings.held_residual:
                 return State.HELD
-        goes = goes_on(three_quarters - half, wall.places - three_quarters)
+        goes = goes_on(three_quarters - half, wall.places - three_quarters, FASTER)
         return State.MOVING if goes else State.UNDECIDED
 
 
