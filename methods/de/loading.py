@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 
 Rests = Callable[[float], bool]
@@ -9,7 +10,7 @@ Rests = Callable[[float], bool]
 
 
 def raise_until_it_falls(
-    rests: Rests, greatest: float, step: float, accuracy: float, growth: float = 0.0
+    rests: Rests, greatest: float, step: float, accuracy: float, growth: float = 0.0, share: float = math.inf
 ) -> tuple[float, float | None]:
     """The highest multiplier at which the wall came to rest and the lowest at which it did not.
 
@@ -19,9 +20,10 @@ def raise_until_it_falls(
         step: load step.
         accuracy: the two are narrowed to this difference.
         growth: share of itself by which the multiplier may grow in one step, where that is more than `step`.
+        share: of the multiplier to which they are narrowed, where that is less than `accuracy`.
     """
     stood, fell = 0.0, None
-    while stood < greatest if fell is None else fell - stood > accuracy:
+    while stood < greatest if fell is None else fell - stood > min(accuracy, share * fell):
         trial = min(stood + max(step, growth * stood), greatest) if fell is None else (stood + fell) / 2.0
         if rests(trial):
             stood = trial

@@ -14,7 +14,7 @@ import numpy as np
 from pydantic import Field
 
 from harness.model.assembly import Assembly, FloatArray
-from harness.model.method import Answer, Finding, Settings, Status
+from harness.model.method import Answer, Finding, OutOfTime, Settings, Status
 from methods.de.bracket import LOOSE
 from methods.de.courses import courses, number_of_courses
 from methods.de.hold import State, goes_on
@@ -36,6 +36,8 @@ LOOK = 500
 """Time steps from one look at a hold to the next."""
 LOW = 7
 """Courses up to which a hold is no longer than `hold_steps`; above, with the square of the courses."""
+SHARE = 2e-3
+"""Share of a small multiplier to which its bracket is narrowed."""
 BEYOND = 2e-3
 """First relative rise above a multiplier that could not be told; it doubles until the wall falls."""
 
@@ -51,7 +53,8 @@ class SoftSettings(Settings):
             set in rounds its corner by as much. None: 2e-4 length scales (mean square root of the areas).
         load_step: load step as a share of the dead load; load_growth: as a share of the multiplier, where that is more.
         load_cap: live load, as a multiple of the dead load, at which the search for a collapse is given up.
-        accuracy: the bracket is narrowed to this live load, as a share of the dead load.
+        accuracy: the bracket is narrowed to this live load, as a share of the dead load, or to a 500th of the
+            multiplier where that is less.
         held_residual: largest force out of balance of a wall at rest, as a part of the mean dead load of a block.
         reach: a wall falls when a block has moved by this many length scales under one load, or by 300 times as much as
             any had until then; also when its motion has not slowed down by the end of a hold.
@@ -95,6 +98,10 @@ class Holds:
         self.rest = self.wall.save()
         high = number_of_courses(courses(self.wall.assembly)) / LOW
         self._looks = int(self.settings.hold_steps * max(1.0, high**2)) // LOOK
+
+    def so_far(self) -> str:
+        """How far the load came, in words."""
+        return f": it came to rest at {self.path['multiplier'][-1]:.6g}" if self.path["multiplier"] else ""
 
     def rests(self, multiplier: float) -> bool:
         """Whether the wall comes to rest at a multiplier; if not it is put back where it rested last."""
@@ -156,21 +163,27 @@ class DeformableJoints:
         wall = SoftWall(assembly, stiffness, settings.shear_ratio, rounding)
         holds = Holds(wall, settings)
         joints = _described(wall, stiffness, settings.shear_ratio)
-        answer = self._at_zero(assembly, holds, joints)
-        if answer is None:
-            cap = settings.load_cap * unit
-            stood, fell = raise_until_it_falls(
-                holds.rests, cap, settings.load_step * unit, settings.accuracy * unit, settings.load_growth
-            )
-            if fell is not None:
-                stood, fell = _in_small_steps(holds, stood, settings.accuracy * unit)
-            answer = _concluded(holds, joints, stood, fell, cap)
+        try:
+            answer = self._at_zero(assembly, holds, joints) or self._loaded(holds, joints, unit)
+        except OutOfTime:
+            wall.restore(holds.rest)
+            answer = Answer(Status.NOT_CONVERGED, Finding.NONE, f"the time is over{holds.so_far()}, with {joints}")
         answer.iterations, answer.path, answer.flow = wall.steps, holds.path, "approximate"
         answer.forces_multiplier = holds.path["multiplier"][-1] if holds.path["multiplier"] else None
         if answer.finding in (Finding.COLLAPSES, Finding.FALLS):
             answer.mechanism = holds.motion
         answer.details |= _told(holds, stiffness)
         return answer
+
+    def _loaded(self, holds: Holds, joints: str, unit: float) -> Answer:
+        """The answer for a wall that stands its dead load, in multiples of the multiplier that equals it."""
+        settings = holds.settings
+        cap = settings.load_cap * unit
+        step, accuracy = settings.load_step * unit, settings.accuracy * unit
+        stood, fell = raise_until_it_falls(holds.rests, cap, step, accuracy, settings.load_growth, SHARE)
+        if fell is not None:
+            stood, fell = _in_small_steps(holds, stood, min(accuracy, SHARE * fell))
+        return _concluded(holds, joints, stood, fell, cap)
 
     def _at_zero(self, assembly: Assembly, holds: Holds, joints: str) -> Answer | None:
         """The answer where the dead load decides; None where the wall stands it and a live load follows."""

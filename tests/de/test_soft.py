@@ -70,6 +70,14 @@ def test_the_state_at_rest_is_judged_where_the_blocks_have_moved_to():
     assert displaced_residuals(wall, replace(state, force=sheared), answer.forces_multiplier)["yield"] > 1e-3
 
 
+def test_a_small_multiplier_has_a_narrow_bracket():
+    # b / h = 0.02; corners rounded by 2e-4 length scales take 0.3 % of it.
+    answer = soft(assembly(stack(1, 0.01, 0.5), 0.9))
+    assert answer.status is Status.OK
+    assert answer.bracket[1] - answer.bracket[0] <= 2e-3 * 0.02
+    assert answer.multiplier == pytest.approx(0.02, rel=5e-3)
+
+
 def test_the_end_says_what_was_not_found():
     wall = assembly(stack(2), 0.5)
     short = soft(assembly(running_bond(6, 3), 0.65), hold_steps=500, held_residual=1e-12)
