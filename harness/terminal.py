@@ -85,9 +85,11 @@ def _expected(result: Result) -> str:
             continue
         expected = comparison.expected
         if isinstance(expected, list):
-            shown.append(f"[{expected[0]:.5g}, {expected[1]:.5g}]")
+            text = f"[{expected[0]:.5g}, {expected[1]:.5g}]"
         else:
-            shown.append(expected if isinstance(expected, str) else f"{expected:.7g}")
+            text = expected if isinstance(expected, str) else f"{expected:.7g}"
+        own = (result.multiplier, list(result.bracket or ()), str(result.finding))
+        shown.append(text if comparison.value in own else f"{text} (other settings)")
     return ", ".join(dict.fromkeys(shown))
 
 

@@ -1,0 +1,28 @@
+"""Requirements on the table that `drystone compare` prints."""
+
+from __future__ import annotations
+
+from harness.model.method import Finding, Status
+from harness.model.result import Comparison, Result, Verdict
+from harness.terminal import _expected
+
+
+def test_a_reference_that_asks_for_other_settings_is_not_shown_as_that_of_the_value_beside_it():
+    def held(value, expected):
+        given = {"reference": "made-up", "quantity": "multiplier", "value": value, "expected": expected}
+        return Comparison(**given, tolerance=0.01, gate=True, verdict=Verdict.AGREES, sentence="It holds.")
+
+    result = Result(
+        case="wall",
+        method="de-soft",
+        family="de",
+        status=Status.OK,
+        finding=Finding.COLLAPSES,
+        sentence="It collapses.",
+        multiplier=0.52,
+        bracket=(0.51, 0.53),
+        blocks=1,
+        interfaces=1,
+        comparisons=[held(0.52, 0.525), held([0.51, 0.53], [0.5, 0.6]), held(0.49, 0.495)],
+    )
+    assert _expected(result) == "0.525, [0.5, 0.6], 0.495 (other settings)"
