@@ -47,7 +47,7 @@ class SoftSettings(Settings):
 
     Attributes:
         stiffness: of the joints across, per length of joint [force/length^2], half of it at each end. None: a million
-            mean dead loads of a block over the square of the length scale, as good as rigid.
+            mean dead loads of a block over the square of the length scale, as good as rigid on low walls.
         shear_ratio: stiffness along the joints over stiffness across.
         rounding: radius of the corners [length] where contact points are not set in farther; a contact point that is
             set in rounds its corner by as much. None: 2e-4 length scales (mean square root of the areas).
