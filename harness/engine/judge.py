@@ -154,11 +154,13 @@ def judge(assembly: Assembly, result: Result, tolerance: float) -> Judgement:
     at = result.forces_multiplier
     if result.finding is Finding.STANDS or at is None:
         at = 0.0
-    moved = DisplacedState.of(result.details)
-    if forces is None and moved is not None:
-        what = f"Equilibrium and yield of the contact forces where the blocks have moved to, at multiplier {at:.6g},"
-        return _decide(displaced_residuals(assembly, moved, at), tolerance, what)
     if forces is None:
+        moved = DisplacedState.of(result.details)
+        if moved is not None:
+            what = (
+                f"Equilibrium and yield of the contact forces where the blocks have moved to, at multiplier {at:.6g},"
+            )
+            return _decide(displaced_residuals(assembly, moved, at), tolerance, what)
         return Judgement(
             tolerance=tolerance,
             accepted=None if result.finding is Finding.UNBOUNDED or result.flow == "approximate" else False,

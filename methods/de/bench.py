@@ -86,8 +86,9 @@ def cases(size: str) -> Iterator[tuple[str, Assembly, float, str]]:
 
 def main() -> None:
     """Print the table."""
-    size, name_of_method, *_ = [*sys.argv[1:], *["small", "de"][len(sys.argv) - 1 :]]
-    method = load_method(name_of_method)
+    given = sys.argv[1:]
+    size = given[0] if given else "small"
+    method = load_method(given[1] if len(given) > 1 else "de")
     print("| wall | blocks | reference | error % | bracket % | spread % | undecided | s an order | s in all | before |")
     print("|---|---|---|---|---|---|---|---|---|---|")
     for name, assembly, reference, before in cases(size):

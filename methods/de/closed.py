@@ -17,10 +17,8 @@ from harness.model.assembly import Assembly
 from harness.model.method import Answer, Finding, Settings, Status, load_method
 from methods.de.gapped import GappedWall, load_gapped
 from methods.de.imperfect import BRACKET_MEANING, UnevenSettings
-from methods.de.uneven import load_uneven, settle_uneven, uneven_blocks
-
-REACH = 0.25
-"""Length scales that a block of a wall that falls moves under one load."""
+from methods.de.loading import REACH
+from methods.de.uneven import load_uneven, settle_uneven
 
 
 class ClosedSettings(UnevenSettings):
@@ -38,7 +36,7 @@ class ClosedSettings(UnevenSettings):
 
 
 class ClosedContacts:
-    """Contacts of an uneven wall from distinct elements, its multiplier from FE and LA (`de-closed`)."""
+    """Contacts and gaps of an uneven wall from distinct elements, its multiplier from gap springs (`de-closed`)."""
 
     name: ClassVar[str] = "de-closed"
     family: ClassVar[str] = "de"
@@ -61,9 +59,8 @@ class ClosedContacts:
         if not settled.at_rest:
             sentence = f"{wall} did not come to rest under its dead load, so its contacts are not known."
             return Answer(Status.NOT_CONVERGED, Finding.NONE, sentence, details=details)
-        outlines = uneven_blocks(assembly, settings.size, settings.faces, settings.seed)
         try:
-            gapped = GappedWall(assembly, outlines, settled.settlement, REACH)
+            gapped = GappedWall(assembly, settled.outlines, settled.settlement, REACH)
         except ValueError as error:
             return Answer(Status.REFUSED, Finding.NONE, f"Its gaps cannot be measured: {error}.")
         began = time.process_time()

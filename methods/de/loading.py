@@ -5,6 +5,8 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 
+REACH = 0.25
+"""Length scales by which a block of a wall that falls moves under one load."""
 Rests = Callable[[float], bool]
 """Whether the wall comes to rest at a multiplier, from where it rested last. If not, it is put back there."""
 

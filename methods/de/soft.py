@@ -18,7 +18,7 @@ from harness.model.method import Answer, Finding, OutOfTime, Settings, Status
 from methods.de.bracket import LOOSE
 from methods.de.courses import courses, number_of_courses
 from methods.de.hold import State, goes_on
-from methods.de.loading import raise_until_it_falls
+from methods.de.loading import REACH, raise_until_it_falls
 from methods.de.soft_wall import SoftWall
 
 STIFF = 1e6
@@ -70,7 +70,7 @@ class SoftSettings(Settings):
     load_cap: float = Field(default=100.0, gt=0.0)
     accuracy: float = Field(default=5e-4, gt=0.0, le=0.1)
     held_residual: float = Field(default=1e-6, gt=0.0, lt=1.0)
-    reach: float = Field(default=0.25, gt=0.0)
+    reach: float = Field(default=REACH, gt=0.0)
     hold_steps: int = Field(default=100_000, ge=LOOK)
 
 

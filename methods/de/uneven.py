@@ -14,7 +14,7 @@ import numpy as np
 from harness.model.assembly import Assembly, FloatArray
 from methods.de.bodies import BlockSpace
 from methods.de.defects import Faces, block_height
-from methods.de.loading import raise_until_it_falls
+from methods.de.loading import REACH, raise_until_it_falls
 
 SETTLING_DAMPING = 0.01
 """Part of the velocity kept by a unit of time sqrt(length scale / gravity) while the wall settles."""
@@ -33,12 +33,14 @@ class Settled:
     Attributes:
         assembly: the wall with moved blocks and only the contacts that are closed.
         at_rest: whether it came to rest; if not, the contacts are those of the last moment.
+        outlines: (n,) outlines of the uneven blocks where they were drawn.
         settlement: (n, 3) displacements [length] and rotations of the blocks.
         single_points: number of contacts at one point only.
     """
 
     assembly: Assembly
     at_rest: bool
+    outlines: tuple[FloatArray, ...]
     settlement: FloatArray
     single_points: int
 
@@ -72,10 +74,11 @@ def settle_uneven(
         seed: seed of the cuts.
         most_steps: most time steps of the settling.
     """
-    space = BlockSpace(assembly, uneven_blocks(assembly, size, faces, seed), SETTLING_DAMPING)
+    outlines = uneven_blocks(assembly, size, faces, seed)
+    space = BlockSpace(assembly, outlines, SETTLING_DAMPING)
     before, at_rest = come_to_rest(space, most_steps, np.inf)
     settled, single = with_contacts(assembly, space, before)
-    return Settled(settled, at_rest, before, single)
+    return Settled(settled, at_rest, outlines, before, single)
 
 
 def come_to_rest(space: BlockSpace, most_steps: int, reach: float) -> tuple[FloatArray, bool]:
@@ -120,7 +123,7 @@ def load_uneven(
     greatest: float = 2.0,
     step: float = 0.02,
     accuracy: float = 0.005,
-    reach: float = 0.25,
+    reach: float = REACH,
     most_steps: int = 20_000,
 ) -> Loading:
     """Raise the live load on a wall of uneven blocks, at large displacements, until it no longer comes to rest.

@@ -7,12 +7,13 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from harness.engine.judge import displaced_residuals, judge
+from harness.engine.judge import displaced_residuals, equilibrium_residual, judge, yield_violation
 from harness.model.displaced import DisplacedState
-from harness.model.method import Finding, Status
+from harness.model.method import Finding, Status, load_method
 from harness.model.result import result_of
 from methods.de.closed import ClosedContacts, ClosedSettings
 from methods.de.edges import FacingEdges
+from methods.de.uneven import settle_uneven
 from tests.walls import assembly, running_bond, stack
 
 
@@ -34,6 +35,22 @@ def test_with_gaps_handed_over_finite_elements_bear_what_distinct_elements_bear(
     assert one < 0.3 * answer.multiplier
 
 
+def test_fe_and_la_agree_on_the_closed_contacts_alone_and_their_state_is_an_equilibrium():
+    structure = settle_uneven(assembly(running_bond(6, 3), 0.75), 0.01, seed=1).assembly
+    one, two = (method.solve(structure, method.Settings()) for method in map(load_method, ("fe", "la")))
+    # Here both find the same collapse state; rounding only is between them.
+    assert one.multiplier == pytest.approx(two.multiplier, rel=1e-6)
+    assert equilibrium_residual(structure, one.forces, one.multiplier) < ClosedContacts.tolerance
+    assert yield_violation(structure, one.forces) < ClosedContacts.tolerance
+
+
+def test_gaps_that_stay_open_make_the_contacts_alone_weaker_than_the_wall():
+    answer = closed(assembly(running_bond(4, 2), 0.75), size=0.02, seed=3, alone=("la",))
+    loaded = answer.details["distinct_elements"]
+    assert answer.details["analyses"]["la"]["multiplier"] < loaded["stood"]
+    assert loaded["cpu_seconds"] > 0.0
+
+
 def test_the_state_at_rest_is_judged_with_the_contacts_where_they_are():
     wall = assembly(running_bond(6, 3), 0.75)
     answer = closed(wall, size=0.03, seed=2, alone=(), compare=False)
@@ -45,9 +62,11 @@ def test_the_state_at_rest_is_judged_with_the_contacts_where_they_are():
 
 
 def test_even_stack_has_the_exact_multiplier():
-    answer = closed(assembly(stack(3, 0.4, 0.2), 0.9), size=0.0, alone=(), compare=False)
+    answer = closed(assembly(stack(3, 0.4, 0.2), 0.9), size=0.0, alone=("la",), compare=False)
     # The bracket is 0.005 wide, and the springs give by a thousandth of a block.
     assert answer.bracket[0] - 5e-3 <= 2 / 3 <= answer.bracket[1] + 5e-3
+    # The settled contacts overlap by up to the slop of the engine and lie back by the radius of its corners.
+    assert answer.details["analyses"]["la"]["multiplier"] == pytest.approx(2 / 3, rel=5e-3)
 
 
 def test_edges_that_face_each_other_are_where_the_blocks_are():
@@ -75,6 +94,8 @@ def test_what_cannot_be_analysed_gives_no_multiplier():
     falls = closed(assembly(stack(3) | {"offsets": [0.0, 0.0, 0.2]}, 0.7))
     assert (falls.status, falls.finding, falls.multiplier) == (Status.NOT_CONVERGED, Finding.NONE, None)
     pressed = assembly(stack(2), 0.7, loads={"live": {"body": [{"per_weight": [0, -1]}]}})
-    stands = closed(pressed, size=0.0, alone=(), compare=False)
+    stands = closed(pressed, size=0.0, alone=("la",), compare=False)
     assert (stands.status, stands.finding, stands.multiplier) == (Status.NOT_CONVERGED, Finding.NONE, None)
     assert "greatest multiplier asked" in stands.sentence
+    unbounded = stands.details["analyses"]["la"]
+    assert (unbounded["finding"], unbounded["multiplier"]) == (Finding.UNBOUNDED, None)
