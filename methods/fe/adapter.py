@@ -21,7 +21,7 @@ from methods.fe.answers import (
     stands,
 )
 from methods.fe.convex_steps import bracket_collapse
-from methods.fe.histories import LARGE_ABOVE, HistoryResult, trace_history, with_initial_shear
+from methods.fe.histories import LARGE_ABOVE, HistoryResult, Plan, trace_history, with_initial_shear
 from methods.fe.incremental import march
 from methods.fe.settings import ConvexSettings, GapSpringsSettings, NewtonSettings
 from methods.springs.equilibrium import equilibrium, gravity_state
@@ -77,7 +77,7 @@ class GapSprings:
         limits = [settings.max_events or FEWEST_EVENTS + count * model.n_points for count in EVENTS_A_POINT]
         limit = limits[model.assembly.n_free > LARGE_ABOVE]
         for step in chosen_histories(model, settings):
-            result = trace_history(model, factor, start, step, scale, limit)
+            result = trace_history(model, factor, start, Plan(step, scale, limit))
             results.append(result)
             start = result.raised or start
             if result.end in (PathEnd.UNBOUNDED, PathEnd.TIME):

@@ -76,7 +76,7 @@ def collapse_answer(model: WallModel, results: list[HistoryResult], factorisatio
     details: dict[str, Any] = {
         "histories": [
             {
-                "step": r.step,
+                "step": r.plan.step,
                 "end": r.end.value,
                 "sentence": r.sentence,
                 "plateau": r.state.multiplier if r.state else None,
@@ -85,7 +85,8 @@ def collapse_answer(model: WallModel, results: list[HistoryResult], factorisatio
                 "events": r.record.events,
                 "commits": r.commits,
                 "path_residual": r.residual,
-                "disturbance": r.disturbance,
+                "committed_up_to": r.plan.committed_up_to if np.isfinite(r.plan.committed_up_to) else None,
+                "disturbance": r.plan.disturbance,
                 "raised_to": r.raised.multiplier if r.raised else None,
                 "residuals": r.state.residuals if r.state else None,
             }

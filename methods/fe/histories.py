@@ -29,8 +29,8 @@ from methods.springs.wall_model import WallModel
 
 DISTURBANCES = (1e-9, 1e-7, 1e-5)
 """Random initial shears, in weights of a block, tried in turn where exact ties lead a path astray."""
-LONGER = (1.0, 1.5, 2.25)
-"""Multiples of its commit interval at which a history is traced, in turn while it is lost."""
+COMMITTED_UP_TO = (np.inf, 0.97, 0.9, 0.8)
+"""Shares of the multiplier scale up to which a history is committed, in turn while it is lost."""
 LARGE_ABOVE = 500
 """Blocks above which a path of too many kinks is given up early, and not traced again with disturbed shears."""
 DOUBLE_ABOVE = 100
@@ -51,48 +51,61 @@ BELOW_ZERO = "the path has a peak but runs down below zero: past its peak the wa
 
 
 @dataclass(frozen=True)
+class Plan:
+    """How a history is to be traced.
+
+    Attributes:
+        step: commit interval as a share of `scale`, 0 for no history; scale: a multiplier of the order of collapse.
+        max_events: changes of state after which the history is given up.
+        committed_up_to: multiplier above which it is no longer committed.
+        disturbance: random initial shear that the start has, in weights of a block.
+    """
+
+    step: float
+    scale: float
+    max_events: int
+    committed_up_to: float = np.inf
+    disturbance: float = 0.0
+
+
+@dataclass(frozen=True)
 class HistoryResult:
     """One history traced to its end.
 
     Attributes:
-        step: commit interval as a share of the multiplier scale; 0 for none.
+        plan: how it was traced.
         end: why the path ended; sentence: what a reader should know about it.
         record: the path; state: the collapse state when a plateau was reached and passed its check, else None.
         raised: the rest up to which the load was raised in finite steps, None if the path is exact from the start.
     """
 
-    step: float
+    plan: Plan
     end: PathEnd
     sentence: str
     record: PathRecord
     state: CollapseState | None
     commits: int
     residual: float
-    disturbance: float
     raised: Equilibrium | None = None
 
 
-def trace_history(
-    model: WallModel, factor: Factor, start: Equilibrium, step: float, scale: float, max_events: int
-) -> HistoryResult:
+def trace_history(model: WallModel, factor: Factor, start: Equilibrium, plan: Plan) -> HistoryResult:
     """Trace one history from the gravity state, or from the rest that another raised the load to.
 
-    Where exact ties lead a path without commits astray it is traced again with the initial shears disturbed by 1e-9,
-    1e-7 and 1e-5 of a block's weight: data nobody knows, and the end is an exact collapse state all the same. A lost
-    history with commits is traced again with longer intervals, which the result then names. Where a path without
+    A lost history with commits is traced again with commits up to 97, then 90, then 80 % of the multiplier scale only:
+    at a commit many kinks meet, and near the peak the path from there may run in a closed loop. Where exact ties lead
+    a path without commits astray it is traced again with the initial shears disturbed by 1e-9, 1e-7 and 1e-5 of a
+    block's weight: data nobody knows, and the end is an exact collapse state all the same. Where a path without
     commits has not ended after so many events, the load is raised in finite steps instead
     (`methods.springs.slow_motion`), and the path goes on from there.
 
     Args:
         model: the wall; factor: its tangent; start: equilibrium under the dead load, or at the rest.
-        step: commit interval as a share of `scale`, 0 for no history; scale: a multiplier of the order of collapse.
-        max_events: changes of state after which the history is given up.
     """
-    for longer in LONGER:
-        result = _trace(model, factor, start, longer * step, scale, max_events, 0.0)
-        if step == 0.0 or not _lost(result):
-            break
-    if step > 0.0 or result.raised is not None:
+    if plan.step > 0.0:
+        return _committed(model, factor, start, plan)
+    result = _trace(model, factor, start, plan)
+    if result.raised is not None:
         return result
     large = model.assembly.n_free > LARGE_ABOVE
     for disturbance in DISTURBANCES:
@@ -101,16 +114,23 @@ def trace_history(
         noise = np.random.default_rng(1995).uniform(-disturbance, disturbance, model.n_points)
         disturbed = equilibrium(model, factor, start.u, 0.0, start.history + noise)
         if disturbed.found:
-            result = _trace(model, factor, disturbed, step, scale, max_events, disturbance)
+            result = _trace(model, factor, disturbed, replace(plan, disturbance=disturbance))
     if result.end == PathEnd.EVENTS and result.state is None:
-        raised = _as_far_as_possible(partial(_raised, model, factor, start, scale, max_events), 0.0, 0.0)
+        raised = _as_far_as_possible(partial(_raised, model, factor, start, plan), plan)
         return raised if raised.state is not None or raised.end == PathEnd.TIME else result
     return result
 
 
-def _raised(
-    model: WallModel, factor: Factor, gravity: Equilibrium, scale: float, max_events: int, record: PathRecord
-) -> HistoryResult:
+def _committed(model: WallModel, factor: Factor, start: Equilibrium, plan: Plan) -> HistoryResult:
+    """A history with commits, up to the end or as far as it is not lost."""
+    for share in COMMITTED_UP_TO:
+        result = _trace(model, factor, start, replace(plan, committed_up_to=share * plan.scale))
+        if not _lost(result):
+            break
+    return result
+
+
+def _raised(model: WallModel, factor: Factor, gravity: Equilibrium, plan: Plan, record: PathRecord) -> HistoryResult:
     """Trace a path into the record from the multiplier that the load can be raised to in finite steps.
 
     Raises:
@@ -118,24 +138,15 @@ def _raised(
         SingularTangent: the path cannot be taken up where the wall is at rest.
     """
     rest = gravity
-    for rest in SlowMotion(model, factor, gravity, True).raise_load(scale):
+    for rest in SlowMotion(model, factor, gravity, True).raise_load(plan.scale):
         _note(record, model, rest)
         record.peak = rest.multiplier
-    return _resumed(model, factor, rest, 0.0, scale, max_events, record)
+    return _resumed(model, factor, rest, plan, record)
 
 
-def _resumed(
-    model: WallModel,
-    factor: Factor,
-    rest: Equilibrium,
-    step: float,
-    scale: float,
-    max_events: int,
-    record: PathRecord,
-) -> HistoryResult:
+def _resumed(model: WallModel, factor: Factor, rest: Equilibrium, plan: Plan, record: PathRecord) -> HistoryResult:
     """Trace a path into the record from the rest that the load was raised to. Raises as `_raised` does."""
-    tracer = Tracer.from_rest(model, factor, rest)
-    result = _followed(tracer, record, step, scale, max_events, 0.0)
+    result = _followed(Tracer.from_rest(model, factor, rest), plan, record)
     sentence = f"{result.sentence}; up to {rest.multiplier:.4g} the load was raised in finite steps"
     return replace(result, sentence=sentence, raised=rest)
 
@@ -144,21 +155,12 @@ def _lost(result: HistoryResult) -> bool:
     return result.state is None and result.end not in (PathEnd.UNBOUNDED, PathEnd.TIME)
 
 
-def _trace(
-    model: WallModel,
-    factor: Factor,
-    start: Equilibrium,
-    step: float,
-    scale: float,
-    max_events: int,
-    disturbance: float,
-) -> HistoryResult:
+def _trace(model: WallModel, factor: Factor, start: Equilibrium, plan: Plan) -> HistoryResult:
     """Trace one history from an equilibrium, as far as the time allows."""
-    trace = partial(_trace_in_time, model, factor, start, step, scale, max_events, disturbance)
-    return _as_far_as_possible(trace, step, disturbance)
+    return _as_far_as_possible(partial(_trace_in_time, model, factor, start, plan), plan)
 
 
-def _as_far_as_possible(trace: Callable[[PathRecord], HistoryResult], step: float, disturbance: float) -> HistoryResult:
+def _as_far_as_possible(trace: Callable[[PathRecord], HistoryResult], plan: Plan) -> HistoryResult:
     """What a trace into a record leads to, or how far the record came where the time is over or the path is lost."""
     record = PathRecord()
     try:
@@ -169,18 +171,11 @@ def _as_far_as_possible(trace: Callable[[PathRecord], HistoryResult], step: floa
             sentence += f", at {record.multiplier[-1]:.4g} times the live load (greatest so far {record.peak:.4g})"
     except SingularTangent:
         end, sentence = PathEnd.BREAKDOWN, SENTENCES[PathEnd.BREAKDOWN]
-    return HistoryResult(step, end, sentence, record, None, 0, 0.0, disturbance)
+    return HistoryResult(plan, end, sentence, record, None, 0, 0.0)
 
 
 def _trace_in_time(
-    model: WallModel,
-    factor: Factor,
-    start: Equilibrium,
-    step: float,
-    scale: float,
-    max_events: int,
-    disturbance: float,
-    record: PathRecord,
+    model: WallModel, factor: Factor, start: Equilibrium, plan: Plan, record: PathRecord
 ) -> HistoryResult:
     """Trace one history into the record.
 
@@ -191,31 +186,24 @@ def _trace_in_time(
     if start.multiplier > 0.0:
         _note(record, model, start)
         record.peak = start.multiplier
-        return _resumed(model, factor, start, step, scale, max_events, record)
-    first = first_step(model, factor, start, scale)
+        return _resumed(model, factor, start, plan, record)
+    first = first_step(model, factor, start, plan.scale)
     if not first.found:
         least = f"{first.multiplier:.2g} times the live load, the least step tried"
         sentence = f"the dead load is in equilibrium, but {least}, is not"
-        return HistoryResult(step, PathEnd.BREAKDOWN, sentence, record, None, 0, 0.0, disturbance)
-    if step == 0.0 and model.assembly.n_free > DOUBLE_ABOVE:
+        return HistoryResult(plan, PathEnd.BREAKDOWN, sentence, record, None, 0, 0.0)
+    if plan.step == 0.0 and model.assembly.n_free > DOUBLE_ABOVE:
         for further in doubled(model, factor, first):
             first = further
             _note(record, model, first)
-    tracer = Tracer.from_rest(model, factor, first)
-    return _followed(tracer, record, step, scale, max_events, disturbance)
+    return _followed(Tracer.from_rest(model, factor, first), plan, record)
 
 
-def _followed(
-    tracer: Tracer,
-    record: PathRecord,
-    step: float,
-    scale: float,
-    max_events: int,
-    disturbance: float,
-) -> HistoryResult:
+def _followed(tracer: Tracer, plan: Plan, record: PathRecord) -> HistoryResult:
     """What following a path from where the tracer stands leads to. Raises OutOfTime and SingularTangent as above."""
-    model = tracer.model
-    way = follow(tracer, record, max_events, step * scale or np.inf, ASTRAY * scale)
+    model, scale = tracer.model, plan.scale
+    interval = plan.step * scale or np.inf
+    way = follow(tracer, record, plan.max_events, interval, ASTRAY * scale, committed_up_to=plan.committed_up_to)
     tracer, end = way.tracer, way.end
     state = (
         finish(model, tracer.present(), tracer.kept)
@@ -227,7 +215,9 @@ def _followed(
         state, end, sentence = None, PathEnd.RUNS_DOWN, BELOW_ZERO
     elif state is None and end == PathEnd.PLATEAU:
         sentence = _not_collapse(model, tracer.present().velocity)
-    return HistoryResult(step, end, sentence, record, state, way.commits, way.residual, disturbance)
+    if plan.committed_up_to < np.inf:
+        sentence += f"; committed up to {plan.committed_up_to:.4g} only, because later commits lost the path"
+    return HistoryResult(plan, end, sentence, record, state, way.commits, way.residual)
 
 
 def _not_collapse(model: WallModel, velocity: FloatArray) -> str:

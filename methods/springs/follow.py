@@ -32,6 +32,7 @@ def follow(
     interval: float = np.inf,
     highest: float = np.inf,
     jumps: int = JUMPS,
+    committed_up_to: float = np.inf,
 ) -> Followed:
     """Follow a path from where the tracer stands to its end.
 
@@ -42,6 +43,7 @@ def follow(
         interval: multiplier between two commits of the history; infinite for none.
         highest: multiplier above which a path with commits counts as lost.
         jumps: most jumps tried where the path turns down; none at a peak from which one was tried in vain.
+        committed_up_to: multiplier above which the history is no longer committed.
 
     Raises:
         SingularTangent: the path cannot be taken up again where it stands.
@@ -52,7 +54,8 @@ def follow(
     commits, residual, hopeless = 0, 0.0, -np.inf
     while True:
         after = None
-        if committing and tracer.may_commit() and tracer.multiplier >= record.peak and tracer.extent < large:
+        early = record.peak <= tracer.multiplier <= committed_up_to - interval and tracer.extent < large
+        if committing and early and tracer.may_commit():
             after = _committed(tracer, interval, record)
         if after is not None:
             commits, tracer, end = commits + 1, after, PathEnd.TARGET

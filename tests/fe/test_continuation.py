@@ -20,8 +20,12 @@ from methods.fe.adapter import GapSprings
 from methods.fe.random_walls import random_wall
 from methods.fe.settings import GapSpringsSettings
 from methods.la.irregular_walls import irregular_wall
+from methods.springs.equilibrium import gravity_state
+from methods.springs.factor import make_factor
+from methods.springs.newton import newton
 from methods.springs.patterns import block_on_halves, running_bond
 from methods.springs.plateau import check
+from methods.springs.wall_model import build_model
 from tests.walls import wall_data
 
 CASES = Path(__file__).parents[2] / "cases"
@@ -30,6 +34,27 @@ EXACT = 1e-9  # closed forms are met to rounding; this leaves room for other lin
 
 def solve(wall: Assembly, **settings: object) -> Answer:
     return GapSprings().solve(wall, GapSpringsSettings.model_validate(settings))
+
+
+def load_control_limit(wall: Assembly, commits: bool) -> float:
+    """The multiplier at which Newton under load control no longer converges, in steps of 0.002 halved at the end.
+
+    With commits every point carries on from the shear it has; the multipliers are not those of `fe`'s commits.
+    """
+    model = build_model(wall, GapSpringsSettings())
+    factor = make_factor(model)
+    rest = gravity_state(model, factor)
+    multiplier, step = 0.0, 0.002
+    while step > 2e-5:
+        after = newton(model, factor, rest.u, multiplier + step, rest.history)
+        if not after.found:
+            step *= 0.5
+            continue
+        multiplier += step
+        shear = model.forces(after.u, after.history, after.state)[1]
+        history = shear - model.kt * model.strains(after.u)[1] if commits else after.history
+        rest = replace(after, history=history)
+    return multiplier
 
 
 @pytest.mark.parametrize("stiffness", [1e2, 1e5, 1e8])
@@ -192,6 +217,27 @@ def test_fe_history_whose_path_runs_in_a_loop_is_taken_out_of_it() -> None:
     ends = [history["end"] for history in answer.details["histories"]]
     assert ends == ["plateau"] * 3
     assert answer.details["spread"] < 1e-9
+
+
+@pytest.mark.parametrize(("seed", "lost"), [(176, 2), (639, 2), (685, 1)])
+def test_fe_history_that_late_commits_lose_is_committed_up_to_less_of_the_multiplier(seed: int, lost: int) -> None:
+    """From a commit near the peak their paths run in a closed loop, or break down."""
+    histories = GapSprings().solve(random_wall(seed), GapSpringsSettings()).details["histories"]
+    assert [history["step"] for history in histories] == [0.0, 0.01, 0.002]
+    assert [history["committed_up_to"] is not None for history in histories] == [k == lost for k in range(3)]
+    assert histories[lost]["commits"] > 50
+    assert histories[lost]["committed_up_to"] == pytest.approx(0.97 * histories[0]["plateau"], rel=1e-3)
+    assert "committed up to" in histories[lost]["sentence"]
+    assert [history["plateau"] for history in histories] == pytest.approx([histories[0]["plateau"]] * 3, rel=1e-3)
+
+
+def test_fe_histories_that_end_far_apart_are_met_by_plain_load_control() -> None:
+    """Seed 44: 11.6 % lie between two laws of friction, not between two accuracies of one."""
+    wall = random_wall(44)
+    without, with_commits, finer = GapSprings().solve(wall, GapSpringsSettings()).details["histories"]
+    assert load_control_limit(wall, commits=False) == pytest.approx(without["plateau"], abs=1e-4)
+    assert load_control_limit(wall, commits=True) == pytest.approx(with_commits["plateau"], abs=1e-4)
+    assert finer["plateau"] == pytest.approx(with_commits["plateau"], rel=1e-9)
 
 
 @pytest.mark.slow
