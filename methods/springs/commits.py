@@ -22,6 +22,11 @@ NEAR = 5.0
 """Committed steps longer than this many tangent steps may have left the branch and are not taken."""
 SAFE = 1e3
 """Updates with |1 + b'y| or its inverse above this are not trusted here."""
+BALANCED = 1e-9
+"""Out-of-balance force (share of the load scale) up to which a step is taken without a further one.
+
+A step by way of huge displacements, over a nearly singular tangent, loses digits.
+"""
 
 
 def committed_step(tracer: Tracer, ahead: float, limit: int = 12) -> Tracer | None:
@@ -48,6 +53,10 @@ def committed_step(tracer: Tracer, ahead: float, limit: int = 12) -> Tracer | No
             trial += model.kt * slip_rate
             classify(opening, trial, model.kn, model.mu, landed, False)
             if same_forces(opening, trial, model.kn, model.mu, state, landed, TIED * tracer.scale):
+                opening, trial = model.strains(u)
+                trial = model.kt * trial + history
+                if largest(model.out_of_balance(opening, trial, state, multiplier)) > BALANCED * tracer.scale:
+                    continue
                 if not _near(tracer, u, ahead):
                     return None
                 return Tracer(model, factor, u, multiplier, history, state, factorised=True)

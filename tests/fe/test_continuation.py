@@ -231,6 +231,14 @@ def test_fe_history_that_late_commits_lose_is_committed_up_to_less_of_the_multip
     assert [history["plateau"] for history in histories] == pytest.approx([histories[0]["plateau"]] * 3, rel=1e-3)
 
 
+def test_fe_commits_stay_in_equilibrium_beside_a_nearly_singular_tangent() -> None:
+    """Seed 2302: a committed step by way of displacements of 1e15 ended out of balance by twice the load."""
+    committed = GapSprings().solve(random_wall(2302), GapSpringsSettings()).details["histories"][1]
+    assert (committed["end"], committed["committed_up_to"]) == ("plateau", None)
+    assert committed["path_residual"] < EXACT
+    assert committed["plateau"] == pytest.approx(0.32823, rel=1e-4)
+
+
 def test_fe_histories_that_end_far_apart_are_met_by_plain_load_control() -> None:
     """Seed 44: 11.6 % lie between two laws of friction, not between two accuracies of one."""
     wall = random_wall(44)
