@@ -21,7 +21,7 @@ from harness.engine.plan import Limits, Run, check_methods, find_cases, gated_ru
 from harness.engine.store import open_store
 from harness.model.case import Case, shipped_cases
 from harness.model.comparison import ComparisonRun
-from harness.model.errors import InputError
+from harness.model.errors import InputError, did_you_mean
 from harness.model.method import Status, load_method
 from harness.options import (
     REPORT,
@@ -100,10 +100,9 @@ def _settings(method: str, pairs: tuple[str, ...]) -> dict[str, Any]:
     for pair in pairs:
         name, equals, text = pair.partition("=")
         if not equals or name not in known:
+            names = f"Give NAME=VALUE with a name of: {', '.join(known) or '(it has none)'}"
             raise InputError(
-                f'"{pair}" is no setting of {method}',
-                f"Give NAME=VALUE with a name of: {', '.join(known) or '(it has none)'}",
-                "--set",
+                f'"{pair}" is no setting of {method}', f"{did_you_mean(name, known)} {names}".strip(), "--set"
             )
         try:
             values[name] = json.loads(text)

@@ -12,7 +12,7 @@ from harness.engine.provenance import code_version
 from harness.engine.store import run_key
 from harness.engine.worker import Task
 from harness.model.case import Case, Reference, case_folders, case_of_wall, read_case, shipped_cases
-from harness.model.errors import InputError
+from harness.model.errors import InputError, did_you_mean
 from harness.model.method import method_names
 from harness.model.reading import wall_json
 
@@ -108,7 +108,8 @@ def check_methods(names: Sequence[str], element: str = "--methods") -> None:
     known = method_names()
     for name in names:
         if name not in known:
-            raise InputError(f'no method is called "{name}"', f"There are: {', '.join(known)}", element)
+            there = f"There are: {', '.join(known)}"
+            raise InputError(f'no method is called "{name}"', f"{did_you_mean(name, known)} {there}".strip(), element)
 
 
 def find_cases(words: Sequence[str], suite: str | None, folders: Sequence[Path]) -> list[Case]:
@@ -149,9 +150,9 @@ def _find_case(word: str, library: dict[str, Path]) -> Case:
     path = Path(word)
     if path.is_dir():
         return read_case(path)
-    if path.is_file() or path.suffix == ".json":
+    if path.exists() or path.suffix == ".json":
         return case_of_wall(path)
+    lists = "`drystone list cases` shows the cases; a wall of your own is named by its file, WALL.json"
     raise InputError(
-        f'no case is called "{word}", and there is no such file',
-        "`drystone list cases` shows the cases; a wall of your own is named by its file, WALL.json",
+        f'no case is called "{word}", and there is no such file', f"{did_you_mean(word, library)} {lists}".strip()
     )

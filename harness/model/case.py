@@ -15,8 +15,11 @@ from harness.model.assembly import Assembly
 from harness.model.build import Built, build
 from harness.model.errors import InputError
 from harness.model.method import method_names
-from harness.model.reading import parse_wall, read_json, validate
+from harness.model.reading import parse_wall, read_json, read_text, validate
 from harness.model.wall import Strict, Wall
+
+LARGEST_CASE_FILE = 2**20
+"""Bytes of a case.toml at most: the library's longest has 5,046."""
 
 
 class ReferenceType(StrEnum):
@@ -134,13 +137,11 @@ def read_case(folder: Path) -> Case:
         InputError: naming the file and the element.
     """
     path = folder / "case.toml"
+    if not path.exists():
+        raise InputError("there is no case.toml", "A case is a folder with case.toml and wall.json", source=str(folder))
     try:
-        data = tomllib.loads(path.read_text(encoding="utf-8"))
-    except FileNotFoundError:
-        raise InputError(
-            "there is no case.toml", "A case is a folder with case.toml and wall.json", source=str(folder)
-        ) from None
-    except (OSError, UnicodeDecodeError, tomllib.TOMLDecodeError) as error:
+        data = tomllib.loads(read_text(path, LARGEST_CASE_FILE))
+    except (tomllib.TOMLDecodeError, RecursionError) as error:
         raise InputError(f"it cannot be read ({error})", "Give valid TOML", source=str(path)) from None
     file = validate(CaseFile, data, str(path))
     if file.id != folder.name:

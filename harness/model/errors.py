@@ -2,7 +2,20 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
+from difflib import get_close_matches
+
+MOST_FAULTS = 100
+"""Faults of one file that are told; the rest are counted."""
+
+
+def visible(text: str) -> str:
+    """Text of any origin with control characters, line ends, direction marks and lone surrogates spelled out.
+
+    What a file says is shown and never obeyed: an escape sequence in the name of a block would otherwise reach the
+    terminal, and a line end would make one message look like two.
+    """
+    return "".join(letter if letter.isprintable() else letter.encode("unicode_escape").decode() for letter in text)
 
 
 class InputError(Exception):
@@ -19,13 +32,78 @@ class InputError(Exception):
         self.problem, self.remedy, self.element, self.source = problem, remedy, element, source
         super().__init__(problem)
 
-    def __str__(self) -> str:
-        head = ": ".join(part for part in (self.source, self.element) if part)
-        text = f"{head}: {self.problem}" if head else self.problem
-        return f"{text}. {self.remedy}" if self.remedy else text
+    @property
+    def faults(self) -> tuple[InputError, ...]:
+        """The faults one by one; a plain error is one fault."""
+        return (self,)
 
-    def __reduce__(self) -> tuple[type[InputError], tuple[str, str, str, str]]:
+    def __str__(self) -> str:
+        return visible(_sentence(self, self.source))
+
+    def __reduce__(self) -> tuple[type[InputError], tuple[object, ...]]:
         return InputError, (self.problem, self.remedy, self.element, self.source)
+
+
+class InputFaults(InputError):
+    """Several faults of one input, told together in the order of the file, so that one round mends them all.
+
+    Args:
+        faults: at least one; those without a source take that of the whole.
+        source: the file concerned; may be empty and filled in later.
+    """
+
+    def __init__(self, faults: Iterable[InputError], source: str = "") -> None:
+        self._faults = tuple(part for fault in faults for part in fault.faults)
+        first = self._faults[0]
+        super().__init__(first.problem, first.remedy, first.element, source or first.source)
+
+    @property
+    def faults(self) -> tuple[InputError, ...]:
+        """The faults one by one, each with its source."""
+        for fault in self._faults:
+            fault.source = fault.source or self.source
+        return self._faults
+
+    def __str__(self) -> str:
+        count = len(self.faults)
+        if count == 1:
+            return str(self.faults[0])
+        head = f"{visible(self.source)}: {count} faults" if self.source else f"{count} faults"
+        lines = [
+            visible(_sentence(fault, "" if fault.source == self.source else fault.source))
+            for fault in self.faults[:MOST_FAULTS]
+        ]
+        more = [f"and {count - MOST_FAULTS} more"] if count > MOST_FAULTS else []
+        return "\n  ".join([head, *lines, *more])
+
+    def __reduce__(self) -> tuple[type[InputError], tuple[object, ...]]:
+        return InputFaults, (self._faults, self.source)
+
+
+def _sentence(error: InputError, source: str) -> str:
+    head = ": ".join(part for part in (source, error.element) if part)
+    text = f"{head}: {error.problem}" if head else error.problem
+    return f"{text}. {error.remedy}" if error.remedy else text
+
+
+def raise_faults(faults: Sequence[InputError], source: str = "") -> None:
+    """Raise what was found, one error as itself and several together; nothing if there are none.
+
+    Raises:
+        InputError: the one fault, or `InputFaults` of all.
+    """
+    if len(faults) == 1:
+        faults[0].source = faults[0].source or source
+        raise faults[0]
+    if faults:
+        raise InputFaults(faults, source)
+
+
+def did_you_mean(word: str, known: Iterable[str]) -> str:
+    """The question whether a known word that is near was meant; empty where none is near."""
+    names = {name.lower(): name for name in known}
+    near = get_close_matches(word.lower(), names, n=1, cutoff=0.6)
+    return f'Did you mean "{names[near[0]]}"?' if near else ""
 
 
 def first_few(names: Sequence[str], most: int) -> str:

@@ -4,17 +4,28 @@ from __future__ import annotations
 
 import json
 import math
+import os
+import re
+import stat
+from collections import Counter
 from pathlib import Path
 from typing import Any, TypeVar
 
 from pydantic import BaseModel, ValidationError
 
 from harness.model.build import Built, build
-from harness.model.errors import InputError
+from harness.model.errors import InputError, did_you_mean, raise_faults
+from harness.model.scope import SCOPE, outside_the_model
 from harness.model.wall import TAGS, Wall
 
 ModelType = TypeVar("ModelType", bound=BaseModel)
 
+LARGEST_FILE = 256 * 2**20
+"""Bytes that are read from one file at most: 100,000 blocks with their interfaces written out are about 150 MB."""
+MOST_NESTED = 40
+"""Depth of a JSON document. A wall needs 7 levels; beyond some 200 its readers and writers reach their own limits."""
+HALF_CHARACTER = re.compile(r"\\u[dD][89a-fA-F]")
+"""An escape that is one half of a surrogate pair."""
 MOST_SHOWN = 60
 """Characters of a wrong value that are shown."""
 PLAIN = {
@@ -35,19 +46,74 @@ PLAIN = {
 """Words for kinds of faults for which those of the validating library suppose that one writes Python."""
 
 
-def read_json(path: Path) -> Any:
-    """The content of a JSON file.
+def read_bytes(path: Path, limit: int = LARGEST_FILE) -> bytes:
+    """The content of a regular file of limited size: no device, no pipe, nothing that never ends.
+
+    Args:
+        path: the file.
+        limit: most bytes that are read.
 
     Raises:
-        InputError: unreadable, not JSON, NaN or infinite numbers, or a name given twice.
+        InputError: no such file, not a regular file, larger than the limit, or unreadable.
     """
     source = str(path)
     try:
-        text = path.read_text(encoding="utf-8-sig")
+        with open(path, "rb", opener=_without_waiting) as file:
+            status = os.fstat(file.fileno())
+            if not stat.S_ISREG(status.st_mode):
+                raise InputError("it is not a regular file", "Write its content to a file first", source=source)
+            content = file.read(limit + 1) if status.st_size <= limit else b""
     except FileNotFoundError:
         raise InputError("there is no such file", "Check the path", source=source) from None
-    except (OSError, UnicodeDecodeError) as error:
-        raise InputError(f"it cannot be read ({error})", "Give a UTF-8 text file", source=source) from None
+    except (OSError, ValueError) as error:
+        reason = error.strerror if isinstance(error, OSError) and error.strerror else str(error)
+        raise InputError(f"it cannot be read ({reason})", "Give a file that you may read", source=source) from None
+    if status.st_size > limit or len(content) > limit:
+        size = max(status.st_size, len(content))
+        raise InputError(
+            f"it has {size:,} bytes, and at most {limit:,} are read",
+            "Check that it is the file you mean",
+            source=source,
+        )
+    return content
+
+
+def _without_waiting(path: str, flags: int) -> int:
+    """Open without waiting for the other end of a pipe."""
+    return os.open(path, os.O_RDONLY | getattr(os, "O_NONBLOCK", 0) | getattr(os, "O_CLOEXEC", 0))
+
+
+def read_text(path: Path, limit: int = LARGEST_FILE) -> str:
+    """The content of a UTF-8 text file of limited size, a byte order mark left out.
+
+    Args:
+        path: the file.
+        limit: most bytes that are read.
+
+    Raises:
+        InputError: no such file, not a regular file, larger than the limit, or not UTF-8.
+    """
+    try:
+        return read_bytes(path, limit).decode("utf-8-sig")
+    except UnicodeDecodeError as error:
+        raise InputError(f"it cannot be read ({error})", "Give a UTF-8 text file", source=str(path)) from None
+
+
+def read_json(path: Path, limit: int = LARGEST_FILE) -> Any:
+    """The content of a JSON file.
+
+    Raises:
+        InputError: unreadable, not JSON, NaN or infinite numbers, a name given twice, or nested too deeply.
+    """
+    return json_of(read_text(path, limit), str(path))
+
+
+def json_of(text: str, source: str) -> Any:
+    """The value of JSON text; `source` is what errors call it.
+
+    Raises:
+        InputError: not JSON, NaN or infinite numbers, a name given twice, half a character, or nested too deeply.
+    """
 
     def refuse_constant(word: str) -> float:
         raise InputError(f"{word} is not a number", "Give finite numbers", source=source)
@@ -59,12 +125,13 @@ def read_json(path: Path) -> Any:
     def unique(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
         names = [name for name, _ in pairs]
         if len(set(names)) != len(names):
-            twice = next(name for name in names if names.count(name) > 1)
+            twice = next(name for name, count in Counter(names).items() if count > 1)
             raise InputError(f'the name "{twice}" is given twice in one object', "Keep one", source=source)
         return dict(pairs)
 
+    too_deep = InputError(f"it is nested more than {MOST_NESTED} deep", "Give a wall/1 document", source=source)
     try:
-        return json.loads(text, parse_constant=refuse_constant, parse_float=finite, object_pairs_hook=unique)
+        data = json.loads(text, parse_constant=refuse_constant, parse_float=finite, object_pairs_hook=unique)
     except json.JSONDecodeError as error:
         raise InputError(
             f"line {error.lineno}, column {error.colno}: {error.msg}", "Give valid JSON", source=source
@@ -72,33 +139,94 @@ def read_json(path: Path) -> Any:
     except ValueError:
         raise InputError("it has a number of thousands of digits", "Give finite numbers", source=source) from None
     except RecursionError:
-        raise InputError("it is nested too deeply", "Give a wall/1 document", source=source) from None
+        raise too_deep from None
+    if _nested_deeper(data, MOST_NESTED):
+        raise too_deep
+    if HALF_CHARACTER.search(text):
+        _refuse_half_characters(data, source)
+    return data
+
+
+def _nested_deeper(data: Any, most: int) -> bool:
+    level = [data]
+    for _ in range(most):
+        level = [
+            child
+            for item in level
+            if isinstance(item, dict | list)
+            for child in (item.values() if isinstance(item, dict) else item)
+            if isinstance(child, dict | list)
+        ]
+        if not level:
+            return False
+    return True
+
+
+def _refuse_half_characters(data: Any, source: str) -> None:
+    """Refuse text with one half of a surrogate pair: no file in UTF-8 can hold it, so no answer could be written."""
+    try:
+        json.dumps(data, ensure_ascii=False).encode()
+    except UnicodeEncodeError as error:
+        half = error.object[error.start].encode("unicode_escape").decode()
+        raise InputError(f"it has half a character, {half}", "Give both halves, or none", source=source) from None
 
 
 def validate(model: type[ModelType], data: Any, source: str) -> ModelType:
     """Data as a model.
 
     Raises:
-        InputError: the first fault of the data, with its place.
+        InputError: the fault of the data with its place, or `InputFaults` of all of them in the order of the file.
     """
     try:
         return model.model_validate(data)
     except ValidationError as error:
-        faults = error.errors()
-        fault = faults[0]
-        place = _place(fault["loc"], data)
-        message = str(fault["msg"]).removeprefix("Value error, ")
-        if fault["type"] in PLAIN:
-            message = PLAIN[fault["type"]].format(**fault.get("ctx", {}))
-        more = f" (and {len(faults) - 1} more)" if len(faults) > 1 else ""
-        remedy = ""
-        if fault["type"] == "extra_forbidden":
-            fields = _fields_at(model, fault["loc"][:-1])
-            message = f'unknown field "{fault["loc"][-1]}"'
-            remedy = f"Known here: {', '.join(fields)}" if fields else "Leave it out or correct its name"
-        elif "input" in fault and not isinstance(fault["input"], dict | list):
-            message += f" (given: {repr(fault['input'])[:MOST_SHOWN]})"
-        raise InputError(message + more, remedy, place, source) from None
+        faults = sorted(error.errors(), key=lambda fault: _order(fault["loc"], data))
+        raise_faults([_fault(model, data, fault, source) for fault in faults], source)
+        raise AssertionError("a validation error has faults") from None
+
+
+def _order(location: tuple[int | str, ...], data: Any) -> tuple[int, ...]:
+    """Where in the file a fault stands: the place of every part of its path among its neighbours."""
+    places: list[int] = []
+    here = data
+    for part in location:
+        if isinstance(here, dict) and part in here:
+            places.append(list(here).index(str(part)))
+            here = here[part]
+        elif isinstance(here, list) and isinstance(part, int) and part < len(here):
+            places.append(part)
+            here = here[part]
+    return tuple(places)
+
+
+def _fault(model: type[BaseModel], data: Any, fault: Any, source: str) -> InputError:
+    """One fault that the validating library found, in the words of this project."""
+    place = _place(fault["loc"], data)
+    message = str(fault["msg"]).removeprefix("Value error, ")
+    remedy = ""
+    if fault["type"] in PLAIN:
+        message = PLAIN[fault["type"]].format(**fault.get("ctx", {}))
+    if fault["type"] == "extra_forbidden":
+        return _unknown_field(model, fault["loc"], place, source)
+    if "input" in fault and not isinstance(fault["input"], dict | list):
+        message += f" (given: {repr(fault['input'])[:MOST_SHOWN]})"
+    return InputError(message, remedy, place, source)
+
+
+def _unknown_field(model: type[BaseModel], location: tuple[int | str, ...], place: str, source: str) -> InputError:
+    name = str(location[-1])
+    beyond = outside_the_model(name)
+    if beyond:
+        return InputError(
+            f'"{name}" is outside the model: Drystone has rigid blocks and dry friction in the plane, not {beyond}',
+            f"Leave it out; {SCOPE} says what is modelled, and what to use instead",
+            place,
+            source,
+        )
+    fields = _fields_at(model, location[:-1])
+    known = f"Known here: {', '.join(fields)}" if fields else "Leave it out or correct its name"
+    meant = did_you_mean(name[:MOST_SHOWN], fields)
+    return InputError(f'unknown field "{name}"', f"{meant} {known}".strip(), place, source)
 
 
 def _place(location: tuple[int | str, ...], data: Any) -> str:

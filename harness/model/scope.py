@@ -1,0 +1,42 @@
+"""What people look for in a wall file and Drystone does not model: a missing model is no misspelling."""
+
+from __future__ import annotations
+
+import re
+
+SCOPE = "docs/scope.md"
+"""Where the scope of Drystone is written, from the root of the project."""
+
+_OUTSIDE = {
+    "joints that bear tension or have strength of their own": (
+        "cohesion", "adhesion", "mortar", "mortar_joint", "bond_strength", "joint_tension", "tension_cutoff",
+        "residual_friction", "peak_friction", "roughness", "fracture_energy",
+    ),
+    "blocks that crush, crack or deform": (
+        "strength", "compressive_strength", "tensile_strength", "crushing_strength", "crushing", "fc", "fk", "fm", "fd",
+        "ft", "young", "youngs_modulus", "young_modulus", "elastic_modulus", "modulus", "poisson", "poisson_ratio",
+        "shear_modulus", "stiffness", "normal_stiffness", "shear_stiffness", "kn", "ks", "creep",
+    ),
+    "supports that settle or move": (
+        "settlement", "settlements", "displacement", "displacements", "prescribed_displacement", "support_movement",
+        "spread", "spreading", "rotation",
+    ),
+    "ties, reinforcement and props": (
+        "tie", "ties", "tie_rod", "anchor", "anchors", "reinforcement", "rebar", "prop", "props", "spring", "springs",
+        "cable", "cables", "frp", "prestress", "post_tension",
+    ),
+    "soil and water": ("backfill", "fill", "soil", "earth_pressure", "foundation", "water", "pore_pressure", "uplift"),
+    "motion in time": (
+        "damping", "mass", "time", "time_history", "accelerogram", "ground_motion", "velocity", "acceleration",
+        "frequency", "restitution",
+    ),
+    "a third dimension": ("z", "depth", "polyhedron", "vertices", "faces", "mesh", "out_of_plane"),
+    "temperature": ("temperature", "thermal", "thermal_expansion"),
+}  # fmt: skip
+_WORDS = {word: model for model, words in _OUTSIDE.items() for word in words}
+
+
+def outside_the_model(field: str) -> str:
+    """The part of reality a field speaks of that Drystone does not model; empty for any other field."""
+    word = re.sub(r"(?<=[a-z])(?=[A-Z])|[\s\-]+", "_", field).lower().strip("_")
+    return _WORDS.get(word, "")

@@ -1,0 +1,119 @@
+"""Reading: files that never end, text that is no text, and all faults of a file told at once."""
+
+from __future__ import annotations
+
+import json
+import os
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from harness.model.errors import InputError, InputFaults, did_you_mean, visible
+from harness.model.reading import MOST_NESTED, json_of, parse_wall, read_bytes, read_json, read_text
+
+MANY: dict[str, Any] = {
+    "format": "wall/1",
+    "unit_weight": 20,
+    "blocks": [
+        {"id": "ground", "polygon": [[-1, -1], [3, -1], [3, 0], [-1, 0]], "fixed": True},
+        {"id": "a", "polygon": [[0, 0], [1, 0], [1, 1], [0, 1]], "wieght": 3},
+        {"id": "b", "polygon": [[0, 1], [1, 1]]},
+        {"id": "c", "polygon": [[1, 0], [2, 0], [2, 1], [1, 1]], "unit_weight": -3},
+    ],
+    "loads": {"live": {"points": [{"block": "a", "at": [0, 0], "force": 1}]}},
+    "frction": 0.5,
+}
+
+
+def test_all_faults_are_told_at_once_in_the_order_of_the_file():
+    with pytest.raises(InputFaults) as caught:
+        parse_wall(MANY, "many.json")
+    places = [fault.element for fault in caught.value.faults]
+    assert places == [
+        "friction",
+        'blocks[1].wieght ("a")',
+        'blocks[2].polygon ("b")',
+        'blocks[3].unit_weight ("c")',
+        "loads.live.points[0].force",
+        "frction",
+    ]
+    lines = str(caught.value).splitlines()
+    assert lines[0] == "many.json: 6 faults"
+    assert len(lines) == 1 + len(places)
+    assert all(fault.source == "many.json" for fault in caught.value.faults)
+
+
+def test_one_fault_is_an_error_of_its_own():
+    with pytest.raises(InputError) as caught:
+        parse_wall({"format": "wall/1", "friction": -1}, "wall.json")
+    assert not isinstance(caught.value, InputFaults)
+    assert str(caught.value).startswith("wall.json: friction: ")
+
+
+@pytest.mark.parametrize(("word", "meant"), [("frction", "friction"), ("Blocks", "blocks"), ("qqqq", "")])
+def test_a_near_word_is_asked_for(word: str, meant: str):
+    assert did_you_mean(word, ["friction", "blocks"]) == (f'Did you mean "{meant}"?' if meant else "")
+
+
+@pytest.mark.parametrize("field", ["cohesion", "settlement", "ties", "compressive_strength", "youngsModulus"])
+def test_a_field_of_another_model_is_told_to_be_outside_with_the_way_to_the_scope(field: str):
+    with pytest.raises(InputError, match=rf'"{field}" is outside the model.*docs/scope\.md'):
+        parse_wall({"format": "wall/1", "friction": 0.5, field: 1.0}, "wall.json")
+
+
+@pytest.mark.parametrize(
+    "text", ["\x1b]0;x\x07\x1b[2J", "a\nb", "a\rb", "\u202eb", "\ud800", "\x00", "\u2028", "\x9b1m"]
+)
+def test_control_characters_are_shown_and_never_obeyed(text: str):
+    shown = visible(text)
+    assert shown.isprintable()
+    assert "\\" in shown
+    assert str(InputError("bad", element=f'block "{text}"')).isprintable()
+
+
+def test_visible_text_stays_as_it_is():
+    assert visible("Mauer μ = 0,5 石") == "Mauer μ = 0,5 石"
+
+
+def test_devices_pipes_folders_and_large_files_are_refused_at_once(tmp_path: Path):
+    pipe = tmp_path / "pipe.json"
+    os.mkfifo(pipe)
+    large = tmp_path / "large.json"
+    with open(large, "wb") as file:
+        file.truncate(2**30)  # sparse: a gigabyte that takes no room
+    for path, reason in (
+        (Path("/dev/zero"), "not a regular file"),
+        (pipe, "not a regular file"),
+        (tmp_path, "directory"),
+        (large, "1,073,741,824 bytes"),
+        (tmp_path / "none.json", "no such file"),
+        (tmp_path / "a\0b.json", "cannot be read"),
+    ):
+        with pytest.raises(InputError, match=reason):
+            read_json(path)
+
+
+def test_a_file_of_exactly_the_limit_is_read(tmp_path: Path):
+    path = tmp_path / "x"
+    path.write_bytes(b"\xef\xbb\xbfabc")
+    assert read_bytes(path, 6) == b"\xef\xbb\xbfabc"
+    assert read_text(path, 6) == "abc"
+    with pytest.raises(InputError, match="at most 5"):
+        read_text(path, 5)
+
+
+@pytest.mark.parametrize("opening", ["[", '{"a":'])
+@pytest.mark.parametrize("depth", [MOST_NESTED + 1, 500, 200_000])
+def test_what_is_nested_too_deeply_is_refused(opening: str, depth: int):
+    closing = "]" if opening == "[" else "}"
+    inner = "0" if opening != "[" else ""
+    with pytest.raises(InputError, match="nested"):
+        json_of(opening * depth + inner + closing * depth, "deep.json")
+
+
+def test_half_a_character_is_refused_and_a_whole_one_read():
+    with pytest.raises(InputError, match="half a character"):
+        json_of('{"a": "\\ud83d"}', "half.json")
+    assert json_of('{"a": "\\ud83d\\ude00"}', "whole.json") == {"a": "\U0001f600"}
+    assert json.loads('"\\ud83d\\ude00"') == "\U0001f600"
