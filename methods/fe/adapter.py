@@ -9,6 +9,7 @@ from typing import Any, ClassVar
 import numpy as np
 
 from harness.model.assembly import Assembly
+from harness.model.components import analysed_apart
 from harness.model.method import Answer, Finding, Settings, Status
 from methods.fe.answers import (
     bracket_answer,
@@ -24,6 +25,7 @@ from methods.fe.convex_steps import bracket_collapse
 from methods.fe.histories import LARGE_ABOVE, HistoryResult, Plan, trace_history, with_initial_shear
 from methods.fe.incremental import march
 from methods.fe.settings import ConvexSettings, GapSpringsSettings, NewtonSettings
+from methods.numerics.statics import bear
 from methods.springs.equilibrium import equilibrium, gravity_state
 from methods.springs.factor import make_factor
 from methods.springs.path_record import PathEnd
@@ -55,6 +57,9 @@ class GapSprings:
 
     def solve(self, assembly: Assembly, settings: Any) -> Answer:
         """Gravity first, then the live load to the plateau under every history asked for."""
+        return analysed_apart(assembly, lambda part: self._of_component(part, settings), bear)
+
+    def _of_component(self, assembly: Assembly, settings: Any) -> Answer:
         answer = self._solve(build_model(assembly, settings, settings.friction_cap), settings)
         if answer.finding != Finding.COLLAPSES and float(assembly.friction.max(initial=0.0)) > settings.friction_cap:
             answer = self._solve(build_model(assembly, settings), settings)
@@ -114,6 +119,9 @@ class IncrementalNewton:
 
     def solve(self, assembly: Assembly, settings: Any) -> Answer:
         """March as a general code does; a value only where a mechanism was reached and checked."""
+        return analysed_apart(assembly, lambda part: self._of_component(part, settings), bear)
+
+    def _of_component(self, assembly: Assembly, settings: Any) -> Answer:
         model = build_model(assembly, settings)
         factor = make_factor(model)
         gravity = gravity_state(model, factor)
@@ -148,6 +156,9 @@ class ConvexSteps:
 
     def solve(self, assembly: Assembly, settings: Any) -> Answer:
         """Bracket the multiplier at which the steps lose their equilibrium; refused above the set number of blocks."""
+        return analysed_apart(assembly, lambda part: self._of_component(part, settings), bear)
+
+    def _of_component(self, assembly: Assembly, settings: Any) -> Answer:
         if assembly.n_free > settings.max_blocks:
             return Answer(
                 Status.REFUSED,

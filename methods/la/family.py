@@ -1,4 +1,4 @@
-"""What every method of limit analysis does first: scale the wall, and answer at once where the dead load decides."""
+"""What every method of limit analysis does first: take the wall apart, scale, answer where the dead load decides."""
 
 from __future__ import annotations
 
@@ -6,10 +6,12 @@ from abc import ABC, abstractmethod
 from typing import Any, ClassVar
 
 from harness.model.assembly import Assembly
+from harness.model.components import analysed_apart
 from harness.model.method import Answer
 from methods.la.answers import dead_load_answer
 from methods.la.newton_matrix import NewtonMatrix
 from methods.la.problem import Problem, make_problem
+from methods.numerics.statics import bear
 
 
 class LimitAnalysisFamily(ABC):
@@ -18,6 +20,10 @@ class LimitAnalysisFamily(ABC):
     family: ClassVar[str] = "la"
 
     def solve(self, assembly: Assembly, settings: Any) -> Answer:
+        """The answer from those for the independent components of the wall."""
+        return analysed_apart(assembly, lambda part: self._of_component(part, settings), bear)
+
+    def _of_component(self, assembly: Assembly, settings: Any) -> Answer:
         """The answer of the dead load where it decides, else that of `answer`."""
         problem = make_problem(assembly)
         newton = NewtonMatrix(problem)

@@ -7,16 +7,15 @@ mechanism of least cost among those that move only in given contacts; its vertic
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any
 
-import highspy
 import numpy as np
 import scipy.sparse as sp
 
 from harness.model.assembly import BoolArray, FloatArray
 from methods.la.problem import Problem
+from methods.numerics.linear_programme import INFINITY, Programme
+from methods.numerics.statics import forces_of_cone, rows_of_blocks, upper_limits
 
-INFINITY = highspy.kHighsInf
 SIMPLEX_INTERFACES = 800
 """Interfaces up to which the simplex method is the quicker way to a vertex of a static programme."""
 DEVEX_INTERFACES = 200
@@ -40,77 +39,19 @@ class KinematicSolution:
     rates: FloatArray
 
 
-class Programme:
-    """A linear programme held in HiGHS: columns with bounds, rows with bounds, one matrix."""
+@dataclass(frozen=True)
+class GreatestSolution:
+    """Forces of the greatest multiplier and the dilatant mechanism dual to them.
 
-    def __init__(
-        self,
-        matrix: sp.csc_matrix,
-        cost: FloatArray,
-        column: tuple[FloatArray, FloatArray],
-        row: tuple[FloatArray, FloatArray],
-    ) -> None:
-        self.highs: Any = highspy.Highs()
-        for option, value in (
-            ("output_flag", False),
-            ("threads", 1),
-            ("random_seed", 0),
-            ("primal_feasibility_tolerance", 1e-9),
-            ("dual_feasibility_tolerance", 1e-9),
-        ):
-            self.highs.setOptionValue(option, value)
-        programme = highspy.HighsLp()
-        programme.num_row_, programme.num_col_ = matrix.shape
-        programme.col_cost_ = cost
-        programme.col_lower_, programme.col_upper_ = column
-        programme.row_lower_, programme.row_upper_ = row
-        programme.a_matrix_.format_ = highspy.MatrixFormat.kColwise
-        programme.a_matrix_.start_ = matrix.indptr
-        programme.a_matrix_.index_ = matrix.indices
-        programme.a_matrix_.value_ = matrix.data
-        self.highs.passModel(programme)
-        self.n_columns = matrix.shape[1]
+    Attributes:
+        statics, kinematics: the two sides.
+        violation_of_yield, of_flow: largest violations of a bound, relative to the terms beside it.
+    """
 
-    def set_columns(self, first: int, lower: FloatArray, upper: FloatArray) -> None:
-        """New bounds of consecutive columns from `first`."""
-        index = np.arange(first, first + len(lower), dtype=np.int32)
-        self.highs.changeColsBounds(len(index), index, lower, upper)
-
-    def set_rows(self, first: int, lower: FloatArray, upper: FloatArray) -> None:
-        """New bounds of consecutive rows from `first`."""
-        index = np.arange(first, first + len(lower), dtype=np.int32)
-        self.highs.changeRowsBounds(len(index), index, lower, upper)
-
-    def set_costs(self, first: int, cost: FloatArray) -> None:
-        """New costs of consecutive columns from `first`."""
-        index = np.arange(first, first + len(cost), dtype=np.int32)
-        self.highs.changeColsCost(len(index), index, cost)
-
-    def run(self) -> tuple[str, FloatArray, FloatArray]:
-        """("optimal" | "infeasible" | "unbounded" | "unknown", column values, row duals)."""
-        self.highs.run()
-        status = self.highs.getModelStatus()
-        if status == highspy.HighsModelStatus.kUnboundedOrInfeasible:
-            self.highs.setOptionValue("presolve", "off")
-            self.highs.run()
-            self.highs.setOptionValue("presolve", "choose")
-            status = self.highs.getModelStatus()
-        names = {
-            highspy.HighsModelStatus.kOptimal: "optimal",
-            highspy.HighsModelStatus.kInfeasible: "infeasible",
-            highspy.HighsModelStatus.kUnbounded: "unbounded",
-        }
-        if status not in names:
-            self.highs.clearSolver()
-            self.highs.run()
-            status = self.highs.getModelStatus()
-        solution = self.highs.getSolution()
-        return names.get(status, "unknown"), np.array(solution.col_value), np.array(solution.row_dual)
-
-    def iterations(self) -> int:
-        """Iterations of the last run."""
-        info = self.highs.getInfo()
-        return int(max(info.simplex_iteration_count, 0) + max(info.ipm_iteration_count, 0))
+    statics: StaticSolution
+    kinematics: KinematicSolution
+    violation_of_yield: float
+    violation_of_flow: float
 
 
 class StaticProgramme:
@@ -122,16 +63,9 @@ class StaticProgramme:
     def __init__(self, problem: Problem, solver: str = "simplex") -> None:
         self.problem = problem
         m, mu = problem.n_interfaces, problem.friction
-        base = 3 * np.arange(m)
-        shear_rows = np.concatenate([base + 2, base + 2, base + 2])
-        columns = np.concatenate([base, base + 1, base + 2])
-        normals = sp.diags(np.tile([1.0, 1.0, 0.0], m))
-        shear = sp.coo_matrix((np.concatenate([-mu, -mu, np.ones(m)]), (shear_rows, columns)), shape=(3 * m, 3 * m))
-        forces = (normals + shear).tocsr()
+        forces = forces_of_cone(mu)
         equilibrium = sp.hstack([problem.statics @ forces, sp.csr_matrix(problem.live[:, None])])
-        backward = sp.coo_matrix(
-            (np.concatenate([2 * mu, 2 * mu, -np.ones(m)]), (np.tile(np.arange(m), 3), columns)), shape=(m, 3 * m + 1)
-        )
+        backward = sp.hstack([upper_limits(mu), sp.csr_matrix((m, 1))])
         self._forces = forces
         self._free = (np.zeros(3 * m), np.full(3 * m, INFINITY))
         cost = np.zeros(3 * m + 1)
@@ -163,6 +97,26 @@ class StaticProgramme:
         if status != "optimal":
             return status
         return StaticSolution(self._to_forces(value), float(value[-1]), self._programme.iterations())
+
+    def greatest(self) -> GreatestSolution | str:
+        """The greatest multiplier with its forces and dilatant mechanism, a vertex to rounding; or how it ended."""
+        status = self.solve(greatest=True)
+        if isinstance(status, str):
+            return status
+        n, m = self.problem.n_velocities, self.problem.n_interfaces
+        vertex = self._programme.vertex(rows_of_blocks(n // 3, m))
+        if vertex is None:
+            return "unknown"
+        velocities = -vertex.dual[:n]
+        rates = np.column_stack([vertex.reduced[:-1].reshape(-1, 3), vertex.dual[n:]])
+        work = self.problem.live_work / float(self.problem.live @ velocities)
+        forces = self._to_forces(vertex.value)
+        return GreatestSolution(
+            StaticSolution(forces, float(vertex.value[-1]), status.iterations),
+            KinematicSolution(work * velocities, work * rates),
+            vertex.primal,
+            vertex.dual_violation,
+        )
 
     def lightest(self, weights: FloatArray) -> FloatArray | None:
         """Forces (m, 3) that carry the dead load with the least sum of weights (m, 2) times n1, n2; None if not found.

@@ -18,9 +18,10 @@ import numpy as np
 
 from harness.model.assembly import BoolArray
 from methods.la.problem import Problem
-from methods.la.programmes import INFINITY, KinematicProgramme
+from methods.la.programmes import KinematicProgramme
 from methods.la.search import Search
 from methods.la.state import CollapseState
+from methods.numerics.linear_programme import INFINITY
 
 CLOSE = 1e-6
 """Relative distance below the least multiplier known within which no other is sought."""

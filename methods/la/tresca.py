@@ -13,7 +13,7 @@ import scipy.sparse as sp
 
 from harness.model.assembly import FloatArray
 from methods.la.problem import Problem
-from methods.la.programmes import INFINITY, Programme
+from methods.numerics.linear_programme import INFINITY, Programme
 
 
 @dataclass(frozen=True)

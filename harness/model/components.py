@@ -1,0 +1,221 @@
+"""Independent components of a wall: free blocks that touch each other; fixed blocks do not connect.
+
+No force of one component reaches another, so each is analysed alone, in its own units of weight and length. The wall
+collapses at the least multiplier of its components, by the mechanism of that one, while the others bear the load.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+import scipy.sparse as sp
+from scipy.sparse.csgraph import connected_components
+
+from harness.model.assembly import Assembly, BoolArray, FloatArray, IntArray
+from harness.model.errors import first_few
+from harness.model.method import Answer, Finding, Status
+
+NAMED = 8
+"""Blocks of a component that are named at most."""
+
+Solve = Callable[[Assembly], Answer]
+"""The answer of a method for one component."""
+Bear = Callable[[Assembly, Answer, float], "FloatArray | None"]
+"""Contact forces (m, 3) of a component within yield at a multiplier of the live load, or None if none are found.
+
+Its arguments: the component; the method's answer for it; the multiplier, which is no higher than the answer's own.
+"""
+
+
+@dataclass(frozen=True, eq=False)
+class Component:
+    """Free blocks that touch each other, with the fixed blocks they touch.
+
+    Attributes:
+        assembly: the component as a wall of its own.
+        blocks: indices (k,) of its blocks in the whole wall.
+        interfaces: indices (j,) of its interfaces in the whole wall.
+    """
+
+    assembly: Assembly
+    blocks: IntArray
+    interfaces: IntArray
+
+    @property
+    def named(self) -> str:
+        """A few of its free blocks in words."""
+        return first_few([self.assembly.block_ids[i] for i in self.assembly.free], NAMED)
+
+
+def components_of(assembly: Assembly) -> list[Component]:
+    """The independent components of a wall, in the order of their first free blocks.
+
+    A wall with one component, or without a block that can move, is returned as it is, to the bit.
+    """
+    a, b = assembly.block_a, assembly.block_b
+    free = ~assembly.fixed
+    joined = free[a] & free[b]
+    n = assembly.n_blocks
+    graph = sp.coo_matrix((np.ones(int(joined.sum())), (a[joined], b[joined])), shape=(n, n))
+    label = connected_components(graph, directed=False)[1]
+    _, first = np.unique(label[assembly.free], return_index=True)
+    if len(first) <= 1:
+        return [Component(assembly, np.arange(n), np.arange(assembly.n_interfaces))]
+    return [_component(assembly, free & (label == label[assembly.free[k]])) for k in np.sort(first)]
+
+
+def _component(assembly: Assembly, moving: BoolArray) -> Component:
+    """The wall of the moving blocks (n,) alone, with the interfaces and the fixed blocks that they touch."""
+    interfaces = np.flatnonzero(moving[assembly.block_a] | moving[assembly.block_b])
+    kept = moving.copy()
+    kept[assembly.block_a[interfaces]] = kept[assembly.block_b[interfaces]] = True
+    blocks = np.flatnonzero(kept)
+    place = np.full(assembly.n_blocks, -1, dtype=np.int64)
+    place[blocks] = np.arange(len(blocks))
+    by_block = ("centroid", "weight", "fixed", "dead", "live")
+    by_interface = ("end1", "end2", "face1", "face2", "normal", "friction")
+    part = replace(
+        assembly,
+        block_ids=tuple(assembly.block_ids[i] for i in blocks),
+        polygons=tuple(assembly.polygons[i] for i in blocks),
+        block_a=place[assembly.block_a[interfaces]],
+        block_b=place[assembly.block_b[interfaces]],
+        joint=tuple(assembly.joint[p] for p in interfaces),
+        **{name: getattr(assembly, name)[blocks] for name in by_block},
+        **{name: getattr(assembly, name)[interfaces] for name in by_interface},
+    )
+    return Component(part, blocks, interfaces)
+
+
+def analysed_apart(assembly: Assembly, solve: Solve, bear: Bear) -> Answer:
+    """The answer for a wall from those for its components, each analysed alone.
+
+    The smallest come first, so that a run that is stopped knows as much as it can.
+
+    Args:
+        assembly: the wall.
+        solve: the method on one component.
+        bear: forces of a component that does not fail, at the multiplier of the one that does.
+    """
+    parts = components_of(assembly)
+    if len(parts) == 1:
+        return solve(parts[0].assembly)
+    answers: dict[int, Answer] = {}
+    for k in sorted(range(len(parts)), key=lambda k: parts[k].assembly.n_free):
+        answers[k] = solve(parts[k].assembly)
+    return joined(assembly, parts, [answers[k] for k in range(len(parts))], bear)
+
+
+def joined(assembly: Assembly, parts: list[Component], answers: list[Answer], bear: Bear) -> Answer:
+    """The answer for the whole wall: falls if a component does, else the least multiplier, else unbounded or stands.
+
+    Args:
+        assembly: the wall; parts: its components; answers: of a method for each; bear: as for `analysed_apart`.
+    """
+    falls = [k for k, answer in enumerate(answers) if answer.status is Status.OK and answer.finding is Finding.FALLS]
+    failed = [k for k, answer in enumerate(answers) if answer.status is not Status.OK]
+    collapses = [k for k, answer in enumerate(answers) if answer.finding is Finding.COLLAPSES]
+    unbounded = [k for k, answer in enumerate(answers) if answer.finding is Finding.UNBOUNDED]
+    if falls:
+        deciding = falls[0]
+    elif failed:
+        deciding = failed[0]
+    elif collapses:
+        deciding = min(collapses, key=lambda k: _lower_end(answers[k]))
+    else:
+        deciding = (unbounded or [0])[0]
+    chosen = answers[deciding]
+    answer = replace(
+        chosen,
+        sentence=_sentence(parts, answers, deciding),
+        mechanism=_mechanism(assembly, parts[deciding], chosen),
+        forces=None,
+        iterations=sum(each.iterations for each in answers),
+        details=chosen.details | _details(parts, answers, deciding),
+    )
+    if falls or failed:
+        return replace(answer, forces_multiplier=None)
+    if chosen.bracket is not None:
+        uppers = [_upper_end(answers[k]) for k in collapses]
+        answer = replace(answer, bracket=(chosen.bracket[0], min(uppers)))
+        assert chosen.multiplier is not None
+        answer = replace(answer, multiplier=min(chosen.multiplier, min(uppers)))
+    return _with_forces(assembly, parts, answers, deciding, answer, bear)
+
+
+def _lower_end(answer: Answer) -> float:
+    assert answer.multiplier is not None
+    return answer.multiplier if answer.bracket is None else answer.bracket[0]
+
+
+def _upper_end(answer: Answer) -> float:
+    assert answer.multiplier is not None
+    return answer.multiplier if answer.bracket is None else answer.bracket[1]
+
+
+def _with_forces(
+    assembly: Assembly, parts: list[Component], answers: list[Answer], deciding: int, answer: Answer, bear: Bear
+) -> Answer:
+    """The answer with contact forces of every component at the multiplier of the deciding one's forces.
+
+    Without forces of the deciding component there are none of the wall either.
+    """
+    at = answer.forces_multiplier if answer.forces_multiplier is not None else answer.multiplier or 0.0
+    if answers[deciding].forces is None:
+        return answer
+    whole = np.zeros((assembly.n_interfaces, 3))
+    for k, (part, own) in enumerate(zip(parts, answers, strict=True)):
+        same = k == deciding or own.finding is Finding.STANDS or (own.multiplier == at and own.forces_multiplier == at)
+        forces = own.forces if same and own.forces is not None else bear(part.assembly, own, at)
+        if forces is None:
+            return replace(
+                answer,
+                status=Status.NOT_CONVERGED,
+                finding=Finding.NONE,
+                sentence=f"{answer.sentence} No contact forces were found with which the component of {part.named} "
+                f"bears the load at {at:.7g}.",
+                multiplier=None,
+                bracket=None,
+                mechanism=None,
+                forces_multiplier=None,
+            )
+        whole[part.interfaces] = forces
+    return replace(answer, forces=whole)
+
+
+def _mechanism(assembly: Assembly, part: Component, answer: Answer) -> FloatArray | None:
+    """The mechanism (n, 3) of a component as one of the whole wall, at rest elsewhere."""
+    if answer.mechanism is None:
+        return None
+    motion = np.zeros((assembly.n_blocks, 3))
+    motion[part.blocks] = answer.mechanism
+    return motion
+
+
+def _sentence(parts: list[Component], answers: list[Answer], deciding: int) -> str:
+    """What the deciding component's answer says, of which component it is, and what the others do."""
+    own = answers[deciding].sentence.rstrip(".")
+    said = f"{own[:1].upper()}{own[1:]}. The wall has {len(parts)} independent components"
+    if answers[deciding].status is not Status.OK:
+        return f"{said}; this is said of that of {parts[deciding].named}."
+    if answers[deciding].finding in (Finding.COLLAPSES, Finding.FALLS):
+        return f"{said}; the one that fails is that of {parts[deciding].named}."
+    return f"{said}, and none of them fails."
+
+
+def _details(parts: list[Component], answers: list[Answer], deciding: int) -> dict[str, Any]:
+    """The components with their findings, and the one that decides."""
+    listed = [
+        {
+            "blocks": part.named,
+            "free_blocks": part.assembly.n_free,
+            "status": answer.status.value,
+            "finding": answer.finding.value,
+            "multiplier": answer.multiplier,
+        }
+        for part, answer in zip(parts, answers, strict=True)
+    ]
+    return {"components": listed, "deciding_component": deciding}

@@ -1,0 +1,265 @@
+"""The optimal vertex of a linear programme computed to rounding from its basis.
+
+A simplex code stops where bounds are violated by 1e-9 of the unit in which the programme is written, so what is
+smaller than that beside it is not seen. A basis says which columns and rows are at a bound, and from it the vertex
+follows by two linear systems, each refined with residuals in extended precision, so that every row holds to rounding
+of its own terms. Where a bound is violated by more than rounding of what stands beside it, the programme is shifted to
+the vertex, its violations are magnified to one, and it goes on from the basis (Gleixner, Steffy and Wolter 2016,
+"Iterative refinement for linear programming", INFORMS Journal on Computing 28).
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import highspy
+import numpy as np
+import scipy.sparse as sp
+from scipy.sparse.linalg import splu
+
+from harness.model.assembly import BoolArray, FloatArray, IntArray
+
+ROUNDS = 6
+"""Refinements of a linear system at most, and magnifications of a programme."""
+ACCURATE = 1e-12
+"""Violation of a bound, relative to the terms beside it, that is rounding."""
+FLOOR = 1e-5
+"""Terms below this share of the largest anywhere count as this share: sums of large ones leave so much rounding."""
+LARGEST = 1e14
+"""Largest factor by which violations are magnified."""
+EXCESS = 1e7
+"""Magnified reduced costs beyond this are cut off: they are far from zero either way."""
+LOWER, BASIC, UPPER, ZERO = (
+    int(status)
+    for status in (
+        highspy.HighsBasisStatus.kLower,
+        highspy.HighsBasisStatus.kBasic,
+        highspy.HighsBasisStatus.kUpper,
+        highspy.HighsBasisStatus.kZero,
+    )
+)
+
+
+@dataclass(frozen=True, eq=False)
+class Vertex:
+    """A basic solution to rounding. c columns, r rows.
+
+    Attributes:
+        value: (c,) columns; dual: (r,) multipliers of the rows; reduced: (c,) reduced costs.
+        basic: (c,) columns that the basis leaves between their bounds.
+        primal: largest violation of a bound; dual_violation: of the sign of a multiplier or reduced cost; both
+            relative to the terms beside it.
+    """
+
+    value: FloatArray
+    dual: FloatArray
+    reduced: FloatArray
+    basic: BoolArray
+    primal: float
+    dual_violation: float
+
+    @property
+    def optimal(self) -> bool:
+        """Whether the vertex is feasible and optimal to rounding."""
+        return max(self.primal, self.dual_violation) <= ACCURATE
+
+
+@dataclass(frozen=True, eq=False)
+class _Solution:
+    """All columns (c + r,) of the standard form, multipliers (r,) and reduced costs (c + r,), and how wrong each is."""
+
+    status: IntArray
+    value: FloatArray
+    dual: FloatArray
+    reduced: FloatArray
+    outside: FloatArray
+    wrong: FloatArray
+    primal: float
+    dual_violation: float
+
+
+class StandardForm:
+    """min c.x s.t. A x - s = 0, with bounds on x (c,) and s (r,).
+
+    Args:
+        matrix: (r, c) A.
+        cost: (c,); column: lower and upper bounds (c,); row: lower and upper bounds (r,).
+        groups: (r,) rows of the same number measure violations by the largest terms of any of them.
+    """
+
+    def __init__(
+        self,
+        matrix: sp.csc_matrix,
+        cost: FloatArray,
+        column: tuple[FloatArray, FloatArray],
+        row: tuple[FloatArray, FloatArray],
+        groups: IntArray | None = None,
+    ) -> None:
+        self._rows, self._columns = matrix.shape
+        self._matrix = sp.csc_matrix(sp.hstack([matrix, -sp.identity(self._rows)]))
+        self._transposed = sp.csr_matrix(self._matrix.T)
+        self._by_row = sp.csr_matrix(self._matrix)
+        self._cost = np.append(cost, np.zeros(self._rows))
+        self._lower, self._upper = (np.concatenate(pair) for pair in zip(column, row, strict=True))
+        self._groups = np.arange(self._rows) if groups is None else groups
+
+    def vertex(self, status: IntArray) -> Vertex | None:
+        """The optimal vertex that a basis (c + r,) leads to; None if it is singular or leads nowhere."""
+        best = solution = self._solution(status)
+        for _ in range(ROUNDS):
+            if solution is None or max(solution.primal, solution.dual_violation) <= ACCURATE:
+                break
+            solution = self._magnified(solution)
+            if solution is not None and best is not None and _worst(solution) < _worst(best):
+                best = solution
+        if best is None:
+            return None
+        own = slice(0, self._columns)
+        return Vertex(
+            best.value[own],
+            best.dual,
+            best.reduced[own],
+            best.status[own] == BASIC,
+            best.primal,
+            best.dual_violation,
+        )
+
+    def _solution(self, status: IntArray) -> _Solution | None:
+        basic = status == BASIC
+        at = np.where(status == UPPER, self._upper, np.where(status == ZERO, 0.0, self._lower))
+        at = np.where(np.isfinite(at), at, np.where(np.isfinite(self._upper), self._upper, 0.0))
+        value = np.where(basic, 0.0, at)
+        if int(basic.sum()) != self._rows:
+            return None
+        try:
+            value[basic] = refined(self._matrix[:, basic], -extended_product(self._by_row, value))
+            dual = refined(sp.csc_matrix(self._transposed[basic]), self._cost[basic].astype(np.longdouble))
+        except RuntimeError:
+            return None
+        reduced = (self._cost - extended_product(self._transposed, dual)).astype(float)
+        reduced[basic] = 0.0
+        outside = np.where(basic, np.maximum(self._lower - value, value - self._upper), 0.0).clip(min=0.0)
+        fixed = self._lower == self._upper
+        wrong = np.where(status == LOWER, -reduced, np.where(status == UPPER, reduced, abs(reduced))).clip(min=0.0)
+        wrong[basic | fixed] = 0.0
+        return _Solution(
+            status,
+            value,
+            dual,
+            reduced,
+            outside,
+            wrong,
+            _relative(outside, self._terms_beside(value)),
+            _relative(wrong, self._speeds_beside(dual)),
+        )
+
+    def _terms_beside(self, value: FloatArray) -> FloatArray:
+        """(c + r,) for every column the size of the terms in the row of least terms it stands in."""
+        by_row = abs(self._by_row) @ abs(value)
+        largest = np.zeros(int(self._groups.max(initial=-1)) + 1)
+        np.maximum.at(largest, self._groups, by_row)
+        entries = self._matrix.tocoo()
+        least = np.full(len(value), np.inf)
+        np.minimum.at(least, entries.col, largest[self._groups][entries.row])
+        return least
+
+    def _speeds_beside(self, dual: FloatArray) -> FloatArray:
+        """(c + r,) for every column the size of the terms of its reduced cost; of a row, of the columns beside it."""
+        own = abs(self._transposed) @ abs(dual) + abs(self._cost)
+        entries = self._by_row[:, : self._columns].tocoo()
+        np.maximum.at(own, self._columns + entries.row, own[entries.col])
+        return np.asarray(own)
+
+    def _magnified(self, at: _Solution) -> _Solution | None:
+        """Where the programme leads once it is shifted to a solution and its violations are magnified to one."""
+        primal = _factor(at.outside) if at.primal > ACCURATE else 1.0
+        dual = _factor(at.wrong) if at.dual_violation > ACCURATE else 1.0
+        basic = at.status == BASIC
+        highs: Any = highspy.Highs()
+        for option, setting in (
+            ("output_flag", False),
+            ("threads", 1),
+            ("presolve", "off"),
+            ("solver", "simplex"),
+            ("primal_feasibility_tolerance", 1e-9),
+            ("dual_feasibility_tolerance", 1e-9),
+        ):
+            highs.setOptionValue(option, setting)
+        shifted = highspy.HighsLp()
+        shifted.num_row_, shifted.num_col_ = self._matrix.shape
+        shifted.col_cost_ = np.where(basic, 0.0, np.clip(dual * at.reduced, -EXCESS, EXCESS))
+        shifted.col_lower_ = primal * (self._lower - at.value)
+        shifted.col_upper_ = primal * (self._upper - at.value)
+        shifted.row_lower_ = shifted.row_upper_ = np.zeros(self._rows)
+        shifted.a_matrix_.format_ = highspy.MatrixFormat.kColwise
+        shifted.a_matrix_.start_ = self._matrix.indptr
+        shifted.a_matrix_.index_ = self._matrix.indices
+        shifted.a_matrix_.value_ = self._matrix.data
+        highs.passModel(shifted)
+        basis = highs.getBasis()
+        basis.col_status = [_STATUS[k] for k in at.status.tolist()]
+        basis.row_status = [highspy.HighsBasisStatus.kLower] * self._rows
+        highs.setBasis(basis)
+        highs.run()
+        if highs.getModelStatus() != highspy.HighsModelStatus.kOptimal:
+            return None
+        return self._solution(np.array([int(status) for status in highs.getBasis().col_status], dtype=np.int64))
+
+
+_STATUS = {int(status): status for status in highspy.HighsBasisStatus.__members__.values()}
+
+
+def refined(matrix: sp.csc_matrix, right: Any) -> FloatArray:
+    """The solution (k,) of a square sparse system, every row to rounding of its own terms.
+
+    Raises:
+        RuntimeError: the matrix is singular.
+    """
+    by_row = sp.csr_matrix(matrix)
+    rows = _powers(abs(by_row).max(axis=1).toarray().ravel())
+    scaled = sp.diags(rows) @ by_row
+    columns = _powers(abs(scaled).max(axis=0).toarray().ravel())
+    factor = splu(sp.csc_matrix(scaled @ sp.diags(columns)))
+    right = np.asarray(right, dtype=np.longdouble)
+    solution = np.zeros(len(right), dtype=np.longdouble)
+    for _ in range(ROUNDS):
+        residual = right - extended_product(by_row, solution)
+        change = columns * factor.solve(rows * residual.astype(float))
+        if not np.isfinite(change).all():
+            raise RuntimeError("the basis is singular to rounding")
+        solution = solution + change
+        if np.all(abs(change) <= 1e-17 * abs(solution)):
+            break
+    return solution.astype(float)
+
+
+def extended_product(matrix: sp.csr_matrix, vector: Any) -> Any:
+    """The product of a sparse matrix with a vector in extended precision."""
+    product = np.zeros(matrix.shape[0], dtype=np.longdouble)
+    terms = matrix.data.astype(np.longdouble) * np.asarray(vector, dtype=np.longdouble)[matrix.indices]
+    filled = np.flatnonzero(np.diff(matrix.indptr))
+    if len(filled):
+        product[filled] = np.add.reduceat(terms, matrix.indptr[filled])
+    return product
+
+
+def _worst(solution: _Solution) -> float:
+    return max(solution.primal, solution.dual_violation)
+
+
+def _relative(violation: FloatArray, beside: FloatArray) -> float:
+    finite = beside[np.isfinite(beside)]
+    least = FLOOR * float(finite.max(initial=0.0)) or 1.0
+    return float((violation / np.maximum(beside, least)).max(initial=0.0))
+
+
+def _factor(violation: FloatArray) -> float:
+    """A power of two that brings the largest violation near one."""
+    worst = float(violation.max(initial=0.0))
+    return 1.0 if worst == 0.0 else float(np.clip(2.0 ** np.round(-np.log2(worst)), 1.0, LARGEST))
+
+
+def _powers(size: FloatArray) -> FloatArray:
+    """Inverses of sizes, rounded to powers of two; one where a size is zero."""
+    return np.where(size > 0.0, 2.0 ** -np.round(np.log2(np.where(size > 0.0, size, 1.0))), 1.0)
