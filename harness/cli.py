@@ -33,6 +33,7 @@ from harness.options import (
     memory_option,
     print_json,
     report_option,
+    say,
     seconds_option,
     store_option,
     warn,
@@ -218,12 +219,12 @@ def study(name: str | None, jobs: int, report: Path | None, store: Path, fresh: 
     if name == IMPERFECTION:
         case, found = _imperfection(Limits(), None, jobs, store, fresh, quiet=False)
         compared = _compare(f"study {name}", [case], None, Limits(), jobs, path, store, fresh, quiet=False, study=found)
-        click.echo(found["sentence"])
+        say(found["sentence"])
     else:
         chosen = list(STUDIES[name]())
         compared = _compare(f"study {name}", chosen, None, Limits(), jobs, path, store, fresh, quiet=False)
         terminal.print_agreement(compared)
-    click.echo(f"Report: {path}")
+    say(f"Report: {path}")
 
 
 def _imperfection(
@@ -244,7 +245,11 @@ def _write_report(compared: ComparisonRun, path: Path) -> None:
     from reports.build import write_report
 
     path.parent.mkdir(parents=True, exist_ok=True)
-    write_report(compared, path)
+    try:
+        write_report(compared, path)
+    except OSError as error:  # an error while writing to an open file does not say which
+        error.filename = error.filename or str(path)
+        raise
 
 
 @main.command()
@@ -253,14 +258,14 @@ def _write_report(compared: ComparisonRun, path: Path) -> None:
 @catching
 def report(report: Path, store: Path) -> None:
     """Build the report of the last comparison again, from the store, without running anything."""
-    if not store.is_file():
+    if not store.exists():
         raise InputError("there is no such store", "Run `drystone compare` first", source=str(store))
-    with open_store(store) as opened:
+    with open_store(store, read_only=True) as opened:
         compared = comparing.recall(opened)
     if compared is None:
         raise InputError("no comparison is in the store", "Run `drystone compare` first", source=str(store))
     _write_report(compared, report)
-    click.echo(f"Report: {report}")
+    say(f"Report: {report}")
 
 
 @main.command()

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import errno
 import json
 import math
 import os
@@ -15,10 +16,21 @@ import click
 
 from harness.engine.plan import Limits
 from harness.model.case import Case
-from harness.model.errors import InputError
+from harness.model.errors import InputError, visible
 
 STORE = Path("out/drystone.sqlite")
 REPORT = Path("out/report.html")
+
+REMEDIES = {
+    errno.EMFILE: "Raise the limit on open files of this process (ulimit -n) to 64 or more",
+    errno.ENFILE: "End other programs: the machine has as many files open as it can",
+    errno.ENOSPC: "Free room on the disk and repeat the command: finished runs are kept",
+    errno.EDQUOT: "Free room in your quota and repeat the command: finished runs are kept",
+    errno.EFBIG: "Raise the limit on file sizes (ulimit -f) and repeat the command: finished runs are kept",
+    errno.ENOMEM: "Give fewer --jobs, or end other programs: finished runs are kept",
+    errno.EAGAIN: "Give fewer --jobs: the machine allows no more processes (ulimit -u); finished runs are kept",
+}
+"""What can be done about errors of the operating system."""
 
 INPUT_ERROR = 2
 INTERRUPTED = 130
@@ -32,7 +44,7 @@ def catching(command: Callable[..., Any]) -> Callable[..., Any]:
         try:
             return command(*args, **kwargs)
         except InputError as error:
-            click.echo(f"drystone: {error}", err=True)
+            say(f"drystone: {error}", err=True)
             sys.exit(INPUT_ERROR)
         except KeyboardInterrupt:
             click.echo("drystone: interrupted; finished runs are kept in the store", err=True)
@@ -41,11 +53,22 @@ def catching(command: Callable[..., Any]) -> Callable[..., Any]:
             os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
             sys.exit(0)
         except OSError as error:
-            where = f"{error.filename}: " if error.filename else ""
-            click.echo(f"drystone: {where}{error.strerror or error}", err=True)
+            say(f"drystone: {_of_the_system(error)}", err=True)
             sys.exit(INPUT_ERROR)
 
     return wrapped
+
+
+def say(text: str, *, err: bool = False) -> None:
+    """Text on standard output or standard error, with what files may have put into it shown and not obeyed."""
+    click.echo("\n".join(visible(line) for line in text.split("\n")), err=err)
+
+
+def _of_the_system(error: OSError) -> str:
+    """An error of the operating system as a sentence that names the file, and what can be done where that is known."""
+    where = f"{error.filename}: " if error.filename else ""
+    remedy = REMEDIES.get(error.errno or 0, "")
+    return f"{where}{error.strerror or error}" + (f". {remedy}" if remedy else "")
 
 
 def _finite(_context: click.Context, _option: click.Parameter, value: float) -> float:
@@ -56,7 +79,17 @@ def _finite(_context: click.Context, _option: click.Parameter, value: float) -> 
 
 def print_json(value: Any) -> None:
     """One JSON document on standard output."""
-    click.echo(json.dumps(value, indent=1, ensure_ascii=False, allow_nan=False))
+    say_json(json.dumps(value, indent=1, ensure_ascii=False, allow_nan=False))
+
+
+def say_json(text: str) -> None:
+    """JSON text on standard output; what a terminal might obey is written as the escape that JSON has for it."""
+    lines = text.removesuffix("\n").split("\n")
+    click.echo(
+        "\n".join(
+            "".join(letter if letter.isprintable() else json.dumps(letter)[1:-1] for letter in line) for line in lines
+        )
+    )
 
 
 json_flag = click.option("--json", "as_json", is_flag=True, help="One JSON document on standard output.")
@@ -92,4 +125,4 @@ fresh_flag = click.option("--fresh", is_flag=True, help="Run again what is in th
 def warn(case: Case) -> None:
     """Tell what a person should hear about a wall, on standard error."""
     for sentence in case.warnings:
-        click.echo(f"drystone: {case.id}: {sentence}", err=True)
+        say(f"drystone: {case.id}: {sentence}", err=True)

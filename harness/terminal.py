@@ -11,7 +11,7 @@ from typing import Any
 
 import numpy as np
 from rich.console import Console
-from rich.markup import escape
+from rich.markup import escape as literal
 from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeElapsedColumn
 from rich.table import Table
 
@@ -22,7 +22,7 @@ from harness.engine.regression import violations
 from harness.model.assembly import Assembly
 from harness.model.case import Case
 from harness.model.comparison import ComparisonRun
-from harness.model.errors import InputError
+from harness.model.errors import InputError, visible
 from harness.model.method import Answer, Finding, Status
 from harness.model.result import Judgement, Result
 
@@ -34,6 +34,11 @@ MARKS = {
 }
 
 
+def escape(text: str) -> str:
+    """Text of any origin for a table or a line: control characters made visible, brackets no markup."""
+    return literal(visible(text))
+
+
 @contextmanager
 def progress(total: int, *, quiet: bool = False) -> Iterator[Told]:
     """Something to call after each run: a bar on a terminal, plain lines on standard error otherwise."""
@@ -43,7 +48,8 @@ def progress(total: int, *, quiet: bool = False) -> Iterator[Told]:
         def tell(run: Run, result: Result, stored: bool) -> None:
             if not quiet:
                 how = "stored" if stored else f"{result.cpu_seconds or 0.0:.2f} s"
-                print(f"{run.case.id} {run.method}: {_value(result)} ({how})", file=sys.stderr, flush=True)
+                line = f"{run.case.id} {run.method}: {_value(result)} ({how})"
+                print(visible(line), file=sys.stderr, flush=True)
 
         yield tell
         return
@@ -113,9 +119,9 @@ def print_comparison(compared: ComparisonRun, report: Path) -> None:
         for number, result in enumerate(case.results):
             table.add_row(
                 escape(case.case.id) if number == 0 else "",
-                result.method,
+                escape(result.method),
                 _value(result),
-                _expected(result),
+                escape(_expected(result)),
                 MARKS[str(result.verdict)],
                 _residual(result),
                 "-" if result.cpu_seconds is None else f"{result.cpu_seconds:.2f}",
@@ -125,9 +131,9 @@ def print_comparison(compared: ComparisonRun, report: Path) -> None:
     for case in compared.cases:
         for result in case.results:
             if result.status is not Status.OK:
-                console.print(f"{escape(case.case.id)}, {result.method}: {escape(result.sentence)}", highlight=False)
+                console.print(escape(f"{case.case.id}, {result.method}: {result.sentence}"), highlight=False)
         if case.split_on_dead_load:
-            console.print(f"{escape(case.case.id)}: {case.split_on_dead_load}.", highlight=False)
+            console.print(f"{escape(f'{case.case.id}: {case.split_on_dead_load}')}.", highlight=False)
     broken = violations(compared)
     gated = sum(item.gate for case in compared.cases for result in case.results for item in result.comparisons)
     gates = sum(len(case.gates) for case in compared.cases)
@@ -137,7 +143,7 @@ def print_comparison(compared: ComparisonRun, report: Path) -> None:
             console.print(f"  ✗ {escape(sentence)}", highlight=False)
     else:
         console.print(f"All {gated} gated references and {gates} theory gates hold.")
-    print(f"Report: {report}")
+    print(visible(f"Report: {report}"))
 
 
 def print_agreement(compared: ComparisonRun, within: float = 0.01) -> None:
@@ -149,7 +155,7 @@ def print_agreement(compared: ComparisonRun, within: float = 0.01) -> None:
         together = len(known) == 3 and max(known) <= (1.0 + within) * min(known)
         agreeing += together
         shown = "  ".join(f"{name} {'-' if value is None else f'{value:.5f}'}" for name, value in values.items())
-        print(f"{case.case.id:32s} {shown}  {'agree' if together else 'part'}")
+        print(f"{visible(case.case.id):32s} {shown}  {'agree' if together else 'part'}")
     print(f"FE, LA and DE lie within {within:.0%} of each other on {agreeing} of {len(compared.cases)} walls.")
 
 
@@ -179,7 +185,7 @@ def print_result(result: Result, case: Case) -> None:
     """One result, for a person."""
     console = Console()
     rows = Table.grid(padding=(0, 2))
-    rows.add_row("wall", f"{case.file.title} (free blocks: {result.blocks}, interfaces: {result.interfaces})")
+    rows.add_row("wall", escape(f"{case.file.title} (free blocks: {result.blocks}, interfaces: {result.interfaces})"))
     rows.add_row("method", result.method)
     rows.add_row("finding", f"{_value(result)}" if result.finding is Finding.COLLAPSES else str(result.finding))
     rows.add_row("", escape(result.sentence))
@@ -190,7 +196,8 @@ def print_result(result: Result, case: Case) -> None:
     for name, value in result.judge.residuals.items():
         rows.add_row("", f"{name} {value:.2e}")
     for comparison in result.comparisons:
-        rows.add_row("reference", f"{MARKS[str(comparison.verdict)]}: {comparison.reference}: {comparison.sentence}")
+        found = f"{MARKS[str(comparison.verdict)]}: {comparison.reference}: {comparison.sentence}"
+        rows.add_row("reference", escape(found))
     if result.cpu_seconds is not None:
         memory = (result.peak_memory_bytes or 0) / 2**20
         rows.add_row("cost", f"{result.cpu_seconds:.3f} s of CPU, {memory:.0f} MiB")
@@ -199,7 +206,7 @@ def print_result(result: Result, case: Case) -> None:
 
 def print_judgement(judgement: Judgement) -> None:
     """What the judge says, for a person."""
-    print(judgement.sentence)
+    print(visible(judgement.sentence))
     for name, value in judgement.residuals.items():
         print(f"  {name:16s} {value:.3e}")
     print("accepted" if judgement.accepted else "not accepted")
@@ -210,7 +217,8 @@ def print_check(lines: list[dict[str, Any]]) -> None:
     for line in lines:
         mark = MARKS[line["verdict"]]
         where = line["method"] + (f" {line['settings']}" if line["settings"] else "")
-        print(f"{mark}  {line['case']}  {line['quantity']}  {where}: {line['sentence']}  [{line['source']}]")
+        told = f"{mark}  {line['case']}  {line['quantity']}  {where}: {line['sentence']}  [{line['source']}]"
+        print(visible(told))
     bad = sum(line["verdict"] != "agrees" for line in lines)
     print(f"{len(lines) - bad} of {len(lines)} gated references hold.")
 
@@ -219,7 +227,7 @@ def print_changes(rows: list[dict[str, Any]]) -> None:
     """What changed against the baseline, and a count of what did not."""
     for row in rows:
         if row["change"] != "same":
-            print(f"{row['change']:6s} {row['case']}  {row['method']}: {row['figures']}")
+            print(visible(f"{row['change']:6s} {row['case']}  {row['method']}: {row['figures']}"))
     counts = Counter(row["change"] for row in rows)
     print(", ".join(f"{counts[kind]} {kind}" for kind in ("same", "better", "worse", "new") if counts[kind]))
 

@@ -19,7 +19,7 @@ from harness.model.method import Finding, Status, load_method, method_names
 from harness.model.reading import read_json, read_wall, wall_json
 from harness.model.result import Result, result_of
 from harness.model.wall import Wall
-from harness.options import cases_option, catching, json_flag, print_json, store_option, warn
+from harness.options import cases_option, catching, json_flag, print_json, say, say_json, store_option, warn
 
 
 @click.command(name="list")
@@ -74,10 +74,10 @@ def expand(wall: Path, output: Path | None) -> None:
     """Print WALL.json in explicit form: every block with its weight, every interface with its friction."""
     built = read_wall(wall)
     for sentence in built.warnings:
-        click.echo(f"drystone: {sentence}", err=True)
+        say(f"drystone: {sentence}", err=True)
     text = wall_json(built.wall)
     if output is None:
-        click.echo(text, nl=False)
+        say_json(text)
     else:
         output.write_text(text, encoding="utf-8")
 
@@ -130,7 +130,7 @@ def show(case: str, output: Path, window: bool, folders: tuple[Path, ...]) -> No
         show_window(found.built, found.file.title)
         return
     show_wall(found.built, output)
-    click.echo(str(output))
+    say(str(output))
 
 
 @click.command()
@@ -159,7 +159,7 @@ def figure(
     found, results = _answers(case, methods, store, folders)
     path = output or Path(f"{found.id}-{kind}.{suffix}")
     draw(found, results, kind, path)
-    click.echo(str(path))
+    say(str(path))
 
 
 @click.command()
@@ -176,7 +176,7 @@ def animate(case: str, method: str, output: Path | None, store: Path, folders: t
     found, results = _answers(case, (method,), store, folders)
     path = output or Path(f"{found.id}.gif")
     draw(found, results[0], path)
-    click.echo(str(path))
+    say(str(path))
 
 
 def _answers(case: str, methods: tuple[str, ...], store: Path, folders: tuple[Path, ...]) -> tuple[Case, list[Result]]:

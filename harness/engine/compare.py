@@ -7,14 +7,17 @@ from concurrent.futures import FIRST_COMPLETED, Future, ThreadPoolExecutor, wait
 from datetime import UTC, datetime
 from typing import Any
 
+from pydantic import BaseModel
+
 from harness.engine.isolate import run_isolated, stop_all
 from harness.engine.judge import judge
 from harness.engine.plan import Run
 from harness.engine.provenance import machine, versions
 from harness.engine.store import Store
 from harness.engine.verdict import compare, overall, theory_gates
-from harness.model.case import Case, CaseFile
+from harness.model.case import Case, CaseFile, Reference
 from harness.model.comparison import CaseResults, ComparisonRun
+from harness.model.errors import InputError
 from harness.model.reading import parse_wall, validate
 from harness.model.result import Result
 
@@ -150,39 +153,63 @@ def remember(store: Store, compared: ComparisonRun, runs: Sequence[Run]) -> None
     )
 
 
+class _KeptCase(BaseModel):
+    file: CaseFile
+    wall: dict[str, Any]
+    origin: str
+
+
+class _KeptRun(BaseModel):
+    case: str
+    method: str
+    settings: dict[str, Any]
+    key: str
+    references: list[Reference]
+
+
+class _Kept(BaseModel):
+    """What `remember` leaves in a store."""
+
+    title: str
+    command: str
+    created: str
+    provenance: dict[str, Any]
+    cases: dict[str, _KeptCase]
+    runs: list[_KeptRun]
+
+
 def recall(store: Store) -> ComparisonRun | None:
     """The comparison made last, rebuilt from the store without running anything; None if there is none.
 
     Results are judged again; a run that is no longer in the store is left out.
+
+    Raises:
+        InputError: the store or what it keeps is damaged.
     """
     from harness.engine.plan import Limits
-    from harness.model.case import Reference
 
     content = store.last_comparison()
     if content is None:
         return None
+    kept = validate(_Kept, content, f"{store.path}: the last comparison in it")
     cases = {
-        name: Case(
-            validate(CaseFile, kept["file"], str(store.path)),
-            parse_wall(kept["wall"], kept["origin"]),
-            kept["origin"],
-        )
-        for name, kept in content["cases"].items()
+        name: Case(item.file, parse_wall(item.wall, item.origin), item.origin) for name, item in kept.cases.items()
     }
     runs: list[Run] = []
     results: list[Result] = []
-    for kept in content["runs"]:
-        found = store.get(kept["key"])
+    for item in kept.runs:
+        found = store.get(item.key)
         if found is None:
             continue
-        references = tuple(Reference.model_validate(item) for item in kept["references"])
-        run = Run(cases[kept["case"]], kept["method"], kept["settings"], Limits(), references)
+        if item.case not in cases:
+            raise InputError(f'the last comparison in it has no wall "{item.case}"', source=str(store.path))
+        run = Run(cases[item.case], item.method, item.settings, Limits(), tuple(item.references))
         runs.append(run)
         results.append(judged(run, found[0].model_copy(update={"case": run.case.id}), found[1]))
     return ComparisonRun(
-        title=content["title"],
-        command=content["command"],
-        created=content["created"],
+        title=kept.title,
+        command=kept.command,
+        created=kept.created,
         cases=gather(list(cases.values()), runs, results),
-        provenance=content["provenance"],
+        provenance=kept.provenance,
     )

@@ -2,25 +2,42 @@
 
 from __future__ import annotations
 
+import errno
 import hashlib
 import json
+import os
+import shutil
 import sqlite3
+import stat
+import tempfile
+import time
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
+from pydantic import ValidationError
+
 from harness.model.errors import InputError
+from harness.model.reading import LARGEST_FILE, json_of
 from harness.model.result import Result
 
 SCHEMA_VERSION = 1
-_SCHEMA = """
-CREATE TABLE IF NOT EXISTS run (
-  key TEXT PRIMARY KEY, case_id TEXT NOT NULL, method TEXT NOT NULL, started TEXT NOT NULL,
-  tolerance REAL NOT NULL, result TEXT NOT NULL);
-CREATE TABLE IF NOT EXISTS comparison (
-  number INTEGER PRIMARY KEY AUTOINCREMENT, created TEXT NOT NULL, content TEXT NOT NULL);
-"""
+COLUMNS = {
+    "run": ("key", "case_id", "method", "started", "tolerance", "result"),
+    "comparison": ("number", "created", "content"),
+}
+"""The tables of a store and their columns, in order."""
+_SCHEMA = (
+    "CREATE TABLE IF NOT EXISTS run (key TEXT PRIMARY KEY, case_id TEXT NOT NULL, method TEXT NOT NULL, "
+    "started TEXT NOT NULL, tolerance REAL NOT NULL, result TEXT NOT NULL)",
+    "CREATE TABLE IF NOT EXISTS comparison (number INTEGER PRIMARY KEY AUTOINCREMENT, created TEXT NOT NULL, "
+    "content TEXT NOT NULL)",
+    f"PRAGMA user_version = {SCHEMA_VERSION}",
+)
+WAIT_SECONDS = 60.0
+"""How long another program that writes the store is waited for."""
+OTHER_FILE = "Name another file with --store"
 
 
 def run_key(wall: str, method: str, settings: dict[str, Any], limits: dict[str, float], code: str) -> str:
@@ -30,72 +47,239 @@ def run_key(wall: str, method: str, settings: dict[str, Any], limits: dict[str, 
 
 
 class Store:
-    """An open result store. Every finished run is committed at once, so that killing the process loses none."""
+    """An open result store. Every finished run is committed at once, so that killing the process loses none.
 
-    def __init__(self, path: Path) -> None:
-        path.parent.mkdir(parents=True, exist_ok=True)
+    Args:
+        path: the file; made if there is none, unless it is only read.
+        read_only: nothing is written, not even beside the file: a store on a read-only disk can be read.
+
+    Raises:
+        InputError: the file is no store, damaged, of another version, locked, or cannot be opened, with the cause.
+    """
+
+    def __init__(self, path: Path, *, read_only: bool = False) -> None:
         self.path = path
+        self._copy: tempfile.TemporaryDirectory[str] | None = None
+        self._connection: sqlite3.Connection | None = None
+        if not read_only:
+            path.parent.mkdir(parents=True, exist_ok=True)
+        if path.exists() and not stat.S_ISREG(path.stat().st_mode):
+            raise InputError("it is not a regular file", OTHER_FILE, source=str(path))
         try:
-            self._connection = sqlite3.connect(path, timeout=60.0)
-            version = self._connection.execute("PRAGMA user_version").fetchone()[0]
-            if version not in (0, SCHEMA_VERSION):
-                raise InputError(
-                    f"it is a store of version {version}",
-                    f"This release writes version {SCHEMA_VERSION}: name another file with --store",
-                    source=str(path),
-                )
-            self._connection.execute("PRAGMA journal_mode=WAL")
-            self._connection.executescript(_SCHEMA)
-            self._connection.execute(f"PRAGMA user_version = {SCHEMA_VERSION}")
-            self._connection.commit()
-        except sqlite3.DatabaseError as error:
+            with self._told():
+                self._connection = self._open_to_read() if read_only else _connect(path)
+                self._check(self._connection)
+                if not read_only:
+                    _prepare(self._connection)
+        except BaseException:
+            self.close()
+            raise
+
+    def _open_to_read(self) -> sqlite3.Connection:
+        """A connection that writes nothing.
+
+        A store whose folder is read-only has no room for the index of its log. Without a log it is read as it is; with
+        one, which a killed run left, through a copy of both.
+        """
+        connection = _connect(self.path, "?mode=ro")
+        try:
+            connection.execute("SELECT name FROM sqlite_master").fetchall()
+            return connection
+        except sqlite3.OperationalError:
+            connection.close()
+        log = self.path.with_name(self.path.name + "-wal")
+        if not log.exists() or not log.stat().st_size:
+            return _connect(self.path, "?mode=ro&immutable=1")
+        self._copy = tempfile.TemporaryDirectory(prefix="drystone-store-")
+        copied = Path(self._copy.name) / self.path.name
+        shutil.copyfile(self.path, copied)
+        shutil.copyfile(log, Path(self._copy.name) / log.name)
+        return _connect(copied)
+
+    def _check(self, connection: sqlite3.Connection) -> None:
+        """Refuse what another program, or a later release, wrote."""
+        version = connection.execute("PRAGMA user_version").fetchone()[0]
+        if version not in (0, SCHEMA_VERSION):
             raise InputError(
-                f"it is not a result store ({error})", "Name another file with --store", source=str(path)
-            ) from None
+                f"it is a store of version {version}",
+                f"This release writes version {SCHEMA_VERSION}: name another file with --store",
+                source=str(self.path),
+            )
+        names = [row[0] for row in connection.execute("SELECT name FROM sqlite_master WHERE type = 'table'")]
+        tables = [name for name in names if not name.startswith("sqlite_")]
+        for table in tables:
+            columns = tuple(row[1] for row in connection.execute("SELECT * FROM pragma_table_info(?)", (table,)))
+            if columns != COLUMNS.get(table, columns) or (version == 0 and table not in COLUMNS):
+                raise InputError(
+                    f'it is not a result store: its table "{table}" is another program\'s',
+                    OTHER_FILE,
+                    source=str(self.path),
+                )
+        missing = [table for table in COLUMNS if table not in tables]
+        if version == SCHEMA_VERSION and missing:
+            raise InputError(f'it is damaged: it has no table "{missing[0]}"', OTHER_FILE, source=str(self.path))
+
+    @property
+    def _open(self) -> sqlite3.Connection:
+        assert self._connection is not None
+        return self._connection
+
+    @contextmanager
+    def _told(self) -> Iterator[None]:
+        """Turn an error of the database into a sentence with its true cause."""
+        try:
+            yield
+        except sqlite3.Error as error:
+            problem, remedy = _cause(error, self.path)
+            raise InputError(problem, remedy, source=str(self.path)) from None
+
+    def _damaged(self, element: str, error: Exception) -> InputError:
+        reason = str(error).splitlines()[0] if str(error) else type(error).__name__
+        return InputError(
+            f"it is damaged ({reason})", f"Run with --fresh to make it again; the rest is whole. {OTHER_FILE}, or that",
+            element, str(self.path),
+        )  # fmt: skip
 
     def get(self, key: str) -> tuple[Result, float] | None:
-        """The result stored under a key with the tolerance of its method, or None."""
-        row = self._connection.execute("SELECT result, tolerance FROM run WHERE key = ?", (key,)).fetchone()
-        return None if row is None else (Result.model_validate_json(row[0]), float(row[1]))
+        """The result stored under a key with the tolerance of its method, or None.
+
+        Raises:
+            InputError: the store or what it holds under the key is damaged.
+        """
+        with self._told():
+            query = "SELECT method, case_id, length(result), result, tolerance FROM run WHERE key = ?"
+            row = self._open.execute(query, (key,)).fetchone()
+        if row is None:
+            return None
+        method, case, size, text, tolerance = row
+        element = f"the result of {method} on {case} in it"
+        try:
+            if size > LARGEST_FILE:
+                raise ValueError(f"{size:,} characters")
+            return Result.model_validate_json(text), float(tolerance)
+        except (ValidationError, ValueError, TypeError) as error:
+            raise self._damaged(element, error) from None
 
     def put(self, key: str, result: Result, tolerance: float) -> None:
-        """Store a result, in place of any under the same key."""
-        with self._connection:
-            self._connection.execute(
+        """Store a result, in place of any under the same key.
+
+        Raises:
+            InputError: the store cannot be written, with the cause.
+        """
+        with self._told(), self._open:
+            self._open.execute(
                 "INSERT OR REPLACE INTO run (key, case_id, method, started, tolerance, result) "
                 "VALUES (?, ?, ?, ?, ?, ?)",
                 (key, result.case, result.method, result.started, tolerance, result.model_dump_json()),
             )
 
     def remember(self, created: str, content: dict[str, Any]) -> None:
-        """Store what a comparison consisted of, so that its report can be built again."""
-        with self._connection:
-            self._connection.execute(
+        """Store what a comparison consisted of, so that its report can be built again.
+
+        Raises:
+            InputError: the store cannot be written, with the cause.
+        """
+        with self._told(), self._open:
+            self._open.execute(
                 "INSERT INTO comparison (created, content) VALUES (?, ?)",
                 (created, json.dumps(content, allow_nan=False)),
             )
 
     def last_comparison(self) -> dict[str, Any] | None:
-        """The content of the comparison made last, or None."""
-        row = self._connection.execute("SELECT content FROM comparison ORDER BY number DESC LIMIT 1").fetchone()
+        """The content of the comparison made last, or None.
+
+        Raises:
+            InputError: the store or the comparison is damaged.
+        """
+        with self._told():
+            row = self._open.execute("SELECT content FROM comparison ORDER BY number DESC LIMIT 1").fetchone()
         if row is None:
             return None
-        content: dict[str, Any] = json.loads(row[0])
+        if not isinstance(row[0], str) or len(row[0]) > LARGEST_FILE:
+            raise self._damaged("the last comparison in it", ValueError("it is no text of a usual size"))
+        content = json_of(row[0], f"{self.path}: the last comparison in it")
+        if not isinstance(content, dict):
+            raise self._damaged("the last comparison in it", ValueError("it is no object"))
         return content
 
     def close(self) -> None:
         """Close the file."""
-        self._connection.close()
+        if self._connection is not None:
+            self._connection.close()
+        if self._copy is not None:
+            self._copy.cleanup()
+
+
+def _connect(path: Path, how: str = "") -> sqlite3.Connection:
+    return sqlite3.connect(path.absolute().as_uri() + how, timeout=WAIT_SECONDS, uri=True)
+
+
+def _prepare(connection: sqlite3.Connection) -> None:
+    """Make the tables in one transaction. The switch to a log does not wait for a lock by itself, so it is repeated."""
+    deadline = time.monotonic() + WAIT_SECONDS
+    while True:
+        try:
+            connection.execute("PRAGMA journal_mode=WAL")
+            break
+        except sqlite3.OperationalError as error:
+            if "locked" not in str(error) or time.monotonic() > deadline:
+                raise
+            time.sleep(0.05)
+    if connection.execute("PRAGMA user_version").fetchone()[0] != SCHEMA_VERSION:
+        with connection:
+            connection.execute("BEGIN IMMEDIATE")
+            for statement in _SCHEMA:
+                connection.execute(statement)
+
+
+def _cause(error: sqlite3.Error, path: Path) -> tuple[str, str]:
+    """What went wrong and what to do, from the words of the database and a look at the file."""
+    words = str(error)
+    if "unable to open" in words or "disk I/O error" in words or "readonly" in words:
+        reason = _of_the_system(path)
+        if reason == errno.EMFILE:
+            return "no more files can be opened by this process", "Raise the limit (ulimit -n)"
+        if reason:
+            return f"it cannot be opened for writing ({os.strerror(reason)})", OTHER_FILE
+    if "disk is full" in words or "disk I/O error" in words:
+        return f"the disk is full ({words})", "Free room and run again: finished runs are kept"
+    if "readonly" in words:
+        return "it cannot be written: its disk or folder is read-only", OTHER_FILE
+    if "locked" in words:
+        return f"another program has been writing it for {WAIT_SECONDS:.0f} s", f"Wait for it, or: {OTHER_FILE}"
+    if "not a database" in words:
+        return f"it is not a result store ({words})", OTHER_FILE
+    if "malformed" in words or isinstance(error, sqlite3.DataError | sqlite3.IntegrityError):
+        return f"it is damaged ({words})", f"`sqlite3 FILE .recover` saves what is whole. {OTHER_FILE}"
+    return f"it cannot be used ({words})", OTHER_FILE
+
+
+def _of_the_system(path: Path) -> int:
+    """The error number the operating system gives for opening the store and files beside it; 0 if it opens them."""
+    opened: list[int] = []
+    try:
+        opened += [os.open(os.devnull, os.O_RDONLY) for _ in range(4)]  # a store has a log and an index beside it
+        opened.append(os.open(path if path.exists() else path.parent, os.O_RDWR if path.is_file() else os.O_RDONLY))
+    except OSError as error:
+        return error.errno or 0
+    finally:
+        for number in opened:
+            os.close(number)
+    return 0
 
 
 @contextmanager
-def open_store(path: Path) -> Iterator[Store]:
+def open_store(path: Path, *, read_only: bool = False) -> Iterator[Store]:
     """A store that is closed at the end.
 
+    Args:
+        path: the file.
+        read_only: nothing is written, so that a store on a read-only disk can be read.
+
     Raises:
-        InputError: the file is no store, or one of another version.
+        InputError: the file is no store, damaged, of another version, or cannot be opened.
     """
-    store = Store(path)
+    store = Store(path, read_only=read_only)
     try:
         yield store
     finally:

@@ -1,0 +1,197 @@
+"""Faults of the store: whatever happened to the file, one sentence names the true cause and nothing is lost."""
+
+from __future__ import annotations
+
+import json
+import os
+import shutil
+import sqlite3
+import subprocess
+import sys
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from harness.engine.compare import comparison_run, execute, recall, remember
+from harness.engine.plan import Limits, plan_case
+from harness.engine.store import SCHEMA_VERSION, open_store
+from harness.model.errors import InputError
+from tests.walls import case, stack
+
+
+def filled(path: Path) -> Path:
+    """A store with one comparison of two runs."""
+    wall = case(stack(2))
+    runs = plan_case(wall, ["la", "la-associated"], Limits(60.0))
+    with open_store(path) as store:
+        results = execute(runs, store, 1)
+        remember(store, comparison_run("two", "drystone compare", [wall], runs, results), runs)
+    return path
+
+
+@pytest.fixture(scope="module")
+def whole(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    return filled(tmp_path_factory.mktemp("store") / "whole.sqlite")
+
+
+@pytest.fixture
+def store(whole: Path, tmp_path: Path) -> Path:
+    return Path(shutil.copyfile(whole, tmp_path / "s.sqlite"))
+
+
+def change(path: Path, statement: str, *values: Any) -> None:
+    connection = sqlite3.connect(path)
+    with connection:
+        connection.execute(statement, values)
+    connection.close()
+
+
+def drystone(*words: str | Path, prefix: tuple[str, ...] = (), **more: Any) -> subprocess.CompletedProcess[str]:
+    command = [*prefix, sys.executable, "-m", "harness.cli", *map(str, words)]
+    return subprocess.run(command, capture_output=True, text=True, timeout=120, **more)
+
+
+def told_in_one_sentence(done: subprocess.CompletedProcess[str], *words: str) -> None:
+    assert done.returncode == 2, done.stderr
+    lines = done.stderr.strip().splitlines()
+    assert len(lines) == 1, done.stderr
+    assert lines[0].startswith("drystone: ")
+    for word in words:
+        assert word in lines[0]
+
+
+def report(store: Path, **more: Any) -> subprocess.CompletedProcess[str]:
+    return drystone("report", "--store", store, "--report", store.parent / "report.html", **more)
+
+
+def read_all(path: Path, *, read_only: bool) -> None:
+    with open_store(path, read_only=read_only) as opened:
+        compared = recall(opened)
+        assert compared is not None
+        assert [result.multiplier is not None for result in compared.cases[0].results] == [True, True]
+
+
+@pytest.mark.parametrize("read_only", [True, False])
+def test_every_damaged_page_is_told_or_does_no_harm(store: Path, read_only: bool):
+    """4,096 bytes of noise at each page in turn: the comparison is read whole, or the damage is told."""
+    content, told = store.read_bytes(), 0
+    for start in range(0, len(content), 4096):
+        store.write_bytes(content[:start] + bytes(reversed(content[start : start + 4096])) + content[start + 4096 :])
+        try:
+            read_all(store, read_only=read_only)
+        except InputError as error:
+            told += 1
+            assert any(word in str(error) for word in ("damaged", "not a result store", "version")), error  # noqa: PT017
+        for beside in ("-wal", "-shm"):
+            store.with_name(store.name + beside).unlink(missing_ok=True)
+    assert told > 2
+
+
+@pytest.mark.parametrize("part", [0.0, 0.001, 0.3, 0.5, 0.7])
+def test_a_truncated_store_is_told(store: Path, part: float):
+    content = store.read_bytes()
+    store.write_bytes(content[: int(part * len(content))])
+    if part == 0.0:
+        with open_store(store) as opened:  # an empty file is an empty store
+            assert recall(opened) is None
+        return
+    with pytest.raises(InputError, match=r"damaged|not a result store"):
+        read_all(store, read_only=True)
+
+
+@pytest.mark.parametrize(
+    "column", ["UPDATE run SET result = substr(result, 1, length(result) / 2)", "UPDATE run SET result = '[]'"]
+)
+def test_truncated_json_of_a_run_names_the_run(store: Path, column: str):
+    change(store, column)
+    with pytest.raises(InputError, match="the result of la on made-up in it: it is damaged"):
+        read_all(store, read_only=True)
+
+
+@pytest.mark.parametrize("text", ['{"title": ', "[1]", "{}", '{"title": 3}', "\x00", "[" * 5000])
+def test_a_damaged_comparison_is_told(store: Path, text: str):
+    change(store, "UPDATE comparison SET content = ?", text)
+    with pytest.raises(InputError, match="the last comparison in it"):
+        read_all(store, read_only=True)
+
+
+def test_a_run_of_a_wall_that_the_comparison_does_not_have_is_told(store: Path):
+    connection = sqlite3.connect(store)
+    content = json.loads(connection.execute("SELECT content FROM comparison").fetchone()[0])
+    connection.close()
+    change(store, "UPDATE comparison SET content = ?", json.dumps(content | {"cases": {}}))
+    with pytest.raises(InputError, match='no wall "made-up"'):
+        read_all(store, read_only=True)
+
+
+def test_another_programs_database_is_refused_and_left_as_it_is(tmp_path: Path):
+    path = tmp_path / "other.sqlite"
+    change(path, "CREATE TABLE run (id INTEGER PRIMARY KEY, distance REAL)")
+    before = path.read_bytes()
+    told_in_one_sentence(drystone("compare", "stack-2", "--store", path), "run", "another program's")
+    assert path.read_bytes() == before
+    unrelated = tmp_path / "unrelated.sqlite"
+    change(unrelated, "CREATE TABLE bookmarks (id INTEGER PRIMARY KEY)")
+    told_in_one_sentence(drystone("compare", "stack-2", "--store", unrelated), "bookmarks")
+
+
+def test_a_store_of_a_later_release_is_refused(store: Path):
+    change(store, f"PRAGMA user_version = {SCHEMA_VERSION + 1}")
+    told_in_one_sentence(report(store), f"version {SCHEMA_VERSION + 1}", f"version {SCHEMA_VERSION}:")
+
+
+@pytest.mark.parametrize("kind", ["fifo", "device", "folder", "text"])
+def test_what_is_no_store_is_told(tmp_path: Path, kind: str):
+    path = tmp_path / "s.sqlite"
+    if kind == "fifo":
+        os.mkfifo(path)
+    elif kind == "device":
+        path = Path("/dev/zero")
+    elif kind == "folder":
+        path.mkdir()
+    else:
+        path.write_text("no database at all, " * 100)
+    told_in_one_sentence(drystone("report", "--store", path, "--report", tmp_path / "r.html"), str(path), "not a")
+
+
+def test_a_killed_run_leaves_a_log_and_a_report_from_a_read_only_copy_still_has_all_of_it(whole: Path, tmp_path: Path):
+    path = tmp_path / "s.sqlite"
+    script = (
+        f"import os, shutil; from pathlib import Path; from tests.faults.test_store import filled, open_store\n"
+        f"shutil.copyfile({str(whole)!r}, {str(path)!r})\n"
+        f"with open_store(Path({str(path)!r})) as s:\n"
+        f"    content = s.last_comparison(); content['title'] = 'in the log'\n"
+        f"    s.remember('2026-11-25', content)\n"
+        f"    os._exit(9)\n"
+    )
+    assert subprocess.run([sys.executable, "-c", script], timeout=120).returncode == 9
+    assert path.with_name("s.sqlite-wal").stat().st_size > 0
+    with open_store(path, read_only=True) as opened:
+        compared = recall(opened)
+    assert compared is not None
+    assert compared.title == "in the log"
+
+
+def test_a_store_that_is_locked_for_long_is_told(store: Path, monkeypatch: pytest.MonkeyPatch):
+    monkeypatch.setattr("harness.engine.store.WAIT_SECONDS", 0.2)
+    holder = sqlite3.connect(store, isolation_level=None)
+    holder.execute("BEGIN EXCLUSIVE")
+    with pytest.raises(InputError, match="another program has been writing it"), open_store(store) as opened:
+        opened.remember("now", {})
+    holder.close()
+
+
+def test_two_programs_may_make_one_store_at_once(tmp_path: Path):
+    script = (
+        f"from pathlib import Path; from harness.engine.store import open_store\n"
+        f"for k in range(20):\n"
+        f"    with open_store(Path({str(tmp_path)!r}) / f's{{k}}.sqlite') as s: s.remember('now', {{}})\n"
+    )
+    running = [subprocess.Popen([sys.executable, "-c", script], stderr=subprocess.PIPE, text=True) for _ in range(3)]
+    errors = [process.communicate(timeout=120)[1] for process in running]
+    assert [process.returncode for process in running] == [0, 0, 0], errors
+    for number in range(20):
+        connection = sqlite3.connect(tmp_path / f"s{number}.sqlite")
+        assert connection.execute("SELECT count(*) FROM comparison").fetchone() == (3,)
+        connection.close()
