@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
-from concurrent.futures import FIRST_COMPLETED, Future, ThreadPoolExecutor, wait
+from collections.abc import Callable, Generator, Sequence
+from contextlib import closing
 from datetime import UTC, datetime
-from typing import Any
 
 from pydantic import BaseModel
 
-from harness.engine.isolate import run_isolated, stop_all
+from harness.engine.executors import Executor, LocalExecutor
 from harness.engine.judge import judge
 from harness.engine.plan import Run
 from harness.engine.provenance import machine, versions
@@ -33,7 +32,13 @@ def judged(run: Run, result: Result, tolerance: float) -> Result:
 
 
 def execute(
-    runs: Sequence[Run], store: Store | None, jobs: int, *, fresh: bool = False, told: Told | None = None
+    runs: Sequence[Run],
+    store: Store | None,
+    jobs: int,
+    *,
+    fresh: bool = False,
+    told: Told | None = None,
+    executor: Executor | None = None,
 ) -> list[Result]:
     """Results of runs, in their order. Each is stored as soon as it is there.
 
@@ -43,42 +48,44 @@ def execute(
         jobs: number of child processes at a time.
         fresh: run what is in the store as well.
         told: called after each run.
+        executor: where runs are made; None: in child processes of this machine.
     """
     results: dict[int, Result] = {}
-    waiting: list[int] = []
-    for number, run in enumerate(runs):
-        found = None if store is None or fresh else store.get(run.key)
-        if found is None:
-            waiting.append(number)
-            continue
-        results[number] = judged(run, found[0].model_copy(update={"case": run.case.id}), found[1])
-        if told:
-            told(run, results[number], True)
-    with ThreadPoolExecutor(max_workers=max(1, jobs)) as pool:
-        pending = {pool.submit(run_isolated, runs[number].task(), runs[number].case.id): number for number in waiting}
-        try:
-            for future in _as_done(pending):
-                number = pending[future]
-                measured = future.result()
-                run = runs[number]
-                kept = measured.result.model_copy(update={"key": run.key})
-                if store is not None:
-                    store.put(run.key, kept, measured.tolerance)
-                results[number] = judged(run, kept, measured.tolerance)
-                if told:
-                    told(run, results[number], False)
-        except BaseException:
-            pool.shutdown(wait=False, cancel_futures=True)
-            stop_all()
-            raise
+    with closing(executed(runs, store, executor or LocalExecutor(jobs), fresh=fresh)) as ended:
+        for number, result, stored in ended:
+            results[number] = result
+            if told:
+                told(runs[number], result, stored)
     return [results[number] for number in range(len(runs))]
 
 
-def _as_done(pending: dict[Future[Any], int]) -> Iterator[Future[Any]]:
-    left = set(pending)
-    while left:
-        done, left = wait(left, return_when=FIRST_COMPLETED)
-        yield from sorted(done, key=lambda future: pending[future])
+def executed(
+    runs: Sequence[Run], store: Store | None, executor: Executor, *, fresh: bool = False
+) -> Generator[tuple[int, Result, bool]]:
+    """Numbers and results of runs as they end, and whether the result came from the store: those first.
+
+    A run that is planned twice is made once. Closing the generator stops what is under way; what ended is stored.
+    """
+    waiting: dict[str, list[int]] = {}
+    for number, run in enumerate(runs):
+        found = None if store is None or fresh else store.get(run.key)
+        if found is None:
+            waiting.setdefault(run.key, []).append(number)
+        else:
+            yield number, _of_run(run, *found), True
+    firsts = [runs[numbers[0]] for numbers in waiting.values()]
+    with closing(executor.map([run.job(place) for place, run in enumerate(firsts)])) as made:
+        for place, measured in made:
+            run = firsts[place]
+            kept = measured.result.model_copy(update={"key": run.key})
+            if store is not None:
+                store.put(run.key, kept, measured.tolerance)
+            for number in waiting[run.key]:
+                yield number, _of_run(runs[number], kept, measured.tolerance), False
+
+
+def _of_run(run: Run, result: Result, tolerance: float) -> Result:
+    return judged(run, result.model_copy(update={"case": run.case.id}), tolerance)
 
 
 def gather(cases: Sequence[Case], runs: Sequence[Run], results: Sequence[Result]) -> list[CaseResults]:

@@ -1,4 +1,4 @@
-"""One run in a process of its own: started from a fork server, watched, and killed as a group when it must end."""
+"""Runs in child processes: started from a fork server, watched, and killed as a group when one must end."""
 
 from __future__ import annotations
 
@@ -10,6 +10,7 @@ import os
 import signal
 import tempfile
 import time
+from collections.abc import Iterable
 from dataclasses import dataclass
 from datetime import UTC, datetime
 from multiprocessing.connection import wait
@@ -18,14 +19,20 @@ from typing import Any
 
 import psutil
 
-from harness.engine import worker
+from harness.engine import preload, worker
 from harness.engine.provenance import machine, versions
 from harness.engine.worker import Task
 from harness.model.method import Answer, Finding, Status
 from harness.model.result import Result, result_of
 
-LOOK_SECONDS = 0.05
-"""How often memory and time of a run are looked at."""
+LOOK_SECONDS, LOOKS_AT_CHILDREN = 0.05, 10
+"""How often memory and time of a run are looked at, and at which look those of what it started as well."""
+
+LOADING_SECONDS = 300.0
+"""Wall time in which a method must be loaded, its kernels compiled if they never were; no run is charged for it."""
+
+LONG_SECONDS = 10.0
+"""A child that made a run this long makes no other: starting one costs nothing beside it, and its memory is clean."""
 
 ONE_THREAD = {f"{library}_NUM_THREADS": "1" for library in ("OMP", "OPENBLAS", "MKL", "NUMEXPR", "NUMBA")}
 """Environment of every run: one thread, so that CPU time means the same for all methods."""
@@ -40,11 +47,32 @@ class Measured:
 
 
 @functools.cache
-def _context() -> multiprocessing.context.ForkServerContext:
-    os.environ.update(ONE_THREAD)
+def _fork_server() -> multiprocessing.context.ForkServerContext:
     context = multiprocessing.get_context("forkserver")
-    context.set_forkserver_preload([worker.__name__])
+    context.set_forkserver_preload([worker.__name__, preload.__name__])
     return context
+
+
+def start_context(methods: Iterable[str]) -> multiprocessing.context.BaseContext:
+    """Where children come from: a fork server that has loaded the methods once.
+
+    The server starts with the first child and keeps what it loaded then; other methods are loaded by the children.
+    """
+    os.environ.update(ONE_THREAD)
+    os.environ[preload.VARIABLE] = ",".join(preload.shipped(methods))
+    return _fork_server()
+
+
+def own_context() -> multiprocessing.context.BaseContext | None:
+    """Children forked from this very process, which has loaded most already; None if it has threads.
+
+    One run alone is cheapest so: a fork server would be a second interpreter.
+    """
+    try:
+        threads = len(os.listdir("/proc/self/task"))
+    except OSError:
+        return None
+    return multiprocessing.get_context("fork") if threads == 1 else None
 
 
 def run_isolated(task: Task, case: str) -> Measured:
@@ -54,102 +82,168 @@ def run_isolated(task: Task, case: str) -> Measured:
         task: method, assembly, settings and limits.
         case: id of the case, for the result.
     """
-    begun = datetime.now(UTC).isoformat(timespec="seconds")
-    with tempfile.TemporaryDirectory(prefix="drystone-") as folder:
-        process = _context().Process(target=worker.run_task, args=(task, folder), daemon=False)
-        clock = time.perf_counter()
-        process.start()
-        watched = _Watched(process, task)
-        _running.add(watched)
+    child = Child(start_context([task.method]))
+    try:
+        child.begin(task, case)
+        while (measured := child.look()) is None:
+            wait(child.waitables, timeout=LOOK_SECONDS)
+        return measured
+    finally:
+        child.end()
+
+
+class Child:
+    """A child process that makes runs one after another, and all that the engine knows of the present one."""
+
+    def __init__(self, context: multiprocessing.context.BaseContext) -> None:
+        self._folder = tempfile.TemporaryDirectory(prefix="drystone-", ignore_cleanup_errors=True)
+        self._connection, theirs = context.Pipe()
+        self._process: Any = context.Process(  # type: ignore[attr-defined]
+            target=worker.serve, args=(theirs, self._folder.name), daemon=False
+        )
+        self._process.start()
+        theirs.close()
+        self.runs = 0
+        self.reusable = True
+        self._run: _UnderWay | None = None
+
+    @property
+    def waitables(self) -> list[Any]:
+        """What `multiprocessing.connection.wait` may wait for."""
+        return [self._connection, self._process.sentinel]
+
+    @property
+    def pid(self) -> int:
+        """Number of its process."""
+        return int(self._process.pid)
+
+    def begin(self, task: Task, case: str) -> None:
+        """Send a task."""
+        self._run = _UnderWay(task, case, self._process.pid)
+        with contextlib.suppress(BrokenPipeError, ConnectionResetError):  # its end is told by the next look
+            self._connection.send(task)
+
+    def look(self) -> Measured | None:
+        """The measured run if it has ended; else None, after its use of time and memory was looked at."""
+        run = self._run
+        assert run is not None, "no run was begun"
         try:
-            watched.until_end()
+            while self._connection.poll():
+                message = self._connection.recv_bytes()
+                if message == worker.LOADED:
+                    run.loaded()
+                elif message == worker.REPLACE:
+                    self.reusable = False
+                    return self._made_by_another(run)
+                else:
+                    return self._measured(run, json.loads(message))
+        except (EOFError, ConnectionResetError):
+            self._process.join(timeout=LOOK_SECONDS)
+        if not self._process.is_alive():
+            return self._failed(run)
+        run.look()
+        if run.ending is not None:
+            self._kill()
+            self._process.join()
+            return self._failed(run)
+        return None
+
+    def _made_by_another(self, run: _UnderWay) -> Measured:
+        other = Child(start_context([run.task.method]))
+        try:
+            other.begin(run.task, run.case)
+            while (measured := other.look()) is None:
+                wait(other.waitables, timeout=LOOK_SECONDS)
         finally:
-            watched.kill()
-            process.join()
-            _running.discard(watched)
-        elapsed = time.perf_counter() - clock
-        record = _read_record(Path(folder))
-        if record is None or watched.ending is not None:
-            record = {
-                "answer": watched.failure(process.exitcode, _last_words(Path(folder))),
-                "cpu_seconds": watched.cpu_seconds,
-                "wall_seconds": elapsed,
-                "peak_memory_bytes": watched.peak_memory,
-            }
-        process.close()
-    answer = record["answer"]
-    result = result_of(
-        answer,
-        task.assembly,
-        case=case,
-        method=task.method,
-        family=record.get("family") or task.method.split("-", maxsplit=1)[0],
-    )
-    measured = result.model_copy(
-        update={
-            "cpu_seconds": record["cpu_seconds"],
-            "wall_seconds": record["wall_seconds"],
-            "peak_memory_bytes": record["peak_memory_bytes"],
-            "settings": record.get("settings") or task.settings,
-            "limits": {"seconds": task.seconds, "memory_bytes": float(task.memory_bytes)},
-            "versions": versions(),
-            "machine": machine(),
-            "started": begun,
-        }
-    )
-    return Measured(measured, float(record.get("tolerance") or 0.0))
+            other.end()
+        self._run = None
+        return measured
+
+    def _measured(self, run: _UnderWay, record: dict[str, Any]) -> Measured:
+        self._run = None
+        self.runs += 1
+        self.reusable = self.reusable and record["reusable"] and record["wall_seconds"] < LONG_SECONDS
+        answer = record["answer"]
+        answer["status"], answer["finding"] = Status(answer["status"]), Finding(answer["finding"])
+        answer["bracket"] = tuple(answer["bracket"]) if answer["bracket"] is not None else None
+        return run.measured(record | {"answer": Answer(**answer)})
+
+    def _failed(self, run: _UnderWay) -> Measured:
+        self._run = None
+        self.reusable = False
+        answer = run.failure(self._process.exitcode, _last_words(Path(self._folder.name)))
+        cost = {"cpu_seconds": run.cpu_seconds, "wall_seconds": run.elapsed(), "peak_memory_bytes": run.peak_memory}
+        return run.measured({"answer": answer} | cost)
+
+    def _kill(self) -> None:
+        """End the whole process group; the child has made itself its leader."""
+        with contextlib.suppress(ProcessLookupError, PermissionError):
+            os.killpg(self._process.pid, signal.SIGKILL)
+        with contextlib.suppress(ProcessLookupError, ValueError):
+            self._process.kill()
+
+    def end(self) -> None:
+        """End the child and whatever it started."""
+        self._kill()
+        self._process.join()
+        self._process.close()
+        self._connection.close()
+        self._folder.cleanup()
 
 
-_running: set[_Watched] = set()
+class _UnderWay:
+    """A run under way: its use of time and memory, and how it was ended if it had to be."""
 
-
-def stop_all() -> None:
-    """End every run of this process that is under way, as when the user interrupts."""
-    for watched in list(_running):
-        watched.kill()
-
-
-class _Watched:
-    """A running child: its use of time and memory, and how it was ended if it had to be."""
-
-    def __init__(self, process: Any, task: Task) -> None:
-        self.process, self.task = process, task
-        self.deadline = time.perf_counter() + task.seconds
+    def __init__(self, task: Task, case: str, pid: int) -> None:
+        self.task, self.case = task, case
+        self.begun = datetime.now(UTC).isoformat(timespec="seconds")
+        self._clock = time.perf_counter()
+        self._deadline = self._clock + LOADING_SECONDS
+        self._pid = pid
+        self._leader: psutil.Process | None = None
+        self._looks, self._next_look = 0, self._clock + LOOK_SECONDS
+        self._cpu_before: float | None = None
         self.cpu_seconds: float | None = None
         self.peak_memory: int | None = None
         self.ending: Status | None = None
 
-    def until_end(self) -> None:
-        while not wait([self.process.sentinel], timeout=LOOK_SECONDS):
-            self._look()
-            if self.peak_memory is not None and self.peak_memory > self.task.memory_bytes:
-                self.ending = Status.OUT_OF_MEMORY
-                return
-            if time.perf_counter() > self.deadline:
-                self.ending = Status.TIMEOUT
-                return
+    def loaded(self) -> None:
+        """The time of the method itself begins."""
+        self._clock = time.perf_counter()
+        self._deadline = self._clock + self.task.seconds
 
-    def _look(self) -> None:
+    def elapsed(self) -> float:
+        """Wall time of the method so far [s]."""
+        return time.perf_counter() - self._clock
+
+    def look(self) -> None:
+        """Take stock of memory and CPU time if it is time to, and see whether a limit is passed."""
+        if (now := time.perf_counter()) < self._next_look:
+            return
+        self._next_look = now + LOOK_SECONDS
+        self._looks += 1
         memory, cpu = 0, 0.0
         with contextlib.suppress(psutil.Error):
-            leader = psutil.Process(self.process.pid)
-            for member in [leader, *leader.children(recursive=True)]:
+            self._leader = self._leader or psutil.Process(self._pid)
+            members = [self._leader]
+            if self._looks % LOOKS_AT_CHILDREN == 0:
+                members += self._leader.children(recursive=True)
+            for member in members:
                 with contextlib.suppress(psutil.Error):
                     memory += member.memory_info().rss
                     times = member.cpu_times()
                     cpu += times.user + times.system
         if memory:
+            self._cpu_before = cpu if self._cpu_before is None else self._cpu_before
             self.peak_memory = max(self.peak_memory or 0, memory)
-            self.cpu_seconds = max(self.cpu_seconds or 0.0, cpu)
-
-    def kill(self) -> None:
-        """End the whole process group; the child has made itself its leader."""
-        with contextlib.suppress(ProcessLookupError, PermissionError):
-            os.killpg(self.process.pid, signal.SIGKILL)
-        with contextlib.suppress(ProcessLookupError, ValueError):
-            self.process.kill()
+            self.cpu_seconds = max(self.cpu_seconds or 0.0, cpu - self._cpu_before)
+        if self.peak_memory is not None and self.peak_memory > self.task.memory_bytes:
+            self.ending = Status.OUT_OF_MEMORY
+        elif now > self._deadline:
+            self.ending = Status.TIMEOUT
 
     def failure(self, exit_code: int | None, last_words: str) -> Answer:
+        """The answer of a run whose process left none."""
         if self.ending is Status.TIMEOUT:
             sentence = f"It was stopped at the limit of {self.task.seconds:g} s."
         elif self.ending is Status.OUT_OF_MEMORY:
@@ -160,18 +254,27 @@ class _Watched:
             sentence = f"Its process ended with exit code {exit_code} and left no answer.{last_words}"
         return Answer(status=self.ending or Status.CRASHED, finding=Finding.NONE, sentence=sentence)
 
-
-def _read_record(folder: Path) -> dict[str, Any] | None:
-    try:
-        record: dict[str, Any] = json.loads((folder / "answer.json").read_text(encoding="utf-8"))
-    except (OSError, ValueError):
-        return None
-    answer = record["answer"]
-    answer["status"] = Status(answer["status"])
-    answer["finding"] = Finding(answer["finding"])
-    answer["bracket"] = tuple(answer["bracket"]) if answer["bracket"] is not None else None
-    record["answer"] = Answer(**answer)
-    return record
+    def measured(self, record: dict[str, Any]) -> Measured:
+        """The result of a record, with where, when and under which limits it was made."""
+        task = self.task
+        result = result_of(
+            record["answer"],
+            task.assembly,
+            case=self.case,
+            method=task.method,
+            family=record.get("family") or task.method.split("-", maxsplit=1)[0],
+        )
+        update = {
+            "cpu_seconds": record["cpu_seconds"],
+            "wall_seconds": record["wall_seconds"],
+            "peak_memory_bytes": record["peak_memory_bytes"],
+            "settings": record.get("settings") or task.settings,
+            "limits": {"seconds": task.seconds, "memory_bytes": float(task.memory_bytes)},
+            "versions": versions(),
+            "machine": machine(),
+            "started": self.begun,
+        }
+        return Measured(result.model_copy(update=update), float(record.get("tolerance") or 0.0))
 
 
 def _last_words(folder: Path) -> str:

@@ -8,6 +8,7 @@ from functools import cached_property
 from pathlib import Path
 from typing import Any
 
+from harness.engine.executors import Job
 from harness.engine.provenance import code_version
 from harness.engine.store import run_key
 from harness.engine.worker import Task
@@ -52,6 +53,10 @@ class Run:
             self.limits.as_dict(),
             code_version(self.method),
         )
+
+    def job(self, number: int) -> Job:
+        """The run as an executor makes it, under its number in the plan."""
+        return Job(number, self.case.id, self.method, self.task)
 
     def task(self) -> Task:
         """What the child process is given."""

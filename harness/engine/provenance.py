@@ -8,13 +8,13 @@ import importlib.util
 import os
 import platform
 import subprocess
-from importlib.metadata import PackageNotFoundError, entry_points, version
+from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
 from typing import Any
 
 import psutil
 
-from harness.model.method import GROUP
+from harness.model.method import method_points
 
 PACKAGES = (
     "drystone",
@@ -89,7 +89,7 @@ def code_version(method: str) -> str:
     Raises:
         KeyError: no installed method has this name.
     """
-    point = next((point for point in entry_points(group=GROUP) if point.name == method), None)
+    point = next((point for point in method_points() if point.name == method), None)
     if point is None:
         raise KeyError(method)
     digest = hashlib.sha256()

@@ -1,6 +1,7 @@
-"""What happens inside the child process of one run: limits, the method, its answer written to a file.
+"""What happens inside the child process that makes runs: limits, the method, its answer sent to the engine.
 
-This module is preloaded in the fork server, so it imports what every method needs and nothing that starts threads.
+A child may make several runs, one after another, each with limits and cost of its own. This module is preloaded in the
+fork server, so it imports what every method needs and nothing that starts threads.
 """
 
 from __future__ import annotations
@@ -12,6 +13,7 @@ import math
 import multiprocessing
 import os
 import resource
+import shutil
 import signal
 import sys
 import threading
@@ -28,7 +30,7 @@ import scipy.sparse.linalg  # noqa: F401  (preloaded for the methods)
 
 from harness.model.assembly import Assembly
 from harness.model.errors import InputError
-from harness.model.method import Answer, Finding, OutOfTime, Status, load_method
+from harness.model.method import Answer, Finding, Method, OutOfTime, Status, load_method
 from harness.model.reading import validate
 
 LAST_WORDS = (0.05, 5.0)
@@ -54,28 +56,66 @@ class Task:
     memory_bytes: int
 
 
-def run_task(task: Task, folder: str) -> None:
-    """Run a task in this process and leave `answer.json` in the folder. Called in a fresh child process only."""
+LOADED, REPLACE = b"loaded", b"replace"
+"""What a child says besides its records: the method is loaded and begins; another process must make this run."""
+
+
+def serve(engine: connection.Connection, folder: str) -> None:
+    """Make the runs whose tasks the engine sends, until it closes the connection. For child processes only.
+
+    Args:
+        engine: tasks come in; out go LOADED when a method begins and then the record of the run, as JSON.
+        folder: working directory, with what the runs print in `output.txt`.
+    """
     os.setsid()
     _die_with_engine()
     os.chdir(folder)  # what a library drops in the working directory goes with the run
     _send_output_to(Path(folder) / "output.txt")
     resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
-    _limit_address_space(task.memory_bytes)
-    begun = started = time.perf_counter()
-    before = _cpu_seconds()
-    settings: dict[str, Any] = {}
-    family, tolerance = "", 0.0
+    used = False
     try:
-        method = load_method(task.method)
-        family, tolerance = method.family, method.tolerance
-        chosen = validate(method.Settings, task.settings, "settings")
-        settings = chosen.model_dump(mode="json")
-        before = _cpu_seconds()
-        started = time.perf_counter()
-        with _warned_of_the_limit(task.seconds, begun):
-            answer = method.solve(task.assembly, chosen)
-        answer = _checked(answer, task.assembly)
+        while True:
+            task = engine.recv()
+            method, failure = _load(task)
+            if used and getattr(method, "fresh_process", False):
+                engine.send_bytes(REPLACE)
+                continue
+            engine.send_bytes(LOADED)
+            engine.send_bytes(json.dumps(_record(task, method, failure), allow_nan=False).encode())
+            used = True
+            _clear(Path(folder))
+    except (EOFError, BrokenPipeError, ConnectionResetError):
+        pass
+    sys.stdout.flush()
+    sys.stderr.flush()
+    os._exit(0)
+
+
+def _load(task: Task) -> tuple[Method | None, Answer | None]:
+    """The method of a task, or the answer that tells why there is none."""
+    try:
+        return load_method(task.method), None
+    except (InputError, KeyError) as error:
+        return None, _failure(Status.REFUSED, f"{error}.")
+
+
+def _record(task: Task, method: Method | None, failure: Answer | None) -> dict[str, Any]:
+    """Make one run under its limits: answer, settings in full, cost of this run alone."""
+    _limit_address_space(task.memory_bytes)
+    _forget_peak_memory()
+    settings: dict[str, Any] = {}
+    started, before = time.perf_counter(), _cpu_seconds()
+    errors = np.geterr()
+    try:
+        if method is None:
+            answer = failure or _failure(Status.CRASHED, "There is no method.")
+        else:
+            chosen = validate(method.Settings, task.settings, "settings")
+            settings = chosen.model_dump(mode="json")
+            started, before = time.perf_counter(), _cpu_seconds()
+            with _warned_of_the_limit(task.seconds, started):
+                answer = method.solve(task.assembly, chosen)
+            answer = _checked(answer, task.assembly)
     except OutOfTime:
         answer = _failure(Status.TIMEOUT, f"It was stopped at the limit of {task.seconds:g} s.")
     except InputError as error:
@@ -85,21 +125,59 @@ def run_task(task: Task, folder: str) -> None:
     except Exception as error:
         traceback.print_exc()
         answer = _failure(Status.CRASHED, f"The method raised {type(error).__name__}: {error}")
-    record = {
+    cpu, wall = _cpu_seconds() - before, time.perf_counter() - started
+    np.seterr(**errors)
+    _limit_address_space(None)
+    return {
         "answer": _plain(answer),
-        "family": family,
-        "tolerance": tolerance,
+        "family": getattr(method, "family", ""),
+        "tolerance": getattr(method, "tolerance", 0.0),
         "settings": settings,
-        "cpu_seconds": _cpu_seconds() - before,
-        "wall_seconds": time.perf_counter() - started,
-        "peak_memory_bytes": resource.getrusage(resource.RUSAGE_SELF).ru_maxrss * 1024,
+        "cpu_seconds": cpu,
+        "wall_seconds": wall,
+        "peak_memory_bytes": _peak_memory(),
+        "reusable": not _has_children(),
     }
-    part = Path(folder) / "answer.part"
-    part.write_text(json.dumps(record, allow_nan=False), encoding="utf-8")
-    part.replace(Path(folder) / "answer.json")
+
+
+def _clear(folder: Path) -> None:
+    """Empty the working directory and the file of what was printed, for the next run."""
     sys.stdout.flush()
     sys.stderr.flush()
-    os._exit(0)
+    os.chdir(folder)
+    for entry in os.scandir(folder):
+        if entry.name == "output.txt":
+            os.truncate(entry.path, 0)
+        elif entry.is_dir(follow_symlinks=False):
+            shutil.rmtree(entry.path, ignore_errors=True)
+        else:
+            os.unlink(entry.path)
+
+
+def _has_children() -> bool:
+    """Whether processes are left that a run has started; such a worker makes no further run."""
+    try:
+        tasks = Path("/proc/self/task").iterdir()
+        return any((task / "children").read_text(encoding="ascii").strip() for task in tasks)
+    except OSError:
+        return False
+
+
+def _forget_peak_memory() -> None:
+    """Let the system count the peak of resident memory anew (Linux; elsewhere it is that of the process so far)."""
+    with contextlib.suppress(OSError):
+        Path("/proc/self/clear_refs").write_text("5", encoding="ascii")
+
+
+def _peak_memory() -> int:
+    """Peak of resident memory of this run [bytes]."""
+    try:
+        for line in Path("/proc/self/status").read_text(encoding="ascii", errors="replace").splitlines():
+            if line.startswith("VmHWM:"):
+                return int(line.split()[1]) * 1024
+    except OSError:
+        pass
+    return resource.getrusage(resource.RUSAGE_SELF).ru_maxrss * 1024
 
 
 @contextlib.contextmanager
@@ -152,14 +230,15 @@ def _send_output_to(path: Path) -> None:
     os.close(sink)
 
 
-def _limit_address_space(memory_bytes: int) -> None:
+def _limit_address_space(memory_bytes: int | None) -> None:
     """Let an allocation beyond the limit fail inside the process; the parent watches resident memory besides."""
-    try:
-        pages = int(Path("/proc/self/statm").read_text(encoding="ascii").split()[0])
-        limit = pages * resource.getpagesize() + memory_bytes
-        resource.setrlimit(resource.RLIMIT_AS, (limit, limit))
-    except (OSError, ValueError):
-        return
+    with contextlib.suppress(OSError, ValueError):
+        hard = resource.getrlimit(resource.RLIMIT_AS)[1]
+        limit = hard
+        if memory_bytes is not None:
+            pages = int(Path("/proc/self/statm").read_text(encoding="ascii").split()[0])
+            limit = pages * resource.getpagesize() + memory_bytes
+        resource.setrlimit(resource.RLIMIT_AS, (limit, hard))
 
 
 def _failure(status: Status, sentence: str) -> Answer:

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 from enum import StrEnum
-from importlib.metadata import entry_points
+from functools import cache
+from importlib.metadata import EntryPoint, entry_points
 from typing import Any, ClassVar, Protocol
 
 from pydantic import BaseModel, ConfigDict
@@ -98,6 +99,9 @@ class Method(Protocol):
         title: a few words for the head of a column.
         tolerance: the largest relative residual the judge may find in an answer of this method
         Settings: the class of its settings; its defaults are what `drystone compare` runs.
+
+    A method whose library keeps something from one run to the next says `fresh_process = True` (a class attribute that
+    others leave out): each of its runs then has a process of its own.
     """
 
     name: ClassVar[str]
@@ -114,9 +118,15 @@ class Method(Protocol):
 GROUP = "drystone.methods"
 
 
+@cache
+def method_points() -> tuple[EntryPoint, ...]:
+    """The entry points of all installed methods; looked for once in a process."""
+    return tuple(entry_points(group=GROUP))
+
+
 def method_names() -> list[str]:
     """Names of all installed methods, sorted."""
-    return sorted({point.name for point in entry_points(group=GROUP)})
+    return sorted({point.name for point in method_points()})
 
 
 def load_method(name: str) -> Method:
@@ -126,7 +136,7 @@ def load_method(name: str) -> Method:
         KeyError: no installed method has this name; the message lists those there are.
         InputError: its package is there but cannot be loaded.
     """
-    for point in entry_points(group=GROUP):
+    for point in method_points():
         if point.name == name:
             try:
                 method: Method = point.load()()

@@ -1,0 +1,101 @@
+"""Where runs are made: one `map` from tasks to measured results, by the processes of this machine."""
+
+from __future__ import annotations
+
+from collections import deque
+from collections.abc import Callable, Generator, Sequence
+from dataclasses import dataclass
+from multiprocessing.connection import wait
+from multiprocessing.context import BaseContext
+from typing import Protocol
+
+from harness.engine.isolate import LOOK_SECONDS, Child, Measured, own_context, start_context
+from harness.engine.worker import Task
+
+RUNS_A_CHILD = 500
+"""Runs after which a child process is replaced, so that nothing grows without end."""
+
+WARM_BLOCKS = 200
+"""Blocks of a wall above which every run has a process of its own: its cost is nothing beside such a run."""
+
+
+@dataclass(frozen=True)
+class Job:
+    """A run to be made: its number in the plan, the id of its case, its method, and what gives its task when asked."""
+
+    number: int
+    case: str
+    method: str
+    task: Callable[[], Task]
+
+
+class Executor(Protocol):
+    """A place where runs are made."""
+
+    def map(self, jobs: Sequence[Job]) -> Generator[tuple[int, Measured]]:
+        """Numbers and results of jobs, in the order in which they end. Closing the iterator stops what is left."""
+        ...
+
+
+class LocalExecutor:
+    """Child processes of this machine, so many at a time, each making many small runs or one large one."""
+
+    def __init__(self, processes: int) -> None:
+        self.processes = max(1, processes)
+
+    def map(self, jobs: Sequence[Job]) -> Generator[tuple[int, Measured]]:
+        """See `Executor`."""
+        context = own_context() if len(jobs) == 1 else None
+        slots = Slots(context or start_context({job.method for job in jobs}))
+        waiting, busy = deque(jobs), dict[Child, Job]()
+
+        def occupy() -> None:
+            while waiting and len(busy) < self.processes:
+                job = waiting.popleft()
+                busy[slots.begin(job.task(), job.case)] = job
+
+        try:
+            occupy()
+            while busy:
+                wait([place for child in busy for place in child.waitables], timeout=LOOK_SECONDS)
+                ended = [(child, job, found) for child, job in busy.items() if (found := child.look()) is not None]
+                for child, _, _ in ended:
+                    del busy[child]
+                    slots.give_back(child)
+                occupy()  # before the caller is given results, so that the children work while it does
+                for _, job, found in ended:
+                    yield job.number, found
+        finally:
+            for child in busy:
+                child.end()
+            slots.end()
+
+
+class Slots:
+    """Child processes between runs: one that made a small run is kept for the next small run."""
+
+    def __init__(self, context: BaseContext) -> None:
+        self._context = context
+        self._idle: list[Child] = []
+
+    def begin(self, task: Task, case: str) -> Child:
+        """A child that has begun the task."""
+        child = self._idle.pop() if self._idle and _small(task) else Child(self._context)
+        child.begin(task, case)
+        return child
+
+    def give_back(self, child: Child) -> None:
+        """Take a child that has ended its run: keep it, or end it where another must make the next."""
+        if child.reusable and child.runs < RUNS_A_CHILD:
+            self._idle.append(child)
+        else:
+            child.end()
+
+    def end(self) -> None:
+        """End the children that are kept."""
+        while self._idle:
+            self._idle.pop().end()
+
+
+def _small(task: Task) -> bool:
+    return task.assembly.n_blocks <= WARM_BLOCKS
