@@ -48,7 +48,7 @@ $(READY): requirements.lock pyproject.toml
 	$(PYTHON) -m venv $(VENV)
 	$(BIN)/python -m pip install --quiet --disable-pip-version-check --require-hashes -r requirements.lock
 	$(BIN)/python -m pip install --quiet --disable-pip-version-check --no-deps --no-build-isolation -e .
-	$(RUN)/python -m harness.engine.preload
+	$(RUN)/python -m harness.kernels
 	touch $(READY)
 
 clean:

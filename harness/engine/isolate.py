@@ -21,6 +21,7 @@ import psutil
 
 from harness.engine import preload, worker
 from harness.engine.provenance import machine, versions
+from harness.engine.threads import pin
 from harness.engine.worker import Task
 from harness.model.method import Answer, Finding, Status
 from harness.model.result import Result, result_of
@@ -33,9 +34,6 @@ LOADING_SECONDS = 300.0
 
 LONG_SECONDS = 10.0
 """A child that made a run this long makes no other: starting one costs nothing beside it, and its memory is clean."""
-
-ONE_THREAD = {f"{library}_NUM_THREADS": "1" for library in ("OMP", "OPENBLAS", "MKL", "NUMEXPR", "NUMBA")}
-"""Environment of every run: one thread, so that CPU time means the same for all methods."""
 
 
 @dataclass(frozen=True)
@@ -58,7 +56,7 @@ def start_context(methods: Iterable[str]) -> multiprocessing.context.BaseContext
 
     The server starts with the first child and keeps what it loaded then; other methods are loaded by the children.
     """
-    os.environ.update(ONE_THREAD)
+    pin()
     os.environ[preload.VARIABLE] = ",".join(preload.shipped(methods))
     return _fork_server()
 

@@ -1,0 +1,108 @@
+"""Commands that hold methods to what is known: check, baseline."""
+
+from __future__ import annotations
+
+import sys
+from datetime import UTC, datetime
+from importlib.metadata import version
+from pathlib import Path
+
+import click
+
+from harness import terminal
+from harness.engine import baseline as recording
+from harness.engine import compare as comparing
+from harness.engine import regression
+from harness.engine.plan import Limits, check_methods, find_cases, gated_runs, plan_case
+from harness.engine.store import open_store
+from harness.model.case import shipped_cases
+from harness.model.errors import InputError
+from harness.options import (
+    cases_option,
+    catching,
+    fresh_flag,
+    jobs_option,
+    json_flag,
+    print_json,
+    store_option,
+)
+
+
+@click.command()
+@click.argument("cases", nargs=-1)
+@click.option("--suite", help="A suite of cases.  [default: all cases]")
+@click.option("--tier", type=click.Choice(["quick", "full"]), default="quick", show_default=True)
+@jobs_option
+@store_option
+@fresh_flag
+@json_flag
+@cases_option
+@catching
+def check(
+    cases: tuple[str, ...],
+    suite: str | None,
+    tier: str,
+    jobs: int,
+    store: Path,
+    fresh: bool,
+    as_json: bool,
+    folders: tuple[Path, ...],
+) -> None:
+    """Hold the methods to their gated references: one line each; exit code 1 on a violation."""
+    chosen = find_cases(cases, suite if cases or suite else "all", folders)
+    limits = Limits(seconds=120.0 if tier == "quick" else 3600.0)
+    runs = [planned for case in chosen for planned in gated_runs(case, limits, tier)]
+    check_methods(sorted({planned.method for planned in runs}), "applies_to of a gated reference")
+    with open_store(store) as opened, terminal.progress(len(runs), quiet=as_json) as told:
+        results = comparing.execute(runs, opened, jobs, fresh=fresh, told=told)
+    lines = regression.lines(runs, results)
+    if as_json:
+        print_json({"tier": tier, "references": lines, "passed": all(line["verdict"] == "agrees" for line in lines)})
+    else:
+        terminal.print_check(lines)
+    sys.exit(0 if all(line["verdict"] == "agrees" for line in lines) else 1)
+
+
+@click.command()
+@click.argument("action", type=click.Choice(["show", "update"]), default="show")
+@click.argument("cases", nargs=-1)
+@click.option("--suite", help="A suite of cases.  [default: all cases]")
+@click.option("--reason", default="", help="Why the recorded values change; an update needs it.")
+@click.option("--file", "path", type=click.Path(path_type=Path), help="The baseline.  [default: the one shipped]")
+@jobs_option
+@store_option
+@json_flag
+@cases_option
+@catching
+def baseline(
+    action: str,
+    cases: tuple[str, ...],
+    suite: str | None,
+    reason: str,
+    path: Path | None,
+    jobs: int,
+    store: Path,
+    as_json: bool,
+    folders: tuple[Path, ...],
+) -> None:
+    """Show how today's values stand to the recorded ones (exit code 1 if one is worse), or record them."""
+    if action == "update" and not reason.strip():
+        raise InputError("an update of the baseline needs a reason", 'Give --reason "..."', "baseline")
+    chosen = find_cases(cases, suite if cases or suite else "all", folders)
+    recorded_in = path or shipped_cases() / "baseline.json"
+    recorded = recording.read_baseline(recorded_in)
+    runs = [planned for case in chosen for planned in plan_case(case, None, Limits())]
+    with open_store(store) as opened, terminal.progress(len(runs), quiet=as_json) as told:
+        results = comparing.execute(runs, opened, jobs, told=told)
+    rows = recording.compare_with(recorded, runs, results)
+    if as_json:
+        print_json({"action": action, "rows": rows})
+    else:
+        terminal.print_changes(rows)
+    if action == "update":
+        entry = recording.Entry(
+            date=datetime.now(UTC).date().isoformat(), release=version("drystone"), reason=reason.strip()
+        )
+        recording.write_baseline(recorded_in, recording.updated(recorded, runs, results, entry))
+    elif any(row["change"] == "worse" for row in rows):
+        sys.exit(1)

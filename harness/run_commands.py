@@ -1,0 +1,251 @@
+"""Commands that run methods and report: run, compare, study, report."""
+
+from __future__ import annotations
+
+import json
+import shlex
+import sys
+from pathlib import Path
+from typing import Any
+
+import click
+
+from harness import terminal
+from harness.engine import compare as comparing
+from harness.engine import regression
+from harness.engine.imperfection import SEEDS, imperfection_runs, imperfection_study
+from harness.engine.plan import Limits, Run, check_methods, find_cases, plan_case
+from harness.engine.store import open_store
+from harness.model.case import Case
+from harness.model.comparison import ComparisonRun
+from harness.model.errors import InputError, did_you_mean
+from harness.model.method import Status, load_method
+from harness.options import (
+    REPORT,
+    cases_option,
+    catching,
+    fresh_flag,
+    jobs_option,
+    json_flag,
+    memory_option,
+    print_json,
+    report_option,
+    say,
+    seconds_option,
+    store_option,
+    warn,
+)
+
+IMPERFECTION = "imperfection"
+
+
+@click.command()
+@click.argument("method")
+@click.argument("case")
+@click.option(
+    "--set", "settings", multiple=True, metavar="NAME=VALUE", help="A setting of the method; may be repeated."
+)
+@click.option("--fields", is_flag=True, help="With --json: contact forces, mechanism, states and path too.")
+@json_flag
+@cases_option
+@seconds_option
+@memory_option
+@catching
+def run(
+    method: str,
+    case: str,
+    settings: tuple[str, ...],
+    fields: bool,
+    as_json: bool,
+    folders: tuple[Path, ...],
+    seconds: float,
+    memory: int,
+) -> None:
+    """Run METHOD on CASE (an id, a case folder or a WALL.json) and print what it finds."""
+    check_methods([method], "method")
+    (found,) = find_cases([case], None, folders)
+    chosen = _settings(method, settings)
+    limits = Limits(seconds, memory * 2**20)
+    references = tuple(item for item in found.file.references if method in item.applies_to and item.settings == chosen)
+    warn(found)
+    (result,) = comparing.execute([Run(found, method, chosen, limits, references)], None, 1)
+    if as_json:
+        print_json(result.model_dump(mode="json") if fields else result.summary())
+    else:
+        terminal.print_result(result, found)
+    sys.exit(0 if result.status is Status.OK and result.judge.accepted is not False else 1)
+
+
+def _settings(method: str, pairs: tuple[str, ...]) -> dict[str, Any]:
+    if not pairs:
+        return {}
+    values: dict[str, Any] = {}
+    known = load_method(method).Settings.model_fields
+    for pair in pairs:
+        name, equals, text = pair.partition("=")
+        if not equals or name not in known:
+            names = f"Give NAME=VALUE with a name of: {', '.join(known) or '(it has none)'}"
+            raise InputError(
+                f'"{pair}" is no setting of {method}', f"{did_you_mean(name, known)} {names}".strip(), "--set"
+            )
+        try:
+            values[name] = json.loads(text)
+        except json.JSONDecodeError:
+            values[name] = text
+    from harness.model.reading import validate
+
+    validate(load_method(method).Settings, values, f"--set of {method}")
+    return values
+
+
+@click.command()
+@click.argument("cases", nargs=-1)
+@click.option("--suite", help='A suite of cases, or "all".  [default: small]')
+@click.option(
+    "--methods", help="Names of methods, separated by commas.  [default: fe,la,la-associated,de and those gated]"
+)
+@click.option(
+    "--imperfection",
+    "seeds",
+    type=click.IntRange(1, 100),
+    metavar="SEEDS",
+    help="Also load the paper's wall of uneven blocks, so many of them for each size of defect.",
+)
+@seconds_option
+@memory_option
+@jobs_option
+@report_option
+@store_option
+@fresh_flag
+@json_flag
+@cases_option
+@catching
+def compare(
+    cases: tuple[str, ...],
+    suite: str | None,
+    methods: str | None,
+    seeds: int | None,
+    seconds: float,
+    memory: int,
+    jobs: int,
+    report: Path,
+    store: Path,
+    fresh: bool,
+    as_json: bool,
+    folders: tuple[Path, ...],
+) -> None:
+    """Run methods on CASES (ids, case folders, WALL.json files) or a suite, judge, store and report."""
+    chosen = find_cases(cases, suite, folders)
+    names = [name.strip() for name in methods.split(",") if name.strip()] if methods is not None else None
+    if names is not None:
+        if not names:
+            raise InputError("it names no method", "`drystone list methods` shows them", "--methods")
+        check_methods(names)
+    limits = Limits(seconds, memory * 2**20)
+    for case in chosen:
+        warn(case)
+    title = ", ".join(cases) if cases else f"suite {suite or 'small'}"
+    study = None if seeds is None else _imperfection(limits, seeds, jobs, store, fresh, quiet=as_json)[1]
+    compared = _compare(title, chosen, names, limits, jobs, report, store, fresh, quiet=as_json, study=study)
+    if as_json:
+        print_json(terminal.comparison_json(compared, report))
+    else:
+        terminal.print_comparison(compared, report)
+    sys.exit(1 if regression.violations(compared) else 0)
+
+
+def _compare(
+    title: str,
+    chosen: list[Case],
+    methods: list[str] | None,
+    limits: Limits,
+    jobs: int,
+    report: Path,
+    store: Path,
+    fresh: bool,
+    *,
+    quiet: bool,
+    study: dict[str, Any] | None = None,
+) -> ComparisonRun:
+    """Run, judge, store and report; what is printed afterwards is the command's own affair."""
+    runs = [planned for case in chosen for planned in plan_case(case, methods, limits)]
+    with open_store(store) as opened:
+        with terminal.progress(len(runs), quiet=quiet) as told:
+            results = comparing.execute(runs, opened, jobs, fresh=fresh, told=told)
+        compared = comparing.comparison_run(title, _command_line(), chosen, runs, results)
+        if study is not None:
+            compared.provenance["studies"] = [study]
+        comparing.remember(opened, compared, runs)
+    _write_report(compared, report)
+    return compared
+
+
+@click.command()
+@click.argument("name", required=False)
+@jobs_option
+@click.option("--report", type=click.Path(path_type=Path), help="Where it is written.  [default: out/NAME.html]")
+@store_option
+@fresh_flag
+@catching
+def study(name: str | None, jobs: int, report: Path | None, store: Path, fresh: bool) -> None:
+    """Run the study NAME (without a name: list them) and report what many walls say together."""
+    from cases.studies import STUDIES
+
+    if name is None:
+        for known, members in STUDIES.items():
+            click.echo(f"{known:16s} {sum(1 for _ in members())} walls: {members.__doc__}")
+        click.echo(f"{IMPERFECTION:16s} the paper's wall of uneven blocks: how far the multiplier falls, with scatter.")
+        return
+    if name not in (*STUDIES, IMPERFECTION):
+        raise InputError(f'no study is called "{name}"', f"There are: {', '.join([*STUDIES, IMPERFECTION])}", "study")
+    path = report or REPORT.with_name(f"{name}.html")
+    if name == IMPERFECTION:
+        case, found = _imperfection(Limits(), None, jobs, store, fresh, quiet=False)
+        compared = _compare(f"study {name}", [case], None, Limits(), jobs, path, store, fresh, quiet=False, study=found)
+        say(found["sentence"])
+    else:
+        chosen = list(STUDIES[name]())
+        compared = _compare(f"study {name}", chosen, None, Limits(), jobs, path, store, fresh, quiet=False)
+        terminal.print_agreement(compared)
+    say(f"Report: {path}")
+
+
+def _imperfection(
+    limits: Limits, seeds: int | None, jobs: int, store: Path, fresh: bool, *, quiet: bool
+) -> tuple[Case, dict[str, Any]]:
+    """The paper's wall, and the study of it made of uneven blocks: `seeds` walls a size; None: all the study has."""
+    (case,) = find_cases(["wall-21"], None, ())
+    runs = imperfection_runs(case, limits, seeds=SEEDS if seeds is None else range(seeds))
+    with open_store(store) as opened, terminal.progress(len(runs), quiet=quiet) as told:
+        return case, imperfection_study(runs, comparing.execute(runs, opened, jobs, fresh=fresh, told=told))
+
+
+def _command_line() -> str:
+    return shlex.join(["drystone", *sys.argv[1:]])
+
+
+def _write_report(compared: ComparisonRun, path: Path) -> None:
+    from reports.build import write_report
+
+    path.parent.mkdir(parents=True, exist_ok=True)
+    try:
+        write_report(compared, path)
+    except OSError as error:  # an error while writing to an open file does not say which
+        error.filename = error.filename or str(path)
+        raise
+
+
+@click.command()
+@report_option
+@store_option
+@catching
+def report(report: Path, store: Path) -> None:
+    """Build the report of the last comparison again, from the store, without running anything."""
+    if not store.exists():
+        raise InputError("there is no such store", "Run `drystone compare` first", source=str(store))
+    with open_store(store, read_only=True) as opened:
+        compared = comparing.recall(opened)
+    if compared is None:
+        raise InputError("no comparison is in the store", "Run `drystone compare` first", source=str(store))
+    _write_report(compared, report)
+    say(f"Report: {report}")
