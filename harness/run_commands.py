@@ -98,6 +98,22 @@ def _settings(method: str, pairs: tuple[str, ...]) -> dict[str, Any]:
     return values
 
 
+def method_settings(pairs: tuple[str, ...]) -> dict[str, dict[str, Any]]:
+    """Settings of several methods, from METHOD.NAME=VALUE.
+
+    Raises:
+        InputError: a method or a setting that does not exist, or a value it cannot have.
+    """
+    by_method: dict[str, list[str]] = {}
+    for pair in pairs:
+        method, dot, rest = pair.partition(".")
+        if not dot or "=" in method:
+            raise InputError(f'"{pair}" names no method', "Give METHOD.NAME=VALUE", "--set")
+        by_method.setdefault(method, []).append(rest)
+    check_methods(list(by_method), "--set")
+    return {method: _settings(method, tuple(given)) for method, given in by_method.items()}
+
+
 @click.command()
 @click.argument("cases", nargs=-1)
 @click.option("--suite", help='A suite of cases, or "all".  [default: small]')
@@ -111,6 +127,10 @@ def _settings(method: str, pairs: tuple[str, ...]) -> dict[str, Any]:
     metavar="SEEDS",
     help="Also load the paper's wall of uneven blocks, so many of them for each size of defect.",
 )
+@click.option(
+    "--set", "settings", multiple=True, metavar="METHOD.NAME=VALUE", help="A setting of a method; may be repeated."
+)
+@click.option("--no-report", is_flag=True, help="Print and store only.")
 @seconds_option
 @memory_option
 @jobs_option
@@ -125,6 +145,8 @@ def compare(
     suite: str | None,
     methods: str | None,
     seeds: int | None,
+    settings: tuple[str, ...],
+    no_report: bool,
     seconds: float,
     memory: int,
     jobs: int,
@@ -145,12 +167,16 @@ def compare(
     for case in chosen:
         warn(case)
     title = ", ".join(cases) if cases else f"suite {suite or 'small'}"
+    asked = method_settings(settings)
+    written = None if no_report else report
     study = None if seeds is None else _imperfection(limits, seeds, jobs, store, fresh, quiet=as_json)[1]
-    compared = _compare(title, chosen, names, limits, jobs, report, store, fresh, quiet=as_json, study=study)
+    compared = _compare(
+        title, chosen, names, limits, jobs, written, store, fresh, quiet=as_json, study=study, settings=asked
+    )
     if as_json:
-        print_json(terminal.comparison_json(compared, report))
+        print_json(terminal.comparison_json(compared, written))
     else:
-        terminal.print_comparison(compared, report)
+        terminal.print_comparison(compared, written)
     sys.exit(1 if regression.violations(compared) else 0)
 
 
@@ -160,15 +186,16 @@ def _compare(
     methods: list[str] | None,
     limits: Limits,
     jobs: int,
-    report: Path,
+    report: Path | None,
     store: Path,
     fresh: bool,
     *,
     quiet: bool,
     study: dict[str, Any] | None = None,
+    settings: dict[str, dict[str, Any]] | None = None,
 ) -> ComparisonRun:
     """Run, judge, store and report; what is printed afterwards is the command's own affair."""
-    runs = [planned for case in chosen for planned in plan_case(case, methods, limits)]
+    runs = [planned for case in chosen for planned in plan_case(case, methods, limits, settings=settings)]
     with open_store(store) as opened:
         with terminal.progress(len(runs), quiet=quiet) as told:
             results = comparing.execute(runs, opened, jobs, fresh=fresh, told=told)
@@ -176,7 +203,8 @@ def _compare(
         if study is not None:
             compared.provenance["studies"] = [study]
         comparing.remember(opened, compared, runs)
-    _write_report(compared, report)
+    if report is not None:
+        _write_report(compared, report)
     return compared
 
 
@@ -224,12 +252,12 @@ def _command_line() -> str:
     return shlex.join(["drystone", *sys.argv[1:]])
 
 
-def _write_report(compared: ComparisonRun, path: Path) -> None:
+def _write_report(compared: ComparisonRun, path: Path, *, drawn: bool = False) -> None:
     from reports.build import write_report
 
     path.parent.mkdir(parents=True, exist_ok=True)
     try:
-        write_report(compared, path)
+        write_report(compared, path, drawn=drawn)
     except OSError as error:  # an error while writing to an open file does not say which
         error.filename = error.filename or str(path)
         raise
@@ -237,9 +265,10 @@ def _write_report(compared: ComparisonRun, path: Path) -> None:
 
 @click.command()
 @report_option
+@click.option("--figures", is_flag=True, help="Also draw each case as a PDF in the folder beside the report.")
 @store_option
 @catching
-def report(report: Path, store: Path) -> None:
+def report(report: Path, figures: bool, store: Path) -> None:
     """Build the report of the last comparison again, from the store, without running anything."""
     if not store.exists():
         raise InputError("there is no such store", "Run `drystone compare` first", source=str(store))
@@ -247,5 +276,5 @@ def report(report: Path, store: Path) -> None:
         compared = comparing.recall(opened)
     if compared is None:
         raise InputError("no comparison is in the store", "Run `drystone compare` first", source=str(store))
-    _write_report(compared, report)
+    _write_report(compared, report, drawn=figures)
     say(f"Report: {report}")

@@ -106,7 +106,7 @@ def _residual(result: Result) -> str:
     return f"{worst:.1e}" + ("" if result.judge.accepted else " ✗")
 
 
-def print_comparison(compared: ComparisonRun, report: Path) -> None:
+def print_comparison(compared: ComparisonRun, report: Path | None) -> None:
     """The table of a comparison, what does not hold, and where the report is."""
     console = Console()
     if not console.is_terminal:
@@ -143,7 +143,8 @@ def print_comparison(compared: ComparisonRun, report: Path) -> None:
             console.print(f"  ✗ {escape(sentence)}", highlight=False)
     else:
         console.print(f"All {gated} gated references and {gates} theory gates hold.")
-    print(visible(f"Report: {report}"))
+    if report is not None:
+        print(visible(f"Report: {report}"))
 
 
 def print_agreement(compared: ComparisonRun, within: float = 0.01) -> None:
@@ -159,14 +160,14 @@ def print_agreement(compared: ComparisonRun, within: float = 0.01) -> None:
     print(f"FE, LA and DE lie within {within:.0%} of each other on {agreeing} of {len(compared.cases)} walls.")
 
 
-def comparison_json(compared: ComparisonRun, report: Path) -> dict[str, Any]:
+def comparison_json(compared: ComparisonRun, report: Path | None) -> dict[str, Any]:
     """A comparison as JSON values."""
     broken = violations(compared)
     return {
         "title": compared.title,
         "created": compared.created,
         "command": compared.command,
-        "report": str(report),
+        "report": None if report is None else str(report),
         "passed": not broken,
         "violations": broken,
         "cases": [

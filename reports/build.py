@@ -26,16 +26,17 @@ DRAWING_BUDGET = 3_000_000
 """Bytes the fields of mechanisms and forces may take in the page, so that it stays below 5 MB."""
 
 
-def write_report(run: ComparisonRun, path: Path) -> None:
+def write_report(run: ComparisonRun, path: Path, *, drawn: bool = False) -> None:
     """Write the report of a comparison, and `<stem>-data/` beside it. Either the whole file is there or the old one.
 
     Args:
         run: the comparison.
         path: the HTML file.
+        drawn: whether the folder gets a figure of every case as PDF.
     """
     path.parent.mkdir(parents=True, exist_ok=True)
     text = render(run, data_folder=f"{path.stem}-data")
-    export(run, path.with_name(f"{path.stem}-data"))
+    export(run, path.with_name(f"{path.stem}-data"), drawn=drawn)
     handle, name = tempfile.mkstemp(dir=path.parent, prefix=f".{path.stem}-", suffix=".html")
     try:
         with os.fdopen(handle, "w", encoding="utf-8") as stream:

@@ -8,53 +8,51 @@ import json
 import os
 import re
 import tempfile
+from importlib.util import find_spec
 from pathlib import Path
 from typing import Any
 
-import pyarrow as pa
-import pyarrow.parquet as pq
-
 from harness.model.comparison import CaseResults, ComparisonRun
 from harness.model.result import Result
-from reports import figures, shapes, words
+from reports import shapes, words
 from reports.tables import reference_of, worst_residual
 
 FIGURE_BLOCKS, MOST_PANELS = 400, 4
 """Walls with more blocks are drawn on demand only (`drystone figure`), and a strip holds so many methods."""
 
-RESULT_COLUMNS: dict[str, pa.DataType] = {
-    "case": pa.string(),
-    "method": pa.string(),
-    "family": pa.string(),
-    "status": pa.string(),
-    "finding": pa.string(),
-    "sentence": pa.string(),
-    "multiplier": pa.float64(),
-    "bracket_low": pa.float64(),
-    "bracket_high": pa.float64(),
-    "bracket_meaning": pa.string(),
-    "verdict": pa.string(),
-    "judge_accepted": pa.bool_(),
-    "judge_tolerance": pa.float64(),
-    "judge_worst_residual": pa.float64(),
-    "judge_worst_residual_name": pa.string(),
-    "judge_sentence": pa.string(),
-    "cpu_seconds": pa.float64(),
-    "wall_seconds": pa.float64(),
-    "peak_memory_bytes": pa.int64(),
-    "blocks": pa.int64(),
-    "interfaces": pa.int64(),
-    "iterations": pa.int64(),
-    "unknowns": pa.int64(),
-    "flow": pa.string(),
-    "started": pa.string(),
-    "key": pa.string(),
-    "settings": pa.string(),
-    "limits": pa.string(),
-    "versions": pa.string(),
-    "machine": pa.string(),
+RESULT_COLUMNS: dict[str, str] = {
+    "case": "string",
+    "method": "string",
+    "family": "string",
+    "status": "string",
+    "finding": "string",
+    "sentence": "string",
+    "multiplier": "Float64",
+    "bracket_low": "Float64",
+    "bracket_high": "Float64",
+    "bracket_meaning": "string",
+    "verdict": "string",
+    "judge_accepted": "boolean",
+    "judge_tolerance": "Float64",
+    "judge_worst_residual": "Float64",
+    "judge_worst_residual_name": "string",
+    "judge_sentence": "string",
+    "cpu_seconds": "Float64",
+    "wall_seconds": "Float64",
+    "peak_memory_bytes": "Int64",
+    "blocks": "Int64",
+    "interfaces": "Int64",
+    "iterations": "Int64",
+    "unknowns": "Int64",
+    "flow": "string",
+    "started": "string",
+    "key": "string",
+    "settings": "string",
+    "limits": "string",
+    "versions": "string",
+    "machine": "string",
 }
-"""Columns of results.csv and results.parquet; times in seconds, memory in bytes, residuals relative."""
+"""Columns of results.csv and results.parquet with their types in pandas; times [s], memory [bytes], residuals relative."""
 
 COMPARISON_COLUMNS = (
     "case",
@@ -74,20 +72,22 @@ COMPARISON_COLUMNS = (
 )
 
 
-def export(run: ComparisonRun, folder: Path) -> None:
+def export(run: ComparisonRun, folder: Path, *, drawn: bool = False) -> None:
     """Write the data of a comparison. Files of an earlier export that are no longer made are removed.
 
     Args:
         run: the comparison.
         folder: `<stem>-data`; only files named in its own index.json are ever removed from it.
+        drawn: whether each case gets a figure as PDF too; a figure takes longer than all the rest of its case.
     """
     folder.mkdir(parents=True, exist_ok=True)
     rows = [_result_row(result) for item in run.cases for result in item.results]
     contents: dict[str, bytes] = {
         "results.csv": _csv(tuple(RESULT_COLUMNS), rows),
-        "results.parquet": _parquet(rows),
         "comparisons.csv": _csv(COMPARISON_COLUMNS, _comparison_rows(run)),
     }
+    if find_spec("pyarrow") is not None:
+        contents["results.parquet"] = _parquet(rows)
     for item in run.cases:
         for result in item.results:
             name = f"{_safe(item.case.id)}/{_safe(result.method)}.json"
@@ -98,7 +98,7 @@ def export(run: ComparisonRun, folder: Path) -> None:
                     "units": item.case.wall.units.model_dump(mode="json"),
                 }
             )
-        drawing = comparison_figure(item)
+        drawing = comparison_figure(item) if drawn else None
         if drawing is not None:
             contents[f"figures/{_safe(item.case.id)}.pdf"] = drawing
     earlier = _index(folder)
@@ -118,6 +118,8 @@ def comparison_figure(item: CaseResults) -> bytes | None:
     ]
     if not usable or shapes.problem(item.case) or item.case.assembly.n_blocks > FIGURE_BLOCKS:
         return None
+    from reports import figures
+
     with tempfile.TemporaryDirectory() as folder:
         path = Path(folder) / "figure.pdf"
         figures.figure(item.case, usable[:MOST_PANELS], "comparison", path)
@@ -210,7 +212,9 @@ def _field(value: Any) -> Any:
 
 
 def _parquet(rows: list[dict[str, Any]]) -> bytes:
-    schema = pa.schema(list(RESULT_COLUMNS.items()))
+    """The results as Parquet, with the types of `RESULT_COLUMNS`; what is missing is null."""
+    import pandas as pd
+
     sink = io.BytesIO()
-    pq.write_table(pa.Table.from_pylist(rows, schema=schema), sink)
+    pd.DataFrame(rows, columns=list(RESULT_COLUMNS)).astype(RESULT_COLUMNS).to_parquet(sink, index=False)
     return sink.getvalue()

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
 from pathlib import Path
@@ -63,14 +63,21 @@ class Run:
         return Task(self.method, self.case.assembly, self.settings, self.limits.seconds, self.limits.memory_bytes)
 
 
-def plan_case(case: Case, methods: Sequence[str] | None, limits: Limits, tier: str = "quick") -> list[Run]:
-    """The runs of one case: each method with its default settings first, then those references ask settings for.
+def plan_case(
+    case: Case,
+    methods: Sequence[str] | None,
+    limits: Limits,
+    tier: str = "quick",
+    settings: Mapping[str, dict[str, Any]] | None = None,
+) -> list[Run]:
+    """The runs of one case: each method with the settings chosen first, then those references ask settings for.
 
     Args:
         case: the case.
         methods: names given by the user, or None for the case's own choice.
         limits: of each run.
         tier: "quick" leaves out references of the full tier.
+        settings: of methods by name, where they are not the defaults; references to other settings do not apply.
     """
     references = [item for item in case.file.references if tier == "full" or item.tier == "quick"]
     if methods is None:
@@ -82,10 +89,10 @@ def plan_case(case: Case, methods: Sequence[str] | None, limits: Limits, tier: s
     runs: list[Run] = []
     for method in methods:
         mine = [item for item in references if method in item.applies_to]
-        plain = tuple(item for item in mine if not item.settings)
-        runs.append(Run(case, method, {}, limits, plain))
+        chosen = dict((settings or {}).get(method, {}))
+        runs.append(Run(case, method, chosen, limits, tuple(item for item in mine if item.settings == chosen)))
         for item in mine:
-            if item.settings and item.gate:
+            if item.settings and item.gate and not chosen:
                 runs.append(Run(case, method, dict(item.settings), limits, (item,)))
     return runs
 

@@ -243,3 +243,21 @@ def test_a_method_that_crashes_costs_one_row_and_not_the_run(wall: Path):
     assert done.returncode == 0, done.stderr
     assert "dummy" in done.stdout
     assert (wall.parent / "out" / "report.html").is_file()
+
+
+def test_compare_takes_settings_of_methods_and_writes_no_report_when_told(wall: Path):
+    words = ("compare", wall.name, "--methods", "la-associated", "--no-report", "--json")
+    done = drystone(*words, "--set", "la-associated.solver=interior", cwd=wall.parent)
+    assert done.returncode == 0, done.stderr
+    document = json.loads(done.stdout)
+    assert document["report"] is None
+    assert document["cases"][0]["results"][0]["settings"] == {"solver": "interior"}
+    assert [path.name for path in (wall.parent / "out").iterdir()] == ["drystone.sqlite"]
+
+
+@pytest.mark.parametrize("given", ["solver=interior", "magic.solver=interior", "la-associated.speed=9"])
+def test_settings_that_no_method_has_are_refused(given: str, wall: Path):
+    done = drystone("compare", wall.name, "--set", given, cwd=wall.parent)
+    assert done.returncode == 2
+    assert "--set" in done.stderr
+    assert not (wall.parent / "out").exists()

@@ -17,7 +17,7 @@ from tests.reports import samples
 @pytest.fixture(scope="module")
 def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
     path = tmp_path_factory.mktemp("data") / "report-data"
-    export(samples.typical(), path)
+    export(samples.typical(), path, drawn=True)
     return path
 
 
@@ -58,6 +58,11 @@ def test_fields_of_every_run_are_exported(folder: Path):
     assert len(data["mechanism"]) == case.assembly.n_blocks == len(data["block_ids"])
     assert data["forces"] == samples.pressing(case.assembly).tolist()
     assert data["units"] == {"length": "m", "force": "kN"}
+
+
+def test_figures_are_drawn_when_asked_for_only(tmp_path: Path):
+    export(samples.typical(), tmp_path)
+    assert not list(tmp_path.rglob("*.pdf"))
 
 
 def test_every_case_has_a_figure(folder: Path):
