@@ -52,7 +52,7 @@ RESULT_COLUMNS: dict[str, str] = {
     "versions": "string",
     "machine": "string",
 }
-"""Columns of results.csv and results.parquet with their types in pandas; times [s], memory [bytes], residuals relative."""
+"""Columns of results.csv and results.parquet, their types in pandas; times [s], memory [bytes], residuals relative."""
 
 COMPARISON_COLUMNS = (
     "case",
