@@ -37,7 +37,7 @@ class AssociatedLimitAnalysis(LimitAnalysisFamily):
     Settings: ClassVar[type[Settings]] = AssociatedSettings
 
     def answer(self, assembly: Assembly, problem: Problem, newton: NewtonMatrix, settings: Any) -> Answer:
-        """The linear programme on HiGHS or on the own interior point."""
+        """The linear programme by simplex or interior point."""
         return associated_answer(problem, solve_associated(problem, newton, settings.solver), 1e-9)
 
 

@@ -8,14 +8,12 @@ import numpy as np
 
 from harness.model.assembly import Assembly, FloatArray
 from harness.model.method import Answer, Finding, Status
+from methods.la.extremes import SIMPLEX_INTERFACES, standing
 from methods.la.newton_matrix import NewtonMatrix
 from methods.la.problem import Problem
-from methods.la.programmes import StaticProgramme
+from methods.la.programmes import KinematicSolution
 from methods.la.standing import standing_forces
 from methods.la.state import CollapseState, residuals
-
-SIMPLEX_INTERFACES = 100
-"""Interfaces up to which the simplex method decides at once whether a wall stands."""
 
 NO_MOTION = "No mechanism lets the live load do work: it cannot make the wall collapse."
 NO_STATE = "Statics allows any live load, and the search found no collapse state under zero dilatancy either."
@@ -69,25 +67,23 @@ def unbounded_answer(sentence: str, iterations: int = 0, details: dict[str, Any]
 
 def dead_load_answer(problem: Problem, newton: NewtonMatrix, has_live_load: bool) -> Answer | None:
     """Falls with its mechanism, or stands if there is no live load; None if there is a live load to study."""
-    forces = standing_forces(problem, newton) if problem.n_interfaces > SIMPLEX_INTERFACES else None
-    iterations = 0
-    if forces is None:
-        try:
-            found = StaticProgramme(problem).stands_at(0.0)
-        except RuntimeError as error:
-            return not_converged(f"Whether the wall stands under its dead load was not settled: {error}")
-        if isinstance(found, np.ndarray):
-            return falls_answer(problem, found)
-        forces, iterations = found.forces, found.iterations
+    large = has_live_load and problem.n_interfaces > SIMPLEX_INTERFACES
+    if large and standing_forces(problem, newton) is not None:
+        return None
+    found = standing(problem)
+    if isinstance(found, str):
+        return not_converged(f"Whether the wall stands under its dead load was not settled: the programme was {found}.")
+    if isinstance(found, KinematicSolution):
+        return falls_answer(problem, found.velocities)
     if has_live_load:
         return None
     return Answer(
         Status.OK,
         Finding.STANDS,
         "Under its dead load the wall has an equilibrium within yield; no live load was given.",
-        forces=problem.to_forces(forces),
+        forces=problem.to_forces(found.forces),
         forces_multiplier=0.0,
-        iterations=iterations,
+        iterations=found.iterations,
     )
 
 

@@ -1,32 +1,33 @@
 """The greatest multiplier of statics alone: the linear programme of associated limit analysis, with its mechanism.
 
 max lambda s.t. C' r + f0 + lambda fL = 0, S r >= 0 (Livesley 1978). Its dual gives velocities with dilatant flow,
-C u = S' g, fL.u = 1, of value -f0.u; we compare the two values ourselves.
+C u = S' g, fL.u = 1, of value -f0.u; we compare the two values ourselves. Both are read from one vertex, computed to
+rounding (`methods.numerics.vertex`).
 """
 
 from __future__ import annotations
 
-from contextlib import suppress
 from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
 
 from harness.model.assembly import FloatArray
-from methods.la.exact import exact_forces
+from methods.la.exact import exact_forces, exact_mechanism
+from methods.la.extremes import extreme, standing
 from methods.la.interior_point import PathSettings, follow_path, start_point
 from methods.la.newton_matrix import NewtonMatrix
 from methods.la.newton_step import Point
 from methods.la.problem import Problem
-from methods.la.programmes import KinematicProgramme, StaticProgramme, StaticSolution
+from methods.la.programmes import KinematicProgramme, StaticSolution
 from methods.la.state import CollapseState, moving_contacts, polished, residuals, tight_contacts
 
 SIMPLEX_INTERFACES = 400
-"""Interfaces above which the interior point is quicker, and closes a gap that simplex leaves at 5e-9."""
-MOST_SIMPLEX_INTERFACES = 8000
-"""Interfaces above which simplex is not tried either where the interior point ends early."""
+"""Interfaces above which the own interior point comes first: quicker, where its end is clear enough to be polished."""
 GAP = 1e-12
 """Complementarity y.g relative to the live work at which the path ends."""
+EXACT = 1e-11
+"""Residual of a polished end, and slack or rate of a contact that has both, up to which no vertex is asked for."""
 
 
 @dataclass(frozen=True)
@@ -58,32 +59,25 @@ def solve_associated(problem: Problem, newton: NewtonMatrix, solver: str = "auto
 
     Args:
         problem: the scaled wall.
-        newton: its Newton matrix, used to polish and by the interior point.
-        solver: "highs", "interior" or "auto" (by size).
+        newton: its Newton matrix, for the interior point.
+        solver: "highs" (simplex), "interior" (own interior point, and a vertex where its end is not clear) or "auto"
+            (by size).
     """
     if solver == "interior" or (solver == "auto" and problem.n_interfaces > SIMPLEX_INTERFACES):
         result = _by_interior_point(problem, newton)
-        if result.outcome == "optimal" and result.gap <= 1e-9:
+        if result is not None:
             return result
-        if result.outcome != "optimal" and _bears_live_load_alone(problem):
-            return AssociatedResult("unbounded", iterations=result.iterations)
-        if solver == "interior" or problem.n_interfaces > MOST_SIMPLEX_INTERFACES:
-            return result
-    return _by_highs(problem, newton)
+    found = extreme(problem, greatest=True, solver="simplex" if solver == "highs" else "auto")
+    if isinstance(found, str):
+        return AssociatedResult("unbounded" if _bears_live_load_alone(problem) else found)
+    statics, mechanism = found.statics, found.kinematics
+    moving = moving_contacts(mechanism.rates)
+    state = CollapseState(statics.forces, statics.multiplier, mechanism.velocities, moving, associated=True)
+    return AssociatedResult("optimal", state, duality_gap(problem, state), statics.iterations)
 
 
 def _bears_live_load_alone(problem: Problem) -> bool:
-    with suppress(RuntimeError):
-        return isinstance(StaticProgramme(replace(problem, dead=problem.live)).stands_at(0.0), StaticSolution)
-    return False
-
-
-def _by_highs(problem: Problem, newton: NewtonMatrix) -> AssociatedResult:
-    programme = StaticProgramme(problem)
-    solution = programme.solve(greatest=True)
-    if isinstance(solution, str):
-        return AssociatedResult(solution)
-    return with_mechanism(problem, newton, solution.forces, solution.multiplier, solution.iterations)
+    return isinstance(standing(replace(problem, dead=problem.live)), StaticSolution)
 
 
 def with_mechanism(
@@ -108,44 +102,40 @@ def duality_gap(problem: Problem, state: CollapseState) -> float:
     return abs(state.multiplier - kinematic) / max(1.0, abs(state.multiplier))
 
 
-def _by_interior_point(problem: Problem, newton: NewtonMatrix) -> AssociatedResult:
-    result = follow_path(problem, newton, start_point(problem), PathSettings(dilatancy=1.0, gap=GAP, residual=1e-3))
-    if not result.gap < 1e-4 or result.statics > 0.1:
-        return AssociatedResult("unknown", iterations=result.iterations)
-    point = result.point
-    best: CollapseState | None = None
-    merit = float("inf")
-    for bias in (1e6, 1e3, 1.0, 1e9):
-        state = from_path(problem, newton, point, bias)
-        if state is None:
-            continue
-        size = max(residuals(problem, state).values())
-        if size < merit:
-            best, merit = state, size
-        if merit < GAP:
-            break
-    if best is None:
-        return AssociatedResult("unknown", iterations=result.iterations)
-    return AssociatedResult("optimal", best, duality_gap(problem, best), result.iterations)
-
-
-def from_path(problem: Problem, newton: NewtonMatrix, point: Point, bias: float) -> CollapseState | None:
-    """The end of an associated path with its forces brought into equilibrium; its mechanism is exact as it is.
-
-    Slacks with g > bias y are set to zero; the others change in proportion to their size.
-    """
+def _by_interior_point(problem: Problem, newton: NewtonMatrix) -> AssociatedResult | None:
+    """The end of the central path made exact, or None where it is not clear which contacts press and which move."""
     try:
-        forces, multiplier = exact_forces(
-            problem,
-            newton,
-            problem.forces_of_slacks(point.slack),
-            point.multiplier,
-            point.rates > bias * point.slack,
-            floor=1e-14,
-        )
+        result = follow_path(problem, newton, start_point(problem), PathSettings(1.0, gap=GAP, residual=1e-3))
     except RuntimeError:
         return None
-    return CollapseState(forces, multiplier, point.velocities, point.rates > point.slack, associated=True)
+    if not result.gap < 1e-4 or result.statics > 0.1:
+        return None
+    for bias in (1.0, 1e3, 1e6):
+        state = _from_path(problem, newton, result.point, bias)
+        if state is not None and _unclear(problem, state) <= EXACT:
+            return AssociatedResult("optimal", state, duality_gap(problem, state), result.iterations)
+    return None
+
+
+def _from_path(problem: Problem, newton: NewtonMatrix, point: Point, bias: float) -> CollapseState | None:
+    """The end of an associated path with forces and mechanism exact: slacks with g > bias y are zero, other rates are."""
+    tight = point.rates > bias * point.slack
+    try:
+        forces, multiplier = exact_forces(
+            problem, newton, problem.forces_of_slacks(point.slack), point.multiplier, tight, floor=1e-14
+        )
+        velocities = exact_mechanism(problem, newton, point.velocities, tight, associated=True)
+    except RuntimeError:
+        return None
+    return CollapseState(forces, multiplier, velocities, tight, associated=True)
+
+
+def _unclear(problem: Problem, state: CollapseState) -> float:
+    """The largest residual of a state, and the largest slack or rate, whichever is less, of a contact that has both."""
+    slack = problem.slacks(state.forces)
+    rates = problem.rates_of_velocities(state.velocities, associated=True)
+    both = np.minimum(abs(slack), abs(rates) / float(abs(state.velocities).max(initial=0.0) or 1.0))
+    return max(float(both.max(initial=0.0)), *residuals(problem, state).values())
 
 
 def solve_with_cvxpy(problem: Problem, solver: str) -> tuple[str, FloatArray | None, float]:

@@ -14,7 +14,6 @@ import scipy.sparse as sp
 from harness.model.assembly import BoolArray, FloatArray
 from methods.la.problem import Problem
 from methods.numerics.linear_programme import INFINITY, Programme
-from methods.numerics.statics import forces_of_cone, rows_of_blocks, upper_limits
 
 SIMPLEX_INTERFACES = 800
 """Interfaces up to which the simplex method is the quicker way to a vertex of a static programme."""
@@ -39,21 +38,6 @@ class KinematicSolution:
     rates: FloatArray
 
 
-@dataclass(frozen=True)
-class GreatestSolution:
-    """Forces of the greatest multiplier and the dilatant mechanism dual to them.
-
-    Attributes:
-        statics, kinematics: the two sides.
-        violation_of_yield, of_flow: largest violations of a bound, relative to the terms beside it.
-    """
-
-    statics: StaticSolution
-    kinematics: KinematicSolution
-    violation_of_yield: float
-    violation_of_flow: float
-
-
 class StaticProgramme:
     """min lambda >= 0, or max lambda, s.t. C' r + f0 + lambda fL = 0, S r >= 0, (S r)_k = 0 for tight k.
 
@@ -63,9 +47,16 @@ class StaticProgramme:
     def __init__(self, problem: Problem, solver: str = "simplex") -> None:
         self.problem = problem
         m, mu = problem.n_interfaces, problem.friction
-        forces = forces_of_cone(mu)
+        base = 3 * np.arange(m)
+        shear_rows = np.concatenate([base + 2, base + 2, base + 2])
+        columns = np.concatenate([base, base + 1, base + 2])
+        normals = sp.diags(np.tile([1.0, 1.0, 0.0], m))
+        shear = sp.coo_matrix((np.concatenate([-mu, -mu, np.ones(m)]), (shear_rows, columns)), shape=(3 * m, 3 * m))
+        forces = (normals + shear).tocsr()
         equilibrium = sp.hstack([problem.statics @ forces, sp.csr_matrix(problem.live[:, None])])
-        backward = sp.hstack([upper_limits(mu), sp.csr_matrix((m, 1))])
+        backward = sp.coo_matrix(
+            (np.concatenate([2 * mu, 2 * mu, -np.ones(m)]), (np.tile(np.arange(m), 3), columns)), shape=(m, 3 * m + 1)
+        )
         self._forces = forces
         self._free = (np.zeros(3 * m), np.full(3 * m, INFINITY))
         cost = np.zeros(3 * m + 1)
@@ -98,26 +89,6 @@ class StaticProgramme:
             return status
         return StaticSolution(self._to_forces(value), float(value[-1]), self._programme.iterations())
 
-    def greatest(self) -> GreatestSolution | str:
-        """The greatest multiplier with its forces and dilatant mechanism, a vertex to rounding; or how it ended."""
-        status = self.solve(greatest=True)
-        if isinstance(status, str):
-            return status
-        n, m = self.problem.n_velocities, self.problem.n_interfaces
-        vertex = self._programme.vertex(rows_of_blocks(n // 3, m))
-        if vertex is None:
-            return "unknown"
-        velocities = -vertex.dual[:n]
-        rates = np.column_stack([vertex.reduced[:-1].reshape(-1, 3), vertex.dual[n:]])
-        work = self.problem.live_work / float(self.problem.live @ velocities)
-        forces = self._to_forces(vertex.value)
-        return GreatestSolution(
-            StaticSolution(forces, float(vertex.value[-1]), status.iterations),
-            KinematicSolution(work * velocities, work * rates),
-            vertex.primal,
-            vertex.dual_violation,
-        )
-
     def lightest(self, weights: FloatArray) -> FloatArray | None:
         """Forces (m, 3) that carry the dead load with the least sum of weights (m, 2) times n1, n2; None if not found.
 
@@ -141,35 +112,6 @@ class StaticProgramme:
     def _to_forces(self, value: FloatArray) -> FloatArray:
         """Forces (m, 3) of the columns."""
         return np.asarray(self._forces @ np.maximum(value[:-1], 0.0)).reshape(-1, 3)
-
-    def stands_at(self, multiplier: float) -> StaticSolution | FloatArray:
-        """Forces in equilibrium within yield at a multiplier, or the velocities (3n,) that prove there are none.
-
-        The proof is a Farkas ray: a dilatant mechanism on which the loads do positive work.
-
-        Raises:
-            RuntimeError: the solver gives neither.
-        """
-        m = self.problem.n_interfaces
-        programme = self._programme
-        self._hold(multiplier)
-        try:
-            status, value, _ = programme.run()
-            if status != "optimal":
-                programme.highs.setOptionValue("presolve", "off")
-                programme.highs.setOptionValue("solver", "simplex")
-                status, value, _ = programme.run()
-            if status == "optimal":
-                return StaticSolution(self._to_forces(value), multiplier, programme.iterations())
-            ray = programme.highs.getDualRay()
-            direction = np.array(ray[2])[: self.problem.n_velocities] if ray[1] else np.zeros(0)
-        finally:
-            programme.highs.setOptionValue("presolve", "choose")
-            programme.set_columns(3 * m, np.array([-INFINITY]), np.array([INFINITY]))
-        if status != "infeasible" or len(direction) == 0:
-            raise RuntimeError(f"the linear programme at multiplier {multiplier:g} ended as {status}")
-        load = self.problem.dead + multiplier * self.problem.live
-        return direction * float(np.sign(load @ direction))
 
 
 class KinematicProgramme:

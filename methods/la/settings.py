@@ -15,7 +15,8 @@ class AssociatedSettings(Settings):
     """Settings of `la-associated`.
 
     Attributes:
-        solver: "highs" (simplex), "interior" (own primal-dual interior point) or "auto" (by size).
+        solver: "highs" (simplex), "interior" (own interior point, and a vertex of HiGHS where its end is not clear) or
+            "auto" (by size).
     """
 
     solver: Literal["auto", "highs", "interior"] = "auto"

@@ -10,28 +10,30 @@ from harness.model.method import Answer
 from methods.numerics.linear_programme import INFINITY, Programme
 
 
-def forces_of_cone(friction: FloatArray) -> sp.csr_matrix:
-    """Sparse (3m, 3m) matrix of the forces (n1, n2, s) of columns (n1, n2, y3 >= 0), with s = y3 - mu (n1 + n2)."""
-    m = len(friction)
-    base = 3 * np.arange(m)
-    rows = np.concatenate([base, base + 1, base + 2, base + 2, base + 2])
-    columns = np.concatenate([base, base + 1, base, base + 1, base + 2])
-    values = np.concatenate([np.ones(2 * m), -friction, -friction, np.ones(m)])
-    return sp.csr_matrix((values, (rows, columns)), shape=(3 * m, 3 * m))
+def shear_limits(friction: FloatArray) -> sp.csr_matrix:
+    """Sparse (2m, 3m) matrix of the slacks mu (n1 + n2) +- s of forces (n1, n2, s), over mu where that is above one.
 
-
-def upper_limits(friction: FloatArray) -> sp.csr_matrix:
-    """Sparse (m, 3m) matrix of the slacks y4 = 2 mu (n1 + n2) - y3 of columns (n1, n2, y3)."""
+    Shears themselves are the unknowns, because their difference from a large strength would cost digits.
+    """
     m = len(friction)
-    base = 3 * np.arange(m)
-    columns = np.concatenate([base, base + 1, base + 2])
-    values = np.concatenate([2 * friction, 2 * friction, -np.ones(m)])
-    return sp.csr_matrix((values, (np.tile(np.arange(m), 3), columns)), shape=(m, 3 * m))
+    size = np.maximum(friction, 1.0)
+    base, pair, part, share = 3 * np.arange(m), 2 * np.arange(m), friction / size, 1.0 / size
+    rows = np.concatenate([pair, pair, pair, pair + 1, pair + 1, pair + 1])
+    columns = np.concatenate([base, base + 1, base + 2] * 2)
+    values = np.concatenate([part, part, share, part, part, -share])
+    return sp.csr_matrix((values, (rows, columns)), shape=(2 * m, 3 * m))
 
 
 def rows_of_blocks(n_free: int, m: int) -> IntArray:
-    """(3 n_free + m,) block behind each row of equilibrium, and a number of its own for each of m further rows."""
-    return np.append(np.repeat(np.arange(n_free), 3), n_free + np.arange(m))
+    """(3 n_free + 2 m,) block behind each row of equilibrium, and a number of its own for each of 2 m further rows."""
+    return np.append(np.repeat(np.arange(n_free), 3), n_free + np.arange(2 * m))
+
+
+def within_yield(forces: FloatArray, friction: FloatArray) -> FloatArray:
+    """Forces (m, 3) without the tension and the excess of shear that rounding leaves, for friction (m,)."""
+    normal = np.maximum(forces[:, :2], 0.0)
+    strength = friction * normal.sum(axis=1)
+    return np.column_stack([normal, np.clip(forces[:, 2], -strength, strength)])
 
 
 def admissible_forces(assembly: Assembly, load: FloatArray) -> FloatArray | None:
@@ -50,19 +52,18 @@ def admissible_forces(assembly: Assembly, load: FloatArray) -> FloatArray | None
         return np.zeros((m, 3))
     if m == 0:
         return None
-    cone = forces_of_cone(assembly.friction)
-    statics = (assembly.kinematic_matrix @ sp.diags(column)).T @ cone
+    statics = (assembly.kinematic_matrix @ sp.diags(column)).T
     programme = Programme(
-        sp.csc_matrix(sp.vstack([statics, upper_limits(assembly.friction)])),
+        sp.csc_matrix(sp.vstack([statics, shear_limits(assembly.friction)])),
         np.zeros(3 * m),
-        (np.zeros(3 * m), np.full(3 * m, INFINITY)),
-        (np.append(-own / unit, np.zeros(m)), np.append(-own / unit, np.full(m, INFINITY))),
+        (np.tile([0.0, 0.0, -INFINITY], m), np.full(3 * m, INFINITY)),
+        (np.append(-own / unit, np.zeros(2 * m)), np.append(-own / unit, np.full(2 * m, INFINITY))),
     )
     status, _, _ = programme.run()
     vertex = programme.vertex(rows_of_blocks(assembly.n_free, m)) if status == "optimal" else None
     if vertex is None or not vertex.optimal:
         return None
-    return np.asarray(cone @ np.maximum(vertex.value, 0.0)).reshape(-1, 3) * unit
+    return within_yield(vertex.value.reshape(-1, 3), assembly.friction) * unit
 
 
 def bear(assembly: Assembly, answer: Answer, multiplier: float) -> FloatArray | None:

@@ -100,7 +100,6 @@ def test_path_to_a_tiny_gap_stays_in_equilibrium() -> None:
 def test_vertical_force_on_one_block_of_a_large_wall_is_unbounded(monkeypatch: pytest.MonkeyPatch) -> None:
     """The interior point meets no end there; forces that bear the live load alone tell."""
     monkeypatch.setattr("methods.la.associated.SIMPLEX_INTERFACES", 100)
-    monkeypatch.setattr("methods.la.associated.MOST_SIMPLEX_INTERFACES", 100)
     monkeypatch.setattr("methods.la.least.SIMPLEX_SEARCH", 100)
     wall = running_bond(10, 8, 0.2, 0.65)
     live = np.zeros_like(wall.live)
