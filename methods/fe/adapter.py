@@ -27,7 +27,8 @@ from methods.fe.incremental import march
 from methods.fe.settings import ConvexSettings, GapSpringsSettings, NewtonSettings
 from methods.numerics.statics import bear
 from methods.springs.equilibrium import equilibrium, gravity_state
-from methods.springs.factor import make_factor
+from methods.springs.factor import Factor, make_factor
+from methods.springs.newton import Equilibrium
 from methods.springs.path_record import PathEnd
 from methods.springs.wall_model import WallModel, build_model
 from methods.springs.warm_up import load_kernels
@@ -93,7 +94,27 @@ class GapSprings:
             elif result.state is not None:
                 scale = abs(result.state.multiplier) or 1.0
                 limit = min(limit, LOST_ABOVE[0] + LOST_ABOVE[1] * result.record.events)
-        return collapse_answer(model, results, factor.factorisations)
+        answer = collapse_answer(model, results, factor.factorisations)
+        lost = results and all(r.state is None and r.end is PathEnd.BREAKDOWN for r in results)
+        if lost and model.assembly.n_free <= LARGE_ABOVE:
+            return _by_displacement_control(model, factor, gravity, answer)
+        return answer
+
+
+def _by_displacement_control(model: WallModel, factor: Factor, gravity: Equilibrium, lost: Answer) -> Answer:
+    """The plateau that ordinary Newton reaches where every exact path was lost, or else the answer that says so.
+
+    Among them are walls at their limit under the dead load, which move at any live load: no path leads off them.
+    """
+    newton = NewtonSettings()
+    model = replace(model, history=gravity.history)
+    first_step = newton.first_step * _unit(model.assembly)
+    result = march(model, factor, gravity, first_step, newton.cuts, newton.displacement_steps)
+    if result.state is None:
+        return lost
+    sentence = f"{result.sentence}; the exact path was lost ({lost.sentence})"
+    details = lost.details | {"displacement_control": True}
+    return single_state_answer(model, result.state, sentence, result.record, details, result.iterations)
 
 
 def chosen_histories(model: WallModel, settings: GapSpringsSettings) -> tuple[float, ...]:

@@ -118,7 +118,7 @@ def _by_interior_point(problem: Problem, newton: NewtonMatrix) -> AssociatedResu
 
 
 def _from_path(problem: Problem, newton: NewtonMatrix, point: Point, bias: float) -> CollapseState | None:
-    """The end of an associated path with forces and mechanism exact: slacks with g > bias y are zero, other rates are."""
+    """The end of an associated path with forces and mechanism exact: slacks with g > bias y vanish, else rates do."""
     tight = point.rates > bias * point.slack
     try:
         forces, multiplier = exact_forces(

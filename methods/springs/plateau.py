@@ -16,12 +16,20 @@ from scipy.sparse.linalg import SuperLU, splu
 
 from harness.model.assembly import Assembly, BoolArray, FloatArray, IntArray
 from methods.springs.factor import SingularTangent
-from methods.springs.gap_law import classify, gap_forces
+from methods.springs.gap_law import STICK, classify, gap_forces
 from methods.springs.path_record import Snapshot
 from methods.springs.wall_model import WallModel, point_strains
 
 CERTIFICATE = 1e-8
 """Largest relative residual at which a final state counts as an exact collapse state."""
+NOTHING = 1e-13
+"""Multipliers up to this share of the load unit are zero to rounding, as of a wall at its limit under the dead load."""
+EXACT = 1e-12
+"""Residual at which no more exact state is looked for."""
+SHIFT = 1e-7
+"""Inertia added to a tangent in which several motions have no stiffness; iteration removes what it leaves."""
+STILL = 1e-6
+"""Rates below this share of the fastest are none, where several mechanisms move at once."""
 LANDINGS = 10
 """Changes of states allowed while the last piece is solved for."""
 NOT_UNIQUE = "the plateau is not unique: more than one mechanism moves at once"
@@ -34,7 +42,7 @@ class CollapseState:
     Attributes:
         multiplier: of the live load; work_multiplier: the same from the virtual work of the mechanism.
         forces: (m, 3) end forces [force]; mechanism: (n, 3) block velocities, live power 1.
-        residuals: relative defects by name: equilibrium, yield, dilatancy, complementarity, work.
+        residuals: relative defects by name: both, equilibrium, yield, dilatancy, complementarity, direction, work.
     """
 
     multiplier: float
@@ -52,21 +60,22 @@ class CollapseState:
 def finish(model: WallModel, present: Snapshot, kept: Snapshot | None = None) -> CollapseState | None:
     """The best collapse state of a path that has come to a plateau, or broke off after a mechanism; None if none.
 
-    The state on the last piece is solved for exactly; where that overshoots a kink, the state as traced and the last
-    mechanism kept on the way are tried. Which one holds is decided by their residuals alone.
+    The state on the last piece is solved for exactly; where that overshoots a kink, or several mechanisms move at once,
+    the state as traced, one solved for with some inertia, and the last mechanism kept on the way are tried. Which one
+    holds is decided by their residuals alone.
     """
-    candidates: list[CollapseState] = []
-    with suppress(SingularTangent):
-        candidates.append(_solve_last_piece(model, present))
-    candidates.append(_as_traced(model, present))
-    if kept is not None:
-        candidates.append(_as_traced(model, kept))
-        if candidates[-1].worst > CERTIFICATE:
+    shots = [present] if kept is None else [present, kept]
+    best: CollapseState | None = None
+    for shot in shots:
+        for way in (_solve_last_piece, _as_traced, _of_many_mechanisms):
             with suppress(SingularTangent):
-                candidates.append(_solve_last_piece(model, kept))
-    for state in candidates:
-        if state.worst <= CERTIFICATE:
-            return state
+                state = way(model, shot)
+                if best is None or state.worst < best.worst:
+                    best = state
+            if best is not None and best.worst <= EXACT:
+                return best
+        if best is not None and best.worst <= CERTIFICATE:
+            return best
     return None
 
 
@@ -94,6 +103,7 @@ def _collapse_state(
     forces = model.end_forces(normal, shear)
     field = model.block_displacements(velocity)
     live = float(np.sum(assembly.live * field))
+    multiplier = 0.0 if abs(multiplier) <= NOTHING * assembly.load_unit else multiplier
     return check(assembly, multiplier, forces, field / (abs(live) or 1.0))
 
 
@@ -123,6 +133,47 @@ def _solve_last_piece(model: WallModel, shot: Snapshot) -> CollapseState:
     mechanism[fastest] = 1.0
     mechanism *= np.sign(shot.velocity[fastest])
     return _collapse_state(model, multiplier, opening, trial, state, mechanism)
+
+
+def _of_many_mechanisms(model: WallModel, shot: Snapshot) -> CollapseState:
+    """State and mechanism of a piece on which several motions have no stiffness, so that no system has one solution.
+
+    Points that hardly move in the velocity are held. Some inertia makes the tangents regular, and iteration removes
+    what it leaves: v = s (K + s M)^-1 M v ends where K v = 0, and the state in equilibrium beside v.
+    Raises SingularTangent where rounding prevails.
+    """
+    opening_rate, slip_rate = np.empty_like(shot.opening), np.empty_like(shot.trial)
+
+    def strain(motion: FloatArray) -> None:
+        model_points = model.unknown, model.rows, model.interface, model.position
+        point_strains(*model_points, motion, opening_rate, slip_rate)
+
+    strain(shot.velocity)
+    still = np.maximum(abs(opening_rate), abs(slip_rate)) <= STILL * float(abs(shot.velocity).max())
+    held = _regular(model, np.where(still, STICK, shot.state))
+    velocity = shot.velocity
+    for _ in range(LANDINGS):
+        velocity = held.solve(SHIFT * model.inertia * velocity)
+        velocity = velocity / (float(abs(velocity).max()) or 1.0)
+    factor = _regular(model, shot.state)
+    opening, trial, multiplier = shot.opening.copy(), shot.trial.copy(), shot.multiplier
+    by_live = factor.solve(model.live)
+    beside = model.inertia * velocity
+    for _ in range(LANDINGS):
+        change = factor.solve(model.out_of_balance(opening, trial, shot.state, multiplier))
+        rise = -float(beside @ change) / (float(beside @ by_live) or np.inf)
+        strain(change + rise * by_live)
+        opening, trial, multiplier = opening + opening_rate, trial + model.kt * slip_rate, multiplier + rise
+    if not np.isfinite(opening + trial).all() or not np.isfinite(velocity).all():
+        raise SingularTangent(NOT_UNIQUE)
+    return _collapse_state(model, multiplier, opening, trial, shot.state, velocity)
+
+
+def _regular(model: WallModel, state: IntArray) -> SuperLU:
+    try:
+        return splu(model.tangent(state, SHIFT))
+    except RuntimeError as error:
+        raise SingularTangent(NOT_UNIQUE) from error
 
 
 def _beyond_yield(model: WallModel, opening: FloatArray, trial: FloatArray, state: IntArray) -> BoolArray:
@@ -176,7 +227,8 @@ def check(assembly: Assembly, multiplier: float, forces: FloatArray, mechanism: 
 
     Forces are relative to a mean block weight, rates to the fastest block. Complementarity is the work of contact
     forces on the motion they ought to have none in, and direction what slip gains instead of dissipating, both as
-    shares of the work of the live load at max(load unit, |multiplier|).
+    shares of the work of the live load at max(load unit, |multiplier|). What both presses (or has slack) and moves
+    counts by the smaller of force and rate.
 
     Args:
         multiplier: of the live load; forces: (m, 3) end forces [force]; mechanism: (n, 3) block velocities.
@@ -195,7 +247,10 @@ def check(assembly: Assembly, multiplier: float, forces: FloatArray, mechanism: 
     size = max(assembly.load_unit, abs(multiplier))
     idle = float(np.abs(forces[:, :2] * rates[:, :2]).sum() + np.abs(slack * rates[:, 2]).sum())
     gained = float(np.maximum(forces[:, 2] * rates[:, 2], 0.0).sum())
+    strength = np.column_stack([forces[:, :2], slack]) / scale
+    motion = np.abs(rates) / speed
     residuals = {
+        "both": float(np.minimum(np.abs(strength), motion).max()),
         "equilibrium": float(np.abs(balance).max()) / scale,
         "yield": max(0.0, -float(forces[:, :2].min()), -float(slack.min())) / scale,
         "dilatancy": max(0.0, -float(rates[:, :2].min())) / speed,
