@@ -86,6 +86,7 @@ def two_frictions() -> Iterator[Recipe]:
     springs = 0.5 * (rough + smooth) / (1.0 + 0.5 * (rough - smooth) * height)
     content = wall(
         f"Block 1 x {height} m on two supports of friction {rough} and {smooth}",
+        units={"force": "1"},
         unit_weight=1.0,
         friction={
             "default": rough,
@@ -191,7 +192,6 @@ def columns() -> Iterator[Recipe]:
         pattern=pattern,
         loads={
             "dead": {
-                "body": [{"per_weight": (0.0, -1.0)}],
                 "points": [{"block": str(count), "at": (width / 2 + eccentricity, tall), "force": (0.0, -force)}],
             },
             "live": {"body": [{"per_weight": (1.0, 0.0)}]},

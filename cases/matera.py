@@ -138,6 +138,7 @@ def matera_wall(masonry: Masonry, title: str, *, full: bool = False) -> Wall:
             "groups": ["vault"],
         }
     )
+    # What is dead of the vault is less than its weight, so gravity is written out in parts.
     dead: dict[str, Any] = {
         "body": [
             {"per_weight": (0.0, -1.0), "group": "wall"},
@@ -159,7 +160,7 @@ def matera_wall(masonry: Masonry, title: str, *, full: bool = False) -> Wall:
         friction=masonry.friction if full else {"default": masonry.friction, "rules": rules},
         pattern=patterns,
         blocks=blocks,
-        loads={"dead": dead, "live": {"body": [{"per_weight": (0.0, -1.0), "group": "vault"}]}},
+        loads={"gravity": False, "dead": dead, "live": {"body": [{"per_weight": (0.0, -1.0), "group": "vault"}]}},
     )
 
 

@@ -122,7 +122,6 @@ def buttress() -> Wall:
         },
         loads={
             "dead": {
-                "body": [{"per_weight": (0.0, -1.0)}],
                 "points": [{"block": "10.1", "at": (0.25, 4.0), "force": (0.0, -15.0)}],
             },
             "live": {"points": [{"block": "10.1", "at": (0.0, 3.8), "force": (1.0, 0.0)}]},

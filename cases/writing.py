@@ -29,8 +29,7 @@ def case_text(file: CaseFile) -> str:
 
 def wall_text(wall: Wall) -> str:
     """The content of `wall.json`, fields at their defaults left out and short lists on one line."""
-    data = {"format": "wall/1"} | wall.model_dump(mode="json", by_alias=True, exclude_defaults=True)
-    return _json(_type_first(data), 0) + "\n"
+    return _json(_type_first(wall.document()), 0) + "\n"
 
 
 def case_files(file: CaseFile, wall: Wall) -> dict[str, str]:

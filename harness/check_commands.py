@@ -25,6 +25,7 @@ from harness.options import (
     json_flag,
     print_json,
     store_option,
+    warn,
 )
 
 
@@ -53,11 +54,20 @@ def check(
     limits = Limits(seconds=120.0 if tier == "quick" else 3600.0)
     runs = [planned for case in chosen for planned in gated_runs(case, limits, tier)]
     check_methods(sorted({planned.method for planned in runs}), "applies_to of a gated reference")
+    for case in chosen:
+        warn(case)
     with open_store(store) as opened, terminal.progress(len(runs), quiet=as_json) as told:
         results = comparing.execute(runs, opened, jobs, fresh=fresh, told=told)
     lines = regression.lines(runs, results)
     if as_json:
-        print_json({"tier": tier, "references": lines, "passed": all(line["verdict"] == "agrees" for line in lines)})
+        print_json(
+            {
+                "tier": tier,
+                "references": lines,
+                "warnings": {case.id: list(case.warnings) for case in chosen if case.warnings},
+                "passed": all(line["verdict"] == "agrees" for line in lines),
+            }
+        )
     else:
         terminal.print_check(lines)
     sys.exit(0 if all(line["verdict"] == "agrees" for line in lines) else 1)

@@ -187,7 +187,8 @@ def print_result(result: Result, case: Case) -> None:
     console = Console()
     rows = Table.grid(padding=(0, 2))
     rows.add_row("wall", escape(f"{case.file.title} (free blocks: {result.blocks}, interfaces: {result.interfaces})"))
-    rows.add_row("method", result.method)
+    rows.add_row("units", escape(case.wall.units_sentence))
+    rows.add_row("method", escape(result.method))
     rows.add_row("finding", f"{_value(result)}" if result.finding is Finding.COLLAPSES else str(result.finding))
     rows.add_row("", escape(result.sentence))
     if result.bracket is not None:

@@ -95,6 +95,8 @@ def judge(wall: Path, result: Path, tolerance: float, as_json: bool) -> None:
     for a collapse, "mechanism" (ux, uy, omega of every block) and "flow".
     """
     built = read_wall(wall)
+    for sentence in built.warnings:
+        say(f"drystone: {sentence}", err=True)
     answer = terminal.foreign_answer(read_json(result), built.assembly, str(result))
     judged = result_of(answer, built.assembly, case=wall.stem, method="foreign", family="foreign")
     judgement = judge_result(built.assembly, judged, tolerance)
@@ -182,6 +184,7 @@ def animate(case: str, method: str, output: Path | None, store: Path, folders: t
 def _answers(case: str, methods: tuple[str, ...], store: Path, folders: tuple[Path, ...]) -> tuple[Case, list[Result]]:
     check_methods(methods)
     (found,) = find_cases([case], None, folders)
+    warn(found)
     with open_store(store) as opened, terminal.progress(len(methods), quiet=True) as told:
         results = comparing.execute([Run(found, name, {}, Limits()) for name in methods], opened, 1, told=told)
     for result in results:

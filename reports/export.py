@@ -95,7 +95,7 @@ def export(run: ComparisonRun, folder: Path, *, drawn: bool = False) -> None:
                 result.model_dump(mode="json")
                 | {
                     "block_ids": [] if shapes.problem(item.case) else list(item.case.assembly.block_ids),
-                    "units": item.case.wall.units.model_dump(mode="json"),
+                    "units": item.case.wall.units.model_dump(mode="json", exclude_none=True),
                 }
             )
         drawing = comparison_figure(item) if drawn else None

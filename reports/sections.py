@@ -149,5 +149,9 @@ def _facts(case: Case) -> list[tuple[str, str]]:
         ("Size", f"{numbers.given(extent.width, 4)} × {numbers.given(extent.height, 4)} {units.length}"),
         ("Weight of free blocks", f"{numbers.given(weight, 4)} {units.force}"),
         ("Live load", " and ".join(ways) if ways else "none: the question is whether it stands"),
+        ("Units", case.wall.units_sentence),
     ]
+    if case.wall.loads.gravity_per_weight != (0.0, -1.0):
+        x, y = case.wall.loads.gravity_per_weight
+        facts.append(("Gravity", f"({numbers.given(x, 4)}, {numbers.given(y, 4)}) times the weight"))
     return facts

@@ -26,8 +26,9 @@ Told = Callable[[Run, Result, bool], None]
 
 
 def judged(run: Run, result: Result, tolerance: float) -> Result:
-    """A result with the judge's word and its comparisons. Both are made anew from what is stored."""
-    result = result.model_copy(update={"judge": judge(run.case.assembly, result, tolerance)})
+    """A result with the judge's word, its comparisons and the doubts about its wall, made anew from what is stored."""
+    known = {"judge": judge(run.case.assembly, result, tolerance), "warnings": list(run.case.warnings)}
+    result = result.model_copy(update=known)
     comparisons = [compare(reference, result) for reference in run.references]
     return result.model_copy(update={"comparisons": comparisons, "verdict": overall(comparisons)})
 
@@ -134,7 +135,7 @@ def remember(store: Store, compared: ComparisonRun, runs: Sequence[Run]) -> None
     cases = {
         run.case.id: {
             "file": run.case.file.model_dump(mode="json"),
-            "wall": run.case.wall.model_dump(mode="json", by_alias=True, exclude_defaults=True) | {"format": "wall/1"},
+            "wall": run.case.wall.document(),
             "origin": run.case.origin,
         }
         for run in runs

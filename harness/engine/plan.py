@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from pathlib import Path
 from typing import Any
@@ -12,7 +13,7 @@ from harness.engine.executors import Job
 from harness.engine.provenance import code_version
 from harness.engine.store import run_key
 from harness.engine.worker import Task
-from harness.model.case import Case, Reference, case_folders, case_of_wall, read_case, shipped_cases
+from harness.model.case import Case, Reference, case_folders, case_of_wall, id_of, read_case, shipped_cases
 from harness.model.errors import InputError, did_you_mean
 from harness.model.method import method_names
 from harness.model.reading import wall_json
@@ -139,7 +140,8 @@ def find_cases(words: Sequence[str], suite: str | None, folders: Sequence[Path])
     if words and suite:
         raise InputError("cases and a suite are given", "Give one or the other", "compare")
     if words:
-        return [_find_case(word, library) for word in words]
+        found = [_find_case(word, library) for word in words]
+        return _told_apart(list({Path(case.origin).resolve(): case for case in reversed(found)}.values())[::-1])
     cases = [read_case(folder) for folder in library.values()]
     own = {path.resolve() for path in folders}
     wanted = suite or ("" if folders else "small")
@@ -157,9 +159,14 @@ def find_cases(words: Sequence[str], suite: str | None, folders: Sequence[Path])
 
 
 def _find_case(word: str, library: dict[str, Path]) -> Case:
-    if word in library:
-        return read_case(library[word])
     path = Path(word)
+    if word in library:
+        case = read_case(library[word])
+        beside = [place for place in (path.with_name(f"{path.name}.json"), path / "case.toml") if place.is_file()]
+        if not beside or beside[0].resolve().is_relative_to(library[word].resolve()):
+            return case
+        here = f"./{beside[0] if beside[0].suffix == '.json' else path}"
+        return replace(case, notes=(f'"{word}" is the case of the library, not what lies here: for that say {here}',))
     if path.is_dir():
         return read_case(path)
     if path.exists() or path.suffix == ".json":
@@ -168,3 +175,25 @@ def _find_case(word: str, library: dict[str, Path]) -> Case:
     raise InputError(
         f'no case is called "{word}", and there is no such file', f"{did_you_mean(word, library)} {lists}".strip()
     )
+
+
+def _told_apart(cases: list[Case]) -> list[Case]:
+    """Cases under ids of their own: files of one name take those of their folders before it, as many as it needs."""
+    named = cases
+    most = max(len(Path(case.origin).resolve().parts) for case in cases)
+    for depth in range(1, most):
+        twice = {name for name, count in Counter(case.id for case in named).items() if count > 1}
+        if not twice:
+            return named
+        named = [
+            case.called(id_of("-".join([*Path(case.origin).resolve().parent.parts[-depth:], case.id])))
+            if now.id in twice
+            else now
+            for case, now in zip(cases, named, strict=True)
+        ]
+    seen: Counter[str] = Counter()
+    numbered = []
+    for case in named:
+        seen[case.id] += 1
+        numbered.append(case if seen[case.id] == 1 else case.called(f"{case.id}-{seen[case.id]}"))
+    return numbered

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable
 from dataclasses import dataclass
 
 import numpy as np
@@ -12,10 +11,25 @@ from scipy.sparse.csgraph import connected_components
 
 from harness.model import geometry
 from harness.model.assembly import Assembly, FloatArray, IntArray, polygon_area
-from harness.model.errors import InputError, first_few
-from harness.model.pattern import blocks_of
+from harness.model.errors import InputError, first_few, of_each, raise_faults
+from harness.model.names import faults_of_wall
+from harness.model.pattern import blocks_of, count_of
 from harness.model.plausibility import contact_warnings, force_warnings, interface_warnings
-from harness.model.wall import Block, Detection, Friction, Inset, Interface, Load, PatternBase, Wall
+from harness.model.slips import slip_warnings, thickness_of
+from harness.model.wall import (
+    MOST_BLOCKS,
+    Block,
+    BodyForce,
+    Detection,
+    Friction,
+    Inset,
+    Interface,
+    Load,
+    Loads,
+    PatternBase,
+    Wall,
+    coefficient_of,
+)
 
 DEFAULT_TOLERANCE = 1e-6
 """Tolerance of contact detection as a fraction of the typical block size."""
@@ -45,13 +59,13 @@ def build(wall: Wall, name: str = "wall") -> Built:
     blocks = _all_blocks(wall)
     names = tuple(block.id for block in blocks)
     index = {block_id: k for k, block_id in enumerate(names)}
-    polygons = tuple(_polygon(block) for block in blocks)
+    polygons = tuple(of_each(_polygon, blocks))
     fixed = np.array([block.fixed for block in blocks], dtype=bool)
     if not fixed.any():
         raise InputError("no block is fixed", 'Mark the supports with "fixed": true', "blocks")
     if fixed.all():
         raise InputError("every block is fixed", "Leave at least one block free to move", "blocks")
-    weight = np.array([_weight(block, wall) for block in blocks])
+    weight = np.array(of_each(lambda block: _weight(block, wall), blocks))
     centroids = np.array([geometry.centroid(polygon) for polygon in polygons])
 
     size = geometry.typical_size([polygon for polygon, still in zip(polygons, fixed, strict=True) if not still])
@@ -103,7 +117,7 @@ def build(wall: Wall, name: str = "wall") -> Built:
         normal=normal,
         friction=friction,
         joint=joints,
-        dead=_load(wall.loads.dead, "loads.dead", blocks, index, weight, centroids, fixed),
+        dead=_dead_load(wall.loads, blocks, index, weight, centroids, fixed),
         live=_load(wall.loads.live or Load(), "loads.live", blocks, index, weight, centroids, fixed),
     )
     if wall.loads.live is not None and not assembly.has_live_load:
@@ -114,28 +128,31 @@ def build(wall: Wall, name: str = "wall") -> Built:
         )
     if not math.isfinite(assembly.force_scale):
         raise InputError("its loads are too large to compute with", "Check the units", "loads")
-    warnings = [*contact_warnings(assembly, corners, size), *force_warnings(assembly, wall.loads, size)]
+    warnings = [
+        *contact_warnings(assembly, corners, size),
+        *force_warnings(assembly, wall.loads, size),
+        *slip_warnings(wall, blocks, assembly),
+    ]
     if not found:
         warnings += interface_warnings(assembly, size)
     return Built(assembly, _explicit(wall, blocks, weight, interfaces, joints, friction), tuple(warnings))
 
 
 def _all_blocks(wall: Wall) -> list[Block]:
-    patterns: Iterable[PatternBase] = (
-        [] if wall.pattern is None else wall.pattern if isinstance(wall.pattern, list) else [wall.pattern]
+    patterns: list[PatternBase] = (
+        [] if wall.pattern is None else list(wall.pattern) if isinstance(wall.pattern, list) else [wall.pattern]
     )
+    expected = sum(count_of(pattern) for pattern in patterns) + len(wall.blocks)
+    if expected > MOST_BLOCKS:
+        raise InputError(
+            f"the wall has {expected:,} blocks, and at most {MOST_BLOCKS:,} are built",
+            "Analyse a part of it",
+            "pattern" if patterns else "blocks",
+        )
     blocks = [block for pattern in patterns for block in blocks_of(pattern)] + list(wall.blocks)
     if not blocks:
         raise InputError("the wall has no blocks", 'Give "blocks" or a "pattern"', "blocks")
-    seen: set[str] = set()
-    for block in blocks:
-        if block.id in seen:
-            raise InputError(
-                "two blocks have this id",
-                "Give every block an id of its own (patterns: a prefix)",
-                f'block "{block.id}"',
-            )
-        seen.add(block.id)
+    raise_faults(faults_of_wall(wall, blocks))
     return blocks
 
 
@@ -158,7 +175,8 @@ def _weight(block: Block, wall: Wall) -> float:
             f'block "{block.id}"',
         )
     area = polygon_area(np.array(block.polygon, dtype=float))
-    return float(unit_weight) * area * (block.thickness if block.thickness is not None else wall.thickness)
+    per_area = float(unit_weight) * area * thickness_of(block, wall)
+    return per_area if wall.units.unit_weight is None else per_area * wall.units.unit_weight_factor
 
 
 def _faces(
@@ -166,9 +184,6 @@ def _faces(
 ) -> tuple[IntArray, IntArray, FloatArray, FloatArray]:
     for number, interface in enumerate(interfaces):
         element = f"interfaces[{number}]"
-        for block_id in interface.between:
-            if block_id not in index:
-                raise InputError(f'no block is called "{block_id}"', "Name a block of this wall", element)
         a, b = (index[block_id] for block_id in interface.between)
         if a == b:
             raise InputError("a block cannot touch itself", "Name two blocks", element)
@@ -261,24 +276,24 @@ def _inclination(start: FloatArray, end: FloatArray) -> str:
 
 
 def _friction(wall: Wall, interface: Interface, joint: str, blocks: list[Block], index: dict[str, int]) -> float:
-    if interface.friction is not None:
-        return interface.friction
+    if interface.friction is not None or interface.friction_angle is not None:
+        return coefficient_of(interface.friction, interface.friction_angle)
     if not isinstance(wall.friction, Friction):
-        return float(wall.friction)
+        return float(coefficient_of(wall.friction, wall.friction_angle))
     pair = set(interface.between)
     materials = sorted(blocks[index[block_id]].material for block_id in interface.between)
     by_kind: dict[str, float] = {}
     for rule in wall.friction.rules:
         if rule.between is not None and set(rule.between) == pair:
-            by_kind["between"] = rule.value
+            by_kind["between"] = rule.coefficient
         elif rule.joint is not None and rule.joint == joint:
-            by_kind["joint"] = rule.value
+            by_kind["joint"] = rule.coefficient
         elif rule.materials is not None and sorted(rule.materials) == materials:
-            by_kind["materials"] = rule.value
+            by_kind["materials"] = rule.coefficient
     for kind in ("between", "joint", "materials"):
         if kind in by_kind:
             return by_kind[kind]
-    return float(wall.friction.default)
+    return float(wall.friction.coefficient)
 
 
 def _set_in(
@@ -301,6 +316,34 @@ def _set_in(
     return face1 + step, face2 - step
 
 
+def _dead_load(
+    loads: Loads,
+    blocks: list[Block],
+    index: dict[str, int],
+    weight: FloatArray,
+    centroids: FloatArray,
+    fixed: np.ndarray,
+) -> FloatArray:
+    """Gravity and what is dead besides it; a file of the time when a dead load stood for gravity is refused.
+
+    Raises:
+        InputError: the dead load presses every block down by a multiple of its weight and gravity is not spoken of.
+    """
+    gravity = BodyForce(per_weight=loads.gravity_per_weight)
+    if loads.gravity is None and loads.dead.body:
+        multiples = _load(
+            Load(body=loads.dead.body), "loads.dead", blocks, index, np.ones(len(blocks)), centroids, fixed
+        )
+        if bool(np.all(multiples[~fixed, 1] < 0.0)):
+            raise InputError(
+                "the dead load presses every block down by a multiple of its weight, and gravity acts besides",
+                'Leave it out; or say in loads "gravity": false if it stands for gravity, or true if it does not',
+                "loads.dead.body",
+            )
+    whole = Load(body=[gravity, *loads.dead.body], points=loads.dead.points)
+    return _load(whole, "loads.dead", blocks, index, weight, centroids, fixed, first=1)
+
+
 def _load(
     load: Load,
     where: str,
@@ -309,29 +352,29 @@ def _load(
     weight: FloatArray,
     centroids: FloatArray,
     fixed: np.ndarray,
+    *,
+    first: int = 0,
 ) -> FloatArray:
+    """Generalised forces (n, 3) of a load; `first` is the number of its body forces that the file does not list."""
     generalised = np.zeros((len(blocks), 3))
     groups: dict[str, list[int]] = {}
     for k, block in enumerate(blocks):
         for group in block.groups:
             groups.setdefault(group, []).append(k)
     for number, body in enumerate(load.body):
-        element = f"{where}.body[{number}]"
+        element = f"{where}.body[{number - first}]"
         if body.group is not None:
             if body.group not in groups:
                 known = ", ".join(sorted(groups)) or "none"
                 raise InputError(f'no block is in a group "{body.group}"', f"Groups of this wall: {known}", element)
             chosen = groups[body.group]
         elif body.blocks is not None:
-            for block_id in body.blocks:
-                _known(block_id, index, element)
             chosen = sorted({index[block_id] for block_id in body.blocks})
         else:
             chosen = list(range(len(blocks)))
         generalised[chosen, :2] += weight[chosen, None] * np.array(body.per_weight)
     for number, point in enumerate(load.points):
         element = f"{where}.points[{number}]"
-        _known(point.block, index, element)
         k = index[point.block]
         if fixed[k]:
             raise InputError(f'block "{point.block}" is fixed', "Load a block that is free to move", element)
@@ -340,11 +383,6 @@ def _load(
         generalised[k] += [force[0], force[1], arm[0] * force[1] - arm[1] * force[0]]
     generalised[fixed] = 0.0
     return generalised
-
-
-def _known(block_id: str, index: dict[str, int], element: str) -> None:
-    if block_id not in index:
-        raise InputError(f'no block is called "{block_id}"', "Name a block of this wall", element)
 
 
 def _explicit(
@@ -363,7 +401,7 @@ def _explicit(
                 for block, w in zip(blocks, weight, strict=True)
             ],
             "interfaces": [
-                interface.model_copy(update={"joint": joint, "friction": float(mu)})
+                interface.model_copy(update={"joint": joint, "friction": float(mu), "friction_angle": None})
                 for interface, joint, mu in zip(interfaces, joints, friction, strict=True)
             ],
         }

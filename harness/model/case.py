@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import tomllib
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from enum import StrEnum
 from functools import cached_property
 from pathlib import Path
@@ -92,11 +92,19 @@ class CaseFile(Strict):
 
 @dataclass(frozen=True)
 class Case:
-    """A case as the engine runs it."""
+    """A case as the engine runs it.
+
+    Attributes:
+        file: what `case.toml` says.
+        wall: the wall.
+        origin: the path of the wall's file.
+        notes: what a person should hear about how the case was found.
+    """
 
     file: CaseFile
     wall: Wall
     origin: str
+    notes: tuple[str, ...] = ()
 
     @cached_property
     def built(self) -> Built:
@@ -127,7 +135,11 @@ class Case:
             for name in item.applies_to
             if name not in known
         ]
-        return (*self.built.warnings, *unknown)
+        return (*self.notes, *self.built.warnings, *unknown)
+
+    def called(self, name: str) -> Case:
+        """The same case under another id."""
+        return replace(self, file=self.file.model_copy(update={"id": name}))
 
 
 def read_case(folder: Path) -> Case:
@@ -158,6 +170,12 @@ def read_case(folder: Path) -> Case:
     return Case(file, wall, str(wall_path))
 
 
+def id_of(words: str) -> str:
+    """The id that words make: small letters and digits, everything else a hyphen."""
+    letters = (letter if letter.isalnum() and letter.isascii() else "-" for letter in words.lower())
+    return "".join(letters).strip("-") or "wall"
+
+
 def case_of_wall(path: Path) -> Case:
     """A case without references from a wall file that stands alone.
 
@@ -165,9 +183,8 @@ def case_of_wall(path: Path) -> Case:
         InputError: naming the file and the element.
     """
     wall = parse_wall(read_json(path), str(path))
-    name = "".join(letter if letter.isalnum() and letter.isascii() else "-" for letter in path.stem.lower()).strip("-")
     file = CaseFile(
-        id=name or "wall", title=wall.title or path.stem, source=str(wall.metadata.get("source", "the user"))
+        id=id_of(path.stem), title=wall.title or path.stem, source=str(wall.metadata.get("source", "the user"))
     )
     return Case(file, wall, str(path))
 

@@ -2,8 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from difflib import get_close_matches
+from typing import TypeVar
+
+Item = TypeVar("Item")
+Made = TypeVar("Made")
 
 MOST_FAULTS = 100
 """Faults of one file that are told; the rest are counted."""
@@ -97,6 +101,22 @@ def raise_faults(faults: Sequence[InputError], source: str = "") -> None:
         raise faults[0]
     if faults:
         raise InputFaults(faults, source)
+
+
+def of_each(make: Callable[[Item], Made], items: Iterable[Item]) -> list[Made]:
+    """What is made of every item; the faults of all items are told together.
+
+    Raises:
+        InputError: the one fault, or `InputFaults` of all.
+    """
+    made, faults = [], []
+    for item in items:
+        try:
+            made.append(make(item))
+        except InputError as error:
+            faults.append(error)
+    raise_faults(faults)
+    return made
 
 
 def did_you_mean(word: str, known: Iterable[str]) -> str:

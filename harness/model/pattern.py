@@ -8,6 +8,7 @@ from collections.abc import Iterator
 
 import numpy as np
 import shapely
+from pydantic import ValidationError
 
 from harness.model.errors import InputError
 from harness.model.wall import Block, Panel, PatternBase, Point, Ring, RunningBond, Stack
@@ -30,16 +31,43 @@ def blocks_of(pattern: PatternBase) -> list[Block]:
     raise TypeError(f"unknown pattern {type(pattern).__name__}")
 
 
+def count_of(pattern: PatternBase) -> int:
+    """How many blocks a pattern makes, without making them; for a panel, of which each letter is one, its letters."""
+    if isinstance(pattern, RunningBond):
+        if pattern.courses is not None:
+            return sum(width > 0.0 for course in pattern.courses for width in course) + pattern.base
+        assert pattern.count is not None
+        assert pattern.bricks is not None
+        halves = (pattern.count + (pattern.start == "half")) // 2
+        return pattern.count * pattern.bricks + halves + pattern.base
+    if isinstance(pattern, Ring):
+        return pattern.count + 2 * (pattern.supports == "abutments")
+    if isinstance(pattern, Stack):
+        return pattern.count + 1
+    if isinstance(pattern, Panel):
+        return len(set("".join(pattern.layout)) - set(". "))
+    raise TypeError(f"unknown pattern {type(pattern).__name__}")
+
+
 def _block(pattern: PatternBase, name: str, polygon: list[Point], fixed: bool = False) -> Block:
-    return Block(
-        id=pattern.prefix + name,
-        polygon=polygon,
-        unit_weight=pattern.unit_weight,
-        thickness=pattern.thickness,
-        material=pattern.material,
-        fixed=fixed,
-        groups=list(pattern.groups),
-    )
+    try:
+        return Block(
+            id=pattern.prefix + name,
+            polygon=polygon,
+            unit_weight=pattern.unit_weight,
+            thickness=pattern.thickness,
+            material=pattern.material,
+            fixed=fixed,
+            groups=list(pattern.groups),
+        )
+    except ValidationError as error:
+        fault = error.errors()[0]
+        reason = str(fault["msg"]).replace("Input should", "it should")
+        raise InputError(
+            f"the pattern gives it a {fault['loc'][0]} that no block can have: {reason}",
+            "Mind the sizes, the origin and the prefix of the pattern",
+            f'block "{pattern.prefix[:60]}{name}"',
+        ) from None
 
 
 def _rectangle(left: float, bottom: float, right: float, top: float) -> list[Point]:

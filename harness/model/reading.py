@@ -8,6 +8,7 @@ import os
 import re
 import stat
 from collections import Counter
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any, TypeVar
 
@@ -15,6 +16,7 @@ from pydantic import BaseModel, ValidationError
 
 from harness.model.build import Built, build
 from harness.model.errors import InputError, did_you_mean, raise_faults
+from harness.model.names import faults_of_data
 from harness.model.scope import SCOPE, outside_the_model
 from harness.model.wall import TAGS, Wall
 
@@ -40,6 +42,7 @@ PLAIN = {
     "string_type": "it should be text, in quotes",
     "bool_type": "it should be true or false",
     "too_long": "it has too many entries",
+    "too_short": "it has {actual_length} entries, and should have at least {min_length}",
     "union_tag_not_found": 'it needs a "type"',
     "union_tag_invalid": 'its type is "{tag}", and should be one of {expected_tags}',
 }
@@ -171,8 +174,16 @@ def _refuse_half_characters(data: Any, source: str) -> None:
         raise InputError(f"it has half a character, {half}", "Give both halves, or none", source=source) from None
 
 
-def validate(model: type[ModelType], data: Any, source: str) -> ModelType:
+def validate(
+    model: type[ModelType], data: Any, source: str, more: Callable[[Any], list[InputError]] = lambda data: []
+) -> ModelType:
     """Data as a model.
+
+    Args:
+        model: the model.
+        data: what a file held.
+        source: what errors call the file.
+        more: further faults that show in the data, told beside those of the model.
 
     Raises:
         InputError: the fault of the data with its place, or `InputFaults` of all of them in the order of the file.
@@ -180,29 +191,32 @@ def validate(model: type[ModelType], data: Any, source: str) -> ModelType:
     try:
         return model.model_validate(data)
     except ValidationError as error:
-        faults = sorted(error.errors(), key=lambda fault: _order(fault["loc"], data))
-        raise_faults([_fault(model, data, fault, source) for fault in faults], source)
+        found = error.errors()
+        faults = [_fault(model, data, fault, source) for fault in found if fault["loc"]] + more(data)
+        faults = faults or [_fault(model, data, fault, source) for fault in found]
+        first_of_place = {fault.element: fault for fault in reversed(faults)}.values()
+        raise_faults(sorted(first_of_place, key=lambda fault: _order(fault.element, data)), source)
         raise AssertionError("a validation error has faults") from None
 
 
-def _order(location: tuple[int | str, ...], data: Any) -> tuple[int, ...]:
-    """Where in the file a fault stands: the place of every part of its path among its neighbours."""
+def _order(element: str, data: Any) -> tuple[int, ...]:
+    """Where in the file an element stands: the place of every part of its path among its neighbours."""
     places: list[int] = []
     here = data
-    for part in location:
+    for part in re.findall(r"[^.\[\]]+", element.split(" (")[0]):
         if isinstance(here, dict) and part in here:
-            places.append(list(here).index(str(part)))
+            places.append(list(here).index(part))
             here = here[part]
-        elif isinstance(here, list) and isinstance(part, int) and part < len(here):
-            places.append(part)
-            here = here[part]
+        elif isinstance(here, list) and part.isdecimal() and int(part) < len(here):
+            places.append(int(part))
+            here = here[int(part)]
     return tuple(places)
 
 
 def _fault(model: type[BaseModel], data: Any, fault: Any, source: str) -> InputError:
     """One fault that the validating library found, in the words of this project."""
     place = _place(fault["loc"], data)
-    message = str(fault["msg"]).removeprefix("Value error, ")
+    message = str(fault["msg"]).removeprefix("Value error, ").replace("Input should", "it should")
     remedy = ""
     if fault["type"] in PLAIN:
         message = PLAIN[fault["type"]].format(**fault.get("ctx", {}))
@@ -291,7 +305,7 @@ def parse_wall(data: Any, source: str) -> Wall:
     if data.get("format") != "wall/1":
         given = f"format is {data['format']!r}" if "format" in data else "it has no format"
         raise InputError(given, 'This release reads "format": "wall/1"', "format", source)
-    return validate(Wall, data, source)
+    return validate(Wall, data, source, faults_of_data)
 
 
 def read_wall(path: Path, name: str = "") -> Built:
@@ -310,5 +324,4 @@ def read_wall(path: Path, name: str = "") -> Built:
 
 def wall_json(wall: Wall) -> str:
     """A wall as indented JSON text, fields at their defaults left out."""
-    data = wall.model_dump(mode="json", by_alias=True, exclude_defaults=True)
-    return json.dumps({"format": "wall/1"} | data, indent=1, ensure_ascii=False, allow_nan=False) + "\n"
+    return json.dumps(wall.document(), indent=1, ensure_ascii=False, allow_nan=False) + "\n"

@@ -88,6 +88,7 @@ class Result(BaseModel):
     forces_multiplier: float | None = None
     path: dict[str, list[float]] = Field(default_factory=dict)
     details: dict[str, Any] = Field(default_factory=dict)
+    warnings: list[str] = Field(default_factory=list)
     forces: list[tuple[float, float, float]] | None = None
     mechanism: list[tuple[float, float, float]] | None = None
     states: list[str] | None = None

@@ -6,19 +6,23 @@ loads, dead and live apart. `harness.model.reading` reads it, `harness.model.bui
 
 from __future__ import annotations
 
+import math
 from typing import Annotated, Any, Literal
 
-from pydantic import BaseModel, ConfigDict, Discriminator, Field, Tag, model_validator
+from pydantic import BaseModel, ConfigDict, Discriminator, Field, StrictBool, Tag, model_validator
+
+from harness.model.units import DIMENSIONLESS, KILONEWTONS, METRES, ForceUnit, LengthUnit, unit_weight_in_kn_m3
 
 LARGEST = 1e15
 """Greatest size of any number of the format, whatever its unit, so that no product of a few of them overflows."""
 MOST_BLOCKS = 100_000
-"""Blocks that a pattern makes at most."""
+"""Blocks of a wall at most, those that patterns make included."""
 Number = Annotated[float, Field(ge=-LARGEST, le=LARGEST, strict=True)]
 Point = tuple[Number, Number]
 Positive = Annotated[float, Field(gt=0.0, le=LARGEST, strict=True)]
 NonNegative = Annotated[float, Field(ge=0.0, le=LARGEST, strict=True)]
 Coefficient = Annotated[float, Field(ge=0.0, le=1e4, strict=True)]
+Angle = Annotated[float, Field(ge=0.0, lt=90.0, strict=True)]
 Count = Annotated[int, Field(ge=1, le=MOST_BLOCKS)]
 Name = Annotated[str, Field(min_length=1, max_length=200)]
 
@@ -45,10 +49,41 @@ def _object_or_other(value: Any) -> str:
 
 
 class Units(Strict):
-    """Units of the file. The multiplier is dimensionless unless the live load is a given force."""
+    """Units of the file, "1" for none. The multiplier is dimensionless unless the live load is a force."""
 
-    length: str = "m"
-    force: str = "kN"
+    length: LengthUnit = "m"
+    force: ForceUnit = "kN"
+    unit_weight: str | None = Field(None, description='as "kN/m3" or "kg/m3"; else force/length^3 of the file')
+
+    @model_validator(mode="after")
+    def _known_unit_weight(self) -> Units:
+        if self.unit_weight is not None:
+            unit_weight_in_kn_m3(self.unit_weight)
+            if self.dimensionless:
+                raise ValueError("a unit weight has no unit where length and force have none")
+        return self
+
+    @property
+    def dimensionless(self) -> bool:
+        """Whether lengths or forces have no unit."""
+        return DIMENSIONLESS in (self.length, self.force)
+
+    @property
+    def metre(self) -> float:
+        """One metre in the unit of length of the file; 1 where it has none."""
+        return 1.0 if self.length in ("m", DIMENSIONLESS) else 1.0 / METRES[self.length]
+
+    @property
+    def unit_weight_factor(self) -> float:
+        """What a unit weight of the file is multiplied with to be one in force/length^3 of the file."""
+        if self.unit_weight is None:
+            return 1.0
+        return unit_weight_in_kn_m3(self.unit_weight) / (KILONEWTONS[self.force] / METRES[self.length] ** 3)
+
+    @property
+    def unit_weight_name(self) -> str:
+        """The unit that unit weights of the file are in."""
+        return self.unit_weight or f"{self.force}/{self.length}3"
 
 
 class Block(Strict):
@@ -64,10 +99,16 @@ class Block(Strict):
     groups: list[Name] = Field(default_factory=list, description="groups a load may name")
 
 
+def coefficient_of(value: float | None, angle: float | None) -> float:
+    """A coefficient of friction from whichever is given, itself or the angle phi [degrees]."""
+    return value if value is not None else math.tan(math.radians(angle or 0.0))
+
+
 class FrictionRule(Strict):
     """Friction of some interfaces: those between two materials, of a named joint, or between two blocks."""
 
-    value: Coefficient = Field(description="coefficient of friction, tan(phi)")
+    value: Coefficient | None = Field(None, description="coefficient of friction, tan(phi)")
+    friction_angle: Angle | None = Field(None, description="phi [degrees], instead of `value`")
     materials: tuple[str, str] | None = None
     joint: str | None = Field(None, description='"bed", "head", or a name given in `interfaces`')
     between: tuple[str, str] | None = Field(None, description="ids of the two blocks")
@@ -76,14 +117,33 @@ class FrictionRule(Strict):
     def _one_selector(self) -> FrictionRule:
         if sum(item is not None for item in (self.materials, self.joint, self.between)) != 1:
             raise ValueError("a friction rule names exactly one of materials, joint, between")
+        if (self.value is None) == (self.friction_angle is None):
+            raise ValueError("a friction rule gives either value or friction_angle")
         return self
+
+    @property
+    def coefficient(self) -> float:
+        """Coefficient of friction, tan(phi)."""
+        return coefficient_of(self.value, self.friction_angle)
 
 
 class Friction(Strict):
     """Friction by rules. The most particular rule holds: interface, then between, then joint, then materials."""
 
-    default: Coefficient
+    default: Coefficient | None = Field(None, description="coefficient of friction, tan(phi)")
+    friction_angle: Angle | None = Field(None, description="phi [degrees], instead of `default`")
     rules: list[FrictionRule] = Field(default_factory=list)
+
+    @model_validator(mode="after")
+    def _one_default(self) -> Friction:
+        if (self.default is None) == (self.friction_angle is None):
+            raise ValueError("friction by rules gives either default or friction_angle")
+        return self
+
+    @property
+    def coefficient(self) -> float:
+        """Coefficient of friction where no rule holds."""
+        return coefficient_of(self.default, self.friction_angle)
 
 
 class Inset(Strict):
@@ -106,8 +166,15 @@ class Interface(Strict):
     start: Point = Field(alias="from")
     end: Point = Field(alias="to")
     friction: Coefficient | None = None
+    friction_angle: Angle | None = Field(None, description="phi [degrees], instead of `friction`")
     joint: str | None = Field(None, description='a name for friction rules; "bed" or "head" by inclination if absent')
     inset: Inset | None = None
+
+    @model_validator(mode="after")
+    def _one_friction(self) -> Interface:
+        if self.friction is not None and self.friction_angle is not None:
+            raise ValueError("an interface gives either friction or friction_angle")
+        return self
 
 
 class Detection(Strict):
@@ -145,15 +212,28 @@ class Load(Strict):
     points: list[PointForce] = Field(default_factory=list)
 
 
-def _gravity() -> Load:
-    return Load(body=[BodyForce(per_weight=(0.0, -1.0))])
+def _vector_or_switch(value: Any) -> str:
+    return MANY if isinstance(value, list | tuple) else OTHER
+
+
+Gravity = Annotated[Annotated[Point, Tag(MANY)] | Annotated[StrictBool, Tag(OTHER)], Discriminator(_vector_or_switch)]
 
 
 class Loads(Strict):
-    """Dead load (present at every multiplier; gravity if absent) and live load (multiplied)."""
+    """Gravity, dead load (both present at every multiplier) and live load (multiplied)."""
 
-    dead: Load = Field(default_factory=_gravity)
+    gravity: Gravity | None = Field(
+        None, description="on every block; absent or true: [0, -1] times its weight; false: none; [x, y]: so much of it"
+    )
+    dead: Load = Field(default_factory=Load, description="on top of gravity")
     live: Load | None = Field(None, description="absent: the wall is asked only whether it stands")
+
+    @property
+    def gravity_per_weight(self) -> Point:
+        """Gravity as a multiple (x, y) of the weight of every block."""
+        if isinstance(self.gravity, tuple):
+            return self.gravity
+        return (0.0, 0.0) if self.gravity is False else (0.0, -1.0)
 
 
 class PatternBase(Strict):
@@ -185,6 +265,8 @@ class RunningBond(PatternBase):
     def _courses_or_count(self) -> RunningBond:
         if (self.courses is None) == (self.count is None or self.bricks is None):
             raise ValueError("a running bond gives either courses, or count and bricks")
+        if self.courses is not None and not self.courses:
+            raise ValueError("it has no course")
         if self.count is not None and self.bricks is not None and self.count * self.bricks > MOST_BLOCKS:
             raise ValueError(f"{self.count} courses of {self.bricks} bricks are more than {MOST_BLOCKS} blocks")
         for number, course in enumerate(self.courses or [], start=1):
@@ -267,10 +349,39 @@ class Wall(Strict):
     units: Units = Field(default_factory=Units)
     metadata: dict[str, Any] = Field(default_factory=dict, description="free: source, author, remarks")
     unit_weight: NonNegative | None = Field(None, description="[force/length^3] for blocks that give no weight")
-    thickness: Positive = Field(1.0, description="out of plane [length]")
-    friction: FrictionOfWall
+    thickness: Positive | None = Field(None, description="out of plane [length]; one metre if absent")
+    friction: FrictionOfWall | None = Field(None, description="coefficient of friction, tan(phi), or rules")
+    friction_angle: Angle | None = Field(None, description="phi [degrees], instead of `friction`")
     pattern: Patterns | None = None
     blocks: list[Block] = Field(default_factory=list)
     interfaces: Interfaces = Field(default_factory=Detection)
     contact_inset: Inset | None = None
     loads: Loads = Field(default_factory=Loads)
+
+    @model_validator(mode="after")
+    def _one_friction(self) -> Wall:
+        if self.friction is None and self.friction_angle is None:
+            raise ValueError('it gives no friction: "friction" is tan(phi), "friction_angle" is phi in degrees')
+        if self.friction is not None and self.friction_angle is not None:
+            raise ValueError("a wall gives either friction or friction_angle")
+        return self
+
+    @property
+    def units_declared(self) -> bool:
+        """Whether the file says its units; otherwise metres and kilonewtons are taken."""
+        return "units" in self.model_fields_set
+
+    @property
+    def units_sentence(self) -> str:
+        """The units in words, for the head of whatever shows the wall."""
+        units = self.units
+        length, force = ("none" if unit == DIMENSIONLESS else unit for unit in (units.length, units.force))
+        told = f"length {length}, force {force}" + (f", unit weight {units.unit_weight}" if units.unit_weight else "")
+        return told if self.units_declared else f"{told} (taken so: the file declares none)"
+
+    def document(self) -> dict[str, Any]:
+        """The wall as JSON values of format wall/1: fields at their defaults left out, but units that are declared."""
+        data = self.model_dump(mode="json", by_alias=True, exclude_defaults=True)
+        if self.units_declared and "units" not in data:
+            data["units"] = self.units.model_dump(mode="json", exclude_none=True)
+        return {"format": "wall/1"} | data

@@ -54,7 +54,6 @@ def six_blocks() -> Assembly:
     pattern = {"type": "panel", "cell_length": 0.5, "cell_height": 0.5, "layout": ["AAB", "CDD", "EEF", "___"]}
     loads = {
         "dead": {
-            "body": [{"per_weight": [0, -1]}],
             "points": [{"block": "A", "at": [0.5, 1.75], "force": [1.42, -27.89]}],
         },
         "live": {"body": [{"per_weight": [-1.0, -0.28]}]},

@@ -1,0 +1,85 @@
+"""Names in a wall: every block has one of its own, and loads, interfaces and rules name blocks that there are."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+from typing import Any
+
+from harness.model.errors import InputError, did_you_mean
+from harness.model.wall import Block, Friction, Interface, Load, Wall
+
+MOST_COMPARED = 2000
+"""Ids that an unknown one is compared with, in the search for the one that was meant."""
+
+
+def name_faults(blocks: Iterable[tuple[str, str]], named: Iterable[tuple[str, str]]) -> list[InputError]:
+    """What is wrong with names: ids that two blocks have, and blocks named that there are not.
+
+    Args:
+        blocks: place in the file and id of every block.
+        named: place in the file and id of every block that something else names.
+    """
+    faults = []
+    seen: set[str] = set()
+    for place, name in blocks:
+        if name in seen:
+            faults.append(
+                InputError("two blocks have this id", "Give every block an id of its own (patterns: a prefix)", place)
+            )
+        seen.add(name)
+    known = sorted(seen)[:MOST_COMPARED]
+    for place, name in named:
+        if name not in seen:
+            remedy = did_you_mean(name, known) or "Name a block of this wall"
+            faults.append(InputError(f'no block is called "{name}"', remedy, place))
+    return faults
+
+
+def faults_of_wall(wall: Wall, blocks: list[Block]) -> list[InputError]:
+    """The faults of names of a wall whose patterns are blocks by now."""
+    return name_faults(((f'block "{block.id}"', block.id) for block in blocks), _named(wall))
+
+
+def _named(wall: Wall) -> Iterator[tuple[str, str]]:
+    if isinstance(wall.friction, Friction):
+        for number, rule in enumerate(wall.friction.rules):
+            for name in rule.between or ():
+                yield f"friction.rules[{number}]", name
+    if isinstance(wall.interfaces, list):
+        for number, interface in enumerate(wall.interfaces):
+            assert isinstance(interface, Interface)
+            for name in interface.between:
+                yield f"interfaces[{number}]", name
+    for where, load in (("loads.dead", wall.loads.dead), ("loads.live", wall.loads.live or Load())):
+        for number, body in enumerate(load.body):
+            for name in body.blocks or ():
+                yield f"{where}.body[{number}]", name
+        for number, point in enumerate(load.points):
+            yield f"{where}.points[{number}]", point.block
+
+
+def faults_of_data(data: dict[str, Any]) -> list[InputError]:
+    """The same faults of a wall as read from JSON, for a wall whose other faults keep it from being built."""
+    faults = []
+    if "friction" not in data and "friction_angle" not in data:
+        remedy = 'Give "friction" (a coefficient, tan(phi)) or "friction_angle" (degrees)'
+        faults.append(InputError("it is missing", remedy, "friction"))
+    if data.get("pattern") is not None:
+        return faults
+    blocks = [item for item in _list(data, "blocks") if isinstance(item.get("id"), str)]
+    if not blocks:
+        return faults
+    loads = data.get("loads")
+    named = [
+        (f"loads.{kind}.points[{number}]", point["block"])
+        for kind in ("dead", "live")
+        if isinstance(loads, dict) and isinstance(loads.get(kind), dict)
+        for number, point in enumerate(_list(loads[kind], "points"))
+        if isinstance(point.get("block"), str)
+    ]
+    return faults + name_faults(((f'blocks[{k}] ("{item["id"]}")', item["id"]) for k, item in enumerate(blocks)), named)
+
+
+def _list(data: dict[str, Any], name: str) -> list[dict[str, Any]]:
+    items = data.get(name)
+    return [item for item in items if isinstance(item, dict)] if isinstance(items, list) else []

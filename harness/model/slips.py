@@ -1,0 +1,158 @@
+"""Slips that a file can be computed with and was hardly meant to have: an angle as friction, units, vanishing loads."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from harness.model.assembly import Assembly
+from harness.model.errors import first_few
+from harness.model.units import KILONEWTONS, METRES, unit_weight_in_kn_m3
+from harness.model.wall import Block, Friction, Wall
+
+GREATEST_FRICTION = 2.0
+"""Coefficient beyond which an angle in degrees is likelier: stone on stone has .4 to .8, 2 is a face of 63 degrees."""
+NO_SLIDING = 100.0
+"""Coefficient from which on a file says in so many words that no joint slides, as Heyman supposed."""
+SMALLEST_ANGLE = 2.0
+"""Angle [degrees] below which a coefficient is likelier: .65 degrees is .011, and wet ice has .03."""
+UNIT_WEIGHTS = (5.0, 35.0)
+"""Unit weights of masonry [kN/m3]: pumice and adobe have 6 and more, basalt 30."""
+SIZES = (0.05, 250.0)
+"""Extent of a wall [m]: a model on a tilting table has 0.1 and more, the highest masonry stands 170 high."""
+SMALL_BLOCK = 1e-3
+"""Size of a block in extents of the wall below which it is worth a warning."""
+SMALL_LOAD = 1e-6
+"""Share of the live load in the dead load, or the other way round, below which one of them is hardly meant."""
+
+
+def thickness_of(block: Block, wall: Wall) -> float:
+    """Thickness of a block out of plane [length]: its own, the wall's, or one metre."""
+    if block.thickness is not None:
+        return block.thickness
+    return wall.thickness if wall.thickness is not None else wall.units.metre
+
+
+def slip_warnings(wall: Wall, blocks: list[Block], assembly: Assembly) -> list[str]:
+    """Sentences about frictions, unit weights, sizes and loads of a wall that were hardly meant."""
+    return [
+        *_friction_slips(wall, assembly),
+        *_rule_slips(wall, blocks, assembly),
+        *_unit_weight_slips(wall, blocks),
+        *_size_slips(wall, blocks, assembly),
+        *_load_slips(assembly),
+    ]
+
+
+def _friction_slips(wall: Wall, assembly: Assembly) -> list[str]:
+    sentences = []
+    odd = (assembly.friction > GREATEST_FRICTION) & (assembly.friction < NO_SLIDING)
+    if odd.any():
+        value = float(assembly.friction[odd][0])
+        meant = ""
+        if value < 90.0:
+            tangent = f"{math.tan(math.radians(value)):.3f}".lstrip("0")
+            meant = f': an angle? {value:g} degrees is {tangent}; write "friction_angle": {value:g}'
+        sentences.append(f"friction is {value:g} in {odd.sum()} of {assembly.n_interfaces} interfaces{meant}")
+    angles = [wall.friction_angle]
+    if isinstance(wall.friction, Friction):
+        angles += [wall.friction.friction_angle, *(rule.friction_angle for rule in wall.friction.rules)]
+    if isinstance(wall.interfaces, list):
+        angles += [interface.friction_angle for interface in wall.interfaces]
+    small = [angle for angle in angles if angle is not None and 0.0 < angle < SMALLEST_ANGLE]
+    if small:
+        sentences.append(
+            f"friction_angle is {small[0]:g} degrees, a coefficient of {math.tan(math.radians(small[0])):.2g}: a "
+            f'coefficient? Write "friction": {small[0]:g}'
+        )
+    return sentences
+
+
+def _rule_slips(wall: Wall, blocks: list[Block], assembly: Assembly) -> list[str]:
+    """Rules of friction that no interface meets."""
+    if not isinstance(wall.friction, Friction):
+        return []
+    pairs = {
+        frozenset((blocks[a].material, blocks[b].material))
+        for a, b in zip(assembly.block_a.tolist(), assembly.block_b.tolist(), strict=True)
+    }
+    touching = {
+        frozenset((assembly.block_ids[a], assembly.block_ids[b]))
+        for a, b in zip(assembly.block_a.tolist(), assembly.block_b.tolist(), strict=True)
+    }
+    idle = []
+    for number, rule in enumerate(wall.friction.rules):
+        met = (
+            (rule.joint is not None and rule.joint in assembly.joint)
+            or (rule.materials is not None and frozenset(rule.materials) in pairs)
+            or (rule.between is not None and frozenset(rule.between) in touching)
+        )
+        if not met:
+            idle.append(f"friction.rules[{number}]")
+    return [f"{first_few(idle, 5)}: no interface is of this kind, so the rule does nothing"] if idle else []
+
+
+def _unit_weight_slips(wall: Wall, blocks: list[Block]) -> list[str]:
+    units = wall.units
+    if units.dimensionless:
+        return []
+    name = units.unit_weight_name
+    per_unit = unit_weight_in_kn_m3(name)
+    odd: dict[float, str] = {}
+    for block in blocks:
+        given = block.unit_weight if block.unit_weight is not None else wall.unit_weight
+        if given is None or block.weight is not None or block.fixed or given == 0.0:
+            continue
+        if not UNIT_WEIGHTS[0] <= given * per_unit <= UNIT_WEIGHTS[1]:
+            odd.setdefault(given, block.id)
+    if not odd:
+        return []
+    value, block_id = next(iter(odd.items()))
+    converted = f"{value:g} {name}" + (f", which is {value * per_unit:.4g} kN/m3" if name != "kN/m3" else "")
+    remedy = "the unit?"
+    if units.unit_weight is None and UNIT_WEIGHTS[0] <= value <= UNIT_WEIGHTS[1]:
+        remedy = 'if it is meant per cubic metre, add "unit_weight": "kN/m3" to units'
+    elif UNIT_WEIGHTS[0] <= value * KILONEWTONS["kg"] <= UNIT_WEIGHTS[1]:
+        remedy = 'if it is a density, add "unit_weight": "kg/m3" to units'
+    elif value == 1.0 and not wall.units_declared:
+        remedy = 'if the wall has no units, say "units": {"length": "1", "force": "1"}'
+    return [
+        f'the unit weight of block "{block_id}" is {converted}, and masonry has {UNIT_WEIGHTS[0]:g} to '
+        f"{UNIT_WEIGHTS[1]:g} kN/m3: {remedy}"
+    ]
+
+
+def _size_slips(wall: Wall, blocks: list[Block], assembly: Assembly) -> list[str]:
+    free = [polygon for polygon, still in zip(assembly.polygons, assembly.fixed, strict=True) if not still]
+    points = np.concatenate(free)
+    extent = float(np.max(np.ptp(points, axis=0)))
+    sentences = []
+    if not wall.units.dimensionless:
+        metres = extent * METRES[wall.units.length]
+        if not SIZES[0] <= metres <= SIZES[1]:
+            shown = f"{metres / 1000.0:.3g} km" if metres > 1000.0 else f"{metres:.3g} m"
+            given = f"{extent:g} {wall.units.length}" + ("" if wall.units_declared else ", no units being declared")
+            sentences.append(f"the wall is {shown} across ({given}): the unit of length?")
+    sizes = np.array([float(np.max(np.ptp(polygon, axis=0))) for polygon in free])
+    small = np.flatnonzero(sizes < SMALL_BLOCK * extent)
+    if len(small):
+        names = [name for name, still in zip(assembly.block_ids, assembly.fixed, strict=True) if not still]
+        sentences.append(
+            f"{len(small)} block(s) are a thousand times smaller than the wall, or smaller still: a coordinate? "
+            f"{first_few([names[k] for k in small.tolist()], 5)}"
+        )
+    return sentences
+
+
+def _load_slips(assembly: Assembly) -> list[str]:
+    dead = float(np.abs(assembly.dead[:, :2]).sum())
+    live = float(np.abs(assembly.live[:, :2]).sum())
+    if 0.0 < live < SMALL_LOAD * dead:
+        return [
+            f"the live load is {live / dead:.1g} of the dead load, and a multiplier as large as the inverse: units, or "
+            "a weight too large?"
+        ]
+    if 0.0 < dead < SMALL_LOAD * live:
+        return [f"the dead load is {dead / live:.1g} of the live load: units, or a weight too small?"]
+    return []
