@@ -13,7 +13,7 @@ import click
 from harness import terminal
 from harness.engine import compare as comparing
 from harness.engine import regression
-from harness.engine.imperfection import SEEDS, imperfection_runs, imperfection_study
+from harness.engine.imperfection import imperfection_runs, imperfection_study
 from harness.engine.plan import Limits, Run, check_methods, find_cases, plan_case
 from harness.engine.store import open_store
 from harness.model.case import Case
@@ -21,7 +21,6 @@ from harness.model.comparison import ComparisonRun
 from harness.model.errors import InputError, did_you_mean
 from harness.model.method import Status, load_method
 from harness.options import (
-    REPORT,
     cases_option,
     catching,
     fresh_flag,
@@ -35,8 +34,6 @@ from harness.options import (
     store_option,
     warn,
 )
-
-IMPERFECTION = "imperfection"
 
 
 @click.command()
@@ -169,7 +166,7 @@ def compare(
     title = ", ".join(cases) if cases else f"suite {suite or 'small'}"
     asked = method_settings(settings)
     written = None if no_report else report
-    study = None if seeds is None else _imperfection(limits, seeds, jobs, store, fresh, quiet=as_json)[1]
+    study = None if seeds is None else _imperfection(limits, seeds, jobs, store, fresh, quiet=as_json)
     compared = _compare(
         title, chosen, names, limits, jobs, written, store, fresh, quiet=as_json, study=study, settings=asked
     )
@@ -208,44 +205,12 @@ def _compare(
     return compared
 
 
-@click.command()
-@click.argument("name", required=False)
-@jobs_option
-@click.option("--report", type=click.Path(path_type=Path), help="Where it is written.  [default: out/NAME.html]")
-@store_option
-@fresh_flag
-@catching
-def study(name: str | None, jobs: int, report: Path | None, store: Path, fresh: bool) -> None:
-    """Run the study NAME (without a name: list them) and report what many walls say together."""
-    from cases.studies import STUDIES
-
-    if name is None:
-        for known, members in STUDIES.items():
-            click.echo(f"{known:16s} {sum(1 for _ in members())} walls: {members.__doc__}")
-        click.echo(f"{IMPERFECTION:16s} the paper's wall of uneven blocks: how far the multiplier falls, with scatter.")
-        return
-    if name not in (*STUDIES, IMPERFECTION):
-        raise InputError(f'no study is called "{name}"', f"There are: {', '.join([*STUDIES, IMPERFECTION])}", "study")
-    path = report or REPORT.with_name(f"{name}.html")
-    if name == IMPERFECTION:
-        case, found = _imperfection(Limits(), None, jobs, store, fresh, quiet=False)
-        compared = _compare(f"study {name}", [case], None, Limits(), jobs, path, store, fresh, quiet=False, study=found)
-        say(found["sentence"])
-    else:
-        chosen = list(STUDIES[name]())
-        compared = _compare(f"study {name}", chosen, None, Limits(), jobs, path, store, fresh, quiet=False)
-        terminal.print_agreement(compared)
-    say(f"Report: {path}")
-
-
-def _imperfection(
-    limits: Limits, seeds: int | None, jobs: int, store: Path, fresh: bool, *, quiet: bool
-) -> tuple[Case, dict[str, Any]]:
-    """The paper's wall, and the study of it made of uneven blocks: `seeds` walls a size; None: all the study has."""
+def _imperfection(limits: Limits, seeds: int, jobs: int, store: Path, fresh: bool, *, quiet: bool) -> dict[str, Any]:
+    """The study of the paper's wall made of uneven blocks: so many walls a size."""
     (case,) = find_cases(["wall-21"], None, ())
-    runs = imperfection_runs(case, limits, seeds=SEEDS if seeds is None else range(seeds))
+    runs = imperfection_runs(case, limits, seeds=range(seeds))
     with open_store(store) as opened, terminal.progress(len(runs), quiet=quiet) as told:
-        return case, imperfection_study(runs, comparing.execute(runs, opened, jobs, fresh=fresh, told=told))
+        return imperfection_study(runs, comparing.execute(runs, opened, jobs, fresh=fresh, told=told))
 
 
 def _command_line() -> str:

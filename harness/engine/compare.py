@@ -76,7 +76,8 @@ def executed(
         else:
             yield number, _of_run(run, *found), True
     firsts = [runs[numbers[0]] for numbers in waiting.values()]
-    with closing(executor.map([run.job(place) for place, run in enumerate(firsts)])) as made:
+    jobs = (run.job(place) for place, run in enumerate(firsts))
+    with closing(executor.map(jobs, {run.method for run in firsts})) as made:
         for place, measured in made:
             run = firsts[place]
             kept = measured.result.model_copy(update={"key": run.key})

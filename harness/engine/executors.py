@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections import deque
-from collections.abc import Callable, Generator, Sequence
+import itertools
+from collections.abc import Collection, Generator, Iterable
 from dataclasses import dataclass
 from multiprocessing.connection import wait
 from multiprocessing.context import BaseContext
@@ -21,19 +21,25 @@ WARM_BLOCKS = 200
 
 @dataclass(frozen=True)
 class Job:
-    """A run to be made: its number in the plan, the id of its case, its method, and what gives its task when asked."""
+    """A run to be made: its number in the plan, the id of its case, and its task."""
 
     number: int
     case: str
-    method: str
-    task: Callable[[], Task]
+    task: Task
 
 
 class Executor(Protocol):
     """A place where runs are made."""
 
-    def map(self, jobs: Sequence[Job]) -> Generator[tuple[int, Measured]]:
-        """Numbers and results of jobs, in the order in which they end. Closing the iterator stops what is left."""
+    def map(self, jobs: Iterable[Job], methods: Collection[str]) -> Generator[tuple[int, Measured]]:
+        """Numbers and results of jobs, in the order in which they end.
+
+        Args:
+            jobs: asked for one by one, as there is room for them.
+            methods: names of all methods that may occur.
+
+        Closing the generator stops what is under way.
+        """
         ...
 
 
@@ -43,16 +49,16 @@ class LocalExecutor:
     def __init__(self, processes: int) -> None:
         self.processes = max(1, processes)
 
-    def map(self, jobs: Sequence[Job]) -> Generator[tuple[int, Measured]]:
+    def map(self, jobs: Iterable[Job], methods: Collection[str]) -> Generator[tuple[int, Measured]]:
         """See `Executor`."""
-        context = own_context() if len(jobs) == 1 else None
-        slots = Slots(context or start_context({job.method for job in jobs}))
-        waiting, busy = deque(jobs), dict[Child, Job]()
+        coming = iter(jobs)
+        first = list(itertools.islice(coming, 2))
+        waiting, busy = itertools.chain(first, coming), dict[Child, Job]()
+        slots = Slots((own_context() if len(first) == 1 else None) or start_context(methods))
 
         def occupy() -> None:
-            while waiting and len(busy) < self.processes:
-                job = waiting.popleft()
-                busy[slots.begin(job.task(), job.case)] = job
+            for job in itertools.islice(waiting, self.processes - len(busy)):
+                busy[slots.begin(job.task, job.case)] = job
 
         try:
             occupy()

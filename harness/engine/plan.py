@@ -57,7 +57,7 @@ class Run:
 
     def job(self, number: int) -> Job:
         """The run as an executor makes it, under its number in the plan."""
-        return Job(number, self.case.id, self.method, self.task)
+        return Job(number, self.case.id, self.task())
 
     def task(self) -> Task:
         """What the child process is given."""

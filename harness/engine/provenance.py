@@ -103,6 +103,15 @@ def code_version(method: str) -> str:
     return digest.hexdigest()[:16]
 
 
+@functools.cache
+def judge_version() -> str:
+    """Hash over the sources of the judge, for results that are kept with its word."""
+    digest = hashlib.sha256()
+    for path in _sources("harness.engine.judge"):
+        digest.update(path.read_bytes())
+    return digest.hexdigest()[:16]
+
+
 def _sources(package: str) -> list[Path]:
     spec = importlib.util.find_spec(package)
     if spec is None:

@@ -11,7 +11,8 @@ import sqlite3
 import stat
 import tempfile
 import time
-from collections.abc import Iterator
+import zlib
+from collections.abc import Collection, Iterator
 from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
@@ -22,21 +23,46 @@ from harness.model.errors import InputError
 from harness.model.reading import LARGEST_FILE, json_of
 from harness.model.result import Result
 
-SCHEMA_VERSION = 1
+SCHEMA_VERSION = 2
 COLUMNS = {
-    "run": ("key", "case_id", "method", "started", "tolerance", "result"),
+    "run": (
+        *("key", "case_id", "method", "started", "tolerance", "result"),
+        *("status", "finding", "multiplier", "cpu_seconds", "environment", "fields"),
+    ),
+    "environment": ("id", "content"),
     "comparison": ("number", "created", "content"),
 }
 """The tables of a store and their columns, in order."""
 _SCHEMA = (
     "CREATE TABLE IF NOT EXISTS run (key TEXT PRIMARY KEY, case_id TEXT NOT NULL, method TEXT NOT NULL, "
-    "started TEXT NOT NULL, tolerance REAL NOT NULL, result TEXT NOT NULL)",
+    "started TEXT NOT NULL, tolerance REAL NOT NULL, result TEXT NOT NULL, status TEXT, finding TEXT, multiplier REAL, "
+    "cpu_seconds REAL, environment TEXT, fields BLOB)",
+    "CREATE TABLE IF NOT EXISTS environment (id TEXT PRIMARY KEY, content TEXT NOT NULL)",
     "CREATE TABLE IF NOT EXISTS comparison (number INTEGER PRIMARY KEY AUTOINCREMENT, created TEXT NOT NULL, "
     "content TEXT NOT NULL)",
     f"PRAGMA user_version = {SCHEMA_VERSION}",
 )
+_FROM_VERSION_1 = (
+    *(
+        f"ALTER TABLE run ADD COLUMN {column}"
+        for column in (
+            *("status TEXT", "finding TEXT", "multiplier REAL", "cpu_seconds REAL", "environment TEXT", "fields BLOB"),
+        )
+    ),
+    *(
+        f"UPDATE run SET {name} = json_extract(result, '$.{name}') WHERE json_valid(result)"
+        for name in ("status", "finding", "multiplier", "cpu_seconds")
+    ),
+)
+"""Brings a store of version 1 up to date; its results keep fields and environment inside `result`."""
+FIELDS = ("forces", "mechanism", "states", "path")
+"""Parts of a result that are kept compressed beside it; they are most of its size."""
+ENVIRONMENT = ("versions", "machine")
+"""Parts of a result that many runs share, kept once."""
 WAIT_SECONDS = 60.0
 """How long another program that writes the store is waited for."""
+SOME_KEYS = 500
+"""Up to so many results are looked for one by one; above, the whole table is read."""
 OTHER_FILE = "Name another file with --store"
 
 
@@ -48,6 +74,9 @@ def run_key(wall: str, method: str, settings: dict[str, Any], limits: dict[str, 
 
 class Store:
     """An open result store. Every finished run is committed at once, so that killing the process loses none.
+
+    A run is one row: a few columns to filter and count by, the result as JSON text without its `FIELDS` and
+    `ENVIRONMENT`, the fields compressed beside it, and versions and machine once for all runs that share them.
 
     Args:
         path: the file; made if there is none, unless it is only read.
@@ -68,7 +97,7 @@ class Store:
         try:
             with self._told():
                 self._connection = self._open_to_read() if read_only else _connect(path)
-                self._check(self._connection)
+                self._check(self._connection, read_only)
                 if not read_only:
                     _prepare(self._connection)
         except BaseException:
@@ -96,10 +125,16 @@ class Store:
         shutil.copyfile(log, Path(self._copy.name) / log.name)
         return _connect(copied)
 
-    def _check(self, connection: sqlite3.Connection) -> None:
+    def _check(self, connection: sqlite3.Connection, read_only: bool) -> None:
         """Refuse what another program, or a later release, wrote."""
         version = connection.execute("PRAGMA user_version").fetchone()[0]
-        if version not in (0, SCHEMA_VERSION):
+        if version == 1 and read_only:
+            raise InputError(
+                "it is a store of version 1",
+                f"Any command that writes it, as `drystone compare`, brings it to version {SCHEMA_VERSION}",
+                source=str(self.path),
+            )
+        if version not in (0, 1, SCHEMA_VERSION):
             raise InputError(
                 f"it is a store of version {version}",
                 f"This release writes version {SCHEMA_VERSION}: name another file with --store",
@@ -109,7 +144,10 @@ class Store:
         tables = [name for name in names if not name.startswith("sqlite_")]
         for table in tables:
             columns = tuple(row[1] for row in connection.execute("SELECT * FROM pragma_table_info(?)", (table,)))
-            if columns != COLUMNS.get(table, columns) or (version == 0 and table not in COLUMNS):
+            expected = COLUMNS.get(table, columns)
+            if version == 1 and table == "run":
+                expected = expected[:6]
+            if columns != expected or (version == 0 and table not in COLUMNS):
                 raise InputError(
                     f'it is not a result store: its table "{table}" is another program\'s',
                     OTHER_FILE,
@@ -147,17 +185,23 @@ class Store:
             InputError: the store or what it holds under the key is damaged.
         """
         with self._told():
-            query = "SELECT method, case_id, length(result), result, tolerance FROM run WHERE key = ?"
+            query = (
+                "SELECT method, case_id, length(result), result, tolerance, environment.content, fields "
+                "FROM run LEFT JOIN environment ON environment.id = run.environment WHERE key = ?"
+            )
             row = self._open.execute(query, (key,)).fetchone()
         if row is None:
             return None
-        method, case, size, text, tolerance = row
+        method, case, size, text, tolerance, environment, fields = row
         element = f"the result of {method} on {case} in it"
         try:
             if size > LARGEST_FILE:
                 raise ValueError(f"{size:,} characters")
-            return Result.model_validate_json(text), float(tolerance)
-        except (ValidationError, ValueError, TypeError) as error:
+            if environment is None and fields is None:
+                return Result.model_validate_json(text), float(tolerance)
+            whole = json.loads(text) | json.loads(environment or "{}") | _unpacked(fields)
+            return Result.model_validate(whole, strict=False), float(tolerance)
+        except (ValidationError, ValueError, TypeError, zlib.error) as error:
             raise self._damaged(element, error) from None
 
     def put(self, key: str, result: Result, tolerance: float) -> None:
@@ -166,12 +210,74 @@ class Store:
         Raises:
             InputError: the store cannot be written, with the cause.
         """
+        data = result.model_dump(mode="json")
+        fields = {name: data.pop(name) for name in FIELDS}
+        shared = json.dumps({name: data.pop(name) for name in ENVIRONMENT}, sort_keys=True)
+        environment = hashlib.sha256(shared.encode()).hexdigest()[:16]
         with self._told(), self._open:
+            self._open.execute("INSERT OR IGNORE INTO environment (id, content) VALUES (?, ?)", (environment, shared))
             self._open.execute(
-                "INSERT OR REPLACE INTO run (key, case_id, method, started, tolerance, result) "
-                "VALUES (?, ?, ?, ?, ?, ?)",
-                (key, result.case, result.method, result.started, tolerance, result.model_dump_json()),
+                f"INSERT OR REPLACE INTO run ({', '.join(COLUMNS['run'])}) VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)",
+                (
+                    *(key, result.case, result.method, result.started, tolerance),
+                    json.dumps(data, ensure_ascii=False, allow_nan=False, separators=(",", ":")),
+                    *(str(result.status), str(result.finding), result.multiplier, result.cpu_seconds, environment),
+                    zlib.compress(json.dumps(fields, separators=(",", ":")).encode()),
+                ),
             )
+
+    def summaries(self, keys: Collection[str]) -> dict[str, dict[str, Any]]:
+        """Results under keys as JSON values, without fields, versions and machine; keys that are not there left out.
+
+        Raises:
+            InputError: the store or one of the results is damaged.
+        """
+        found: dict[str, dict[str, Any]] = {}
+        with self._told():
+            some = sorted(keys) if len(keys) <= SOME_KEYS else None
+            query = "SELECT key, method, case_id, result FROM run"
+            marks = f" WHERE key IN ({', '.join('?' * len(some))})" if some is not None else ""
+            for key, method, case, text in self._open.execute(query + marks, some or ()):
+                if key not in keys:
+                    continue
+                try:
+                    found[key] = json.loads(text)
+                except ValueError as error:
+                    raise self._damaged(f"the result of {method} on {case} in it", error) from None
+        return found
+
+    def table(self) -> list[tuple[str, str, str, str, str, str, float | None, float | None]]:
+        """Key, case, method, start, status, finding, multiplier and CPU seconds of every run, as quick as can be."""
+        columns = "key, case_id, method, started, status, finding, multiplier, cpu_seconds"
+        with self._told():
+            return self._open.execute(f"SELECT {columns} FROM run").fetchall()
+
+    def merge(self, other: Path) -> tuple[int, int]:
+        """Take over the runs of another store that are not in this one; comparisons stay where they are.
+
+        Returns:
+            how many were taken over, and how many were here already.
+
+        Raises:
+            InputError: the other file is no store, or this one cannot be written.
+        """
+        with Store(other, read_only=True) as checked:
+            count = len(checked.table())
+        with self._told():
+            self._open.execute("ATTACH DATABASE ? AS other", (f"{other.absolute().as_uri()}?mode=ro",))
+            try:
+                with self._open:
+                    self._open.execute("INSERT OR IGNORE INTO environment SELECT * FROM other.environment")
+                    taken = self._open.execute("INSERT OR IGNORE INTO run SELECT * FROM other.run").rowcount
+            finally:
+                self._open.execute("DETACH DATABASE other")
+        return taken, count - taken
+
+    def __enter__(self) -> Store:
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self.close()
 
     def remember(self, created: str, content: dict[str, Any]) -> None:
         """Store what a comparison consisted of, so that its report can be built again.
@@ -210,6 +316,22 @@ class Store:
             self._copy.cleanup()
 
 
+def _unpacked(fields: bytes | None) -> dict[str, Any]:
+    """Compressed fields as JSON values.
+
+    Raises:
+        ValueError: they are larger than any wall's.
+    """
+    if fields is None:
+        return {}
+    unpacking = zlib.decompressobj()
+    text = unpacking.decompress(fields, LARGEST_FILE)
+    if unpacking.unconsumed_tail:
+        raise ValueError(f"more than {LARGEST_FILE:,} characters")
+    unpacked: dict[str, Any] = json.loads(text)
+    return unpacked
+
+
 def _connect(path: Path, how: str = "") -> sqlite3.Connection:
     return sqlite3.connect(path.absolute().as_uri() + how, timeout=WAIT_SECONDS, uri=True)
 
@@ -228,7 +350,8 @@ def _prepare(connection: sqlite3.Connection) -> None:
     if connection.execute("PRAGMA user_version").fetchone()[0] != SCHEMA_VERSION:
         with connection:
             connection.execute("BEGIN IMMEDIATE")
-            for statement in _SCHEMA:
+            version = connection.execute("PRAGMA user_version").fetchone()[0]
+            for statement in (*(_FROM_VERSION_1 if version == 1 else ()), *_SCHEMA):
                 connection.execute(statement)
 
 

@@ -27,8 +27,8 @@ def task(method: str, seconds: float = 60.0, **settings: Any) -> Task:
 
 
 def results(tasks: list[Task], processes: int) -> list[Measured]:
-    jobs = [Job(number, "made-up", each.method, lambda each=each: each) for number, each in enumerate(tasks)]
-    with closing(LocalExecutor(processes).map(jobs)) as ended:
+    jobs = [Job(number, "made-up", each) for number, each in enumerate(tasks)]
+    with closing(LocalExecutor(processes).map(jobs, {each.method for each in tasks})) as ended:
         return [measured for _, measured in sorted(ended, key=lambda pair: pair[0])]
 
 
@@ -114,8 +114,8 @@ def test_a_child_killed_from_outside_costs_the_run_it_was_making():
 
 
 def test_closing_the_results_ends_every_process():
-    jobs = [Job(0, "a", "dummy", lambda: task("dummy")), Job(1, "b", "dummy", lambda: task("dummy", does="hang"))]
-    with closing(LocalExecutor(2).map(jobs)) as ended:
+    jobs = [Job(0, "a", task("dummy")), Job(1, "b", task("dummy", does="hang"))]
+    with closing(LocalExecutor(2).map(jobs, ["dummy"])) as ended:
         assert next(ended)[0] == 0
         leaves = [process for process in psutil.Process().children(recursive=True) if not process.children()]
         started = [process for process in leaves if "resource_tracker" not in " ".join(process.cmdline())]

@@ -1,0 +1,94 @@
+"""The table of a study: a tidy pandas frame, one row a run, units in its metadata; CSV always, Parquet with pyarrow."""
+
+from __future__ import annotations
+
+import json
+import os
+from collections.abc import Iterable, Sequence
+from importlib.util import find_spec
+from pathlib import Path
+
+import pandas as pd
+
+from harness.engine.sweep.running import Row
+
+COLUMNS: dict[str, tuple[str, str]] = {
+    "number": ("int64", "1"),
+    "case": ("string", ""),
+    "draw": ("Int64", "1"),
+    "method": ("string", ""),
+    "family": ("string", ""),
+    "status": ("string", ""),
+    "finding": ("string", ""),
+    "multiplier": ("float64", "1 (of the live load)"),
+    "bracket_low": ("float64", "1 (of the live load)"),
+    "bracket_high": ("float64", "1 (of the live load)"),
+    "judge_accepted": ("boolean", ""),
+    "judge_worst_residual": ("float64", "1 (relative)"),
+    "cpu_seconds": ("float64", "s"),
+    "wall_seconds": ("float64", "s"),
+    "peak_memory_bytes": ("Int64", "byte"),
+    "blocks": ("Int64", "1"),
+    "interfaces": ("Int64", "1"),
+    "iterations": ("Int64", "1"),
+    "started": ("string", "ISO 8601, UTC"),
+    "key": ("string", ""),
+    "sentence": ("string", ""),
+}
+"""Columns of every study: type in pandas and unit. What the study varies comes after `case`."""
+
+UNITS = {
+    "friction": "1 (tangent of the angle of friction)",
+    "proportion": "1 (block length over height)",
+    "inset": "1 (fraction of the interface)",
+    "direction": "degree, counter-clockwise",
+    "imperfection": "1 (of the block height)",
+    "seed": "1",
+}
+"""Units of quantities with a short name; others have the unit of the wall's file."""
+
+
+def tidy(rows: Iterable[Row], varied: Sequence[str]) -> pd.DataFrame:
+    """The table of a study in the order of its runs.
+
+    Args:
+        rows: of `sweep`, in any order.
+        varied: names of the quantities that vary, in the study's order.
+
+    Returns:
+        one row a run; `attrs["units"]` holds the unit of every column, "1" for numbers without.
+    """
+    names = list(COLUMNS)
+    names[2:2] = varied
+    ordered: list[Row] = sorted(rows, key=_number)
+    table = pd.DataFrame(ordered, columns=names)
+    table = table.astype({name: kind for name, (kind, _) in COLUMNS.items()})
+    table.attrs["units"] = {name: COLUMNS[name][1] if name in COLUMNS else UNITS.get(name, "as in the wall's file")
+                            for name in names}  # fmt: skip
+    return table
+
+
+def _number(row: Row) -> int:
+    return int(row["number"])
+
+
+def write(table: pd.DataFrame, folder: Path, name: str) -> list[Path]:
+    """Write a table as NAME.csv, its units as NAME.units.json and, where pyarrow is installed, NAME.parquet.
+
+    Returns:
+        the files, each either whole or as it was.
+    """
+    folder.mkdir(parents=True, exist_ok=True)
+    written = []
+    for suffix in ("csv", "units.json", *(["parquet"] if find_spec("pyarrow") is not None else [])):
+        path = folder / f"{name}.{suffix}"
+        part = path.with_name(f".{path.name}.part")
+        if suffix == "csv":
+            table.to_csv(part, index=False)
+        elif suffix == "parquet":
+            table.to_parquet(part, index=False)
+        else:
+            part.write_text(json.dumps(table.attrs.get("units", {}), indent=1) + "\n", encoding="utf-8")
+        os.replace(part, path)
+        written.append(path)
+    return written

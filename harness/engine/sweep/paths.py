@@ -1,0 +1,120 @@
+"""Quantities of a wall by name: a path into its data, or a short name with a rule of its own."""
+
+from __future__ import annotations
+
+import copy
+import math
+import re
+from collections.abc import Callable, Mapping
+from typing import Any
+
+from harness.model.errors import InputError
+
+STEP = re.compile(r"([A-Za-z_][A-Za-z0-9_]*)|\[(\d+)\]")
+SETTING = "settings."
+SETTINGS = {"imperfection": "settings.de-uneven.size", "seed": "settings.de-uneven.seed"}
+"""Short names of settings: the size of defects as a part of the block height, and their seed."""
+
+
+def setting_of(name: str) -> tuple[str, str] | None:
+    """The method and its setting that a name means, or None if it is a quantity of the wall."""
+    full = SETTINGS.get(name, name)
+    if not full.startswith(SETTING):
+        return None
+    method, dot, setting = full.removeprefix(SETTING).rpartition(".")
+    if not dot or not method:
+        raise InputError(f'"{name}" names no setting', "Give settings.METHOD.NAME", "vary")
+    return method, setting
+
+
+def with_values(data: Mapping[str, Any], values: Mapping[str, Any]) -> dict[str, Any]:
+    """Data of a wall with quantities changed.
+
+    Args:
+        data: format wall/1.
+        values: by name; short names are friction (the default one where there are rules), proportion (block length over
+            height of a running bond), inset (fraction of every interface) and direction (the live load turned by so
+            many degrees, counter-clockwise).
+
+    Raises:
+        InputError: a path that leads nowhere in this wall.
+    """
+    changed = copy.deepcopy(dict(data))
+    for name, value in values.items():
+        rule = RULES.get(name)
+        if rule is not None:
+            rule(changed, value)
+        else:
+            _put(changed, name, value)
+    return changed
+
+
+def _put(data: dict[str, Any], path: str, value: Any) -> None:
+    steps = [match.group(1) or int(match.group(2)) for match in STEP.finditer(path)]
+    if not steps or "".join(f"[{step}]" if isinstance(step, int) else f".{step}" for step in steps).lstrip(".") != path:
+        raise InputError(f'"{path}" is no path', 'Write it as "loads.live.body[0].per_weight"', "vary")
+    here: Any = data
+    for number, step in enumerate(steps[:-1]):
+        following = steps[number + 1]
+        if isinstance(step, str) and isinstance(here, dict):
+            here = here.setdefault(step, [] if isinstance(following, int) else {})
+        elif isinstance(step, int) and isinstance(here, list) and step < len(here):
+            here = here[step]
+        else:
+            raise _nowhere(path)
+    last: Any = steps[-1]
+    if isinstance(last, str) == isinstance(here, dict) and isinstance(here, dict | list) and _there(here, last):
+        here[last] = value
+    else:
+        raise _nowhere(path)
+
+
+def _there(here: Any, step: str | int) -> bool:
+    return isinstance(step, str) or step < len(here)
+
+
+def _nowhere(path: str) -> InputError:
+    return InputError(f'"{path}" leads nowhere in this wall', "`drystone expand` shows what a wall has", "vary")
+
+
+def _friction(data: dict[str, Any], value: Any) -> None:
+    if isinstance(data.get("friction"), dict):
+        data["friction"]["default"] = value
+    else:
+        data["friction"] = value
+
+
+def _proportion(data: dict[str, Any], value: Any) -> None:
+    pattern = data.get("pattern")
+    bonds = [pattern] if isinstance(pattern, dict) else list(pattern or [])
+    bonds = [item for item in bonds if item.get("type") == "running_bond"]
+    if not bonds:
+        raise InputError("proportion is that of a running bond, and the wall has none", element="vary.proportion")
+    for item in bonds:
+        item["block_length"] = float(f"{value * item['block_height']:.12g}")
+
+
+def _inset(data: dict[str, Any], value: Any) -> None:
+    data["contact_inset"] = {"fraction": value}
+
+
+def _direction(data: dict[str, Any], value: Any) -> None:
+    live = (data.get("loads") or {}).get("live")
+    if not live:
+        raise InputError("direction is that of the live load, and the wall has none", element="vary.direction")
+    c, s = math.cos(math.radians(value)), math.sin(math.radians(value))
+    for item in live.get("body", []):
+        x, y = item["per_weight"]
+        item["per_weight"] = [c * x - s * y, s * x + c * y]
+    for item in live.get("points", []):
+        x, y = item["force"]
+        item["force"] = [c * x - s * y, s * x + c * y]
+
+
+RULES: dict[str, Callable[[dict[str, Any], Any], None]] = {
+    "friction": _friction,
+    "proportion": _proportion,
+    "inset": _inset,
+    "direction": _direction,
+}
+"""Short names of quantities of a wall."""

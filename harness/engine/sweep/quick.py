@@ -1,0 +1,96 @@
+"""A study without a file: what varies on one wall, in a few words of the command line."""
+
+from __future__ import annotations
+
+import json
+import re
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any
+
+from harness.engine.plan import Limits
+from harness.engine.sweep.study import Range, Study
+from harness.model.errors import InputError
+from harness.model.reading import validate
+
+METHODS = ("fe", "la", "de")
+IMPERFECT = "de-uneven"
+SIZES = 6
+"""Sizes of defects in a range that does not say how many."""
+
+
+def quick_study(
+    what: str,
+    methods: Sequence[str] | None,
+    settings: dict[str, dict[str, Any]],
+    limits: Limits,
+    multipliers: list[float],
+    *,
+    vary: Sequence[str] = (),
+    imperfection: str = "",
+    seeds: int | None = None,
+) -> Study:
+    """The study that the words of a command line mean.
+
+    Args:
+        what: a case or a wall file.
+        methods: names, or None for `METHODS`; with imperfections for `de-uneven` alone.
+        settings: of methods.
+        limits: of each run.
+        multipliers: at which the probability of failure is asked.
+        vary: "NAME=FROM:TO:COUNT" or "NAME=A,B,C".
+        imperfection: "FROM:TO", "FROM:TO:COUNT" or "A,B,C".
+        seeds: of the imperfections, from 0.
+
+    Raises:
+        InputError: words that mean nothing.
+    """
+    uneven = bool(imperfection) or seeds is not None
+    axes: dict[str, Any] = {}
+    for words in vary:
+        name, equals, values = words.partition("=")
+        if not equals or not values:
+            raise InputError(f'"{words}" varies nothing', "Give NAME=FROM:TO:COUNT or NAME=A,B,C", "--vary")
+        axes[name] = axis_of(values, f"--vary {name}", None)
+    if imperfection:
+        axes["imperfection"] = axis_of(imperfection, "--imperfection", SIZES)
+    if seeds is not None:
+        axes["seed"] = {"seeds": seeds}
+    stem = re.sub(r"[^a-z0-9]+", "-", Path(what).stem.lower()).strip("-") or "wall"
+    data = {
+        "name": f"{stem}-{'-'.join(re.sub('[^a-z0-9]+', '-', name.lower()).strip('-') for name in axes)}",
+        "title": f"{Path(what).stem} over {', '.join(axes)}",
+        "cases": [what],
+        "methods": list(methods or ([IMPERFECT] if uneven else METHODS)),
+        "vary": axes,
+        "settings": settings,
+        "multipliers": multipliers,
+        "limits": {"seconds": limits.seconds, "memory": limits.memory_bytes // 2**20},
+    }
+    return validate(Study, data, "sweep")
+
+
+def axis_of(words: str, element: str, count: int | None) -> Any:
+    """The values that "FROM:TO:COUNT" or "A,B,C" mean; `count` where FROM:TO says none.
+
+    Raises:
+        InputError: words that are neither.
+    """
+    parts = words.split(":")
+    if len(parts) == 1:
+        return [_value(word) for word in words.split(",")]
+    try:
+        number = int(parts[2]) if len(parts) == 3 else count
+        if number is None or len(parts) > 3:
+            raise ValueError
+        start, stop = float(parts[0]), float(parts[1])
+    except ValueError:
+        raise InputError(f'"{words}" is no range', "Give FROM:TO:COUNT or A,B,C", element) from None
+    return validate(Range, {"from": start, "to": stop, "count": number}, element).model_dump(by_alias=True)
+
+
+def _value(word: str) -> Any:
+    try:
+        return json.loads(word)
+    except json.JSONDecodeError:
+        return word

@@ -1,0 +1,69 @@
+"""What a study leaves besides its rows: tables of statistics, and the words and figures of its page."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from importlib.util import find_spec
+
+import pandas as pd
+
+from harness.engine.sweep import statistics
+from harness.engine.sweep.study import Study, Whole
+
+NO_SALIB = "SALib is not installed, so no sensitivities are told: pip install 'drystone[sensitivity]'"
+
+
+@dataclass(frozen=True)
+class Summary:
+    """A study with its results.
+
+    Attributes:
+        study: what was asked.
+        rows: one row a run.
+        groups: the columns that tell one group of walls from another: case, method and the grid.
+        tables: statistics by name, those that the study allows.
+        remarks: sentences that a reader should see.
+    """
+
+    study: Study
+    rows: pd.DataFrame
+    groups: list[str]
+    tables: dict[str, pd.DataFrame]
+    remarks: list[str] = field(default_factory=list)
+
+
+def grid_of(study: Study) -> list[str]:
+    """The quantities of a study's grid, seeds left out: walls that differ by a seed alone belong to one group."""
+    seeds = {name for name, axis in study.vary.items() if isinstance(axis, Whole)}
+    names = [*study.vary, *(name for group in study.together for name in group)]
+    return [name for name in names if name not in seeds]
+
+
+def varied_of(study: Study) -> list[str]:
+    """Every quantity that a study varies, in its order: the grid, what varies together, what is drawn."""
+    return [*study.vary, *(name for group in study.together for name in group), *study.draw]
+
+
+def summarise(study: Study, rows: pd.DataFrame) -> Summary:
+    """The statistics that a study's rows allow."""
+    groups = ["case", "method", *grid_of(study)]
+    rows = rows.copy()
+    tables = {"quantiles": statistics.quantiles(rows, groups)}
+    remarks = []
+    lost = len(rows) - len(statistics.answered(rows))
+    if lost:
+        remarks.append(f"{lost} of {len(rows)} runs gave no multiplier that the judge accepts; they are in the rows.")
+    many = int(tables["quantiles"]["answered"].max()) >= statistics.FEWEST if len(rows) else False
+    if many:
+        curves = statistics.fragility(rows, groups)
+        tables["fragility"] = curves
+    if study.multipliers and len(statistics.answered(rows)):
+        tables["failure"] = statistics.failure_probability(rows, groups, study.multipliers)
+    if study.draw:
+        if find_spec("SALib") is None:
+            remarks.append(NO_SALIB)
+        else:
+            found = statistics.sensitivity(rows, list(study.draw), groups)
+            if len(found):
+                tables["sensitivity"] = found
+    return Summary(study, rows, groups, tables, remarks)

@@ -1,0 +1,291 @@
+"""Commands about many runs: sweep, study, store."""
+
+from __future__ import annotations
+
+import shlex
+import sys
+import time
+from collections import Counter
+from collections.abc import Callable, Iterator
+from contextlib import closing, contextmanager
+from datetime import UTC, datetime
+from pathlib import Path
+from typing import Any
+
+import click
+
+from harness.engine.executors import Executor, LocalExecutor
+from harness.engine.plan import Limits
+from harness.engine.store import Store, open_store
+from harness.engine.sweep.expand import SweepRun, expand, sources_of
+from harness.engine.sweep.quick import quick_study
+from harness.engine.sweep.running import Row, sweep
+from harness.engine.sweep.study import Study, read_study
+from harness.model.case import shipped_cases
+from harness.model.errors import InputError
+from harness.options import (
+    STORE,
+    cases_option,
+    catching,
+    fresh_flag,
+    jobs_option,
+    json_flag,
+    memory_option,
+    print_json,
+    say,
+    seconds_option,
+    store_option,
+)
+from harness.run_commands import method_settings
+
+OUT = Path("out")
+LINE_SECONDS = 10.0
+"""How often progress is told where there is no terminal."""
+
+
+def shipped_studies() -> dict[str, Path]:
+    """The studies that come with Drystone, by name."""
+    return {path.stem: path for path in sorted((shipped_cases() / "studies").glob("*.toml"))}
+
+
+@click.command(name="sweep")
+@click.argument("what", metavar="STUDY")
+@click.option("--vary", multiple=True, metavar="NAME=VALUES", help="FROM:TO:COUNT or A,B,C; may be repeated.")
+@click.option("--imperfection", metavar="FROM:TO[:COUNT]", help="Size of defects over the block height (de-uneven).")
+@click.option("--seeds", type=click.IntRange(1), help="So many seeds of the defects.")
+@click.option("--methods", help="Names of methods, separated by commas.  [default: fe,la,de, or the study's]")
+@click.option("--set", "settings", multiple=True, metavar="METHOD.NAME=VALUE", help="A setting; may be repeated.")
+@click.option("--at", "multipliers", type=float, multiple=True, help="Tell the probability of failure at a multiplier.")
+@click.option("--dry-run", is_flag=True, help="Tell how many runs there are and what they may take; run nothing.")
+@click.option("--scheduler", metavar="tcp://HOST:PORT", help="A Dask scheduler whose workers make the runs.")
+@click.option("-o", "--output", type=click.Path(path_type=Path), help="Folder of the tables.  [default: out/NAME]")
+@click.option("--no-report", is_flag=True, help="Tables only, no page.")
+@seconds_option
+@memory_option
+@jobs_option
+@store_option
+@fresh_flag
+@json_flag
+@cases_option
+@catching
+def sweep_(what: str, dry_run: bool, scheduler: str | None, jobs: int, store: Path, fresh: bool, **rest: Any) -> None:
+    """Make every run of STUDY: a study file (.toml), a study that comes with Drystone, or a case with --vary.
+
+    \b
+    drystone sweep friction
+    drystone sweep my-study.toml --dry-run
+    drystone sweep wall.json --vary friction=0.3:1.0:15 --methods la,fe,de
+    drystone sweep wall-21 --imperfection 0.02:0.12 --seeds 50
+    """
+    asked, place = _study(what, rest)
+    runs = expand(asked, sources_of(asked, rest["folders"], place))
+    if dry_run:
+        _tell_plan(asked, runs, store, jobs, rest["as_json"])
+        return
+    with open_store(store) as opened:
+        rows = _made(runs, opened, _executor(scheduler, jobs), fresh, quiet=rest["as_json"])
+    _leave(asked, rows, rest["output"] or OUT / asked.name, rest)
+
+
+def _study(what: str, rest: dict[str, Any]) -> tuple[Study, Path | None]:
+    quick = {name: rest[name] for name in ("vary", "imperfection", "seeds") if rest[name]}
+    shipped = shipped_studies()
+    file = shipped.get(what) if not Path(what).exists() else Path(what)
+    methods = [name.strip() for name in rest["methods"].split(",") if name.strip()] if rest["methods"] else None
+    settings = method_settings(rest["settings"])
+    if file is not None and file.suffix == ".toml" and not quick:
+        read = read_study(file)
+        changes: dict[str, Any] = {"methods": methods} if methods else {}
+        if settings:
+            changes["settings"] = {name: read.settings.get(name, {}) | settings.get(name, {})
+                                   for name in {*read.settings, *settings}}  # fmt: skip
+        if rest["multipliers"]:
+            changes["multipliers"] = list(rest["multipliers"])
+        return read.model_copy(update=changes), file.parent
+    if not quick:
+        raise InputError(
+            f'"{what}" is no study, and nothing varies',
+            f"Give a study file, one of {', '.join(shipped)}, or a case with --vary or --imperfection",
+            "sweep",
+        )
+    limits = Limits(rest["seconds"], rest["memory"] * 2**20)
+    return quick_study(what, methods, settings, limits, list(rest["multipliers"]), **quick), None
+
+
+def _executor(scheduler: str | None, jobs: int) -> Executor:
+    if scheduler is None:
+        return LocalExecutor(jobs)
+    from harness.engine.cluster import ClusterExecutor
+
+    return ClusterExecutor(scheduler)
+
+
+def _made(runs: list[SweepRun], store: Store, executor: Executor, fresh: bool, *, quiet: bool) -> list[Row]:
+    rows = []
+    with progress(len(runs), quiet=quiet) as told, closing(sweep(runs, store, executor, fresh=fresh)) as ended:
+        for _, row, stored in ended:
+            rows.append(row)
+            told(stored)
+    return rows
+
+
+def _leave(asked: Study, rows: list[Row], folder: Path, rest: dict[str, Any]) -> None:
+    """Tables, page and a few lines for the terminal; exit code 1 if the judge rejects a run."""
+    from harness.engine.sweep.frame import tidy, write
+    from harness.engine.sweep.summary import grid_of, summarise, varied_of
+
+    table = tidy(rows, varied_of(asked))
+    files = write(table, folder, "runs")
+    summary = summarise(asked, table)
+    for name, statistic in summary.tables.items():
+        files += write(statistic, folder, name)
+    page = folder.with_suffix(".html")
+    if not rest["no_report"]:
+        from reports.study_page import StudyPage, write_page
+
+        names = [f"{folder.name}/{path.name}" for path in files if path.suffix != ".json"]
+        write_page(
+            StudyPage(
+                asked.title,
+                asked.question,
+                shlex.join(["drystone", *sys.argv[1:]]),
+                datetime.now(UTC).isoformat(timespec="seconds"),
+                table,
+                grid_of(asked),
+                summary.tables,
+                summary.remarks,
+                names,
+            ),
+            page,
+        )
+    rejected = int(table["judge_accepted"].eq(False).fillna(False).sum())
+    statuses = Counter(str(row["status"]) for row in rows)
+    told = {
+        "study": asked.name,
+        "runs": len(rows),
+        "statuses": dict(statuses),
+        "rejected": rejected,
+        "files": [str(path) for path in files],
+        "report": None if rest["no_report"] else str(page),
+    }
+    if rest["as_json"]:
+        print_json(told)
+    else:
+        say(f"{len(rows):,} runs: " + ", ".join(f"{count:,} {name}" for name, count in statuses.items())
+            + (f"; the judge rejects {rejected:,}" if rejected else ""))  # fmt: skip
+        for sentence in summary.remarks:
+            say(sentence)
+        say(f"Tables: {folder}/" + ("" if rest["no_report"] else f"\nReport: {page}"))
+    sys.exit(1 if rejected else 0)
+
+
+def _tell_plan(asked: Study, runs: list[SweepRun], store: Path, jobs: int, as_json: bool) -> None:
+    """How many runs there are, how many the store has, and what the rest may take by what like runs took."""
+    stored: set[str] = set()
+    costs: dict[str, list[float]] = {}
+    if store.exists():
+        with open_store(store, read_only=True) as opened:
+            for key, _, method, _, _, _, _, seconds in opened.table():
+                stored.add(key)
+                costs.setdefault(method, []).append(seconds or 0.0)
+    wanted = Counter(run.method for run in runs)
+    left = Counter(run.method for run in runs if run.key not in stored)
+    mean = {method: sum(costs[method]) / len(costs[method]) for method in wanted if costs.get(method)}
+    unknown = [method for method in left if method not in mean]
+    seconds = sum(left[method] * mean.get(method, 0.0) for method in left) / jobs
+    if as_json:
+        print_json({"study": asked.name, "runs": len(runs), "by_method": dict(wanted), "to_run": dict(left),
+                    "estimated_seconds": None if unknown else seconds})  # fmt: skip
+        return
+    say(f"{asked.title}: {len(runs):,} runs, {sum(left.values()):,} of them not in {store}")
+    for method, count in wanted.items():
+        cost = f"{mean[method]:.3g} s a run, the mean of {len(costs[method]):,} in the store" if method in mean else (
+            "no run of it is in the store to tell its cost")  # fmt: skip
+        say(f"  {method}: {count:,} runs, {left[method]:,} to make; {cost}")
+    if not unknown:
+        say(f"About {_duration(seconds)} with {jobs} at a time, walls alike.")
+
+
+def _duration(seconds: float) -> str:
+    if seconds < 90.0:
+        return f"{seconds:.0f} s"
+    return f"{seconds / 60.0:.0f} min" if seconds < 5400.0 else f"{seconds / 3600.0:.1f} h"
+
+
+@contextmanager
+def progress(total: int, *, quiet: bool) -> Iterator[Callable[[bool], None]]:
+    """Something to call after each run: a bar with rate and time left, or a line now and then."""
+    from rich.console import Console
+    from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeRemainingColumn
+
+    begun = last = time.monotonic()
+    counts = Counter[str]()
+
+    def words() -> str:
+        spent = max(time.monotonic() - begun, 1e-9)
+        rate = counts["made"] / spent
+        left = (total - counts["made"] - counts["stored"]) / rate if rate > 0.0 else float("nan")
+        return f"{counts['stored']:,} from the store, {rate:.3g} runs a second" + (
+            f", {_duration(left)} left" if left == left else "")  # fmt: skip
+
+    console = Console(stderr=True)
+    if quiet or not console.is_terminal:
+
+        def tell(stored: bool) -> None:
+            nonlocal last
+            counts["stored" if stored else "made"] += 1
+            if not quiet and time.monotonic() - last > LINE_SECONDS:
+                last = time.monotonic()
+                done = counts["stored"] + counts["made"]
+                print(f"{done:,} of {total:,} runs, {words()}", file=sys.stderr, flush=True)
+
+        yield tell
+        return
+    columns = TextColumn("{task.description}"), BarColumn(), MofNCompleteColumn(), TimeRemainingColumn()
+    with Progress(*columns, console=console, transient=True) as bar:
+        task = bar.add_task("", total=total)
+
+        def advance(stored: bool) -> None:
+            counts["stored" if stored else "made"] += 1
+            bar.update(task, advance=1, description=words())
+
+        yield advance
+
+
+@click.command(name="study")
+@click.argument("name", required=False)
+@catching
+def study(name: str | None) -> None:
+    """List the studies that come with Drystone, or print the file of one, to be changed and swept."""
+    shipped = shipped_studies()
+    if name is None:
+        for known, path in shipped.items():
+            read = read_study(path)
+            count = len(expand(read, sources_of(read, (), path.parent)))
+            say(f"{known:16s} {count:5d} runs: {read.question or read.title}")
+        return
+    if name not in shipped:
+        raise InputError(f'no study is called "{name}"', f"There are: {', '.join(shipped)}", "study")
+    say(shipped[name].read_text(encoding="utf-8").rstrip("\n"))
+
+
+@click.group(name="store")
+def store_() -> None:
+    """Work on result stores."""
+
+
+@store_.command(name="merge")
+@click.argument("into", type=click.Path(path_type=Path))
+@click.argument("others", nargs=-1, required=True, type=click.Path(path_type=Path))
+@catching
+def merge(into: Path, others: tuple[Path, ...]) -> None:
+    """Take the runs of OTHERS over INTO that it does not have; OTHERS stay as they are."""
+    with open_store(into) as opened:
+        for other in others:
+            if other.exists() and into.exists() and other.samefile(into):
+                raise InputError("it is the store itself", "Name another store", source=str(other))
+            taken, there = opened.merge(other)
+            say(f"{other}: {taken:,} runs taken over, {there:,} were there")
+
+
+__all__ = ["STORE", "store_", "study", "sweep_"]

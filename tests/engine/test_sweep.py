@@ -1,0 +1,335 @@
+"""Studies: what a file expands to, what is run again and what is not, and the statistics against closed forms."""
+
+from __future__ import annotations
+
+import json
+import os
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pandas as pd
+import pytest
+from scipy import stats
+
+from harness.engine.executors import LocalExecutor
+from harness.engine.store import open_store
+from harness.engine.sweep import statistics
+from harness.engine.sweep.expand import SweepRun, expand, sources_of
+from harness.engine.sweep.frame import tidy, write
+from harness.engine.sweep.paths import with_values
+from harness.engine.sweep.quick import axis_of, quick_study
+from harness.engine.sweep.running import sweep
+from harness.engine.sweep.study import Study, read_study
+from harness.model.build import build
+from harness.model.errors import InputError
+from harness.model.reading import parse_wall, validate
+from harness.sweep_commands import shipped_studies
+from tests.engine.test_command_line import drystone
+from tests.walls import running_bond, stack, wall_data
+
+
+def study(**more: Any) -> Study:
+    data = {"name": "made-up", "title": "A study of a test", "methods": ["la-associated"], "wall": wall_data(stack(2))}
+    return validate(Study, data | more, "test")
+
+
+def runs_of(asked: Study) -> list[SweepRun]:
+    return expand(asked, sources_of(asked))
+
+
+def rows_of(asked: Study, store: Path, *, processes: int = 2, fresh: bool = False) -> tuple[pd.DataFrame, int]:
+    with open_store(store) as opened:
+        ended = list(sweep(runs_of(asked), opened, LocalExecutor(processes), fresh=fresh))
+    varied = [*asked.vary, *(name for group in asked.together for name in group), *asked.draw]
+    return tidy((row for _, row, _ in ended), varied), sum(stored for _, _, stored in ended)
+
+
+def test_a_grid_is_every_value_with_every_other_and_methods_run_for_their_own_settings_alone():
+    asked = study(
+        methods=["la-associated", "de-uneven"],
+        vary={"friction": {"from": 0.2, "to": 0.4, "count": 3}, "imperfection": [0.0, 0.1], "seed": {"seeds": 2}},
+        together=[{"pattern.width": [0.3, 0.4], "pattern.count": [2, 3]}],
+    )
+    runs = runs_of(asked)
+    uneven = [run for run in runs if run.method == "de-uneven"]
+    assert len(uneven) == 3 * 2 * 2 * 2
+    assert {(run.settings["size"], run.settings["seed"]) for run in uneven} == {(0.0, 0), (0.0, 1), (0.1, 0), (0.1, 1)}
+    assert {tuple(run.variant.values.values()) for run in runs} == {
+        (friction, width, count) for friction in (0.2, 0.3, 0.4) for width, count in ((0.3, 2), (0.4, 3))
+    }
+    plain = {run.key for run in runs if run.method == "la-associated"}
+    assert len(plain) == 6, "the settings of another method make no other run"
+
+
+def test_short_names_do_what_they_say():
+    wall = wall_data(running_bond(3, 2), friction={"default": 0.5, "rules": [{"value": 0.1, "joint": "head"}]})
+    changed = with_values(wall, {"friction": 0.7, "proportion": 3.0, "inset": 0.1, "direction": 90.0})
+    assert changed["friction"] == {"default": 0.7, "rules": [{"value": 0.1, "joint": "head"}]}
+    assert changed["pattern"]["block_length"] == pytest.approx(0.6)
+    assembly = build(parse_wall(changed, "test")).assembly
+    np.testing.assert_allclose(assembly.live[assembly.free, 0], 0.0, atol=1e-12)
+    assert (assembly.live[assembly.free, 1] > 0.0).all(), "a push to the right turned by 90 degrees points up"
+    np.testing.assert_allclose(
+        np.linalg.norm(assembly.face2 - assembly.face1, axis=1),
+        np.linalg.norm(assembly.end2 - assembly.end1, axis=1) / 0.8,
+    )
+    assert wall["friction"]["default"] == 0.5, "the wall itself stays as it is"
+
+
+@pytest.mark.parametrize(
+    ("changes", "words"),
+    [
+        ({"vary": {"frction": [1.0]}}, "frction"),
+        ({"vary": {"friction": [-1.0]}}, "friction = -1.0"),
+        ({"vary": {"loads.live.body[3].per_weight": [[1, 0]]}}, "leads nowhere"),
+        ({"vary": {"a b": [1]}}, "no path"),
+        ({"vary": {"proportion": [2.0]}}, "running bond"),
+        ({"vary": {"settings.la-associated.solver": ["magic"]}}, "solver"),
+        ({"vary": {"settings.fe.points": [2]}}, "does not run"),
+        ({"methods": ["magic"]}, "magic"),
+        ({"vary": {"friction": {"from": 0.1, "to": 1.0, "count": 10**6}}, "methods": ["fe", "la"]}, "2,000,000"),
+    ],
+)
+def test_a_study_that_cannot_be_is_refused_before_anything_runs(changes: dict[str, Any], words: str):
+    with pytest.raises(InputError, match=words):
+        runs_of(study(**changes))
+
+
+@pytest.mark.parametrize(
+    "changes",
+    [
+        {"cases": ["wall-21"]},
+        {"vary": {"friction": [0.1]}, "draw": {"friction": {"distribution": "uniform", "low": 0.1, "high": 0.2}}},
+        {"together": [{"friction": [0.1], "inset": [0.1, 0.2]}]},
+        {"draw": {"friction": {"distribution": "normal", "mean": 0.5}}},
+        {"vary": {"friction": {"from": 0.0, "to": 1.0, "count": 3, "log": True}}},
+    ],
+)
+def test_a_study_file_that_contradicts_itself_is_refused(changes: dict[str, Any]):
+    with pytest.raises(InputError):
+        study(**changes)
+
+
+def test_draws_follow_their_distributions_and_their_seed():
+    item = {"distribution": "normal", "mean": 0.5, "deviation": 0.05, "low": 0.4}
+    other = {"distribution": "lognormal", "mean": 0.3, "deviation": 0.03}
+    asked = study(draw={"friction": item, "pattern.width": other}, samples=400)
+    values = pd.DataFrame([dict(run.variant.values) for run in runs_of(asked)])
+    cut = stats.truncnorm((0.4 - 0.5) / 0.05, np.inf, loc=0.5, scale=0.05)
+    assert stats.kstest(values["friction"], cut.cdf).pvalue > 0.5, "a Latin hypercube is evener than chance"
+    assert values["friction"].min() >= 0.4
+    assert values["pattern.width"].mean() == pytest.approx(0.3, rel=1e-3)
+    assert values["pattern.width"].std() == pytest.approx(0.03, rel=0.02)
+    again = pd.DataFrame([dict(run.variant.values) for run in runs_of(asked)])
+    pd.testing.assert_frame_equal(values, again)
+    other_seed = study(draw={"friction": item, "pattern.width": other}, samples=400, seed=1)
+    assert runs_of(other_seed)[0].variant.values != runs_of(asked)[0].variant.values
+
+
+def test_a_study_is_run_once_and_gives_the_closed_form(tmp_path: Path):
+    asked = study(vary={"friction": [0.1, 0.2, 0.3, 2.0]}, methods=["la-associated", "fe"])
+    table, stored = rows_of(asked, tmp_path / "s.sqlite")
+    assert stored == 0
+    # two blocks of 0.3 by 0.2 slide at the friction and topple at b / (n h) = 0.75
+    expected = np.minimum(table["friction"].astype(float), 0.75)
+    np.testing.assert_allclose(table["multiplier"], expected, rtol=1e-8)
+    assert table["judge_accepted"].all()
+    assert table.attrs["units"]["cpu_seconds"] == "s"
+    again, stored = rows_of(asked, tmp_path / "s.sqlite", processes=1)
+    assert stored == 8
+    pd.testing.assert_frame_equal(again, table)
+    fewer, stored = rows_of(study(vary={"friction": [0.2, 0.25]}), tmp_path / "s.sqlite")
+    assert stored == 1, "another study finds the runs it shares"
+    assert fewer["multiplier"].tolist() == pytest.approx([0.2, 0.25])
+
+
+def test_the_number_of_workers_does_not_change_an_answer(tmp_path: Path):
+    asked = study(vary={"friction": {"from": 0.1, "to": 0.9, "count": 9}}, methods=["la-associated", "fe", "la"])
+    one, _ = rows_of(asked, tmp_path / "one.sqlite", processes=1)
+    two, _ = rows_of(asked, tmp_path / "two.sqlite", processes=2)
+    cost = ["cpu_seconds", "wall_seconds", "peak_memory_bytes", "started"]
+    pd.testing.assert_frame_equal(one.drop(columns=cost), two.drop(columns=cost))
+
+
+def test_a_wall_that_cannot_be_built_costs_its_row(tmp_path: Path):
+    far = {"type": "stack", "width": 0.3, "height": 0.2, "count": 2, "offsets": [0.0, 0.0]}
+    asked = study(wall=wall_data(far), vary={"pattern.offsets": [[0.0, 0.05], [0.0, 5.0], [0.0, 0.1]]})
+    table, _ = rows_of(asked, tmp_path / "s.sqlite")
+    assert table["status"].tolist() == ["ok", "refused", "ok"]
+    assert "floating" in table["sentence"][1] or "touch" in table["sentence"][1]
+
+
+def test_tables_are_written_with_their_units(tmp_path: Path):
+    table, _ = rows_of(study(vary={"friction": [0.1, 0.2]}), tmp_path / "s.sqlite")
+    names = {path.name for path in write(table, tmp_path / "out", "runs")}
+    assert {"runs.csv", "runs.units.json"} <= names
+    read = pd.read_csv(tmp_path / "out" / "runs.csv")
+    assert read["multiplier"].tolist() == table["multiplier"].tolist(), "every digit"
+    units = json.loads((tmp_path / "out" / "runs.units.json").read_text())
+    assert set(units) == set(read.columns)
+    parquet = pd.read_parquet(tmp_path / "out" / "runs.parquet")
+    assert parquet["multiplier"].tolist() == table["multiplier"].tolist()
+    assert parquet.attrs["units"] == units
+
+
+def made_up(values: list[float | None], **columns: Any) -> pd.DataFrame:
+    rows = [
+        {
+            "number": number,
+            "case": "a",
+            "method": "la",
+            "status": "ok" if value is not None else "timeout",
+            "finding": "collapses" if value is not None else "none",
+            "multiplier": value,
+            "judge_accepted": True,
+        }
+        for number, value in enumerate(values)
+    ]
+    return tidy(rows, []).assign(**columns)
+
+
+def test_probability_of_failure_is_counted_with_wilsons_interval():
+    table = made_up([0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.9, 1.0, None])
+    found = statistics.failure_probability(table, ["case", "method"], [0.3]).iloc[0]
+    assert (found["walls"], found["failed"], found["probability"]) == (10, 3, 0.3)
+    z, n, p = 1.959963985, 10, 0.3
+    centre, half = p + z * z / (2 * n), z * np.sqrt(p * (1 - p) / n + z * z / (4 * n * n))
+    assert found["low"] == pytest.approx((centre - half) / (1 + z * z / n), abs=1e-8)
+    assert found["high"] == pytest.approx((centre + half) / (1 + z * z / n), abs=1e-8)
+
+
+def test_a_wall_that_falls_under_its_dead_load_has_failed_at_any_multiplier():
+    table = made_up([0.5, 0.6])
+    table.loc[0, ["finding", "multiplier"]] = ["falls", np.nan]
+    assert statistics.failure_probability(table, ["case", "method"], [0.0])["probability"][0] == 0.5
+
+
+def test_a_rejected_answer_counts_for_nothing():
+    table = made_up([0.5, 0.6])
+    table.loc[0, "judge_accepted"] = False
+    assert statistics.quantiles(table, ["case", "method"])["answered"].tolist() == [1]
+
+
+def test_fragility_curve_of_a_lognormal_sample_is_that_lognormal_within_its_band():
+    rng = np.random.default_rng(3)
+    values = np.exp(np.log(0.5) + 0.2 * rng.standard_normal(300))
+    curve = statistics.fragility(made_up(list(values)), ["case", "method"])
+    # with 300 walls the deviations of median and dispersion are 0.2 / sqrt(300) = 0.012 and 0.008
+    assert curve["median"][0] == pytest.approx(0.5, rel=0.04)
+    assert curve["dispersion"][0] == pytest.approx(0.2, abs=0.025)
+    true = stats.norm.cdf(np.log(curve["multiplier"] / 0.5) / 0.2)
+    inside = (curve["lognormal_low"] <= true) & (true <= curve["lognormal_high"])
+    assert inside.mean() > 0.8
+    counted = curve["low"].notna() & curve["high"].notna()
+    assert ((curve["low"] <= true) & (true <= curve["high"]))[counted].mean() > 0.8
+    assert (curve["probability"].diff().dropna() > 0.0).all()
+
+
+def test_sensitivity_names_the_quantity_that_matters():
+    rng = np.random.default_rng(0)
+    first, second = rng.random(200), rng.random(200)
+    table = made_up(list(0.3 + first + 0.1 * second), first=first, second=second)
+    found = statistics.sensitivity(table, ["first", "second"], ["case", "method"]).set_index("quantity")
+    # variances 1 / 12 and 0.01 / 12: shares of 0.990 and 0.0099
+    assert found["first_order"]["first"] == pytest.approx(0.99, abs=0.1)
+    assert found["delta"]["first"] > 3.0 * found["delta"]["second"]
+
+
+@pytest.mark.parametrize("name", sorted(shipped_studies()))
+def test_every_shipped_study_expands(name: str):
+    path = shipped_studies()[name]
+    asked = read_study(path)
+    assert asked.name == name
+    assert asked.question.endswith(("?", "."))
+    assert len(runs_of(asked)) > 20
+
+
+def test_quick_forms_mean_what_they_say():
+    assert axis_of("0.3:0.5:3", "", None) == {"from": 0.3, "to": 0.5, "count": 3, "log": False}
+    assert axis_of("half,full", "", None) == ["half", "full"]
+    from harness.engine.plan import Limits
+
+    asked = quick_study("walls/My Wall.json", None, {}, Limits(), [], imperfection="0.02:0.12", seeds=50)
+    assert asked.name == "my-wall-imperfection-seed"
+    assert asked.methods == ["de-uneven"]
+    for bad in ("0.3:0.5", "a:b:3", "1:2:3:4"):
+        with pytest.raises(InputError, match="no range"):
+            axis_of(bad, "--vary friction", None)
+
+
+def test_the_command_leaves_tables_and_a_page_and_says_what_it_would_do(tmp_path: Path):
+    (tmp_path / "wall.json").write_text(json.dumps(wall_data(stack(2))))
+    words = ("sweep", "wall.json", "--vary", "friction=0.1:0.5:5", "--methods", "la-associated")
+    plan = drystone(*words, "--dry-run", "--json", cwd=tmp_path)
+    assert plan.returncode == 0, plan.stderr
+    assert json.loads(plan.stdout)["to_run"] == {"la-associated": 5}
+    assert not (tmp_path / "out").exists()
+    done = drystone(*words, "--at", "0.2", cwd=tmp_path)
+    assert done.returncode == 0, done.stderr
+    assert "5 runs: 5 ok" in done.stdout
+    page = (tmp_path / "out" / "wall-friction.html").read_text()
+    assert "wall over friction" in page
+    assert "<svg" in page
+    assert "http://" not in page.replace("http://www.w3.org", "")
+    assert (tmp_path / "out" / "wall-friction" / "failure.csv").is_file()
+    plan = drystone(*words, "--dry-run", "--json", cwd=tmp_path)
+    assert json.loads(plan.stdout)["to_run"] == {}
+
+
+def test_stores_are_merged_without_doubling(tmp_path: Path):
+    first, second = study(vary={"friction": [0.1, 0.2]}), study(vary={"friction": [0.2, 0.3]})
+    rows_of(first, tmp_path / "a.sqlite")
+    rows_of(second, tmp_path / "b.sqlite")
+    done = drystone("store", "merge", "a.sqlite", "b.sqlite", cwd=tmp_path)
+    assert done.returncode == 0, done.stderr
+    assert "1 runs taken over, 1 were there" in done.stdout
+    _, stored = rows_of(study(vary={"friction": [0.1, 0.2, 0.3]}), tmp_path / "a.sqlite")
+    assert stored == 3
+    with open_store(tmp_path / "a.sqlite") as store:
+        result = store.get(next(run.key for run in runs_of(second) if run.variant.values["friction"] == 0.3))
+        assert result is not None
+        assert len(result[0].forces or ()) == 2
+    assert drystone("store", "merge", "a.sqlite", "a.sqlite", cwd=tmp_path).returncode == 2
+    assert drystone("store", "merge", "a.sqlite", "absent.sqlite", cwd=tmp_path).returncode == 2
+
+
+def test_a_killed_coordinator_loses_no_run_that_ended_and_doubles_none(tmp_path: Path):
+    (tmp_path / "wall.json").write_text(json.dumps(wall_data(stack(2))))
+    words = ["sweep", "wall.json", "--vary", "friction=0.1:0.9:400", "--methods", "la-associated", "--no-report"]
+    program = "from harness.cli import main; main()"
+    child = subprocess.Popen([sys.executable, "-c", program, *words], cwd=tmp_path, stderr=subprocess.DEVNULL)
+    path = tmp_path / "out" / "drystone.sqlite"
+    deadline = time.monotonic() + 60.0
+    while time.monotonic() < deadline and (not path.exists() or kept(path) < 20):
+        time.sleep(0.05)
+    os.kill(child.pid, signal.SIGKILL)
+    child.wait()
+    before = kept(path)
+    assert 20 <= before < 400
+    done = drystone(*words, "--json", cwd=tmp_path)
+    assert done.returncode == 0, done.stderr
+    assert json.loads(done.stdout)["runs"] == 400
+    assert kept(path) == 400
+
+
+def kept(path: Path) -> int:
+    with open_store(path) as store:
+        return len(store.table())
+
+
+def test_two_coordinators_on_one_store_lose_and_double_nothing(tmp_path: Path):
+    (tmp_path / "wall.json").write_text(json.dumps(wall_data(stack(2))))
+    words = ["sweep", "wall.json", "--vary", "friction=0.1:0.9:60", "--methods", "la-associated", "--no-report"]
+    program = "from harness.cli import main; main()"
+    both = [
+        subprocess.Popen([sys.executable, "-c", program, *words, "-o", f"out/{name}"], cwd=tmp_path) for name in "ab"
+    ]
+    assert [child.wait(timeout=120) for child in both] == [0, 0]
+    assert kept(tmp_path / "out" / "drystone.sqlite") == 60
+    first, second = (pd.read_csv(tmp_path / "out" / name / "runs.csv") for name in "ab")
+    assert first["multiplier"].tolist() == second["multiplier"].tolist()
