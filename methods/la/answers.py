@@ -7,13 +7,17 @@ from typing import Any
 import numpy as np
 
 from harness.model.assembly import Assembly, FloatArray
+from harness.model.errors import first_few
 from harness.model.method import Answer, Finding, Status
 from methods.la.extremes import SIMPLEX_INTERFACES, standing
 from methods.la.newton_matrix import NewtonMatrix
 from methods.la.problem import Problem
 from methods.la.programmes import KinematicSolution
 from methods.la.standing import standing_forces
-from methods.la.state import CollapseState, residuals
+from methods.la.state import CollapseState, local_residuals, residuals
+
+LOCALLY = 1e-8
+"""Residual at a block or joint, relative to the forces and speeds there, of a state that is returned."""
 
 NO_MOTION = "No mechanism lets the live load do work: it cannot make the wall collapse."
 NO_STATE = "Statics allows any live load, and the search found no collapse state under zero dilatancy either."
@@ -39,6 +43,14 @@ def collapse_answer(
         return not_converged(
             f"The best state, near multiplier {multiplier:.6g}, is not exact enough: {shown}", iterations, details
         )
+    blocks = _inexact_blocks(problem, state)
+    if blocks:
+        return not_converged(
+            f"The best state, near multiplier {multiplier:.6g}, is not exact enough beside {first_few(blocks, 8)}, "
+            "whose loads or speeds are small beside those of the others.",
+            iterations,
+            details,
+        )
     return Answer(
         Status.OK,
         Finding.COLLAPSES,
@@ -53,6 +65,17 @@ def collapse_answer(
         iterations=iterations,
         details=details,
     )
+
+
+def _inexact_blocks(problem: Problem, state: CollapseState) -> list[str]:
+    """Names of the blocks at which a state is wrong by more than `LOCALLY` of what acts there."""
+    assembly = problem.assembly
+    equilibrium, tension, closing = local_residuals(problem, state)
+    wrong = np.zeros(assembly.n_blocks, dtype=bool)
+    wrong[assembly.free] = equilibrium > LOCALLY
+    joints = (tension > LOCALLY) | (closing > LOCALLY)
+    wrong[assembly.block_a[joints]] = wrong[assembly.block_b[joints]] = True
+    return [assembly.block_ids[i] for i in np.flatnonzero(wrong & ~assembly.fixed)]
 
 
 def not_converged(sentence: str, iterations: int = 0, details: dict[str, Any] | None = None) -> Answer:

@@ -14,7 +14,7 @@ import numpy as np
 
 from harness.model.assembly import FloatArray
 from methods.la.exact import exact_forces, exact_mechanism
-from methods.la.extremes import extreme, standing
+from methods.la.extremes import force_programme, standing
 from methods.la.interior_point import PathSettings, follow_path, start_point
 from methods.la.newton_matrix import NewtonMatrix
 from methods.la.newton_step import Point
@@ -67,7 +67,7 @@ def solve_associated(problem: Problem, newton: NewtonMatrix, solver: str = "auto
         result = _by_interior_point(problem, newton)
         if result is not None:
             return result
-    found = extreme(problem, greatest=True, solver="simplex" if solver == "highs" else "auto")
+    found = force_programme(problem).extreme(greatest=True, solver="simplex" if solver == "highs" else "auto")
     if isinstance(found, str):
         return AssociatedResult("unbounded" if _bears_live_load_alone(problem) else found)
     statics, mechanism = found.statics, found.kinematics

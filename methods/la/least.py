@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import time
+from contextlib import suppress
 from dataclasses import dataclass, replace
 from itertools import chain
 from typing import Any
@@ -14,6 +15,8 @@ from harness.model.method import Answer
 from methods.la.answers import NO_MOTION, NO_STATE, collapse_answer, not_converged, unbounded_answer
 from methods.la.associated import AssociatedResult, solve_associated
 from methods.la.continuation import POOL, climb, descend_from, smooth_joints
+from methods.la.exact import exact_mechanism
+from methods.la.extremes import ForceProgramme, Units, units_of
 from methods.la.large import lagged_state, large_search
 from methods.la.mechanisms import mechanism_states
 from methods.la.newton_matrix import NewtonMatrix
@@ -46,6 +49,7 @@ class Plan:
     nodes: int
 
 
+NOT_EXACT = "No state was found that holds beside the lightest blocks too: weights differ too much within the wall"
 SIMPLEX_SEARCH = 1000
 """Interfaces above which the search by simplex programmes is too slow and the interior point does all."""
 FEW_INTERFACES = 400
@@ -119,15 +123,23 @@ def least_known(problem: Problem, newton: NewtonMatrix, settings: SearchSettings
     found += light
     if not found and not climbed:
         return _with_falling_blocks(_nothing_found(search, associated), gravity.falling)
+    uneven = units_of(problem)
+    if uneven is not None:
+        climbed = confirmed(problem, newton, uneven, found + climbed)
+        found = []
+        if not climbed:
+            return not_converged(f"{NOT_EXACT}.", search.tally.newton_steps)
     best = least_of(problem, found + climbed)
     joined = search.as_one_block(best)
     if joined is not None and joined.multiplier < best.multiplier:
         best = search.descend(joined, effort)
     proof = prove(search, best, plan.nodes)
-    if proof.state is not best:
+    if uneven is not None:
+        best, proof = _of_uneven(problem, newton, uneven, [*climbed, best], proof)
+    elif proof.state is not best:
         best = search.descend(proof.state, effort)
         proof = replace(proof, state=best)
-    best = polished(problem, newton, best)
+    best = polished(problem, newton, best) if uneven is None else best
     answer = _answer(
         problem, search, best, (found, climbed), (associated, proof), tolerance, settings.rational_interfaces
     )
@@ -139,6 +151,36 @@ def least_of(problem: Problem, states: list[CollapseState]) -> CollapseState:
     least = min(state.multiplier for state in states)
     same = (state for state in states if state.multiplier <= least + SAME * abs(least))
     return min(same, key=lambda state: max(residuals(problem, state).values()))
+
+
+def confirmed(problem: Problem, newton: NewtonMatrix, units: Units, states: list[CollapseState]) -> list[CollapseState]:
+    """The states whose forces, solved for in units of their own blocks and interfaces, exist; lowest first, some left.
+
+    Programmes in one unit overlook what a block of 1e-9 times the mean weight needs, and give states that are none.
+    """
+    programme = ForceProgramme(problem, units)
+    kept: list[CollapseState] = []
+    for state in sorted(states, key=lambda state: state.multiplier):
+        if kept and state.multiplier > min(other.multiplier for other in kept):
+            break
+        found = programme.extreme(greatest=False, tight=state.moving)
+        if isinstance(found, str):
+            continue
+        statics = found.statics
+        exact = replace(state, forces=statics.forces, multiplier=statics.multiplier)
+        with suppress(RuntimeError):
+            exact = replace(exact, velocities=exact_mechanism(problem, newton, state.velocities, state.moving, False))
+        kept.append(exact)
+    return kept
+
+
+def _of_uneven(
+    problem: Problem, newton: NewtonMatrix, units: Units, states: list[CollapseState], proof: Proof
+) -> tuple[CollapseState, Proof]:
+    """The least state that is confirmed, and what the tree proves of it: nothing where its own is not confirmed."""
+    best = least_of(problem, confirmed(problem, newton, units, [*states, proof.state]) or states)
+    holds = best.multiplier <= proof.state.multiplier + SAME * abs(proof.state.multiplier)
+    return best, replace(proof, state=best) if holds else Proof(best, 0.0, proof.nodes)
 
 
 def _with_falling_blocks(answer: Answer, falling: list[str]) -> Answer:

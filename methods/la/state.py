@@ -5,6 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
 
+import numpy as np
+
 from harness.model.assembly import BoolArray, FloatArray
 from methods.la.exact import exact_forces, exact_mechanism
 from methods.la.newton_matrix import NewtonMatrix
@@ -12,6 +14,10 @@ from methods.la.problem import Problem
 
 MOVING = 1e-11
 """Rates below this, relative to the largest, are rounding."""
+LIGHTEST = 1e-13
+"""Share of the largest force from which forces of a block count."""
+SLOWEST = 1e-6
+"""Share of the fastest speed from which those of a block count."""
 TIGHT = 1e-8
 """Slacks below this, in mean block weights, are rounding."""
 
@@ -44,6 +50,40 @@ def residuals(problem: Problem, state: CollapseState) -> dict[str, float]:
         "interpenetration": max(0.0, -float(rates.min(initial=0.0))) / speed,
         "complementarity": float(abs(slack * rates).sum()) / work if work > 0.0 else float("inf"),
     }
+
+
+def local_residuals(problem: Problem, state: CollapseState) -> tuple[FloatArray, FloatArray, FloatArray]:
+    """What is wrong about a state where it arises: equilibrium (n,) of blocks, tension and closing (m,) of interfaces.
+
+    Equilibrium is relative to the largest force or load on its block, yield to the lesser of those of its two blocks,
+    closing to the faster of them.
+    """
+    assembly = problem.assembly
+    n = problem.n_velocities // 3
+    balance = problem.imbalance(state.forces, state.multiplier).reshape(-1, 3)
+    terms = np.asarray(abs(problem.statics) @ abs(state.forces.ravel())) + abs(problem.dead)
+    terms += abs(state.multiplier * problem.live)
+    size = terms.reshape(-1, 3).max(axis=1)
+    rates = problem.rates_of_velocities(state.velocities, state.associated)
+    speed = abs(state.velocities.reshape(-1, 3)).max(axis=1)
+    place = np.full(assembly.n_blocks, n)
+    place[assembly.free] = np.arange(n)
+    a, b = place[assembly.block_a], place[assembly.block_b]
+    lesser = np.minimum(np.append(size, np.inf)[a], np.append(size, np.inf)[b])
+    faster = np.maximum(np.append(speed, 0.0)[a], np.append(speed, 0.0)[b])
+    tension = np.maximum(-problem.slacks(state.forces).min(axis=1), 0.0)
+    closing = np.maximum(-rates[:, :2].min(axis=1), 0.0)
+    return (
+        _share(abs(balance).max(axis=1), size, LIGHTEST),
+        _share(tension, np.where(np.isfinite(lesser), lesser, 0.0), LIGHTEST),
+        _share(closing, faster, SLOWEST),
+    )
+
+
+def _share(value: FloatArray, of: FloatArray, least: float) -> FloatArray:
+    """Values relative to sizes, of which none counts as less than this share of the largest."""
+    floor = least * float(of.max(initial=0.0)) or 1.0
+    return np.asarray(value / np.maximum(of, floor))
 
 
 def moving_contacts(rates: FloatArray) -> BoolArray:

@@ -184,6 +184,7 @@ class StandardForm:
             ("solver", "simplex"),
             ("primal_feasibility_tolerance", 1e-9),
             ("dual_feasibility_tolerance", 1e-9),
+            ("small_matrix_value", 1e-12),
         ):
             highs.setOptionValue(option, setting)
         shifted = highspy.HighsLp()
