@@ -1,0 +1,93 @@
+"""A share of the degenerate walls (`tests.properties.degenerate_walls`), and blocks of any weight within and beside."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import numpy as np
+import pytest
+
+from harness.conformance import answered
+from harness.engine.symmetry import beside, renumbered
+from harness.model.assembly import Assembly
+from harness.model.method import Status, load_method
+from methods.la.irregular_walls import drawn
+from tests.exact_programme import greatest_multiplier
+from tests.properties.degenerate_walls import KINDS, METHODS, Rng, Tally, any_base, made, violations, wall
+
+LOST = 0.1
+"""Share of walls of weight ratios up to 1e12 that may go without an answer."""
+
+
+@pytest.mark.parametrize("kind", KINDS, ids=lambda kind: kind.__name__)
+def test_degenerate_wall_is_answered_as_exact_arithmetic_and_theory_have_it(kind: Callable[[Rng], Assembly]):
+    assembly = made(kind, 2)
+    assert assembly is not None
+    assert violations(assembly, METHODS, Tally(), twins=()) == []
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("kind", KINDS, ids=lambda kind: kind.__name__)
+def test_more_degenerate_walls(kind: Callable[[Rng], Assembly]):
+    walls = [assembly for seed in range(3, 8) if (assembly := made(kind, seed)) is not None]
+    assert [fault for each in walls for fault in violations(each, METHODS, Tally())] == []
+
+
+def uneven_wall(seed: int) -> Assembly:
+    """A small wall half of whose blocks weigh 1e6, 1e9 or 1e12 times as much as the others."""
+    rng = np.random.default_rng([seed, 77])
+    blocks = any_base(rng)
+    ratio = 10.0 ** float(rng.choice([6.0, 9.0, 12.0]))
+    for each in blocks[1:]:
+        each["weight"] = float(rng.uniform(0.5, 2.0)) * (ratio if rng.random() < 0.5 else 1.0)
+    return wall(blocks, float(rng.choice([0.3, 0.6, 0.9])))
+
+
+def hold_to_exact(seeds: range) -> None:
+    lost = 0
+    for seed in seeds:
+        assembly = uneven_wall(seed)
+        exact = greatest_multiplier(assembly)
+        greatest, judgement = answered(load_method("la-associated"), assembly)
+        least, accepted = answered(load_method("la"), assembly)
+        assert judgement.accepted is not False, seed
+        assert accepted.accepted is not False, seed
+        lost += greatest.status is Status.NOT_CONVERGED
+        if greatest.multiplier is not None:
+            assert greatest.multiplier == pytest.approx(float(exact), rel=1e-9, abs=1e-12), seed
+        if least.multiplier is not None:
+            assert least.multiplier <= float(exact) * (1.0 + 1e-9) + 1e-12, seed
+    assert lost <= max(1, LOST * len(seeds))
+
+
+def test_weights_that_differ_by_up_to_1e12_within_a_wall_are_held_to_exact_arithmetic():
+    hold_to_exact(range(5))
+
+
+@pytest.mark.slow
+def test_two_hundred_walls_of_weights_that_differ_by_up_to_1e12():
+    hold_to_exact(range(200))
+
+
+def beside_any_weight(assembly: Assembly, method: str) -> None:
+    alone, _ = answered(load_method(method), assembly)
+    for share in (1e-12, 1.0, 1e12):
+        result, judgement = answered(load_method(method), renumbered(beside(assembly, share)))
+        assert judgement.accepted is not False, share
+        assert result.status is alone.status, share
+        assert result.finding is alone.finding, share
+        if alone.multiplier is not None:
+            assert result.multiplier == pytest.approx(alone.multiplier, rel=1e-9), share
+
+
+@pytest.mark.parametrize("method", ["la-associated", "fe"])
+@pytest.mark.parametrize("seed", range(2))
+def test_block_of_any_weight_beside_an_irregular_wall_changes_nothing(method: str, seed: int):
+    beside_any_weight(drawn(seed, 3, 4), method)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("method", ["la", "la-associated", "fe"])
+def test_block_of_any_weight_beside_two_hundred_irregular_walls_changes_nothing(method: str):
+    for seed in range(200):
+        beside_any_weight(drawn(seed, 3, 4), method)
