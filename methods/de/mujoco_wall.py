@@ -17,11 +17,11 @@ from typing import Any
 import numpy as np
 
 from harness.model.assembly import Assembly, FloatArray, IntArray
-from harness.model.errors import InputError
 from methods.de.courses import Tuning, courses, is_chain, light_top, masses, number_of_courses
 from methods.de.settings import MujocoSettings
 from methods.de.space import polygon_gyration
 from methods.de.strips import DEPTH, OVERHANG, require_lengths
+from methods.numerics.optional import optional
 
 TIME_STEP = 1e-4
 """In units of sqrt(length scale / gravity)."""
@@ -64,13 +64,7 @@ def load_mujoco() -> Any:
     Raises:
         InputError: it is not installed.
     """
-    try:
-        import mujoco
-    except ImportError as error:
-        raise InputError(
-            f"it needs the package mujoco ({error})", "Install drystone[mujoco]", "method de-mujoco"
-        ) from error
-    return mujoco
+    return optional("mujoco", "mujoco", "de-mujoco")
 
 
 def mujoco_tunings(assembly: Assembly, settings: MujocoSettings) -> list[tuple[Tuning, float]]:

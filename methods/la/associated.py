@@ -21,6 +21,7 @@ from methods.la.newton_step import Point
 from methods.la.problem import Problem
 from methods.la.programmes import KinematicProgramme, StaticSolution
 from methods.la.state import CollapseState, moving_contacts, polished, residuals, tight_contacts
+from methods.numerics.optional import optional
 
 SIMPLEX_INTERFACES = 400
 """Interfaces above which the own interior point comes first: quicker, where its end is clear enough to be polished."""
@@ -140,7 +141,7 @@ def _unclear(problem: Problem, state: CollapseState) -> float:
 
 def solve_with_cvxpy(problem: Problem, solver: str) -> tuple[str, FloatArray | None, float]:
     """The same programme written for reading: (outcome, forces (m, 3), multiplier), scaled."""
-    import cvxpy
+    cvxpy = optional("cvxpy", "cvxpy", "la-associated-cvxpy")
 
     m = problem.n_interfaces
     forces: Any = cvxpy.Variable((m, 3))

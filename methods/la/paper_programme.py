@@ -22,6 +22,7 @@ from scipy.sparse.linalg import splu
 
 from harness.model.assembly import FloatArray, IntArray
 from methods.la.problem import Problem, slack_matrix
+from methods.numerics.optional import optional
 
 FASTEST = 1e3
 """Bound on the rates at a mean live displacement of one; without it Ipopt's tolerances admit rates of any size."""
@@ -86,7 +87,7 @@ def solve_paper_programme(
         max_iterations: of Ipopt, for each relaxation.
         epsilons: bounds of y.m relative to the live work, decreasing.
     """
-    import casadi
+    casadi = optional("casadi", "paper", "la-paper")
 
     m, first = problem.n_interfaces, np.sort(determined_system(problem))
     second = np.setdiff1d(np.arange(m), first)
