@@ -59,17 +59,17 @@ def test_fe_block_overturns_at_its_width_over_its_height(friction: float) -> Non
 @pytest.mark.parametrize("degrees", [-10.0, 5.0, 20.0])
 def test_fe_block_on_an_incline_under_gravity_that_leans(friction: float, limit: float, degrees: float) -> None:
     angle = math.radians(degrees)
-    dead = {"body": [{"per_weight": [math.sin(angle), -math.cos(angle)]}]}
-    wall = block_on_ground(friction, {"dead": dead, "live": HORIZONTAL})
+    gravity = [math.sin(angle), -math.cos(angle)]
+    wall = block_on_ground(friction, {"gravity": gravity, "live": HORIZONTAL})
     assert multiplier(wall) == pytest.approx(limit * math.cos(angle) - math.sin(angle), rel=CLOSED_FORM)
 
 
 @pytest.mark.parametrize(("friction", "limit"), [(0.5, 0.5), (0.9, 2.0 / 3.0)])
 def test_fe_block_on_an_incline_under_a_load_along_the_slope_and_off_it(friction: float, limit: float) -> None:
     angle = math.radians(10.0)
-    dead = {"body": [{"per_weight": [math.sin(angle), -math.cos(angle)]}]}
+    gravity = [math.sin(angle), -math.cos(angle)]
     live = {"body": [{"per_weight": [math.cos(angle), math.sin(angle)]}]}
-    wall = block_on_ground(friction, {"dead": dead, "live": live})
+    wall = block_on_ground(friction, {"gravity": gravity, "live": live})
     assert multiplier(wall) == pytest.approx(math.tan(math.atan(limit) - angle), rel=CLOSED_FORM)
 
 
