@@ -25,6 +25,7 @@ from harness.model.comparison import ComparisonRun
 from harness.model.errors import InputError, visible
 from harness.model.method import Answer, Finding, Status
 from harness.model.result import Judgement, Result
+from harness.model.wall import LARGEST
 
 MARKS = {
     "agrees": "✓ agrees",
@@ -256,6 +257,10 @@ def _cell(value: Any) -> str:
     return str(value)
 
 
+def _is_number(value: Any) -> bool:
+    return isinstance(value, int | float) and not isinstance(value, bool) and abs(value) <= LARGEST
+
+
 def foreign_answer(data: Any, assembly: Assembly, source: str) -> Answer:
     """An answer from JSON data of any origin, as `drystone judge` takes it.
 
@@ -268,36 +273,39 @@ def foreign_answer(data: Any, assembly: Assembly, source: str) -> Answer:
     def table(name: str, rows: int, columns: str) -> np.ndarray | None:
         if data.get(name) is None:
             return None
-        try:
-            array = np.array(data[name], dtype=float)
-        except (TypeError, ValueError):
-            array = np.empty(0)
-        if array.shape != (rows, 3):
+        listed = data[name]
+        if not (
+            isinstance(listed, list)
+            and len(listed) == rows
+            and all(isinstance(row, list) and len(row) == 3 and all(map(_is_number, row)) for row in listed)
+        ):
             raise InputError(
-                f"it is not a list of {rows} triples of numbers",
+                f"it is not a list of {rows} triples of numbers up to {LARGEST:g}",
                 f"Give {columns} in the order of `drystone expand`",
                 name,
                 source,
             )
-        return array
+        return np.array(listed, dtype=float).reshape(rows, 3)
 
     finding = data.get("finding", "collapses")
-    if finding not in [str(item) for item in Finding]:
+    if not isinstance(finding, str) or finding not in list(Finding):
         raise InputError(f"{finding!r} is no finding", f"One of: {', '.join(Finding)}", "finding", source)
     multiplier = data.get("multiplier")
-    if finding == Finding.COLLAPSES and not isinstance(multiplier, int | float):
+    if not _is_number(multiplier) and (finding == Finding.COLLAPSES or multiplier is not None):
         raise InputError("it is missing or no number", "Give the collapse multiplier", "multiplier", source)
     flow = data.get("flow", "non-associated")
-    if flow not in ("non-associated", "associated", "approximate"):
+    if not isinstance(flow, str) or flow not in ("non-associated", "associated", "approximate"):
         raise InputError(f"{flow!r} is no flow rule", "non-associated, associated or approximate", "flow", source)
     at = data.get("forces_multiplier")
+    if at is not None and not _is_number(at):
+        raise InputError("it is no number", "Give the multiplier the forces belong to", "forces_multiplier", source)
     return Answer(
         status=Status.OK,
         finding=Finding(finding),
         sentence="An answer from a file.",
-        multiplier=float(multiplier) if isinstance(multiplier, int | float) else None,
+        multiplier=None if multiplier is None else float(multiplier),
         forces=table("forces", assembly.n_interfaces, "n1, n2, s of every interface"),
-        forces_multiplier=float(at) if isinstance(at, int | float) else None,
+        forces_multiplier=None if at is None else float(at),
         mechanism=table("mechanism", assembly.n_blocks, "ux, uy, omega of every block"),
         flow=flow,
     )

@@ -170,6 +170,8 @@ class Store:
         except sqlite3.Error as error:
             problem, remedy = _cause(error, self.path)
             raise InputError(problem, remedy, source=str(self.path)) from None
+        except UnicodeDecodeError:  # of a name in the schema, or of an error that quotes one
+            raise InputError("it is damaged (a name in it is no text)", OTHER_FILE, source=str(self.path)) from None
 
     def _damaged(self, element: str, error: Exception) -> InputError:
         reason = str(error).splitlines()[0] if str(error) else type(error).__name__
@@ -333,7 +335,10 @@ def _unpacked(fields: bytes | None) -> dict[str, Any]:
 
 
 def _connect(path: Path, how: str = "") -> sqlite3.Connection:
-    return sqlite3.connect(path.absolute().as_uri() + how, timeout=WAIT_SECONDS, uri=True)
+    connection = sqlite3.connect(path.absolute().as_uri() + how, timeout=WAIT_SECONDS, uri=True)
+    # Damaged text is told where it is understood, with the run it belongs to.
+    connection.text_factory = lambda text: text.decode("utf-8", "replace")
+    return connection
 
 
 def _prepare(connection: sqlite3.Connection) -> None:

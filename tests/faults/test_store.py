@@ -101,7 +101,14 @@ def test_a_truncated_store_is_told(store: Path, part: float):
 
 
 @pytest.mark.parametrize(
-    "column", ["UPDATE run SET result = substr(result, 1, length(result) / 2)", "UPDATE run SET result = '[]'"]
+    "column",
+    [
+        "UPDATE run SET result = substr(result, 1, length(result) / 2)",
+        "UPDATE run SET result = '[]'",
+        "UPDATE run SET result = CAST(x'7b22ff' AS TEXT)",
+        "UPDATE run SET result = x'00ff'",
+        "UPDATE run SET tolerance = 'much'",
+    ],
 )
 def test_truncated_json_of_a_run_names_the_run(store: Path, column: str):
     change(store, column)
