@@ -1,5 +1,5 @@
-# Every target sets the project up first; nothing but Python 3.11 (or newer) and make is needed.
-PYTHON ?= python3
+# Every target sets the project up first; nothing but Python 3.11 (or newer), its venv package and make is needed.
+PYTHON ?=
 VENV := .venv
 BIN := $(VENV)/bin
 READY := $(VENV)/.ready
@@ -45,9 +45,7 @@ lock: $(READY)  ## resolve the dependencies anew (versions and hashes only)
 	  --no-emit-index-url --no-emit-find-links --no-annotate --no-header --upgrade pyproject.toml -o requirements.lock
 
 $(READY): requirements.lock pyproject.toml
-	$(PYTHON) -m venv $(VENV)
-	$(BIN)/python -m pip install --quiet --disable-pip-version-check --require-hashes -r requirements.lock
-	$(BIN)/python -m pip install --quiet --disable-pip-version-check --no-deps --no-build-isolation -e .
+	@.ci/set-up "$(VENV)" $(PYTHON)
 	$(RUN)/python -m harness.kernels
 	touch $(READY)
 

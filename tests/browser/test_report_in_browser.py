@@ -245,3 +245,25 @@ def test_fifty_cases_by_eight_methods_open_fast(browser: Browser, tmp_path: Path
     # requirement and 0.7 is usual; half as much again is left for a slower processor.
     assert 0.0 < metrics["TaskDuration"] < 1.5
     assert path.stat().st_size < 5_000_000
+
+
+def test_policy_runs_the_scripts_of_the_page_and_no_other(browser: Browser, report: Path):
+    context = browser.new_context(viewport=DESKTOP)
+    page = context.new_page()
+    complaints: list[str] = []
+    page.on("console", lambda message: complaints.append(message.text))
+    page.goto(report.as_uri())
+    assert page.evaluate("document.querySelectorAll('svg[data-kind]').length") > 0
+    page.evaluate("window.scrollTo({top: document.querySelector('svg[data-kind]').getBoundingClientRect().top})")
+    page.wait_for_timeout(300)
+    assert page.evaluate("document.querySelector('svg[data-kind]').childElementCount") > 0
+    assert complaints == []
+    page.evaluate(
+        "() => { const s = document.createElement('script'); s.textContent = 'window.intruder = 1';"
+        " document.body.append(s); const b = document.createElement('b');"
+        " b.setAttribute('onclick', 'window.intruder = 2');"
+        " document.body.append(b); b.click(); }"
+    )
+    assert page.evaluate("window.intruder === undefined")
+    assert any("Content Security Policy" in text for text in complaints)
+    context.close()

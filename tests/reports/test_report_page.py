@@ -229,3 +229,17 @@ def test_failed_status_words_are_all_known():
     page = Page(build.render(ComparisonRun("", "", "", [CaseResults(case, results)]), data_folder="x"))
     for word in ("not converged", "refused", "timeout", "out of memory", "crashed"):
         assert word in page.text
+
+
+def test_policy_names_the_scripts_of_the_page_by_their_hash(source: str, page: Page):
+    (policy,) = [
+        attributes["content"]
+        for tag, attributes in page.elements
+        if tag == "meta" and attributes.get("http-equiv") == "Content-Security-Policy"
+    ]
+    assert policy is not None
+    (scripts,) = re.findall(r"script-src ([^;]*)", policy)
+    run = re.findall(r"<script>(.*?)</script>", source, flags=re.DOTALL)
+    assert len(run) == 2
+    assert scripts.split() == [build.script_hash(script) for script in run]
+    assert "unsafe-inline" not in scripts
