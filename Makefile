@@ -25,6 +25,7 @@ check: $(READY)  ## the reference regression, quick tier
 	$(RUN)/drystone check
 
 bench: $(READY)  ## measured values and CPU seconds of every method, beside the figures to beat
+	$(RUN)/python -m benchmarks.overhead --full
 	$(RUN)/python -m methods.la.bench
 	$(RUN)/python -m methods.fe.bench
 	$(RUN)/python -m methods.de.bench small de

@@ -33,6 +33,8 @@ COLUMNS = {
     "comparison": ("number", "created", "content"),
 }
 """The tables of a store and their columns, in order."""
+TABLE = ("key", "case_id", "method", "started", "status", "finding", "multiplier", "cpu_seconds")
+"""Columns of a run to filter and count by."""
 _SCHEMA = (
     "CREATE TABLE IF NOT EXISTS run (key TEXT PRIMARY KEY, case_id TEXT NOT NULL, method TEXT NOT NULL, "
     "started TEXT NOT NULL, tolerance REAL NOT NULL, result TEXT NOT NULL, status TEXT, finding TEXT, multiplier REAL, "
@@ -55,12 +57,14 @@ _FROM_VERSION_1 = (
     ),
 )
 """Brings a store of version 1 up to date; its results keep fields and environment inside `result`."""
-FIELDS = ("forces", "mechanism", "states", "path")
+FIELDS = ("forces", "mechanism", "states", "path", "details")
 """Parts of a result that are kept compressed beside it; they are most of its size."""
 ENVIRONMENT = ("versions", "machine")
 """Parts of a result that many runs share, kept once."""
 WAIT_SECONDS = 60.0
 """How long another program that writes the store is waited for."""
+PAGE_BYTES = 16384
+"""Page of a new store: of rows of 1 to 2 kB, pages of the usual 4 kB would be a third empty."""
 SOME_KEYS = 500
 """Up to so many results are looked for one by one; above, the whole table is read."""
 OTHER_FILE = "Name another file with --store"
@@ -250,9 +254,8 @@ class Store:
 
     def table(self) -> list[tuple[str, str, str, str, str, str, float | None, float | None]]:
         """Key, case, method, start, status, finding, multiplier and CPU seconds of every run, as quick as can be."""
-        columns = "key, case_id, method, started, status, finding, multiplier, cpu_seconds"
         with self._told():
-            return self._open.execute(f"SELECT {columns} FROM run").fetchall()
+            return self._open.execute(f"SELECT {', '.join(TABLE)} FROM run").fetchall()
 
     def merge(self, other: Path) -> tuple[int, int]:
         """Take over the runs of another store that are not in this one; comparisons stay where they are.
@@ -343,6 +346,7 @@ def _connect(path: Path, how: str = "") -> sqlite3.Connection:
 
 def _prepare(connection: sqlite3.Connection) -> None:
     """Make the tables in one transaction. The switch to a log does not wait for a lock by itself, so it is repeated."""
+    connection.execute(f"PRAGMA page_size = {PAGE_BYTES}")  # of a file that is not there yet
     deadline = time.monotonic() + WAIT_SECONDS
     while True:
         try:

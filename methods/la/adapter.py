@@ -6,14 +6,13 @@ from typing import Any, ClassVar
 
 from harness.model.assembly import Assembly
 from harness.model.method import Answer, Settings
-from methods.la.answers import collapse_answer, not_converged, unbounded_answer
-from methods.la.associated import AssociatedResult, solve_associated, solve_with_cvxpy, with_mechanism
+from methods.la.associated_adapter import AssociatedLimitAnalysis, AssociatedLimitAnalysisCvxpy
 from methods.la.extra_adapters import FromFiniteElements, PaperProgramme, TrescaSequence
 from methods.la.family import LimitAnalysisFamily
 from methods.la.least import least_known
 from methods.la.newton_matrix import NewtonMatrix
 from methods.la.problem import Problem
-from methods.la.settings import AssociatedSettings, CvxpySettings, SearchSettings
+from methods.la.settings import SearchSettings
 from methods.springs.warm_up import load_kernels
 
 __all__ = [
@@ -28,35 +27,6 @@ __all__ = [
 load_kernels()
 
 
-class AssociatedLimitAnalysis(LimitAnalysisFamily):
-    """Greatest multiplier of statics, the linear programme of associated limit analysis (`la-associated`)."""
-
-    name: ClassVar[str] = "la-associated"
-    title: ClassVar[str] = "LA, associated (greatest)"
-    tolerance: ClassVar[float] = 1e-9
-    Settings: ClassVar[type[Settings]] = AssociatedSettings
-
-    def answer(self, assembly: Assembly, problem: Problem, newton: NewtonMatrix, settings: Any) -> Answer:
-        """The linear programme by simplex or interior point."""
-        return associated_answer(problem, solve_associated(problem, newton, settings.solver), 1e-9)
-
-
-class AssociatedLimitAnalysisCvxpy(LimitAnalysisFamily):
-    """The same linear programme written in cvxpy, to be read beside the formulas (`la-associated-cvxpy`)."""
-
-    name: ClassVar[str] = "la-associated-cvxpy"
-    title: ClassVar[str] = "LA, associated (cvxpy)"
-    tolerance: ClassVar[float] = 1e-9
-    Settings: ClassVar[type[Settings]] = CvxpySettings
-
-    def answer(self, assembly: Assembly, problem: Problem, newton: NewtonMatrix, settings: Any) -> Answer:
-        """The linear programme through cvxpy; its mechanism is found as for `la-associated`."""
-        outcome, forces, multiplier = solve_with_cvxpy(problem, settings.solver)
-        if forces is None:
-            return associated_answer(problem, AssociatedResult(outcome), 1e-9)
-        return associated_answer(problem, with_mechanism(problem, newton, forces, multiplier, 0), 1e-9)
-
-
 class LimitAnalysis(LimitAnalysisFamily):
     """Least collapse state known, under zero dilatancy (`la`): the method to use."""
 
@@ -68,28 +38,3 @@ class LimitAnalysis(LimitAnalysisFamily):
     def answer(self, assembly: Assembly, problem: Problem, newton: NewtonMatrix, settings: Any) -> Answer:
         """Interior point, exact programme, ray descent, restarts and continuation, as the settings say."""
         return least_known(problem, newton, settings, self.tolerance)
-
-
-def associated_answer(problem: Problem, result: AssociatedResult, tolerance: float) -> Answer:
-    """The answer that belongs to the outcome of the associated programme."""
-    if result.outcome == "unbounded":
-        return unbounded_answer(
-            "Statically the live load can grow without limit: it cannot make the wall collapse under associated flow.",
-            result.iterations,
-        )
-    if result.state is None:
-        return not_converged(f"The linear programme ended as {result.outcome}.", result.iterations)
-    if not result.gap <= tolerance:
-        return not_converged(
-            f"The static and the kinematic multiplier differ by {result.gap:.2g}, more than {tolerance:.2g}.",
-            result.iterations,
-        )
-    multiplier = problem.to_multiplier(result.state.multiplier)
-    return collapse_answer(
-        problem,
-        result.state,
-        f"The greatest multiplier that statics and yield allow is {multiplier:.7g}.",
-        tolerance,
-        result.iterations,
-        {"duality_gap": result.gap, "unknowns": 3 * problem.n_interfaces + 1},
-    )
