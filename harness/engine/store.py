@@ -63,8 +63,6 @@ ENVIRONMENT = ("versions", "machine")
 """Parts of a result that many runs share, kept once."""
 WAIT_SECONDS = 60.0
 """How long another program that writes the store is waited for."""
-PAGE_BYTES = 16384
-"""Page of a new store: of rows of 1 to 2 kB, pages of the usual 4 kB would be a third empty."""
 SOME_KEYS = 500
 """Up to so many results are looked for one by one; above, the whole table is read."""
 OTHER_FILE = "Name another file with --store"
@@ -346,7 +344,6 @@ def _connect(path: Path, how: str = "") -> sqlite3.Connection:
 
 def _prepare(connection: sqlite3.Connection) -> None:
     """Make the tables in one transaction. The switch to a log does not wait for a lock by itself, so it is repeated."""
-    connection.execute(f"PRAGMA page_size = {PAGE_BYTES}")  # of a file that is not there yet
     deadline = time.monotonic() + WAIT_SECONDS
     while True:
         try:
