@@ -70,7 +70,9 @@ def solve_associated(problem: Problem, newton: NewtonMatrix, solver: str = "auto
             return result
     found = force_programme(problem).extreme(greatest=True, solver="simplex" if solver == "highs" else "auto")
     if isinstance(found, str):
-        return AssociatedResult("unbounded" if _bears_live_load_alone(problem) else found)
+        if _bears_live_load_alone(problem):
+            return AssociatedResult("unbounded")
+        return AssociatedResult("unknown" if found == "unbounded" else found)  # HiGHS alone is no proof
     statics, mechanism = found.statics, found.kinematics
     moving = moving_contacts(mechanism.rates)
     state = CollapseState(statics.forces, statics.multiplier, mechanism.velocities, moving, associated=True)

@@ -12,7 +12,7 @@ import numpy as np
 
 from harness.model.errors import first_few
 from harness.model.method import Answer
-from methods.la.answers import NO_MOTION, NO_STATE, collapse_answer, not_converged, unbounded_answer
+from methods.la.answers import LOCALLY, NO_MOTION, NO_STATE, collapse_answer, not_converged, unbounded_answer
 from methods.la.associated import AssociatedResult, solve_associated
 from methods.la.continuation import POOL, climb, descend_from, smooth_joints
 from methods.la.exact import exact_mechanism
@@ -26,7 +26,7 @@ from methods.la.proof import Proof, prove
 from methods.la.rational import confirm
 from methods.la.search import Effort, Search
 from methods.la.settings import SearchSettings
-from methods.la.state import CollapseState, polished, residuals
+from methods.la.state import CollapseState, local_residuals, polished, residuals
 
 
 @dataclass(frozen=True)
@@ -139,7 +139,11 @@ def least_known(problem: Problem, newton: NewtonMatrix, settings: SearchSettings
     elif proof.state is not best:
         best = search.descend(proof.state, effort)
         proof = replace(proof, state=best)
-    best = polished(problem, newton, best) if uneven is None else best
+    if uneven is None:
+        best = polished(problem, newton, best)
+        if max(part.max(initial=0.0) for part in local_residuals(problem, best)) > LOCALLY:
+            exact = confirmed(problem, newton, None, [best])
+            best = least_of(problem, exact) if exact else best
     answer = _answer(
         problem, search, best, (found, climbed), (associated, proof), tolerance, settings.rational_interfaces
     )
@@ -153,7 +157,9 @@ def least_of(problem: Problem, states: list[CollapseState]) -> CollapseState:
     return min(same, key=lambda state: max(residuals(problem, state).values()))
 
 
-def confirmed(problem: Problem, newton: NewtonMatrix, units: Units, states: list[CollapseState]) -> list[CollapseState]:
+def confirmed(
+    problem: Problem, newton: NewtonMatrix, units: Units | None, states: list[CollapseState]
+) -> list[CollapseState]:
     """The states whose forces, solved for in units of their own blocks and interfaces, exist; lowest first, some left.
 
     Programmes in one unit overlook what a block of 1e-9 times the mean weight needs, and give states that are none.

@@ -16,7 +16,7 @@ MOVING = 1e-11
 """Rates below this, relative to the largest, are rounding."""
 LIGHTEST = 1e-13
 """Share of the largest force from which forces of a block count."""
-SLOWEST = 1e-6
+SLOWEST = 1e-2
 """Share of the fastest speed from which those of a block count."""
 TIGHT = 1e-8
 """Slacks below this, in mean block weights, are rounding."""

@@ -24,8 +24,8 @@ ROUNDS = 6
 """Refinements of a linear system at most, and magnifications of a programme."""
 ACCURATE = 1e-12
 """Violation of a bound, relative to the terms beside it, that is rounding."""
-FLOOR = 1e-5
-"""Terms below this share of the largest anywhere count as this share: sums of large ones leave so much rounding."""
+LEAST_TERM, LEAST_SPEED = 1e-3, 1e-5
+"""Terms below this share of the largest bound, and of the largest terms of a reduced cost, count as this share."""
 LARGEST = 1e14
 """Largest factor by which violations are magnified."""
 EXCESS = 1e7
@@ -102,6 +102,8 @@ class StandardForm:
         self._by_row = sp.csr_matrix(self._matrix)
         self._cost = np.append(cost, np.zeros(self._rows))
         self._lower, self._upper = (np.concatenate(pair) for pair in zip(column, row, strict=True))
+        bounds = abs(np.concatenate([self._lower, self._upper]))
+        self._largest_bound = float(bounds[np.isfinite(bounds)].max(initial=0.0))
         self._groups = np.arange(self._rows) if groups is None else groups
 
     def vertex(self, status: IntArray) -> Vertex | None:
@@ -143,6 +145,7 @@ class StandardForm:
         fixed = self._lower == self._upper
         wrong = np.where(status == LOWER, -reduced, np.where(status == UPPER, reduced, abs(reduced))).clip(min=0.0)
         wrong[basic | fixed] = 0.0
+        speeds = self._speeds_beside(dual)
         return _Solution(
             status,
             value,
@@ -150,8 +153,8 @@ class StandardForm:
             reduced,
             outside,
             wrong,
-            _relative(outside, self._terms_beside(value)),
-            _relative(wrong, self._speeds_beside(dual)),
+            _relative(outside, self._terms_beside(value), LEAST_TERM * self._largest_bound),
+            _relative(wrong, speeds, LEAST_SPEED * float(speeds.max(initial=0.0))),
         )
 
     def _terms_beside(self, value: FloatArray) -> FloatArray:
@@ -249,10 +252,9 @@ def _worst(solution: _Solution) -> float:
     return max(solution.primal, solution.dual_violation)
 
 
-def _relative(violation: FloatArray, beside: FloatArray) -> float:
-    finite = beside[np.isfinite(beside)]
-    least = FLOOR * float(finite.max(initial=0.0)) or 1.0
-    return float((violation / np.maximum(beside, least)).max(initial=0.0))
+def _relative(violation: FloatArray, beside: FloatArray, least: float) -> float:
+    """The largest violation relative to what stands beside it, which counts from `least` on."""
+    return float((violation / np.maximum(beside, least or 1.0)).max(initial=0.0))
 
 
 def _factor(violation: FloatArray) -> float:
