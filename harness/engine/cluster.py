@@ -13,11 +13,10 @@ import sys
 import time
 from collections.abc import Collection, Generator, Iterable, Iterator
 from contextlib import contextmanager, suppress
-from multiprocessing.connection import wait
 from typing import Any
 
 from harness.engine.executors import Job, Slots
-from harness.engine.isolate import LOOK_SECONDS, Measured, start_context
+from harness.engine.isolate import LOOK_SECONDS, Measured, ended_run, start_context
 from harness.engine.provenance import code_version, versions
 from harness.engine.worker import Task
 from harness.model.errors import InputError
@@ -176,15 +175,11 @@ def make_run(task: Task, case: str, theirs: Identity) -> Measured:
     if differs:
         raise InputError(f"a worker that joined computes otherwise: {differs}", REMEDY, "--scheduler")
     with _with_children():
-        slots = _slots.setdefault(task.method, Slots(start_context([task.method])))
-        child = slots.begin(task, case)
-        try:
-            while (measured := child.look()) is None:
-                wait(child.waitables, timeout=LOOK_SECONDS)
-        except BaseException:
-            child.end()
-            raise
-        slots.give_back(child)
+        context = start_context([task.method])
+        slots = _slots.setdefault(task.method, Slots(context))
+        child, measured = ended_run(slots.begin(task, case), context)
+        if child.reusable:
+            slots.give_back(child)
         return measured
 
 

@@ -9,7 +9,7 @@ from multiprocessing.connection import wait
 from multiprocessing.context import BaseContext
 from typing import Protocol
 
-from harness.engine.isolate import LOOK_SECONDS, Child, Measured, own_context, start_context
+from harness.engine.isolate import LOOK_SECONDS, Again, Child, Measured, own_context, start_context
 from harness.engine.worker import Task
 
 RUNS_A_CHILD = 500
@@ -65,12 +65,15 @@ class LocalExecutor:
             while busy:
                 wait([place for child in busy for place in child.waitables], timeout=LOOK_SECONDS)
                 ended = [(child, job, found) for child, job in busy.items() if (found := child.look()) is not None]
-                for child, _, _ in ended:
+                for child, job, found in ended:
                     del busy[child]
                     slots.give_back(child)
+                    if found is Again.FRESH:
+                        busy[slots.begin(job.task, job.case, last=True)] = job
                 occupy()  # before the caller is given results, so that the children work while it does
                 for _, job, found in ended:
-                    yield job.number, found
+                    if isinstance(found, Measured):
+                        yield job.number, found
         finally:
             for child in busy:
                 child.end()
@@ -84,10 +87,10 @@ class Slots:
         self._context = context
         self._idle: list[Child] = []
 
-    def begin(self, task: Task, case: str) -> Child:
-        """A child that has begun the task."""
-        child = self._idle.pop() if self._idle and _small(task) else Child(self._context)
-        child.begin(task, case)
+    def begin(self, task: Task, case: str, *, last: bool = False) -> Child:
+        """A child that has begun the task; with `last` a fresh one, see `Child.begin`."""
+        child = self._idle.pop() if self._idle and _small(task) and not last else Child(self._context)
+        child.begin(task, case, last=last)
         return child
 
     def give_back(self, child: Child) -> None:

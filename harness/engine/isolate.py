@@ -13,7 +13,9 @@ import time
 from collections.abc import Iterable
 from dataclasses import dataclass
 from datetime import UTC, datetime
+from enum import Enum
 from multiprocessing.connection import wait
+from multiprocessing.context import BaseContext
 from pathlib import Path
 from typing import Any
 
@@ -51,7 +53,7 @@ def _fork_server() -> multiprocessing.context.ForkServerContext:
     return context
 
 
-def start_context(methods: Iterable[str]) -> multiprocessing.context.BaseContext:
+def start_context(methods: Iterable[str]) -> BaseContext:
     """Where children come from: a fork server that has loaded the methods once.
 
     The server starts with the first child and keeps what it loaded then; other methods are loaded by the children.
@@ -61,7 +63,7 @@ def start_context(methods: Iterable[str]) -> multiprocessing.context.BaseContext
     return _fork_server()
 
 
-def own_context() -> multiprocessing.context.BaseContext | None:
+def own_context() -> BaseContext | None:
     """Children forked from this very process, which has loaded most already; None if it has threads.
 
     One run alone is cheapest so: a fork server would be a second interpreter.
@@ -80,20 +82,50 @@ def run_isolated(task: Task, case: str) -> Measured:
         task: method, assembly, settings and limits.
         case: id of the case, for the result.
     """
-    child = Child(start_context([task.method]))
-    try:
-        child.begin(task, case)
-        while (measured := child.look()) is None:
-            wait(child.waitables, timeout=LOOK_SECONDS)
-        return measured
-    finally:
+    context = start_context([task.method])
+    child = Child(context)
+    child.begin(task, case)
+    child, measured = ended_run(child, context)
+    if child.reusable:
         child.end()
+    return measured
+
+
+def ended_run(child: Child, context: BaseContext) -> tuple[Child, Measured]:
+    """Wait for the run that a child has begun, and make it once more in a fresh child where it must be.
+
+    Returns:
+        the child that made it, if it may make another run (else it has ended), and the run.
+    """
+    try:
+        while True:
+            wait(child.waitables, timeout=LOOK_SECONDS)
+            found = child.look()
+            if isinstance(found, Measured):
+                break
+            if found is Again.FRESH:
+                task, case = child.task, child.case
+                child.end()
+                child = Child(context)
+                child.begin(task, case, last=True)
+    except BaseException:
+        child.end()
+        raise
+    if not child.reusable:
+        child.end()
+    return child, found
+
+
+class Again(Enum):
+    """What a child says of a run that another must make."""
+
+    FRESH = "in a fresh process"
 
 
 class Child:
     """A child process that makes runs one after another, and all that the engine knows of the present one."""
 
-    def __init__(self, context: multiprocessing.context.BaseContext) -> None:
+    def __init__(self, context: BaseContext) -> None:
         self._folder = tempfile.TemporaryDirectory(prefix="drystone-", ignore_cleanup_errors=True)
         self._connection, theirs = context.Pipe()
         self._process: Any = context.Process(  # type: ignore[attr-defined]
@@ -104,6 +136,7 @@ class Child:
         self.runs = 0
         self.reusable = True
         self._run: _UnderWay | None = None
+        self._last = False
 
     @property
     def waitables(self) -> list[Any]:
@@ -115,16 +148,34 @@ class Child:
         """Number of its process."""
         return int(self._process.pid)
 
-    def begin(self, task: Task, case: str) -> None:
-        """Send a task."""
-        self._run = _UnderWay(task, case, self._process.pid)
+    @property
+    def task(self) -> Task:
+        """The task under way."""
+        return self._under_way.task
+
+    @property
+    def case(self) -> str:
+        """Id of the case of the task under way."""
+        return self._under_way.case
+
+    @property
+    def _under_way(self) -> _UnderWay:
+        assert self._run is not None, "no run was begun"
+        return self._run
+
+    def begin(self, task: Task, case: str, *, last: bool = False) -> None:
+        """Send a task. With `last` its row is made here whatever happens; it was begun elsewhere before."""
+        self._run, self._last = _UnderWay(task, case, self._process.pid), last
         with contextlib.suppress(BrokenPipeError, ConnectionResetError):  # its end is told by the next look
             self._connection.send(task)
 
-    def look(self) -> Measured | None:
-        """The measured run if it has ended; else None, after its use of time and memory was looked at."""
-        run = self._run
-        assert run is not None, "no run was begun"
+    def look(self) -> Measured | Again | None:
+        """The measured run if it has ended; else None, after its use of time and memory was looked at.
+
+        A run is made again where its method asks for a fresh process, and once where the process was killed from
+        outside (SIGKILL): no method does that to itself, the system short of memory and people do.
+        """
+        run = self._under_way
         try:
             while self._connection.poll():
                 message = self._connection.recv_bytes()
@@ -132,30 +183,21 @@ class Child:
                     run.loaded()
                 elif message == worker.REPLACE:
                     self.reusable = False
-                    return self._made_by_another(run)
+                    return Again.FRESH
                 else:
                     return self._measured(run, json.loads(message))
         except (EOFError, ConnectionResetError):
             self._process.join(timeout=LOOK_SECONDS)
         if not self._process.is_alive():
-            return self._failed(run)
+            self.reusable = False
+            killed = self._process.exitcode == -signal.SIGKILL and not self._last
+            return Again.FRESH if killed else self._failed(run)
         run.look()
         if run.ending is not None:
             self._kill()
             self._process.join()
             return self._failed(run)
         return None
-
-    def _made_by_another(self, run: _UnderWay) -> Measured:
-        other = Child(start_context([run.task.method]))
-        try:
-            other.begin(run.task, run.case)
-            while (measured := other.look()) is None:
-                wait(other.waitables, timeout=LOOK_SECONDS)
-        finally:
-            other.end()
-        self._run = None
-        return measured
 
     def _measured(self, run: _UnderWay, record: dict[str, Any]) -> Measured:
         self._run = None

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import multiprocessing
 import time
-from contextlib import closing
+from contextlib import closing, suppress
 from multiprocessing.connection import wait
 from typing import Any
 
@@ -12,7 +12,7 @@ import psutil
 import pytest
 
 from harness.engine.executors import Job, LocalExecutor, Slots
-from harness.engine.isolate import Child, Measured, run_isolated, start_context
+from harness.engine.isolate import Again, Child, Measured, run_isolated, start_context
 from harness.engine.worker import Task
 from harness.model.method import Status
 from methods.dummy import Dummy
@@ -32,11 +32,10 @@ def results(tasks: list[Task], processes: int) -> list[Measured]:
         return [measured for _, measured in sorted(ended, key=lambda pair: pair[0])]
 
 
-def made(child: Child, each: Task) -> Measured:
-    child.begin(each, "made-up")
-    while (measured := child.look()) is None:
+def looked(child: Child) -> Measured | Again:
+    while (found := child.look()) is None:
         wait(child.waitables, timeout=0.05)
-    return measured
+    return found
 
 
 def test_a_process_that_made_other_runs_before_gives_the_same_bits_as_a_fresh_one():
@@ -56,8 +55,8 @@ def test_small_runs_share_a_process_and_each_is_charged_for_itself():
         child = slots.begin(task("la-associated"), "made-up")
         costs = []
         for number in range(20):
-            while (measured := child.look()) is None:
-                wait(child.waitables, timeout=0.05)
+            measured = looked(child)
+            assert isinstance(measured, Measured)
             costs.append(measured.result.cpu_seconds)
             slots.give_back(child)
             again = slots.begin(task("la-associated"), f"case {number}")
@@ -90,27 +89,53 @@ def test_a_method_that_asks_for_a_fresh_process_gets_one(monkeypatch: pytest.Mon
     monkeypatch.setattr(Dummy, "fresh_process", True, raising=False)
     child = Child(multiprocessing.get_context("fork"))
     try:
-        assert made(child, task("dummy")).result.status is Status.OK
-        assert child.reusable
-        assert made(child, task("dummy")).result.status is Status.OK
+        for expected in (Measured, Again):
+            assert child.reusable
+            child.begin(task("dummy"), "made-up")
+            assert isinstance(looked(child), expected)
         assert not child.reusable
-        assert child.runs == 1
     finally:
         child.end()
 
 
-def test_a_child_killed_from_outside_costs_the_run_it_was_making():
-    child = Child(start_context(["dummy"]))
-    try:
-        child.begin(task("dummy", does="hang"), "made-up")
-        time.sleep(0.3)
-        psutil.Process(child.pid).kill()
-        while (measured := child.look()) is None:
-            wait(child.waitables, timeout=0.05)
-        assert measured.result.status is Status.CRASHED
-        assert "SIGKILL" in measured.result.sentence
-    finally:
-        child.end()
+def test_a_run_whose_process_is_killed_from_outside_is_made_once_more():
+    """The second time it is a row: a run that ends its process each time must not be made for ever."""
+    context = start_context(["dummy"])
+    for last in (False, True):
+        child = Child(context)
+        try:
+            child.begin(task("dummy", does="hang"), "made-up", last=last)
+            time.sleep(0.3)
+            psutil.Process(child.pid).kill()
+            found = looked(child)
+        finally:
+            child.end()
+        if last:
+            assert isinstance(found, Measured)
+            assert found.result.status is Status.CRASHED
+            assert "SIGKILL" in found.result.sentence
+        else:
+            assert found is Again.FRESH
+
+
+def test_killing_children_under_way_loses_and_doubles_no_run():
+    tasks = [task("la-associated") for _ in range(300)]
+    jobs = [Job(number, "made-up", each) for number, each in enumerate(tasks)]
+    numbers = []
+    with closing(LocalExecutor(2).map(jobs, ["la-associated"])) as ended:
+        for number, measured in ended:
+            assert measured.result.status is Status.OK
+            numbers.append(number)
+            if len(numbers) in (20, 60, 100):
+                kill_children()
+    assert sorted(numbers) == list(range(300))
+
+
+def kill_children() -> None:
+    for process in psutil.Process().children(recursive=True):
+        with suppress(psutil.Error):
+            if not process.children() and "resource_tracker" not in " ".join(process.cmdline()):
+                process.kill()
 
 
 def test_closing_the_results_ends_every_process():

@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import os
 import signal
+import sqlite3
 import subprocess
 import sys
 import time
@@ -333,3 +334,24 @@ def test_two_coordinators_on_one_store_lose_and_double_nothing(tmp_path: Path):
     assert kept(tmp_path / "out" / "drystone.sqlite") == 60
     first, second = (pd.read_csv(tmp_path / "out" / name / "runs.csv") for name in "ab")
     assert first["multiplier"].tolist() == second["multiplier"].tolist()
+
+
+def test_a_full_disk_is_told_and_loses_nothing_that_was_kept(tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
+    asked = study(vary={"friction": {"from": 0.1, "to": 0.9, "count": 60}})
+    path = tmp_path / "s.sqlite"
+    monkeypatch.setattr("harness.engine.store._connect", small_disk)
+    with pytest.raises(InputError, match="disk is full"):
+        rows_of(asked, path)
+    monkeypatch.undo()
+    before = kept(path)
+    assert 0 < before < 60
+    table, stored = rows_of(asked, path)
+    assert stored == before
+    assert kept(path) == len(table) == 60
+
+
+def small_disk(path: Path, how: str = "") -> sqlite3.Connection:
+    """A connection whose file may grow to 20 pages; the database says then what it says of a full disk."""
+    connection = sqlite3.connect(path)
+    connection.execute("PRAGMA max_page_count = 20")
+    return connection
