@@ -42,7 +42,7 @@ class CollapseState:
     Attributes:
         multiplier: of the live load; work_multiplier: the same from the virtual work of the mechanism.
         forces: (m, 3) end forces [force]; mechanism: (n, 3) block velocities, live power 1.
-        residuals: relative defects by name: both, equilibrium, yield, dilatancy, complementarity, direction, work.
+        residuals: relative defects by name: both, equilibrium, yield, dilatancy, complementarity, work.
     """
 
     multiplier: float
@@ -226,9 +226,9 @@ def check(assembly: Assembly, multiplier: float, forces: FloatArray, mechanism: 
     """Measure how exactly forces and mechanism form a non-associated collapse state (zero dilatancy).
 
     Forces are relative to a mean block weight, rates to the fastest block. Complementarity is the work of contact
-    forces on the motion they ought to have none in, and direction what slip gains instead of dissipating, both as
-    shares of the work of the live load at max(load unit, |multiplier|). What both presses (or has slack) and moves
-    counts by the smaller of force and rate.
+    forces on the motion they ought to have none in, slip with its friction among it, as a share of the work of the live
+    load at max(load unit, |multiplier|). What both presses (or lacks friction) and moves counts by the smaller of force
+    and rate.
 
     Args:
         multiplier: of the live load; forces: (m, 3) end forces [force]; mechanism: (n, 3) block velocities.
@@ -245,9 +245,9 @@ def check(assembly: Assembly, multiplier: float, forces: FloatArray, mechanism: 
     slack = assembly.friction * total - np.abs(forces[:, 2])
     power = float(live @ velocity)
     size = max(assembly.load_unit, abs(multiplier))
-    idle = float(np.abs(forces[:, :2] * rates[:, :2]).sum() + np.abs(slack * rates[:, 2]).sum())
-    gained = float(np.maximum(forces[:, 2] * rates[:, 2], 0.0).sum())
-    strength = np.column_stack([forces[:, :2], slack]) / scale
+    against = assembly.friction * total + np.sign(rates[:, 2]) * forces[:, 2]
+    idle = float(np.abs(forces[:, :2] * rates[:, :2]).sum() + np.abs(against * rates[:, 2]).sum())
+    strength = np.column_stack([forces[:, :2], against]) / scale
     motion = np.abs(rates) / speed
     residuals = {
         "both": float(np.minimum(np.abs(strength), motion).max()),
@@ -255,7 +255,6 @@ def check(assembly: Assembly, multiplier: float, forces: FloatArray, mechanism: 
         "yield": max(0.0, -float(forces[:, :2].min()), -float(slack.min())) / scale,
         "dilatancy": max(0.0, -float(rates[:, :2].min())) / speed,
         "complementarity": idle / (power * size) if power > 0.0 else np.inf,
-        "direction": gained / (power * size) if power > 0.0 else np.inf,
     }
     # power of the contact forces is friction only: n . opening = 0, s slip = -mu (n1 + n2) |slip|
     friction_work = float(np.sum(assembly.friction * total * np.abs(rates[:, 2])))

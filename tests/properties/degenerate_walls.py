@@ -139,9 +139,8 @@ def t_junctions(rng: Rng) -> Assembly:
 
 def corner_contacts(rng: Rng) -> Assembly:
     touch = 10.0 ** rng.uniform(-5.0, -2.0)
-    blocks = [box("base", -2, -1, 6, 1, fixed=True), box("a", 0, 0, 1, 0.5), box("b", 1, 0, 1, 0.5)]
-    blocks += [box("upon", 0.5, 0.5, 1.0, 0.5), box("beside", 1.5, 1.0 - touch, 0.6, 0.5)]
-    blocks.append(box("prop", 1.5, 0.5, 0.6, 0.5 - touch))
+    blocks = [box("base", -2, -1, 6, 1, fixed=True), box("upon", 0.5, 0.0, 1.0, 0.5)]
+    blocks += [box("beside", 1.5, 0.5 - touch, 0.6, 0.5), box("prop", 1.5, 0.0, 0.6, 0.5 - touch)]
     return wall(blocks)
 
 
