@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import errno
+import io
 import json
 import math
 import os
@@ -41,6 +42,9 @@ def catching(command: Callable[..., Any]) -> Callable[..., Any]:
 
     @wraps(command)
     def wrapped(*args: Any, **kwargs: Any) -> Any:
+        for stream in (sys.stdout, sys.stderr):
+            if isinstance(stream, io.TextIOWrapper):  # a terminal that has no sign for a letter gets its number
+                stream.reconfigure(errors="backslashreplace")
         try:
             return command(*args, **kwargs)
         except InputError as error:
