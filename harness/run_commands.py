@@ -14,6 +14,7 @@ from harness import terminal
 from harness.engine import compare as comparing
 from harness.engine import regression
 from harness.engine.imperfection import imperfection_runs, imperfection_study
+from harness.engine.isolate import announce
 from harness.engine.plan import Limits, Run, check_methods, find_cases, plan_case
 from harness.engine.store import open_store
 from harness.model.case import Case
@@ -166,6 +167,7 @@ def compare(
     title = ", ".join(cases) if cases else f"suite {suite or 'small'}"
     asked = method_settings(settings)
     written = None if no_report else report
+    announce(planned.method for case in chosen for planned in plan_case(case, names, limits))
     study = None if seeds is None else _imperfection(limits, seeds, jobs, store, fresh, quiet=as_json)
     compared = _compare(
         title, chosen, names, limits, jobs, written, store, fresh, quiet=as_json, study=study, settings=asked

@@ -53,13 +53,22 @@ def _fork_server() -> multiprocessing.context.ForkServerContext:
     return context
 
 
+_announced: set[str] = set()
+
+
+def announce(methods: Iterable[str]) -> None:
+    """Name methods that are going to be run: the fork server loads once what was named before it starts."""
+    _announced.update(preload.shipped(methods))
+    os.environ[preload.VARIABLE] = ",".join(sorted(_announced))
+
+
 def start_context(methods: Iterable[str]) -> BaseContext:
     """Where children come from: a fork server that has loaded the methods once.
 
     The server starts with the first child and keeps what it loaded then; other methods are loaded by the children.
     """
     pin()
-    os.environ[preload.VARIABLE] = ",".join(preload.shipped(methods))
+    announce(methods)
     return _fork_server()
 
 

@@ -261,3 +261,23 @@ def test_settings_that_no_method_has_are_refused(given: str, wall: Path):
     assert done.returncode == 2
     assert "--set" in done.stderr
     assert not (wall.parent / "out").exists()
+
+
+SOLVERS = ("highspy", "numba", "scipy.optimize", "cvxpy", "pymunk", "casadi", "osqp", "mujoco")
+
+
+@pytest.mark.parametrize(
+    ("words", "foreign"),
+    [(("--version",), ("numpy", "pydantic", *SOLVERS)), (("--help",), ("numpy", "pydantic", *SOLVERS))]
+    + [((*words,), SOLVERS) for words in (("list", "cases"), ("show", "wall-21", "-o", "wall.svg"))],
+)
+def test_a_command_imports_no_more_than_it_needs(words: tuple[str, ...], foreign: tuple[str, ...], tmp_path: Path):
+    program = (
+        "import atexit, sys; from harness.cli import main\n"
+        f"atexit.register(lambda: print([name for name in {foreign!r} if name in sys.modules], file=sys.stderr))\n"
+        f"sys.argv = ['drystone', *{words!r}]; main()"
+    )
+    done = subprocess.run(
+        [sys.executable, "-c", program], cwd=tmp_path, capture_output=True, text=True, timeout=120, check=True
+    )
+    assert done.stderr.strip() == "[]"
