@@ -195,3 +195,49 @@ with open_store(Path({str(tmp_path / "s.sqlite")!r})) as store:
     with open_store(tmp_path / "s.sqlite") as store:
         assert store.get(dummy_run("answer").key) is not None
         assert store.get(dummy_run("hang").key) is None
+
+
+def test_a_store_of_version_1_is_brought_up_to_date_with_all_it_holds(tmp_path: Path):
+    run = dummy_run("answer")
+    (made,) = execute([run], None, 1)
+    path = tmp_path / "old.sqlite"
+    connection = sqlite3.connect(path)
+    with connection:
+        connection.execute(
+            "CREATE TABLE run (key TEXT PRIMARY KEY, case_id TEXT NOT NULL, method TEXT NOT NULL, "
+            "started TEXT NOT NULL, tolerance REAL NOT NULL, result TEXT NOT NULL)"
+        )
+        connection.execute(
+            "CREATE TABLE comparison (number INTEGER PRIMARY KEY AUTOINCREMENT, created TEXT NOT NULL, "
+            "content TEXT NOT NULL)"
+        )
+        values = (run.key, made.case, made.method, made.started, 1e-9, made.model_dump_json())
+        connection.execute("INSERT INTO run VALUES (?, ?, ?, ?, ?, ?)", values)
+        connection.execute("PRAGMA user_version = 1")
+    connection.close()
+    with pytest.raises(InputError, match="version 1"), open_store(path, read_only=True):
+        pass
+    with open_store(path) as store:
+        found = store.get(run.key)
+        assert found is not None
+        assert found[0] == made
+        assert store.table()[0][4:7] == ("ok", "collapses", 1.0)
+        store.put("another", made, 1e-9)
+        again = store.get("another")
+    assert again is not None
+    assert again[0] == made
+    with open_store(path, read_only=True) as store:
+        assert len(store.table()) == 2
+
+
+def test_what_many_runs_share_is_kept_once_and_fields_are_small(tmp_path: Path):
+    (made,) = execute([Run(case(stack(200)), "dummy", {"does": "answer"}, Limits(30.0))], None, 1)
+    with open_store(tmp_path / "s.sqlite") as store:
+        for number in range(50):
+            store.put(str(number), made, 1e-9)
+        assert store.get("7") == (made, 1e-9)
+    connection = sqlite3.connect(tmp_path / "s.sqlite")
+    assert connection.execute("SELECT count(*) FROM environment").fetchone() == (1,)
+    (size,) = connection.execute("SELECT max(length(result) + length(fields)) FROM run").fetchone()
+    connection.close()
+    assert size < len(made.model_dump_json()) / 3
