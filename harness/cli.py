@@ -9,6 +9,7 @@ import importlib
 
 import click
 
+from harness import formats
 from harness.engine.threads import pin
 
 COMMANDS = {
@@ -26,6 +27,9 @@ COMMANDS = {
     "schema": ("wall_commands", "schema", "Print the JSON Schema of the wall format."),
     "show": ("wall_commands", "show", "Draw CASE to a file or in a window."),
     "figure": ("wall_commands", "figure", "Draw the answers of methods as a figure for a paper."),
+    "import": ("format_commands", "import_", "Make a WALL.json of a drawing."),
+    "export": ("format_commands", "export", "Write a wall and its answer for other programs."),
+    "new": ("format_commands", "new", "Make a wall of a kind from a few numbers."),
     "animate": ("wall_commands", "animate", "Animate the mechanism a method finds."),
 }
 """Every command: the module of this package it is in, its name there, and what the list of commands says of it."""
@@ -43,6 +47,7 @@ class Commands(click.Group):
         if cmd_name not in COMMANDS:
             return None
         pin()
+        formats.register()
         module, name, _ = COMMANDS[cmd_name]
         command: click.Command = getattr(importlib.import_module(f"harness.{module}"), name)
         return command

@@ -16,7 +16,7 @@ from harness.engine.worker import Task
 from harness.model.case import Case, Reference, case_folders, case_of_wall, id_of, read_case, shipped_cases
 from harness.model.errors import InputError, did_you_mean
 from harness.model.method import method_names
-from harness.model.reading import wall_json
+from harness.model.reading import DRAWINGS, wall_json
 
 DEFAULT_METHODS = ("fe", "la", "la-associated", "de")
 """What a comparison runs besides the methods a gated reference of the case asks for."""
@@ -169,7 +169,7 @@ def _find_case(word: str, library: dict[str, Path]) -> Case:
         return replace(case, notes=(f'"{word}" is the case of the library, not what lies here: for that say {here}',))
     if path.is_dir():
         return read_case(path)
-    if path.exists() or path.suffix == ".json":
+    if path.exists() or path.suffix.lower() in (".json", *DRAWINGS):
         return case_of_wall(path)
     lists = "`drystone list cases` shows the cases; a wall of your own is named by its file, WALL.json"
     raise InputError(

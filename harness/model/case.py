@@ -15,7 +15,7 @@ from harness.model.assembly import Assembly
 from harness.model.build import Built, build
 from harness.model.errors import InputError
 from harness.model.method import method_names
-from harness.model.reading import parse_wall, read_json, read_text, validate
+from harness.model.reading import parse_wall, read_document, read_json, read_text, validate
 from harness.model.wall import Strict, Wall
 
 LARGEST_CASE_FILE = 2**20
@@ -182,11 +182,12 @@ def case_of_wall(path: Path) -> Case:
     Raises:
         InputError: naming the file and the element.
     """
-    wall = parse_wall(read_json(path), str(path))
+    data, notes = read_document(path)
+    wall = parse_wall(data, str(path))
     file = CaseFile(
         id=id_of(path.stem), title=wall.title or path.stem, source=str(wall.metadata.get("source", "the user"))
     )
-    return Case(file, wall, str(path))
+    return Case(file, wall, str(path), notes)
 
 
 def shipped_cases() -> Path:

@@ -9,6 +9,7 @@ import re
 import stat
 from collections import Counter
 from collections.abc import Callable
+from dataclasses import replace
 from pathlib import Path
 from typing import Any, TypeVar
 
@@ -294,6 +295,22 @@ def _members(annotation: Any) -> list[Any]:
     return [member for argument in arguments for member in _members(argument)]
 
 
+DRAWINGS: dict[str, Callable[[Path], tuple[Any, tuple[str, ...]]]] = {}
+"""Readers of drawings by the ending of their names: each gives JSON data of a wall, and what a person should hear.
+
+Filled by `harness.formats.register`; the model knows no format of drawings."""
+
+
+def read_document(path: Path) -> tuple[Any, tuple[str, ...]]:
+    """JSON data of a wall file or of a drawing, and what a person should hear about how it was read.
+
+    Raises:
+        InputError: naming the file and what is wrong.
+    """
+    reader = DRAWINGS.get(path.suffix.lower())
+    return (read_json(path), ()) if reader is None else reader(path)
+
+
 def parse_wall(data: Any, source: str) -> Wall:
     """A wall from JSON data.
 
@@ -314,9 +331,11 @@ def read_wall(path: Path, name: str = "") -> Built:
     Raises:
         InputError: naming the file and the element.
     """
-    wall = parse_wall(read_json(path), str(path))
+    data, notes = read_document(path)
+    wall = parse_wall(data, str(path))
     try:
-        return build(wall, name or path.stem)
+        built = build(wall, name or path.stem)
+        return replace(built, warnings=(*notes, *built.warnings)) if notes else built
     except InputError as error:
         error.source = error.source or str(path)
         raise

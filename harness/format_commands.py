@@ -1,0 +1,152 @@
+"""Commands between Drystone and other programs: import, export, and new walls of a few numbers."""
+
+from __future__ import annotations
+
+import inspect
+import sys
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any, get_args, get_type_hints
+
+import click
+
+from harness import terminal
+from harness.engine import compare as comparing
+from harness.engine.plan import Limits, Run, check_methods, find_cases
+from harness.engine.store import open_store
+from harness.model.errors import InputError
+from harness.model.method import Finding, Status
+from harness.model.reading import wall_json
+from harness.model.units import LengthUnit
+from harness.model.wall import Wall
+from harness.options import cases_option, catching, say, say_json, store_option, warn
+
+
+@click.command("import")
+@click.argument("drawing", type=click.Path(path_type=Path))
+@click.option("-o", "--output", type=click.Path(path_type=Path), help="A file instead of standard output.")
+@click.option(
+    "--mapping", type=click.Path(path_type=Path), help="What the drawing does not say.  [default: DRAWING.toml]"
+)
+@click.option("--units", type=click.Choice(get_args(LengthUnit)), help="Of the drawing, whatever it declares.")
+@click.option("--supports", help='lowest-course, "ground-line Y" or "layer NAME".')
+@click.option("--tolerance", type=click.FloatRange(0.0, min_open=True), help="Greatest gap of a joint, in its unit.")
+@click.option("--friction", type=click.FloatRange(0.0), help="Coefficient of friction of every joint.")
+@click.option("--unit-weight", type=click.FloatRange(0.0), help="[kN/m3]")
+@click.option("--thickness", type=click.FloatRange(0.0, min_open=True), help="Out of plane, in its unit.")
+@click.option("--accuracy", type=click.FloatRange(0.0, min_open=True), help="Of curves [m].  [default: 0.001]")
+@click.option("--plane", type=click.Choice(["xz", "yz", "xy"]), help="That solids are cut by.  [default: xz]")
+@click.option("--at", type=float, help="Where the plane lies on the third axis.  [default: the middle]")
+@catching
+def import_(drawing: Path, output: Path | None, mapping: Path | None, **said: Any) -> None:
+    """Make a WALL.json of DRAWING: DXF, SVG, GeoJSON, WKT, shapefile, CSV, gmsh (.msh, .geo) or COMPAS JSON.
+
+    What was read, what was left out and why, and what is taken because the drawing does not say it stands on standard
+    error and in the wall's metadata.
+    """
+    from harness.formats.importing import Mapping, import_drawing, mapping_beside, read_mapping
+    from harness.model.reading import validate
+
+    base = mapping_beside(drawing) if mapping is None else read_mapping(mapping)
+    given = {name: value for name, value in said.items() if value is not None}
+    chosen = validate(Mapping, base.model_dump(exclude_none=True) | given, "the options")
+    imported = import_drawing(drawing, chosen)
+    for sentence in imported.account:
+        say(f"drystone: {drawing.name}: {sentence}", err=True)
+    _write(wall_json(imported.wall), output)
+
+
+def _write(text: str, output: Path | None) -> None:
+    if output is None:
+        say_json(text)
+    else:
+        output.write_text(text, encoding="utf-8")
+        say(str(output))
+
+
+@click.command()
+@click.argument("case")
+@click.option("--method", help="Whose answer goes along; the wall alone if absent.")
+@click.option("-o", "--output", type=click.Path(path_type=Path), required=True, help="Its ending says the format.")
+@store_option
+@cases_option
+@catching
+def export(case: str, method: str | None, output: Path, store: Path, folders: tuple[Path, ...]) -> None:
+    """Write CASE (an id, a WALL.json or a drawing) for other programs, with the answer of a method.
+
+    \b
+    .vtu, .pvd   ParaView: blocks, joints, velocities, forces, states; a series in which the mechanism grows
+    .dxf, .svg   the wall and the mechanism, in layers
+    .geojson     blocks and joints with their numbers
+    .csv         a row a vertex
+    .json        meshes that compas.json_load reads
+    .npz, .mat   the matrices for a solver of one's own
+    """
+    from harness.formats.exporting import writer_of
+
+    write = writer_of(output)
+    if method is not None:
+        check_methods((method,))
+    (found,) = find_cases([case], None, folders)
+    warn(found)
+    result = None
+    if method is not None:
+        with open_store(store) as opened, terminal.progress(1, quiet=True) as told:
+            (result,) = comparing.execute([Run(found, method, {}, Limits())], opened, 1, told=told)
+        if result.status is not Status.OK or result.finding is Finding.NONE:
+            raise InputError(f"{result.method} has no answer to write: {result.sentence}", element=found.id)
+        say(f"drystone: {found.id}: {result.sentence}", err=True)
+    try:
+        write(found.built, result, output)
+    except ImportError as error:
+        raise InputError(f"the package {error.name} is not installed", f"pip install {error.name}") from None
+    say(str(output))
+
+
+class Kinds(click.Group):
+    """A group with a command for every kind of wall, its options those of the maker."""
+
+    def list_commands(self, ctx: click.Context) -> list[str]:
+        """Names of all kinds."""
+        from cases.start import STARTS
+
+        return list(STARTS)
+
+    def get_command(self, ctx: click.Context, cmd_name: str) -> click.Command | None:
+        """The command that makes a wall of this kind; None if there is none."""
+        from cases.start import STARTS
+
+        return _kind(cmd_name, STARTS[cmd_name]) if cmd_name in STARTS else None
+
+
+@click.group(cls=Kinds)
+def new() -> None:
+    """Make a wall of a kind from a few numbers; asks for them on a terminal when none is given."""
+
+
+def _kind(name: str, maker: Callable[..., Wall]) -> click.Command:
+    hints = get_type_hints(maker)
+    numbers = {parameter.name: parameter for parameter in inspect.signature(maker).parameters.values()}
+
+    @catching
+    def command(output: Path | None, **said: Any) -> None:
+        given = {key: value for key, value in said.items() if value is not None}
+        if not given and numbers and sys.stdin.isatty():
+            given = {
+                key: click.prompt(key.replace("_", " "), default=item.default, type=hints[key])
+                for key, item in numbers.items()
+            }
+        try:
+            made = maker(**given)
+        except ValueError as error:
+            raise InputError(f"no such wall can be made ({error})", "Give other numbers", name) from None
+        _write(wall_json(made), output)
+
+    options: list[click.Parameter] = [
+        click.Option([f"--{key.replace('_', '-')}", key], type=hints[key], help=f"[default: {item.default}]")
+        for key, item in numbers.items()
+    ]
+    options.append(
+        click.Option(["-o", "--output"], type=click.Path(path_type=Path), help="A file instead of standard output.")
+    )
+    return click.Command(name, params=options, callback=command, help=inspect.getdoc(maker))

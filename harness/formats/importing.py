@@ -1,0 +1,295 @@
+"""From a drawing to a wall: which file is read how, what layers mean, which stones are supports; with an account."""
+
+from __future__ import annotations
+
+import importlib
+import tomllib
+from collections import Counter
+from collections.abc import Callable
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any, Literal
+
+import numpy as np
+from pydantic import Field
+
+from harness.formats.drawing import Drawing, Outline
+from harness.model.errors import InputError, did_you_mean
+from harness.model.reading import parse_wall, read_json, read_text, validate
+from harness.model.units import METRES, LengthUnit
+from harness.model.wall import Coefficient, FrictionRule, Name, NonNegative, Point, Positive, Strict, Wall
+
+READERS = {
+    ".dxf": ("dxf", "read_dxf", "ezdxf"),
+    ".svg": ("svg", "read_svg", "svgelements"),
+    ".geojson": ("polygons", "read_geojson", "shapely"),
+    ".wkt": ("polygons", "read_wkt", "shapely"),
+    ".shp": ("polygons", "read_shapefile", "pyshp"),
+    ".csv": ("polygons", "read_csv", "shapely"),
+    ".msh": ("mesh", "read_msh", "meshio"),
+    ".geo": ("mesh", "read_geo", "shapely"),
+}
+"""Module, function and package of every kind of drawing, by the ending of its name; COMPAS is a .json."""
+
+REFUSED = {
+    ".ifc": "IFC describes walls as wholes, not their stones; export the stones as DXF, or as COMPAS JSON",
+    ".dwg": "DWG is a closed format; save the drawing as DXF",
+    ".step": "STEP describes solids; export their outlines as DXF",
+    ".stp": "STEP describes solids; export their outlines as DXF",
+    ".pdf": "a PDF holds no outlines that can be told from its lettering; open it in Inkscape and save it as SVG",
+}
+
+FRICTION = 0.6
+UNIT_WEIGHT = 20.0
+"""Taken where nothing is said: round values of dry stone [-, kN/m3], and told as taken wherever the answer is shown."""
+
+
+class Layer(Strict):
+    """What the stones of a layer are."""
+
+    use: Literal["stone", "support", "ignore"] = "stone"
+    material: str = "stone"
+    groups: list[Name] = Field(default_factory=list)
+    unit_weight: NonNegative | None = Field(None, description="[kN/m3]")
+
+
+class Mapping(Strict):
+    """What a drawing does not say, as a small TOML file beside it."""
+
+    title: str = ""
+    units: LengthUnit | None = Field(None, description="of the drawing; else what the drawing declares, else metres")
+    accuracy: Positive | None = Field(None, description="of curves [m]; one millimetre if absent")
+    friction: Coefficient | None = Field(None, description="coefficient of friction, tan(phi)")
+    rules: list[FrictionRule] = Field(default_factory=list, description="friction of head or bed joints, of materials")
+    unit_weight: NonNegative | None = Field(None, description="[kN/m3]")
+    thickness: Positive | None = Field(None, description="out of plane, in the unit of the drawing")
+    tolerance: Positive | None = Field(None, description="greatest gap of a joint, in the unit of the drawing")
+    supports: str | None = Field(None, description='"lowest-course", "ground-line Y", "layer NAME" or "drawn"')
+    live: Point | None = Field(None, description="live load as a multiple (x, y) of every weight")
+    layers: dict[str, Layer] = Field(default_factory=dict)
+    plane: Literal["xz", "yz", "xy"] = Field("xz", description="that solids are cut by")
+    at: float | None = Field(None, description="where the plane lies on the third axis; the middle if absent")
+
+
+@dataclass(frozen=True)
+class Imported:
+    """A wall from a drawing.
+
+    Attributes:
+        wall: the wall.
+        account: what was read, left out and taken, sentence by sentence.
+        doubts: those of the account that a reader of the answer should hear.
+    """
+
+    wall: Wall
+    account: tuple[str, ...]
+    doubts: tuple[str, ...]
+
+
+def read_mapping(path: Path) -> Mapping:
+    """The mapping of a TOML file.
+
+    Raises:
+        InputError: naming the file and the field.
+    """
+    try:
+        return validate(Mapping, tomllib.loads(read_text(path)), str(path))
+    except tomllib.TOMLDecodeError as error:
+        raise InputError(f"it cannot be read ({error})", "Give valid TOML", source=str(path)) from None
+
+
+def mapping_beside(path: Path) -> Mapping:
+    """The mapping of the TOML file of the drawing's name beside it, or an empty one."""
+    beside = path.with_suffix(".toml")
+    return read_mapping(beside) if beside.is_file() else Mapping()
+
+
+def import_drawing(path: Path, mapping: Mapping | None = None) -> Imported:
+    """The wall that a drawing shows.
+
+    Args:
+        path: a drawing of a kind in `READERS`, or a COMPAS JSON.
+        mapping: what the drawing does not say; of the file beside it if None.
+
+    Raises:
+        InputError: naming the file, what is wrong and what would be right.
+    """
+    chosen = mapping_beside(path) if mapping is None else mapping
+    drawing = _read(path, chosen)
+    drawing.once()
+    drawing.require(str(path))
+    doubts = []
+    unit: Any = chosen.units or drawing.unit
+    if not unit:
+        unit = "m"
+        doubts.append("the drawing declares no unit of length: metres are taken (--units says otherwise)")
+    _known_layers(chosen, drawing, path)
+    kept = [item for item in drawing.outlines if _layer(chosen, item).use != "ignore"]
+    if len(kept) < len(drawing.outlines):
+        drawing.left_out["outline on a layer to be ignored"] += len(drawing.outlines) - len(kept)
+    held, how = _supports(kept, chosen, path)
+    names = _names(kept)
+    metre = 1.0 / METRES[unit]
+    data: dict[str, Any] = {
+        "format": "wall/1",
+        "title": chosen.title or path.stem,
+        "units": {"length": unit, "force": "kN", "unit_weight": "kN/m3"},
+        "unit_weight": UNIT_WEIGHT if chosen.unit_weight is None else chosen.unit_weight,
+        "thickness": metre if chosen.thickness is None else chosen.thickness,
+        "friction": _friction(chosen),
+        "blocks": [
+            _block(item, name, _layer(chosen, item), still) for item, name, still in zip(kept, names, held, strict=True)
+        ],
+        "loads": {"live": {"body": [{"per_weight": list(chosen.live or (1.0, 0.0))}]}},
+    }
+    if chosen.tolerance is not None:
+        data["interfaces"] = {"tolerance": chosen.tolerance}
+    for name, value, said in (
+        ("friction", f"{FRICTION}", chosen.friction),
+        ("unit weight", f"{UNIT_WEIGHT:g} kN/m3", chosen.unit_weight),
+        ("thickness", "one metre", chosen.thickness),
+        ("live load", "a horizontal force of every weight, to the right,", chosen.live),
+    ):
+        if said is None:
+            doubts.append(f"no {name} is given for the drawing: {value} is taken")
+    account = [
+        *(f"read {count} x {what}" for what, count in drawing.read.items()),
+        *(f"left out {count} x {what}" for what, count in drawing.left_out.items()),
+        *dict.fromkeys(drawing.notes),
+        f"unit of length: {unit}",
+        f"supports: {sum(held)} of {len(kept)} stones, {how}",
+    ]
+    data["metadata"] = {"source": path.name, "import": [*account, *doubts]}
+
+    return Imported(parse_wall(data, str(path)), (*account, *doubts), tuple(doubts))
+
+
+def _read(path: Path, mapping: Mapping) -> Drawing:
+    suffix = path.suffix.lower()
+    if suffix in REFUSED:
+        raise InputError(f"{suffix} is not read", REFUSED[suffix][0].upper() + REFUSED[suffix][1:], source=str(path))
+    accuracy = mapping.accuracy or 0.001
+    if suffix == ".json":
+        from harness.formats.compas import read_compas
+
+        if not looks_like_compas(read_json(path)):
+            raise InputError(
+                "it is no COMPAS JSON", "A wall needs no import: give it to `drystone run`", source=str(path)
+            )
+        return read_compas(path, accuracy, mapping.plane, mapping.at)
+    if suffix not in READERS:
+        raise InputError(
+            f'a file that ends in "{suffix}" is not read',
+            f"{did_you_mean(suffix, READERS)} There are: {', '.join(READERS)} and the .json of COMPAS".strip(),
+            source=str(path),
+        )
+    module, name, package = READERS[suffix]
+    try:
+        reader: Callable[[Path, float], Drawing] = getattr(importlib.import_module(f"harness.formats.{module}"), name)
+        if suffix == ".dxf" or mapping.units:
+            unit = mapping.units or _declared_unit(path, reader)
+            accuracy /= METRES[unit]  # type: ignore[index]
+        return reader(path, accuracy)
+    except ImportError as error:
+        raise InputError(
+            f"the package {error.name or package} is not installed",
+            f"pip install {package}",
+            source=str(path),
+        ) from None
+
+
+def _declared_unit(path: Path, reader: Callable[[Path, float], Drawing]) -> str:
+    """The unit that a drawing declares; metres if none."""
+    return reader(path, 1e9).unit or "m"
+
+
+def looks_like_compas(data: Any) -> bool:
+    """Whether JSON data is an object of COMPAS, or a list of such."""
+    item = data[0] if isinstance(data, list) and data else data
+    return isinstance(item, dict) and "dtype" in item and item.get("format") != "wall/1"
+
+
+def _layer(mapping: Mapping, outline: Outline) -> Layer:
+    return mapping.layers.get(outline.layer) or Layer()
+
+
+def _known_layers(mapping: Mapping, drawing: Drawing, path: Path) -> None:
+    there = {outline.layer for outline in drawing.outlines}
+    for name in mapping.layers:
+        if name not in there:
+            known = ", ".join(f'"{item}"' for item in sorted(there)) or "none"
+            raise InputError(
+                f'no outline is on a layer "{name}"', f"Layers with outlines: {known}", "layers", str(path)
+            )
+
+
+def _friction(mapping: Mapping) -> Any:
+    value = FRICTION if mapping.friction is None else mapping.friction
+    if not mapping.rules:
+        return value
+    return {"default": value, "rules": [rule.model_dump(exclude_none=True) for rule in mapping.rules]}
+
+
+def _block(outline: Outline, name: str, layer: Layer, still: bool) -> dict[str, Any]:
+    groups = list(layer.groups) or ([outline.layer] if outline.layer else [])
+    block: dict[str, Any] = {
+        "id": name,
+        "polygon": [tuple(point) for point in outline.polygon.tolist()],
+        "material": outline.material or layer.material,
+        "groups": groups,
+    }
+    if layer.unit_weight is not None:
+        block["unit_weight"] = layer.unit_weight
+    if still:
+        block["fixed"] = True
+    return block
+
+
+def _names(outlines: list[Outline]) -> list[str]:
+    """Names of the drawing where they are there and differ; else numbers in the order of the file."""
+    given = Counter(outline.name for outline in outlines if outline.name)
+    names = []
+    taken = {name for name, count in given.items() if count == 1}
+    number = 0
+    for outline in outlines:
+        if given[outline.name] == 1:
+            names.append(outline.name)
+            continue
+        number += 1
+        while str(number) in taken:
+            number += 1
+        names.append(str(number))
+    return names
+
+
+def _supports(outlines: list[Outline], mapping: Mapping, path: Path) -> tuple[list[bool], str]:
+    """Which stones are supports, and how that was decided."""
+    drawn = [item.fixed or _layer(mapping, item).use == "support" for item in outlines]
+    word, _, value = (mapping.supports or ("drawn" if any(drawn) else "lowest-course")).partition(" ")
+    bottoms = np.array([item.polygon[:, 1].min() for item in outlines])
+    heights = np.array([np.ptp(item.polygon[:, 1]) for item in outlines])
+    if word == "drawn":
+        held, how = drawn, "as drawn"
+    elif word == "lowest-course":
+        # A course is level within half a stone: rounding and survey noise are far less, a second course far more.
+        limit = bottoms.min() + 0.5 * float(heights[bottoms == bottoms.min()].min())
+        held, how = [bool(bottom < limit) for bottom in bottoms], "the lowest course"
+    elif word in ("ground-line", "ground"):
+        try:
+            level = float(value)
+        except ValueError:
+            raise InputError(f'"{value}" is no height', "Say ground-line and a number", "supports", str(path)) from None
+        middles = np.array([0.5 * (item.polygon[:, 1].min() + item.polygon[:, 1].max()) for item in outlines])
+        held, how = [bool(middle < level) for middle in middles], f"whose middle lies below {level:g}"
+    elif word == "layer":
+        held, how = [item.layer == value for item in outlines], f'on layer "{value}"'
+    else:
+        raise InputError(
+            f'"{word}" is no way to find supports', 'Say lowest-course, "ground-line Y" or "layer NAME"', "supports"
+        )
+    held = [one or other for one, other in zip(held, drawn, strict=True)]
+    if not any(held):
+        raise InputError(
+            "no stone is a support", 'Say lowest-course, "ground-line Y" or "layer NAME"', "supports", str(path)
+        )
+    return held, how

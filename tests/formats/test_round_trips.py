@@ -1,0 +1,228 @@
+"""What is written is read again, by the library a user would take and by the importers."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import compas
+import ezdxf
+import meshio
+import numpy as np
+import pytest
+import scipy.io
+import scipy.sparse as sp
+import shapely
+from click.testing import CliRunner
+from shapely.geometry import shape
+
+from cases.start import STARTS, facade, flemish, laid
+from harness.cli import main
+from harness.formats.exporting import WRITERS, write_npz
+from harness.formats.importing import Mapping, import_drawing
+from harness.model.build import build
+from harness.model.errors import InputError
+from harness.model.method import load_method
+from harness.model.result import Result, result_of
+
+WALL = flemish(length=1.0, height=0.45)
+SAID = Mapping(units="m", friction=0.6, unit_weight=20.0, thickness=0.25, live=(1.0, 0.0))
+
+
+@pytest.fixture(scope="module")
+def answer() -> Result:
+    assembly = build(WALL).assembly
+    method = load_method("la-associated")
+    return result_of(method.solve(assembly, method.Settings()), assembly, case="f", method="la-associated", family="la")
+
+
+def _sorted(polygons: list[np.ndarray]) -> list[tuple[float, ...]]:
+    return sorted(tuple(np.round(shapely.Polygon(p).normalize().exterior.coords, 9).ravel().tolist()) for p in polygons)
+
+
+@pytest.mark.parametrize("suffix", [".dxf", ".svg", ".geojson", ".csv", ".json"])
+def test_a_wall_written_and_imported_again_is_the_same_wall(suffix: str, tmp_path: Path) -> None:
+    built, path = build(WALL), tmp_path / f"wall{suffix}"
+    WRITERS[suffix](built, None, path)
+    mapping = SAID
+    if suffix in (".dxf",):
+        mapping = SAID.model_copy(update={"supports": "layer SUPPORTS"})
+    elif suffix == ".svg":
+        mapping = SAID.model_copy(update={"supports": "layer supports"})
+    again = build(import_drawing(path, mapping).wall)
+    assert _sorted(list(again.assembly.polygons)) == _sorted(list(built.assembly.polygons))
+    assert again.assembly.n_interfaces == built.assembly.n_interfaces
+    assert again.assembly.fixed.sum() == built.assembly.fixed.sum()
+    method = load_method("la-associated")
+    values = [method.solve(item.assembly, method.Settings()).multiplier for item in (built, again)]
+    assert values[0] == pytest.approx(values[1], rel=1e-9)  # accuracy of the linear programme
+
+
+def test_paraview_s_file_holds_velocities_forces_and_states(answer: Result, tmp_path: Path) -> None:
+    built = build(WALL)
+    WRITERS[".vtu"](built, answer, tmp_path / "w.vtu")
+    mesh = meshio.read(tmp_path / "w.vtu")
+    assert sum(len(block.data) for block in mesh.cells if block.type != "line") == built.assembly.n_blocks
+    lines = next(number for number, block in enumerate(mesh.cells) if block.type == "line")
+    assert answer.forces is not None
+    assert np.array_equal(mesh.cell_data["n1"][lines], np.asarray(answer.forces)[:, 0])
+    assert np.linalg.norm(mesh.point_data["velocity"], axis=1).max() == pytest.approx(1.0)
+
+
+def test_a_series_of_the_mechanism_grows_from_nothing(answer: Result, tmp_path: Path) -> None:
+    WRITERS[".pvd"](build(WALL), answer, tmp_path / "w.pvd")
+    files = sorted(tmp_path.glob("w-*.vtu"))
+    assert all(file.name in (tmp_path / "w.pvd").read_text() for file in files)
+    sizes = [np.abs(meshio.read(file).point_data["displacement"]).max() for file in (files[0], files[10], files[-1])]
+    assert sizes[0] == 0.0
+    assert sizes[2] == pytest.approx(2.0 * sizes[1])
+
+
+def test_ezdxf_reads_blocks_joints_and_mechanism(answer: Result, tmp_path: Path) -> None:
+    built = build(WALL)
+    WRITERS[".dxf"](built, answer, tmp_path / "w.dxf")
+    document = ezdxf.readfile(tmp_path / "w.dxf")  # type: ignore[attr-defined]
+    space = document.modelspace()
+    assert not document.audit().errors
+    assert len(space.query('LWPOLYLINE[layer=="MECHANISM"]')) == built.assembly.n_blocks
+    assert len(space.query('LINE[layer=="JOINTS"]')) == built.assembly.n_interfaces
+
+
+def test_shapely_reads_the_geojson(answer: Result, tmp_path: Path) -> None:
+    built = build(WALL)
+    WRITERS[".geojson"](built, answer, tmp_path / "w.geojson")
+    shapes = [shape(item["geometry"]) for item in json.loads((tmp_path / "w.geojson").read_text())["features"]]
+    assert [item.geom_type for item in shapes].count("Polygon") == built.assembly.n_blocks
+    assert all(item.is_valid for item in shapes)
+
+
+def test_compas_reads_the_blocks_as_closed_meshes(answer: Result, tmp_path: Path) -> None:
+    built = build(WALL)
+    WRITERS[".json"](built, answer, tmp_path / "w.json")
+    meshes = compas.json_load(tmp_path / "w.json")
+    assert len(meshes) == built.assembly.n_blocks
+    volumes = [mesh.volume() for mesh in meshes]
+    areas = [shapely.Polygon(polygon).area * 0.25 for polygon in built.assembly.polygons]
+    assert volumes == pytest.approx(areas)  # outward faces: volumes are positive
+
+
+@pytest.mark.parametrize("suffix", [".npz", ".mat"])
+def test_matrices_are_in_equilibrium_with_the_answer(suffix: str, answer: Result, tmp_path: Path) -> None:
+    WRITERS[suffix](build(WALL), answer, tmp_path / f"w{suffix}")
+    if suffix == ".npz":
+        data = np.load(tmp_path / "w.npz")
+        matrix = sp.coo_matrix((data["C_data"], (data["C_row"], data["C_col"])), shape=data["C_shape"])
+    else:
+        data = scipy.io.loadmat(tmp_path / "w.mat")
+        matrix = data["C"]
+    load = np.ravel(data["dead"]) + float(np.ravel(data["forces_multiplier"])[0]) * np.ravel(data["live"])
+    rest = matrix.T @ np.asarray(data["forces"]).ravel() - load
+    assert abs(rest).max() < 1e-9 * abs(load).sum()
+
+
+def test_wkt_shapefile_and_gmsh_give_the_polygons(tmp_path: Path) -> None:
+    import shapefile
+
+    polygons = list(build(WALL).assembly.polygons)
+    (tmp_path / "w.wkt").write_text("\n".join(shapely.Polygon(p).wkt for p in polygons))
+    with shapefile.Writer(str(tmp_path / "w.shp")) as writer:
+        writer.field("id", "C")
+        for number, polygon in enumerate(polygons):
+            writer.poly([polygon.tolist()])
+            writer.record(f"b{number}")
+    starts = np.cumsum([0, *(len(p) for p in polygons)])
+    points = np.hstack([np.concatenate(polygons), np.zeros((starts[-1], 1))])
+    cells = [("quad", np.array([range(a, a + 4) for a in starts[:-1]]))]
+    tags = np.arange(1, len(polygons) + 1)
+    data = {"gmsh:physical": [tags], "gmsh:geometrical": [tags]}
+    meshio.write(tmp_path / "w.msh", meshio.Mesh(points, cells, cell_data=data), file_format="gmsh22", binary=False)
+    geo = []
+    for number, polygon in enumerate(polygons):
+        first = 10 * number
+        geo += [f"Point({first + k}) = {{{x!r}, {y!r}, 0, 1}};" for k, (x, y) in enumerate(polygon.tolist())]
+        geo += [f"Line({first + k}) = {{{first + k}, {first + (k + 1) % 4}}};" for k in range(4)]
+        geo.append(f"Line Loop({number}) = {{{first}, {first + 1}, {first + 2}, {first + 3}}};")
+        geo.append(f"Plane Surface({number}) = {{{number}}};")
+    (tmp_path / "w.geo").write_text("\n".join(geo))
+    for suffix in (".wkt", ".shp", ".msh", ".geo"):
+        wall = import_drawing(tmp_path / f"w{suffix}", SAID).wall
+        assert _sorted([np.array(block.polygon) for block in wall.blocks]) == _sorted(polygons), suffix
+
+
+def test_dxf_blocks_hatches_arcs_lines_and_units(tmp_path: Path) -> None:
+    document = ezdxf.new("R2010")  # type: ignore[attr-defined]
+    document.header["$INSUNITS"] = 4
+    stone = document.blocks.new("STONE")
+    stone.add_lwpolyline([(0, 0), (1, 0), (1, 1), (0, 1)], close=True)
+    space = document.modelspace()
+    space.add_blockref("STONE", (0, 0), dxfattribs={"xscale": 500, "yscale": 200, "layer": "ground"})
+    space.add_blockref("STONE", (500, 200), dxfattribs={"xscale": 200, "yscale": 500, "rotation": 90, "layer": "wall"})
+    hatch = space.add_hatch(dxfattribs={"layer": "wall"})
+    hatch.paths.add_polyline_path([(0, 400), (500, 400), (500, 600), (0, 600)], is_closed=True)
+    space.add_lwpolyline([(0, 400), (500, 400), (500, 600), (0, 600.2)], close=True, dxfattribs={"layer": "wall"})
+    for start, end in [((0, 600), (500, 600)), ((500, 600), (500, 800)), ((0, 800), (0, 600))]:
+        space.add_line(start, end, dxfattribs={"layer": "wall"})
+    space.add_arc((250, 800), 250, 0, 180, dxfattribs={"layer": "wall"})
+    space.add_text("elevation", dxfattribs={"layer": "text"})
+    document.saveas(tmp_path / "w.dxf")
+    imported = import_drawing(tmp_path / "w.dxf", SAID.model_copy(update={"units": None, "accuracy": 1e-4}))
+    assert imported.wall.units.length == "mm"
+    assert [block.fixed for block in imported.wall.blocks].count(True) == 1
+    assert len(imported.wall.blocks) == 4
+    area = max(shapely.Polygon(block.polygon).area for block in imported.wall.blocks)
+    exact = 500 * 200 + 0.5 * np.pi * 250**2
+    assert exact * (1.0 - 1e-3) < area < exact  # chords of a sag of .1 mm lie within the arc
+    told = " ".join(imported.account)
+    assert "drawn twice" in told
+    assert "TEXT" in told
+
+
+@pytest.mark.parametrize(("name", "words"), [("w.ifc", "IFC describes"), ("w.dwg", "DXF"), ("w.xyz", "not read")])
+def test_what_is_not_read_is_refused_with_a_word_why(name: str, words: str, tmp_path: Path) -> None:
+    (tmp_path / name).write_text("x")
+    with pytest.raises(InputError) as caught:
+        import_drawing(tmp_path / name)
+    assert words in str(caught.value)
+
+
+@pytest.mark.parametrize("suffix", [".dxf", ".svg", ".geojson", ".wkt", ".shp", ".csv", ".msh", ".geo", ".json"])
+@pytest.mark.parametrize("content", [b"", b"\x00\xff\x00", b"nonsense\n", b"[]", b"{}"])
+def test_nonsense_is_an_input_error(suffix: str, content: bytes, tmp_path: Path) -> None:
+    (tmp_path / f"w{suffix}").write_bytes(content)
+    with pytest.raises(InputError):
+        import_drawing(tmp_path / f"w{suffix}")
+
+
+@pytest.mark.parametrize("kind", STARTS)
+def test_every_kind_of_new_wall_builds_and_every_block_is_held(kind: str) -> None:
+    assembly = build(STARTS[kind]()).assembly  # refuses overlaps
+    touched = {*assembly.block_a.tolist(), *assembly.block_b.tolist()}
+    assert set(assembly.free.tolist()) <= touched
+
+
+def test_headers_of_flemish_bond_lie_on_the_middle_of_stretchers() -> None:
+    assert laid("flemish", 1, 0.0, 4.0) == [0.0, 1.0, 1.5, 2.5, 3.0, 4.0]
+    assert laid("flemish", 2, 0.0, 4.0) == [0.0, 0.25, 0.75, 1.75, 2.25, 3.25, 3.75, 4.0]
+
+
+def test_a_facade_has_openings_under_lintels() -> None:
+    wall = facade(storeys=1, openings=2, opening_width=0.5, opening_height=0.3, spandrel_height=0.3)
+    assert sum("lintel" in block.id for block in wall.blocks) == 2
+
+
+def test_commands_go_from_numbers_to_drawing_to_answer(tmp_path: Path) -> None:
+    run = CliRunner()
+    wall, drawing = tmp_path / "wall.json", tmp_path / "wall.dxf"
+    assert run.invoke(main, ["new", "stack", "--count", "2", "-o", str(wall)]).exit_code == 0
+    assert run.invoke(main, ["export", str(wall), "-o", str(drawing)]).exit_code == 0
+    done = run.invoke(main, ["run", "la-associated", str(drawing), "--json"])
+    assert done.exit_code == 0, done.output
+    assert "friction is given for the drawing" in done.output
+    again = run.invoke(main, ["import", str(drawing), "--supports", "layer SUPPORTS", "-o", str(tmp_path / "a.json")])
+    assert again.exit_code == 0, again.output
+    assert json.loads((tmp_path / "a.json").read_text())["units"]["unit_weight"] == "kN/m3"
+
+
+def test_write_npz_without_answer_holds_no_forces(tmp_path: Path) -> None:
+    write_npz(build(WALL), None, tmp_path / "w.npz")
+    assert "forces" not in np.load(tmp_path / "w.npz")
