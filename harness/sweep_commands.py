@@ -143,7 +143,7 @@ def _leave(asked: Study, rows: list[Row], folder: Path, rest: dict[str, Any]) ->
     if not rest["no_report"]:
         from reports.study_page import StudyPage, write_page
 
-        names = [f"{folder.name}/{path.name}" for path in files if path.suffix != ".json"]
+        names = [f"{folder.name}/{path.name}" for path in files if path.suffix == ".csv"]
         write_page(
             StudyPage(
                 asked.title,

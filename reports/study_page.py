@@ -136,8 +136,8 @@ def _fragility(table: pd.DataFrame, by: Sequence[str]) -> charts.Chart:
             name,
             group["multiplier"].tolist(),
             group["probability"].tolist(),
-            low=group["low"].fillna(0.0).tolist(),
-            high=group["high"].fillna(1.0).tolist(),
+            low=group["low"].fillna(group["probability"]).tolist(),
+            high=group["high"].fillna(group["probability"]).tolist(),
             marks=False,
             step=True,
         )
