@@ -22,7 +22,7 @@ from harness.engine.regression import violations
 from harness.model.assembly import Assembly
 from harness.model.case import Case
 from harness.model.comparison import ComparisonRun
-from harness.model.errors import InputError, visible
+from harness.model.errors import InputError, first_few, visible
 from harness.model.method import Answer, Finding, Status
 from harness.model.result import Judgement, Result
 from harness.model.wall import LARGEST
@@ -129,6 +129,12 @@ def print_comparison(compared: ComparisonRun, report: Path | None) -> None:
                 end_section=number == len(case.results) - 1,
             )
     console.print(table)
+    units: dict[str, list[str]] = {}
+    for case in compared.cases:
+        units.setdefault(case.case.wall.units_sentence, []).append(case.case.id)
+    for sentence, names in units.items():
+        whose = f" ({first_few(names, 3)})" if len(units) > 1 else ""
+        console.print(escape(f"Units: {sentence}{whose}"), highlight=False)
     for case in compared.cases:
         for result in case.results:
             if result.status is not Status.OK:

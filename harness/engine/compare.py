@@ -27,10 +27,28 @@ Told = Callable[[Run, Result, bool], None]
 
 def judged(run: Run, result: Result, tolerance: float) -> Result:
     """A result with the judge's word, its comparisons and the doubts about its wall, made anew from what is stored."""
+    _fits(run, result)
     known = {"judge": judge(run.case.assembly, result, tolerance), "warnings": list(run.case.warnings)}
     result = result.model_copy(update=known)
     comparisons = [compare(reference, result) for reference in run.references]
     return result.model_copy(update={"comparisons": comparisons, "verdict": overall(comparisons)})
+
+
+def _fits(run: Run, result: Result) -> None:
+    """Refuse a result whose arrays are not of the size of its wall, as of a store that another hand has changed.
+
+    Raises:
+        InputError: naming the run and the array.
+    """
+    blocks, interfaces = run.case.assembly.n_blocks, run.case.assembly.n_interfaces
+    for name, rows in (("forces", interfaces), ("states", interfaces), ("mechanism", blocks)):
+        listed = getattr(result, name)
+        if listed is not None and len(listed) != rows:
+            raise InputError(
+                f"its {name} have {len(listed)} entries and its wall needs {rows}: it was not made for this wall",
+                "Run with --fresh to make it again",
+                f"the stored result of {run.method} on {run.case.id}",
+            )
 
 
 def execute(

@@ -154,7 +154,10 @@ def find_cases(words: Sequence[str], suite: str | None, folders: Sequence[Path])
     ]
     if not chosen:
         suites = sorted({name for case in cases for name in case.file.suites})
-        raise InputError(f'no case is in a suite "{wanted}"', f"Suites: all, {', '.join(suites)}", "--suite")
+        there = f"Suites: all, {', '.join(suites)}"
+        raise InputError(
+            f'no case is in a suite "{wanted}"', f"{did_you_mean(wanted, suites)} {there}".strip(), "--suite"
+        )
     return chosen
 
 

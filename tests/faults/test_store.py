@@ -13,7 +13,7 @@ from typing import Any
 
 import pytest
 
-from harness.engine.compare import comparison_run, execute, recall, remember
+from harness.engine.compare import comparison_run, execute, judged, recall, remember
 from harness.engine.plan import Limits, plan_case
 from harness.engine.store import SCHEMA_VERSION, open_store
 from harness.model.errors import InputError
@@ -121,6 +121,19 @@ def test_a_damaged_comparison_is_told(store: Path, text: str):
     change(store, "UPDATE comparison SET content = ?", text)
     with pytest.raises(InputError, match="the last comparison in it"):
         read_all(store, read_only=True)
+
+
+@pytest.mark.parametrize("name", ["forces", "states", "mechanism"])
+def test_arrays_of_another_wall_are_told(whole: Path, name: str):
+    """A fuzzed store held a result without forces for a wall with interfaces; the judge met arrays of unlike shapes."""
+    with open_store(whole, read_only=True) as opened:
+        compared = recall(opened)
+    assert compared is not None
+    (found, *_) = compared.cases[0].results
+    run = plan_case(compared.cases[0].case, ["la"], Limits(60.0))[0]
+    for wrong in ([], getattr(found, name)[1:]):
+        with pytest.raises(InputError, match=f"the stored result of la on made-up: its {name} have"):
+            judged(run, found.model_copy(update={name: wrong}), 1e-9)
 
 
 def test_a_run_of_a_wall_that_the_comparison_does_not_have_is_told(store: Path):
