@@ -12,6 +12,13 @@ import shapely
 from harness.model.assembly import FloatArray
 from harness.model.errors import InputError
 
+LINES, CROSSES = "lines that close", "it crosses itself"
+"""Words of an account that a reader looks for."""
+
+SPIKE = 0.01
+"""An outline that crosses itself is mended if that changes its area by less than this part: rounding folds the tip of a
+thin corner over, and no more."""
+
 SAME_OUTLINE = 0.98
 """Two outlines whose common area is at least this part of their union are one outline drawn twice.
 
@@ -68,12 +75,18 @@ class Drawing:
         if not np.isfinite(polygon).all() or shape.area <= 0.0:
             self.left_out[f"{kind}{where}: it has no area"] += 1
         elif not shape.is_valid:
-            self.left_out[f"{kind}{where}: it crosses itself near {shapely.is_valid_reason(shape)}"] += 1
+            whole = max(shapely.get_parts(shapely.make_valid(shape)), key=shapely.area)
+            if whole.geom_type != "Polygon" or abs(whole.area - shape.area) > SPIKE * shape.area:
+                self.left_out[f"{kind}{where}: {CROSSES} near {shapely.is_valid_reason(shape)}"] += 1
+                return
+            self.notes.append(f"{kind}{where} mended: {CROSSES} by a spike near {shapely.is_valid_reason(shape)}")
+            self.outlines.append(Outline(np.asarray(whole.exterior.coords)[:-1], **more))  # type: ignore[arg-type]
+            self.read[f"{kind}{where}"] += 1
         else:
             self.outlines.append(Outline(polygon, **more))  # type: ignore[arg-type]
             self.read[f"{kind}{where}"] += 1
 
-    def add_lines(self, lines: Sequence[tuple[FloatArray, str]], kind: str = "lines that close") -> None:
+    def add_lines(self, lines: Sequence[tuple[FloatArray, str]], kind: str = LINES) -> None:
         """Add the areas that lines (k, 2) of one layer close, and note what ends in the open.
 
         Lines of a layer are cut where they meet, so a joint drawn once closes the stones on both sides of it.

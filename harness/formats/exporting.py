@@ -241,7 +241,7 @@ def matrices(built: Built, result: Result | None) -> dict[str, Any]:
     """Arrays for a solver of one's own.
 
     Rows of C are (opening 1, opening 2, slip) of every joint, columns (ux, uy, omega) of every free block, so that
-    C^T (n1, n2, s) = dead + multiplier x live, with compression positive and |s| <= friction (n1 + n2).
+    C^T (n1, n2, s) + dead + multiplier x live = 0, with compression positive and |s| <= friction (n1 + n2).
     """
     assembly = built.assembly
     dead, live = assembly.free_loads()

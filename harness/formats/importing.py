@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import importlib
+import math
 import tomllib
 from collections import Counter
 from collections.abc import Callable
@@ -11,9 +12,10 @@ from pathlib import Path
 from typing import Any, Literal
 
 import numpy as np
+import shapely
 from pydantic import Field
 
-from harness.formats.drawing import Drawing, Outline
+from harness.formats.drawing import CROSSES, LINES, Drawing, Outline
 from harness.model.errors import InputError, did_you_mean
 from harness.model.reading import parse_wall, read_json, read_text, validate
 from harness.model.units import METRES, LengthUnit
@@ -44,6 +46,15 @@ UNIT_WEIGHT = 20.0
 """Taken where nothing is said: round values of dry stone [-, kN/m3], and told as taken wherever the answer is shown."""
 
 
+FINE = 0.02
+"""Steps of rounding up to this part of a stone's size are taken for such; coarser ones are the module of the bond."""
+MOST = 0.95
+"""Part of the coordinates that lie on a grid when they are taken for rounded: corners that were mended lie beside it."""
+NEAR = 0.1
+"""Stones nearer than this part of a stone's size are likely to bear on each other: joints of dry masonry are 5 to 25 mm
+wide, and its stones 75 to 500 mm high."""
+
+
 class Layer(Strict):
     """What the stones of a layer are."""
 
@@ -66,6 +77,7 @@ class Mapping(Strict):
     tolerance: Positive | None = Field(None, description="greatest gap of a joint, in the unit of the drawing")
     supports: str | None = Field(None, description='"lowest-course", "ground-line Y", "layer NAME" or "drawn"')
     live: Point | None = Field(None, description="live load as a multiple (x, y) of every weight")
+    gravity: Point | None = Field(None, description="as a multiple (x, y) of every weight, of a drawing that is turned")
     layers: dict[str, Layer] = Field(default_factory=dict)
     plane: Literal["xz", "yz", "xy"] = Field("xz", description="that solids are cut by")
     at: float | None = Field(None, description="where the plane lies on the third axis; the middle if absent")
@@ -123,6 +135,13 @@ def import_drawing(path: Path, mapping: Mapping | None = None) -> Imported:
     if not unit:
         unit = "m"
         doubts.append("the drawing declares no unit of length: metres are taken (--units says otherwise)")
+    closed = sum(count for what, count in drawing.read.items() if what.startswith(LINES))
+    if closed:
+        doubts.append(
+            f"{closed} stones are areas that lines close: an opening that stones enclose counts as one too; draw them "
+            "as closed polylines where there are openings"
+        )
+    doubts += [f"left out {count} x {what}" for what, count in drawing.left_out.items() if CROSSES in what]
     _known_layers(chosen, drawing, path)
     kept = [item for item in drawing.outlines if _layer(chosen, item).use != "ignore"]
     if len(kept) < len(drawing.outlines):
@@ -142,8 +161,12 @@ def import_drawing(path: Path, mapping: Mapping | None = None) -> Imported:
         ],
         "loads": {"live": {"body": [{"per_weight": list(chosen.live or (1.0, 0.0))}]}},
     }
-    if chosen.tolerance is not None:
-        data["interfaces"] = {"tolerance": chosen.tolerance}
+    if chosen.gravity is not None:
+        data["loads"]["gravity"] = list(chosen.gravity)
+    tolerance, tolerated = _tolerance(kept, chosen)
+    if tolerance is not None:
+        data["interfaces"] = {"tolerance": tolerance}
+    doubts += _apart(kept, tolerance, unit)
     for name, value, said in (
         ("friction", f"{FRICTION}", chosen.friction),
         ("unit weight", f"{UNIT_WEIGHT:g} kN/m3", chosen.unit_weight),
@@ -157,6 +180,7 @@ def import_drawing(path: Path, mapping: Mapping | None = None) -> Imported:
         *(f"left out {count} x {what}" for what, count in drawing.left_out.items()),
         *dict.fromkeys(drawing.notes),
         f"unit of length: {unit}",
+        *tolerated,
         f"supports: {sum(held)} of {len(kept)} stones, {how}",
     ]
     data["metadata"] = {"source": path.name, "import": [*account, *doubts]}
@@ -260,6 +284,46 @@ def _names(outlines: list[Outline]) -> list[str]:
             number += 1
         names.append(str(number))
     return names
+
+
+def _size(outlines: list[Outline]) -> float:
+    """Typical size of a stone: the median of the square roots of their areas."""
+    return float(np.median([math.sqrt(shapely.Polygon(item.polygon).area) for item in outlines]))
+
+
+def _tolerance(outlines: list[Outline], mapping: Mapping) -> tuple[float | None, list[str]]:
+    """Greatest gap of a joint, and how it was chosen; None leaves it to the wall format.
+
+    Coordinates rounded to a step lie at most step/sqrt(2) from where they were, so two faces that were one lie at most
+    sqrt(2) steps apart: 1.5 steps hold them together.
+    """
+    if mapping.tolerance is not None:
+        return mapping.tolerance, [f"joints: faces up to {mapping.tolerance:g} apart, as given"]
+    size = _size(outlines)
+    points = np.concatenate([item.polygon for item in outlines])
+    for exponent in range(math.floor(math.log10(FINE * size)), math.ceil(math.log10(1e-6 * size)), -1):
+        step = 10.0**exponent
+        on_grid = abs(points - np.round(points / step) * step) <= 1e-9 * step + 1e-15 * abs(points).max()
+        if on_grid.mean() >= MOST:
+            told = f"joints: faces up to {1.5 * step:g} apart, because the coordinates are rounded to {step:g}"
+            return 1.5 * step, [told]
+    return None, []
+
+
+def _apart(outlines: list[Outline], tolerance: float | None, unit: str) -> list[str]:
+    """A sentence on stones near to each other that are further apart than a joint may be."""
+    shapes = np.array([shapely.Polygon(item.polygon) for item in outlines])
+    size = _size(outlines)
+    least = 1e-6 * size if tolerance is None else tolerance
+    i, j = shapely.STRtree(shapes).query(shapes, predicate="dwithin", distance=NEAR * size)
+    gaps = shapely.distance(shapes[i[i < j]], shapes[j[i < j]])
+    gaps = gaps[gaps > least]
+    if not len(gaps):
+        return []
+    return [
+        f"{len(gaps)} pairs of stones lie {gaps.min():.3g} to {gaps.max():.3g} {unit} apart and have no joint, because "
+        f"joints are up to {least:.3g} {unit} wide: if they bear on each other, say --tolerance {1.02 * gaps.max():.3g}"
+    ]
 
 
 def _supports(outlines: list[Outline], mapping: Mapping, path: Path) -> tuple[list[bool], str]:

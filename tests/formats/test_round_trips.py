@@ -116,8 +116,10 @@ def test_matrices_are_in_equilibrium_with_the_answer(suffix: str, answer: Result
         data = scipy.io.loadmat(tmp_path / "w.mat")
         matrix = data["C"]
     load = np.ravel(data["dead"]) + float(np.ravel(data["forces_multiplier"])[0]) * np.ravel(data["live"])
-    rest = matrix.T @ np.asarray(data["forces"]).ravel() - load
+    rest = matrix.T @ np.asarray(data["forces"]).ravel() + load
     assert abs(rest).max() < 1e-9 * abs(load).sum()
+    compression, shear = np.asarray(data["forces"])[:, :2].sum(axis=1), np.asarray(data["forces"])[:, 2]
+    assert (abs(shear) <= np.ravel(data["friction"]) * compression + 1e-9 * abs(load).sum()).all()
 
 
 def test_wkt_shapefile_and_gmsh_give_the_polygons(tmp_path: Path) -> None:
