@@ -49,7 +49,7 @@ UNIT_WEIGHT = 20.0
 FINE = 0.02
 """Steps of rounding up to this part of a stone's size are taken for such; coarser ones are the module of the bond."""
 MOST = 0.95
-"""Part of the coordinates that lie on a grid when they are taken for rounded: corners that were mended lie beside it."""
+"""Part of the coordinates that lie on a grid when they are taken for rounded; mended corners lie beside it."""
 NEAR = 0.1
 """Stones nearer than this part of a stone's size are likely to bear on each other: joints of dry masonry are 5 to 25 mm
 wide, and its stones 75 to 500 mm high."""
