@@ -139,10 +139,12 @@ def kill_children() -> None:
 
 
 def test_closing_the_results_ends_every_process():
+    before = set(psutil.Process().children(recursive=True))  # a browser that other tests opened, for one
     jobs = [Job(0, "a", task("dummy")), Job(1, "b", task("dummy", does="hang"))]
     with closing(LocalExecutor(2).map(jobs, ["dummy"])) as ended:
         assert next(ended)[0] == 0
-        leaves = [process for process in psutil.Process().children(recursive=True) if not process.children()]
+        running = set(psutil.Process().children(recursive=True)) - before
+        leaves = [process for process in running if not process.children()]
         started = [process for process in leaves if "resource_tracker" not in " ".join(process.cmdline())]
     assert started
     assert not psutil.wait_procs(started, timeout=10.0)[1]
