@@ -218,7 +218,7 @@ def print_judgement(judgement: Judgement) -> None:
     print(visible(judgement.sentence))
     for name, value in judgement.residuals.items():
         print(f"  {name:16s} {value:.3e}")
-    print("accepted" if judgement.accepted else "not accepted")
+    print(judgement.outcome.replace("_", " "))
 
 
 def print_check(lines: list[dict[str, Any]]) -> None:
@@ -305,6 +305,7 @@ def foreign_answer(data: Any, assembly: Assembly, source: str) -> Answer:
     at = data.get("forces_multiplier")
     if at is not None and not _is_number(at):
         raise InputError("it is no number", "Give the multiplier the forces belong to", "forces_multiplier", source)
+    growth = table("live_forces", assembly.n_interfaces, "n1, n2, s of every interface")
     return Answer(
         status=Status.OK,
         finding=Finding(finding),
@@ -314,4 +315,5 @@ def foreign_answer(data: Any, assembly: Assembly, source: str) -> Answer:
         forces_multiplier=None if at is None else float(at),
         mechanism=table("mechanism", assembly.n_blocks, "ux, uy, omega of every block"),
         flow=flow,
+        details={} if growth is None else {"live_forces": growth.tolist()},
     )

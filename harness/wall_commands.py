@@ -82,6 +82,10 @@ def expand(wall: Path, output: Path | None) -> None:
         output.write_text(text, encoding="utf-8")
 
 
+NOT_JUDGED = 3
+"""Exit code of `drystone judge` for an answer that shows nothing which proves or refutes its claim."""
+
+
 @click.command()
 @click.argument("wall", type=click.Path(path_type=Path))
 @click.argument("result", type=click.Path(path_type=Path))
@@ -92,7 +96,9 @@ def judge(wall: Path, result: Path, tolerance: float, as_json: bool) -> None:
     """Judge RESULT.json, an answer for WALL.json that came from anywhere.
 
     RESULT.json holds "multiplier", "forces" (n1, n2, s of every interface in the order of `drystone expand`) and,
-    for a collapse, "mechanism" (ux, uy, omega of every block) and "flow".
+    for a collapse, "mechanism" (ux, uy, omega of every block) and "flow". An "unbounded" answer holds "live_forces"
+    besides, which balance the live load alone. Exit code 0: accepted; 1: rejected; 3: not judged, because the answer
+    shows nothing that proves its claim.
     """
     built = read_wall(wall)
     for sentence in built.warnings:
@@ -106,7 +112,7 @@ def judge(wall: Path, result: Path, tolerance: float, as_json: bool) -> None:
         )
     else:
         terminal.print_judgement(judgement)
-    sys.exit(0 if judgement.accepted else 1)
+    sys.exit({True: 0, False: 1, None: NOT_JUDGED}[judgement.accepted])
 
 
 @click.command()

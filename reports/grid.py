@@ -20,7 +20,7 @@ WITHIN = 0.01
 
 MAIN = ("fe", "la", "de")
 CAUSES = (
-    (-1, "la", "it searches all collapse states, while FE and DE follow the one that a history of loading leads to."),
+    (-1, "la", "its search found a lower collapse state than the one that the history of loading leads FE and DE to."),
     (1, "la", "its search missed a collapse state that another method reached; the least known is then that one's."),
     (
         1,

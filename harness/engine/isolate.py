@@ -14,6 +14,7 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 from datetime import UTC, datetime
 from enum import Enum
+from multiprocessing import forkserver
 from multiprocessing.connection import wait
 from multiprocessing.context import BaseContext
 from pathlib import Path
@@ -59,17 +60,22 @@ _announced: set[str] = set()
 def announce(methods: Iterable[str]) -> None:
     """Name methods that are going to be run: the fork server loads once what was named before it starts."""
     _announced.update(preload.shipped(methods))
-    os.environ[preload.VARIABLE] = ",".join(sorted(_announced))
 
 
 def start_context(methods: Iterable[str]) -> BaseContext:
     """Where children come from: a fork server that has loaded the methods once.
 
-    The server starts with the first child and keeps what it loaded then; other methods are loaded by the children.
+    The server starts with the first call and keeps what it loaded then; other methods are loaded by the children.
     """
     pin()
     announce(methods)
-    return _fork_server()
+    context = _fork_server()
+    os.environ[preload.VARIABLE] = ",".join(sorted(_announced))
+    try:
+        forkserver.ensure_running()
+    finally:  # for the server alone: every other process that is started here would load the methods too
+        del os.environ[preload.VARIABLE]
+    return context
 
 
 def own_context() -> BaseContext | None:

@@ -37,6 +37,11 @@ class Judgement(BaseModel):
     accepted: bool | None = None
     sentence: str = ""
 
+    @property
+    def outcome(self) -> str:
+        """Accepted, rejected or not judged, in a word for people and scripts."""
+        return {True: "accepted", False: "rejected", None: "not_judged"}[self.accepted]
+
 
 class Comparison(BaseModel):
     """One result held against one reference."""
@@ -98,13 +103,21 @@ class Result(BaseModel):
         return self.model_dump(mode="json", exclude={"forces", "mechanism", "states", "path"})
 
 
+def fastest_vertex(assembly: Assembly, mechanism: FloatArray) -> float:
+    """The largest speed of a vertex of the wall under a mechanism (n, 3)."""
+    moving = np.flatnonzero(mechanism.any(axis=1))
+    speeds = (vertex_velocities(assembly.polygons[i], assembly.centroid[i], mechanism[i]) for i in moving)
+    return max((float(np.hypot(speed[:, 0], speed[:, 1]).max()) for speed in speeds), default=0.0)
+
+
 def normalised_mechanism(assembly: Assembly, mechanism: FloatArray) -> FloatArray:
     """A mechanism (n, 3) scaled so that the fastest vertex of the wall has speed 1; unchanged if nothing moves."""
-    fastest = max(
-        float(np.sqrt((vertex_velocities(polygon, centroid, motion) ** 2).sum(axis=1).max()))
-        for polygon, centroid, motion in zip(assembly.polygons, assembly.centroid, mechanism, strict=True)
-    )
-    return mechanism / fastest if fastest > 0.0 else mechanism
+    largest = float(abs(mechanism).max(initial=0.0))
+    if not 0.0 < largest < np.inf:
+        return mechanism
+    motion = mechanism / largest  # first, so that no square of a speed underflows
+    fastest = fastest_vertex(assembly, motion)
+    return motion / fastest if fastest > 0.0 else motion
 
 
 def vertex_velocities(points: FloatArray, centroid: FloatArray, motion: FloatArray) -> FloatArray:

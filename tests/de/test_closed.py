@@ -41,7 +41,7 @@ def test_fe_and_la_agree_on_the_closed_contacts_alone_and_their_state_is_an_equi
     # Here both find the same collapse state; rounding only is between them.
     assert one.multiplier == pytest.approx(two.multiplier, rel=1e-6)
     assert equilibrium_residual(structure, one.forces, one.multiplier) < ClosedContacts.tolerance
-    assert yield_violation(structure, one.forces) < ClosedContacts.tolerance
+    assert yield_violation(structure, one.forces, one.multiplier) < ClosedContacts.tolerance
 
 
 def test_gaps_that_stay_open_make_the_contacts_alone_weaker_than_the_wall():

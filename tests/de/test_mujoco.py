@@ -43,7 +43,7 @@ def test_blocks_and_stacks_have_the_exact_multiplier_and_forces_the_judge_accept
     assert answer.multiplier == pytest.approx(exact, rel=1e-3)
     assert answer.bracket[0] <= exact * (1 + 1e-4)
     assert equilibrium_residual(wall, answer.forces, answer.forces_multiplier) < 1e-5
-    assert yield_violation(wall, answer.forces) < 1e-8
+    assert yield_violation(wall, answer.forces, answer.forces_multiplier) < 1e-8
 
 
 @needs_mujoco

@@ -1,0 +1,212 @@
+"""Answers that are wrong, each one of a kind, and answers that prove nothing: none of them is accepted."""
+
+from __future__ import annotations
+
+import os
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from hypothesis import given, settings, target
+from hypothesis import strategies as st
+
+from harness.engine.judge import judge
+from harness.model.assembly import Assembly
+from harness.model.build import build
+from harness.model.errors import InputError
+from harness.model.method import Answer, Finding, Status, load_method
+from harness.model.reading import read_json, read_wall
+from harness.model.result import Result, result_of
+from harness.model.wall import Wall
+from harness.terminal import foreign_answer
+from tests.walls import PUSH, assembly, running_bond, stack
+
+DATA = Path(__file__).parent.parent / "data" / "judge"
+
+
+def said(wall: Assembly, answer: Answer, tolerance: float = 1e-9):
+    return judge(wall, as_result(wall, answer), tolerance)
+
+
+def as_result(wall: Assembly, answer: Answer) -> Result:
+    return result_of(answer, wall, case="x", method="hand", family="hand")
+
+
+def state_of(wall: Assembly, method: str = "la") -> Answer:
+    chosen = load_method(method)
+    return chosen.solve(wall, chosen.Settings())
+
+
+@pytest.fixture(scope="module")
+def bonded() -> tuple[Assembly, Answer]:
+    wall = assembly(running_bond(2, 2), 0.6)
+    return wall, state_of(wall)
+
+
+@pytest.mark.parametrize(
+    ("name", "outcome"),
+    [
+        ("falls-though-stands", "rejected"),
+        ("forces-multiplier", "rejected"),
+        ("ground-moves", "rejected"),
+        ("heavy-1e+10-0.505", "rejected"),
+        ("two-fixed-far-flies", "rejected"),
+        ("two-tiny-mechanism", "rejected"),
+        ("unbounded", "not_judged"),
+    ],
+)
+def test_wrong_answer_is_not_accepted(name: str, outcome: str):
+    wall = read_wall(DATA / f"{name}.wall.json").assembly
+    answer = foreign_answer(read_json(DATA / f"{name}.result.json"), wall, name)
+    assert said(wall, answer).outcome == outcome
+
+
+def test_text_is_no_number():
+    wall = read_wall(DATA / "nan-mech.wall.json").assembly
+    with pytest.raises(InputError, match="mechanism"):
+        foreign_answer(read_json(DATA / "nan-mech.result.json"), wall, "nan-mech")
+
+
+@pytest.mark.parametrize("bad", [np.nan, np.inf])
+def test_numbers_that_are_not_finite_are_rejected(bonded: tuple[Assembly, Answer], bad: float):
+    wall, answer = bonded
+    assert answer.forces is not None
+    forces = answer.forces.copy()
+    forces[0, 0] = bad
+    assert said(wall, replace(answer, forces=forces)).outcome == "rejected"
+
+
+def test_standing_shows_no_multiplier(bonded: tuple[Assembly, Answer]):
+    wall, _ = bonded
+    unloaded = replace(wall, live=np.zeros_like(wall.live))
+    answer = state_of(unloaded)
+    assert answer.finding is Finding.STANDS
+    assert said(unloaded, answer).outcome == "accepted"
+    assert said(wall, answer).outcome == "not_judged"
+
+
+def test_growth_without_limit_is_shown_by_forces_that_balance_the_live_load_alone():
+    wall = assembly(stack(1), 0.5)
+    pressed = replace(wall, live=wall.dead.copy())
+    half = float(np.linalg.norm(wall.dead[1, :2])) / 2.0
+    forces = np.array([[half, half, 0.0]])
+    answer = Answer(Status.OK, Finding.UNBOUNDED, "", forces=forces, forces_multiplier=0.0)
+    assert said(pressed, answer).outcome == "not_judged"
+    assert said(pressed, replace(answer, details={"live_forces": forces.tolist()})).outcome == "accepted"
+    assert said(wall, replace(answer, details={"live_forces": forces.tolist()})).outcome == "rejected"
+
+
+def test_measured_fall_is_not_judged():
+    wall = assembly(stack(2) | {"offsets": [0.0, 0.2]}, 0.5)
+    proof = state_of(wall, "fe")
+    assert said(wall, proof, 1e-8).outcome == "accepted"
+    assert said(wall, replace(proof, flow="approximate"), 1e-8).outcome == "not_judged"
+
+
+def test_lower_end_of_a_bracket_is_what_forces_show(bonded: tuple[Assembly, Answer]):
+    wall, answer = bonded
+    assert answer.multiplier is not None
+    measured = replace(answer, flow="approximate", mechanism=None)
+    low, high = answer.multiplier - 0.01, answer.multiplier + 0.01
+    assert said(wall, replace(measured, bracket=(low, high))).outcome == "accepted"
+    assert said(wall, replace(measured, bracket=(high, high + 0.1))).outcome == "rejected"
+    assert said(wall, replace(measured, forces=None, bracket=(low, high))).outcome == "not_judged"
+
+
+def two_blocks(weight: float, friction: float = 0.5) -> Assembly:
+    """Two blocks 2 wide and 1 high that do not touch, on one ground; the second of another weight, the first of 20."""
+
+    def box(name: str, x: float, y: float, width: float, **more: Any) -> dict[str, Any]:
+        polygon = [[x, y], [x + width, y], [x + width, y + 1.0], [x, y + 1.0]]
+        return {"id": name, "polygon": polygon} | more
+
+    blocks = [
+        box("ground", 0.0, -1.0, 10.0, fixed=True),
+        box("a", 1.0, 0.0, 2.0, unit_weight=10.0),
+        box("b", 6.0, 0.0, 2.0, unit_weight=weight / 2.0),
+    ]
+    wall = {"format": "wall/1", "unit_weight": 20.0, "friction": friction, "blocks": blocks, "loads": PUSH}
+    return build(Wall.model_validate(wall)).assembly
+
+
+def sliding_state(wall: Assembly, multiplier: float, speed_beside: float = 0.0) -> Answer:
+    """Block a slides at `multiplier`; block b bears the same, or slides along at its own speed."""
+    forces = np.zeros((2, 3))
+    for k in range(2):
+        block = wall.block_b[k] if wall.fixed[wall.block_a[k]] else wall.block_a[k]
+        weight = -wall.dead[block, 1]
+        lever = multiplier * weight * 0.5 / 2.0
+        right = wall.end1[k, 0] > wall.end2[k, 0]
+        first, second = (weight / 2.0 + lever, weight / 2.0 - lever)
+        onto_b = 1.0 if wall.block_b[k] == block else -1.0
+        shear = -multiplier * weight * wall.tangent[k, 0] * onto_b
+        forces[k] = [first, second, shear] if right else [second, first, shear]
+    mechanism = np.zeros((3, 3))
+    mechanism[1, 0], mechanism[2, 0] = 1.0, speed_beside
+    return Answer(Status.OK, Finding.COLLAPSES, "", multiplier, forces=forces, mechanism=mechanism)
+
+
+@pytest.mark.parametrize("weight", [1e-9, 1e-3, 20.0, 1e9])
+@pytest.mark.parametrize("speed", [0.0, 1e-6, 1e6])
+def test_an_independent_block_changes_no_residual(weight: float, speed: float):
+    wall = two_blocks(weight)
+    right, wrong = said(wall, sliding_state(wall, 0.5, speed)), said(wall, sliding_state(wall, 0.4999, speed))
+    assert right.outcome == "accepted", right
+    assert wrong.outcome == "rejected", wrong
+    alone = said(two_blocks(20.0), sliding_state(two_blocks(20.0), 0.4999))
+    for name in ("equilibrium", "interpenetration", "dilatancy", "virtual_work"):
+        assert wrong.residuals[name] == pytest.approx(alone.residuals[name], rel=1e-9, abs=1e-15), name
+
+
+NUMBERS = st.floats(-2.0, 2.0, allow_nan=False)
+
+
+MUTANTS = int(os.environ.get("DRYSTONE_MUTANTS", "150"))
+"""States that are spoiled; docs/reliability.md tells of 20,000."""
+
+
+@settings(max_examples=MUTANTS, deadline=None, derandomize=True)
+@given(st.data())
+def test_no_spoiled_state_is_accepted_at_an_impossible_multiplier(bonded: tuple[Assembly, Answer], data: st.DataObject):
+    """Possible are multipliers from the least known to the associated maximum, by a programme of its own each."""
+    wall, answer = bonded
+    assert answer.forces is not None
+    assert answer.mechanism is not None
+    assert answer.multiplier is not None
+    forces, mechanism, multiplier = answer.forces.copy(), answer.mechanism.copy(), answer.multiplier
+    at = answer.forces_multiplier
+    for kind in data.draw(st.lists(st.sampled_from(KINDS), min_size=1, max_size=4)):
+        row = data.draw(st.integers(0, wall.n_interfaces - 1))
+        block = data.draw(st.integers(0, wall.n_blocks - 1))
+        match kind:
+            case "multiplier":
+                multiplier *= 1.0 + data.draw(st.sampled_from([1e-7, 1e-3, -1e-3, 1.0]))
+            case "both":
+                at = multiplier = data.draw(NUMBERS)
+            case "forces":
+                forces[row] *= 1.0 + data.draw(NUMBERS)
+            case "all forces":
+                forces *= data.draw(NUMBERS)
+            case "scale":
+                mechanism *= 10.0 ** data.draw(st.integers(-200, 200))
+            case "block":
+                mechanism[block] += np.array([data.draw(NUMBERS) for _ in range(3)])
+            case "ground":
+                mechanism[wall.fixed] = data.draw(NUMBERS)
+            case "translation":
+                mechanism[:, :2] += np.array([data.draw(NUMBERS), data.draw(NUMBERS)])
+    flow = data.draw(st.sampled_from(["non-associated", "associated"]))
+    spoiled = replace(
+        answer, multiplier=multiplier, forces=forces, mechanism=mechanism, forces_multiplier=at, flow=flow
+    )
+    judgement = said(wall, spoiled)
+    target(-max((abs(value) for name, value in judgement.residuals.items() if name != "live_work"), default=9.0))
+    if judgement.accepted:
+        greatest = state_of(wall, "la-associated").multiplier
+        assert greatest is not None
+        assert answer.multiplier - 1e-8 <= multiplier <= greatest + 1e-8
+
+
+KINDS = ["multiplier", "both", "forces", "all forces", "scale", "block", "ground", "translation"]
