@@ -145,11 +145,11 @@ def print_comparison(compared: ComparisonRun, report: Path | None) -> None:
     gated = sum(item.gate for case in compared.cases for result in case.results for item in result.comparisons)
     gates = sum(len(case.gates) for case in compared.cases)
     if broken:
-        console.print(f"{len(broken)} of {gated} gated references and {gates} theory gates do not hold:")
+        console.print(f"Of {gated} gated references, {gates} theory gates and the answers, {len(broken)} do not hold:")
         for sentence in broken:
             console.print(f"  ✗ {escape(sentence)}", highlight=False)
     else:
-        console.print(f"All {gated} gated references and {gates} theory gates hold.")
+        console.print(f"All {gated} gated references and {gates} theory gates hold; the judge rejects no answer.")
     if report is not None:
         print(visible(f"Report: {report}"))
 

@@ -7,14 +7,22 @@ from typing import Any
 
 from harness.engine.plan import Run
 from harness.model.comparison import ComparisonRun
+from harness.model.method import Status
 from harness.model.result import Result, Verdict
 
 
 def violations(compared: ComparisonRun) -> list[str]:
-    """Sentences about gated references and theory gates that do not hold."""
+    """Sentences about gated references and theory gates that do not hold, and about answers that the judge rejects.
+
+    A comparison in which no run ended with an answer says so too: it shows nothing.
+    """
     found = []
+    if not any(result.status is Status.OK for case in compared.cases for result in case.results):
+        found.append("no run ended with an answer")
     for case in compared.cases:
         for result in case.results:
+            if result.judge.accepted is False:
+                found.append(f"{case.case.id}, {result.method}: the judge rejects the answer: {result.judge.sentence}")
             for comparison in result.comparisons:
                 if comparison.gate and comparison.verdict is not Verdict.AGREES:
                     found.append(f"{case.case.id}, {result.method}: {comparison.reference}: {comparison.sentence}")

@@ -239,7 +239,8 @@ def test_methods_that_a_case_names_and_nobody_has_are_told(tmp_path: Path):
 
 
 def test_a_method_that_crashes_costs_one_row_and_not_the_run(wall: Path):
-    done = drystone("compare", wall.name, "--methods", "dummy,la-associated", "--seconds", "30", cwd=wall.parent)
+    words = ("--methods", "dummy,la-associated", "--set", "dummy.does=raise", "--seconds", "30")
+    done = drystone("compare", wall.name, *words, cwd=wall.parent)
     assert done.returncode == 0, done.stderr
     assert "dummy" in done.stdout
     assert (wall.parent / "out" / "report.html").is_file()
@@ -281,3 +282,15 @@ def test_a_command_imports_no_more_than_it_needs(words: tuple[str, ...], foreign
         [sys.executable, "-c", program], cwd=tmp_path, capture_output=True, text=True, timeout=120, check=True
     )
     assert done.stderr.strip() == "[]"
+
+
+def test_a_comparison_without_any_answer_is_a_failure(wall: Path):
+    done = drystone("compare", wall.name, "--methods", "dummy", "--set", "dummy.does=raise", cwd=wall.parent)
+    assert done.returncode == 1, done.stdout
+    assert "no run ended with an answer" in done.stdout
+
+
+def test_a_rejected_answer_is_a_failure_of_the_comparison(wall: Path):
+    done = drystone("compare", wall.name, "--methods", "dummy,la-associated", cwd=wall.parent)
+    assert done.returncode == 1, done.stdout
+    assert "dummy: the judge rejects the answer" in " ".join(done.stdout.split())
