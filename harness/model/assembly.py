@@ -97,6 +97,12 @@ class Assembly:
         return np.asarray((self.end2 - self.end1) / self.length[:, None])
 
     @cached_property
+    def radius(self) -> FloatArray:
+        """(n,) largest distance of a vertex of every block from its centroid [length]."""
+        pairs = zip(self.polygons, self.centroid, strict=True)
+        return np.array([float(np.hypot(*(polygon - centroid).T).max()) for polygon, centroid in pairs])
+
+    @cached_property
     def force_scale(self) -> float:
         """Total magnitude of the dead load on the free blocks (their total weight in the usual case) [force]."""
         total = float(np.linalg.norm(self.dead[self.free, :2], axis=1).sum())

@@ -14,7 +14,7 @@ from methods.fe.histories import HistoryResult
 from methods.numerics.statics import dilatant_fall
 from methods.springs.newton import FALLING, Equilibrium
 from methods.springs.path_record import PathEnd, PathRecord
-from methods.springs.plateau import CollapseState
+from methods.springs.plateau import CERTIFICATE, CollapseState
 from methods.springs.wall_model import WallModel
 
 PATH_POINTS = 300
@@ -42,7 +42,7 @@ def falling(model: WallModel, rate: FloatArray, why: str, iterations: int) -> An
     """
     motion = model.block_displacements(rate)
     blocks = model.moving_blocks(motion, FALLING)
-    proof = dilatant_fall(model.assembly)
+    proof = dilatant_fall(model.assembly, 10.0 * CERTIFICATE)
     return Answer(
         Status.OK,
         Finding.FALLS,

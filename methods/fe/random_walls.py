@@ -18,13 +18,12 @@ from harness.model.build import build
 from harness.model.method import Status, load_method
 from harness.model.wall import Wall
 from methods.fe.adapter import GapSprings
+from methods.fe.answers import WIDE
 from methods.fe.settings import GapSpringsSettings
 from methods.springs.plateau import CERTIFICATE
 
 ABOVE = 1e-6
 """Relative: how far a plateau may lie above the associated maximum, for the accuracy of the linear programme."""
-WIDE = 0.025
-"""Spread of the histories above which a wall is listed."""
 
 
 def random_wall(seed: int) -> Assembly:

@@ -19,6 +19,7 @@ from methods.la.interior_point import PathResult, step_lengths
 from methods.la.newton_matrix import NewtonMatrix
 from methods.la.newton_step import Direction, NewtonStep, Point
 from methods.la.problem import Problem
+from methods.numerics.failures import NumericalFailure, SingularMatrix
 
 STRIDE = 4.0
 """Largest relative change of a slack or rate that a step along the tangent aims at."""
@@ -91,7 +92,7 @@ class ArcPath:
             gap: at which it stops; max_iterations: Newton steps at most.
 
         Raises:
-            RuntimeError: the first Newton matrix is singular to rounding.
+            SingularMatrix: the first Newton matrix is singular to rounding.
         """
         result: PathResult | None = None
         history: list[float] = []
@@ -99,7 +100,7 @@ class ArcPath:
             point = self._here.point
             try:
                 step = NewtonStep(self._problem, self._newton, point, 0.0, self._tight)
-            except (RuntimeError, FloatingPointError):
+            except (NumericalFailure, FloatingPointError):
                 break
             history.append(point.multiplier)
             present = float((point.slack * point.rates).sum()) / self._problem.live_work
@@ -111,7 +112,7 @@ class ArcPath:
             self._go_on(step)
             self._steps += 1
         if result is None:
-            raise RuntimeError("the path could not factorise its first system")
+            raise SingularMatrix("the path could not factorise its first system")
         return result
 
     def _go_on(self, step: NewtonStep) -> None:

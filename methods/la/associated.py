@@ -21,6 +21,7 @@ from methods.la.newton_step import Point
 from methods.la.problem import Problem
 from methods.la.programmes import KinematicProgramme, StaticSolution
 from methods.la.state import CollapseState, moving_contacts, polished, residuals, tight_contacts
+from methods.numerics.failures import NumericalFailure
 from methods.numerics.optional import optional
 
 SIMPLEX_INTERFACES = 400
@@ -109,7 +110,7 @@ def _by_interior_point(problem: Problem, newton: NewtonMatrix) -> AssociatedResu
     """The end of the central path made exact, or None where it is not clear which contacts press and which move."""
     try:
         result = follow_path(problem, newton, start_point(problem), PathSettings(1.0, gap=GAP, residual=1e-3))
-    except RuntimeError:
+    except NumericalFailure:
         return None
     if not result.gap < 1e-4 or result.statics > 0.1:
         return None
@@ -128,7 +129,7 @@ def _from_path(problem: Problem, newton: NewtonMatrix, point: Point, bias: float
             problem, newton, problem.forces_of_slacks(point.slack), point.multiplier, tight, floor=1e-14
         )
         velocities = exact_mechanism(problem, newton, point.velocities, tight, associated=True)
-    except RuntimeError:
+    except NumericalFailure:
         return None
     return CollapseState(forces, multiplier, velocities, tight, associated=True)
 

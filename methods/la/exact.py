@@ -13,6 +13,7 @@ from harness.model.assembly import BoolArray, FloatArray
 from methods.la.flexibility import Compliance
 from methods.la.newton_matrix import NewtonMatrix
 from methods.la.problem import Problem
+from methods.numerics.failures import NoMechanism, SingularMatrix
 
 RIGID = 1e40
 """Weight of a slack that may not change."""
@@ -65,7 +66,7 @@ def exact_forces(
         floor: least size of a slack in the measure of change, relative to the largest.
 
     Raises:
-        RuntimeError: the equilibrium matrix is singular to rounding.
+        SingularMatrix: the equilibrium matrix is singular to rounding.
     """
     tight = close_tight(problem, tight)
     best: tuple[float, FloatArray, float] | None = None
@@ -101,7 +102,8 @@ def exact_mechanism(
     """Velocities (3n,) whose strains vanish to rounding wherever no contact (m, 4) moves, near the given ones.
 
     Raises:
-        RuntimeError: the kinematic matrix is singular to rounding.
+        SingularMatrix: the kinematic matrix is singular to rounding.
+        NoMechanism: no mechanism with live work moves in these contacts only.
     """
     still = np.column_stack([~moving[:, 0], ~moving[:, 1], ~(moving[:, 2] | moving[:, 3])]).astype(float)
     transform = np.tile(np.eye(3), (problem.n_interfaces, 1, 1))
@@ -113,7 +115,7 @@ def exact_mechanism(
     least = np.inf
     for _ in range(30):
         if not float(abs(velocities).max(initial=0.0)) < DIVERGED:
-            raise RuntimeError("the kinematic matrix is singular to rounding")
+            raise SingularMatrix("the kinematic matrix is singular to rounding")
         strain = np.einsum("pij,pj->pi", stiff, problem.strains(velocities))
         size = float(abs(strain).max(initial=0.0))
         if size > 0.5 * least and size < 1e-14 * float(abs(velocities).max(initial=0.0)):
@@ -121,8 +123,8 @@ def exact_mechanism(
         least = min(least, size)
         velocities = velocities - factor.solve(PENALTY * np.asarray(problem.statics @ strain.ravel()))
     if not float(abs(velocities).max(initial=0.0)) < DIVERGED:
-        raise RuntimeError("the kinematic matrix is singular to rounding")
+        raise SingularMatrix("the kinematic matrix is singular to rounding")
     work = float(problem.live @ velocities)
     if work <= 1e-6 * problem.live_work:
-        raise RuntimeError("no mechanism with live work moves in these contacts only")
+        raise NoMechanism("no mechanism with live work moves in these contacts only")
     return velocities * (problem.live_work / work)

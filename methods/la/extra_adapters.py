@@ -19,6 +19,7 @@ from methods.la.search import Effort, Search
 from methods.la.settings import FromFeSettings, PaperSettings, TrescaSettings
 from methods.la.state import CollapseState, moving_contacts, polished, tight_contacts
 from methods.la.tresca import tresca_sequence
+from methods.numerics.failures import NumericalFailure
 
 
 def finite_element_answer(assembly: Assembly, name: str) -> Answer:
@@ -59,7 +60,7 @@ class PaperProgramme(LimitAnalysisFamily):
             start = given.forces / problem.unit_force
         try:
             result = solve_paper_programme(problem, start, settings.max_iterations, settings.epsilons)
-        except (ValueError, RuntimeError) as error:
+        except (ValueError, NumericalFailure) as error:
             return not_converged(f"The programme could not be set up or solved: {error}")
         return paper_answer(problem, newton, result, settings.start, self.tolerance)
 

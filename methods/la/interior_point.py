@@ -18,6 +18,7 @@ from methods.la.exact import close_tight
 from methods.la.newton_matrix import NewtonMatrix
 from methods.la.newton_step import Direction, NewtonStep, Point
 from methods.la.problem import Problem
+from methods.numerics.failures import NumericalFailure, SingularMatrix
 
 MIDDLE = 0.995
 """Part of the way to the boundary that a step goes."""
@@ -104,7 +105,7 @@ def follow_path(
         tight: (m, 4) slacks held at zero, whose rates have no sign; closed as by `close_tight`.
 
     Raises:
-        RuntimeError: the first Newton matrix is singular to rounding.
+        SingularMatrix: the first Newton matrix is singular to rounding.
     """
     point = start
     tight = close_tight(problem) if tight is None else tight
@@ -120,7 +121,7 @@ def follow_path(
             dilatancy = min(dilatancy, gap / settings.fade) if gap > 1e-4 * settings.fade else 0.0
         try:
             step = NewtonStep(problem, newton, point, dilatancy, tight)
-        except (RuntimeError, FloatingPointError):
+        except (NumericalFailure, FloatingPointError):
             break
         statics, kinematics = float(abs(step.statics).max()), float(abs(step.kinematics).max())
         history.append(point.multiplier)
@@ -137,7 +138,7 @@ def follow_path(
             break
         point = _centred_step(step, point, product, pairs, tight, dilatancy)
     if best is None:
-        raise RuntimeError("the interior point could not factorise its first system")
+        raise SingularMatrix("the interior point could not factorise its first system")
     return best
 
 

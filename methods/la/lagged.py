@@ -19,6 +19,7 @@ from methods.la.interior_point import PathResult, PathSettings, follow_path, sta
 from methods.la.newton_matrix import NewtonMatrix
 from methods.la.newton_step import NewtonStep, Point
 from methods.la.problem import Problem
+from methods.numerics.failures import NumericalFailure
 
 LEAST_BOUND = 1e-4
 """Least friction bound, in mean block weights, where a joint carries nothing."""
@@ -50,7 +51,7 @@ def lagged_mechanism(problem: Problem, newton: NewtonMatrix, steps: int, follow:
         follow: part of the way to mu N that a bound moves in a step.
 
     Raises:
-        RuntimeError: a Newton matrix is singular to rounding.
+        SingularMatrix: a Newton matrix is singular to rounding.
     """
     settings = PathSettings(dilatancy=1.0, gap=START_GAP, residual=1e-3)
     start = follow_path(problem, newton, start_point(problem), settings)
@@ -63,7 +64,7 @@ def lagged_mechanism(problem: Problem, newton: NewtonMatrix, steps: int, follow:
         held = with_bounds(problem, bound)
         try:
             step = NewtonStep(held, newton, point, 1.0, tight)
-        except (RuntimeError, FloatingPointError):
+        except (NumericalFailure, FloatingPointError):
             break
         taken += 1
         wanted = bound + follow * (_strength(problem, point) - bound)

@@ -25,6 +25,7 @@ from methods.la.newton_matrix import NewtonMatrix
 from methods.la.problem import Problem
 from methods.la.region import Region, in_whole, moving_region
 from methods.la.state import CollapseState, residuals
+from methods.numerics.failures import NumericalFailure
 
 LINEAR = PathSettings(dilatancy=1.0, gap=1e-13, residual=1e-3, max_iterations=150, patience=20)
 EXACT_ENOUGH = 1e-10
@@ -119,7 +120,7 @@ def state_of_mechanism(
             forces, multiplier = exact_forces(
                 problem, newton, problem.forces_of_slacks(point.slack), -point.multiplier, tight, floor=1e-14
             )
-        except RuntimeError:
+        except NumericalFailure:
             continue
         if multiplier < -EXACT_ENOUGH:
             continue
@@ -172,7 +173,7 @@ def mechanism_states(
 def _at_rest_elsewhere(problem: Problem, newton: NewtonMatrix, state: CollapseState) -> CollapseState:
     try:
         return replace(state, velocities=exact_mechanism(problem, newton, state.velocities, state.moving, False))
-    except RuntimeError:
+    except NumericalFailure:
         return state
 
 
@@ -185,7 +186,7 @@ def lagged_state(
     for count, follow in attempts:
         try:
             path, spent = lagged_mechanism(problem, newton, count, follow)
-        except RuntimeError:
+        except NumericalFailure:
             continue
         state, more = mechanism_states(problem, newton, path, (0.0, 1e-9))
         steps, gap = steps + spent + more, path.gap

@@ -13,10 +13,11 @@ from typing import TYPE_CHECKING, cast
 import numpy as np
 import scipy.sparse as sp
 from scipy.sparse.csgraph import connected_components
-from scipy.sparse.linalg import SuperLU, splu
+from scipy.sparse.linalg import SuperLU
 
 from harness.model.assembly import FloatArray, IntArray
 from methods.la.problem import Problem
+from methods.numerics.failures import SingularMatrix, sparse_lu
 
 if TYPE_CHECKING:
     from methods.numerics.block_lu import BlockFactor
@@ -137,7 +138,7 @@ class NewtonMatrix:
             shift: regularisation by the unit matrix.
 
         Raises:
-            RuntimeError: K is singular to rounding.
+            SingularMatrix: K is singular to rounding.
         """
         values = self._assembled(flexibility)
         values[self._diagonal] += relative * np.maximum(abs(values[self._diagonal]), 1e-30) + shift
@@ -146,11 +147,11 @@ class NewtonMatrix:
 
             factors = BlockFactor(self.pattern, values)
             if not factors.factorise(symmetric=bool((flexibility == flexibility.transpose(0, 2, 1)).all())):
-                raise RuntimeError("the Newton matrix is singular")
+                raise SingularMatrix("the Newton matrix is singular")
             return Factor(factors, self.order)
         matrix = sp.csc_matrix((values, self._indices, self._pointers), shape=(self.size, self.size))
         options = {"SymmetricMode": True}
-        return Factor(splu(matrix, permc_spec="NATURAL", diag_pivot_thresh=0.0, options=options), self.order)
+        return Factor(sparse_lu(matrix, permc_spec="NATURAL", diag_pivot_thresh=0.0, options=options), self.order)
 
     def _assembled(self, flexibility: FloatArray) -> FloatArray:
         """The entries of K for flexibilities (m, 3, 3), where they stand in the factor."""

@@ -56,7 +56,7 @@ class NewtonStep:
 
     Raises:
         FloatingPointError: a slack or rate is not positive.
-        RuntimeError: the matrix is singular to rounding.
+        SingularMatrix: the matrix is singular to rounding.
     """
 
     def __init__(

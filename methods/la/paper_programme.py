@@ -18,10 +18,10 @@ from typing import Any
 import numpy as np
 import scipy.sparse as sp
 from scipy.sparse.csgraph import dijkstra
-from scipy.sparse.linalg import splu
 
 from harness.model.assembly import FloatArray, IntArray
 from methods.la.problem import Problem, slack_matrix
+from methods.numerics.failures import sparse_lu
 from methods.numerics.optional import optional
 
 FASTEST = 1e3
@@ -93,7 +93,7 @@ def solve_paper_programme(
     second = np.setdiff1d(np.arange(m), first)
     rows1, rows2 = ((3 * part[:, None] + np.arange(3)).ravel() for part in (first, second))
     b1, b2 = problem.kinematic[rows1].tocsc(), problem.kinematic[rows2].tocsc()
-    inverse = splu(b1).solve(np.eye(len(rows1)))
+    inverse = sparse_lu(b1).solve(np.eye(len(rows1)))
     transfer = np.where(abs(b2 @ inverse) > 1e-13, b2 @ inverse, 0.0)
     flow = sp.kron(sp.eye(m), np.array([[1.0, 0, 0, 0], [0, 1.0, 0, 0], [0, 0, 1.0, -1.0]])).tocsr()
     m1, m2 = flow[rows1].toarray(), flow[rows2].toarray()

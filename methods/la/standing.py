@@ -15,6 +15,7 @@ from harness.model.assembly import FloatArray
 from methods.la.interior_point import PathSettings, follow_path, start_point
 from methods.la.newton_matrix import NewtonMatrix
 from methods.la.problem import Problem
+from methods.numerics.failures import NumericalFailure
 
 EXACT = 1e-9
 """Largest imbalance, in mean block weights, of forces that certify."""
@@ -32,7 +33,7 @@ def standing_forces(problem: Problem, newton: NewtonMatrix) -> FloatArray | None
     settings = PathSettings(dilatancy=1.0, gap=1e-9, max_iterations=60, above=1.0)
     try:
         result = follow_path(moved, newton, start, settings)
-    except RuntimeError:
+    except NumericalFailure:
         return None
     if not result.point.multiplier >= 1.0:
         return None

@@ -11,6 +11,7 @@ from harness.model.assembly import BoolArray, FloatArray
 from methods.la.exact import exact_forces, exact_mechanism
 from methods.la.newton_matrix import NewtonMatrix
 from methods.la.problem import Problem
+from methods.numerics.failures import NumericalFailure
 
 MOVING = 1e-11
 """Rates below this, relative to the largest, are rounding."""
@@ -128,5 +129,5 @@ def _exact(problem: Problem, newton: NewtonMatrix, state: CollapseState, tight: 
         yield replace(
             state, velocities=exact_mechanism(problem, newton, state.velocities, state.moving, state.associated)
         )
-    except RuntimeError:
+    except NumericalFailure:
         return

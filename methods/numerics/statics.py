@@ -9,9 +9,6 @@ from harness.model.assembly import Assembly, FloatArray, IntArray
 from harness.model.method import Answer
 from methods.numerics.linear_programme import INFINITY, Programme
 
-NO_WORK = 1e-7
-"""Work of the dead load, in total weight times speed, that the tolerance of a linear programme (1e-9) may make up."""
-
 
 def shear_limits(friction: FloatArray) -> sp.csr_matrix:
     """Sparse (2m, 3m) matrix of the slacks mu (n1 + n2) +- s of forces (n1, n2, s), over mu where that is above one.
@@ -69,11 +66,12 @@ def admissible_forces(assembly: Assembly, load: FloatArray) -> FloatArray | None
     return within_yield(vertex.value.reshape(-1, 3), assembly.friction) * unit
 
 
-def dilatant_fall(assembly: Assembly) -> FloatArray | None:
+def dilatant_fall(assembly: Assembly, least: float) -> FloatArray | None:
     """A mechanism (n, 3) of dilatant flow on which the dead load does positive work, so that no equilibrium exists.
 
-    None where there is none: by Farkas' lemma the wall then has an equilibrium under its dead load. Speeds are bounded
-    by one (rotations: by one over the block size), which makes it the mechanism of the greatest work.
+    Speeds are bounded by one (rotations: by one over the block size), which makes it the mechanism of the greatest
+    work. None where that is `least` or less, in total weight times speed, or where the programme fails: exactly no work
+    would mean an equilibrium (Farkas' lemma), but the programme holds to its tolerances only.
     """
     length = assembly.length_scale or 1.0
     column = np.tile([1.0, 1.0, 1.0 / length], assembly.n_free)
@@ -84,7 +82,7 @@ def dilatant_fall(assembly: Assembly) -> FloatArray | None:
     size, ones = rows.shape[0], np.ones(len(dead))
     bounds = (np.zeros(size), np.full(size, INFINITY))
     status, motion, _ = Programme(sp.csc_matrix(rows), -dead, (-ones, ones), bounds).run()
-    if status != "optimal" or not dead @ motion > NO_WORK:
+    if status != "optimal" or not dead @ motion > least:
         return None
     mechanism = np.zeros((assembly.n_blocks, 3))
     mechanism[assembly.free] = (motion * column).reshape(-1, 3)

@@ -16,9 +16,9 @@ from typing import Any
 import highspy
 import numpy as np
 import scipy.sparse as sp
-from scipy.sparse.linalg import splu
 
 from harness.model.assembly import BoolArray, FloatArray, IntArray
+from methods.numerics.failures import NumericalFailure, SingularMatrix, sparse_lu
 
 ROUNDS = 6
 """Refinements of a linear system at most, and magnifications of a programme."""
@@ -137,7 +137,7 @@ class StandardForm:
         try:
             value[basic] = refined(self._matrix[:, basic], -extended_product(self._by_row, value))
             dual = refined(sp.csc_matrix(self._transposed[basic]), self._cost[basic].astype(np.longdouble))
-        except RuntimeError:
+        except NumericalFailure:
             return None
         reduced = (self._cost - extended_product(self._transposed, dual)).astype(float)
         reduced[basic] = 0.0
@@ -218,20 +218,20 @@ def refined(matrix: sp.csc_matrix, right: Any) -> FloatArray:
     """The solution (k,) of a square sparse system, every row to rounding of its own terms.
 
     Raises:
-        RuntimeError: the matrix is singular.
+        SingularMatrix: the matrix is singular.
     """
     by_row = sp.csr_matrix(matrix)
     rows = _powers(abs(by_row).max(axis=1).toarray().ravel())
     scaled = sp.diags(rows) @ by_row
     columns = _powers(abs(scaled).max(axis=0).toarray().ravel())
-    factor = splu(sp.csc_matrix(scaled @ sp.diags(columns)))
+    factor = sparse_lu(sp.csc_matrix(scaled @ sp.diags(columns)))
     right = np.asarray(right, dtype=np.longdouble)
     solution = np.zeros(len(right), dtype=np.longdouble)
     for _ in range(ROUNDS):
         residual = right - extended_product(by_row, solution)
         change = columns * factor.solve(rows * residual.astype(float))
         if not np.isfinite(change).all():
-            raise RuntimeError("the basis is singular to rounding")
+            raise SingularMatrix("the basis is singular to rounding")
         solution = solution + change
         if np.all(abs(change) <= 1e-17 * abs(solution)):
             break

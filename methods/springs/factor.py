@@ -19,6 +19,7 @@ from harness.model.assembly import FloatArray, IntArray
 from methods.numerics.block_kernels import MANY
 from methods.numerics.block_lu import BlockFactor, BlockPattern
 from methods.numerics.compiled import compiled
+from methods.numerics.failures import SingularMatrix
 from methods.numerics.vectors import largest
 from methods.springs.wall_model import WallModel, add_tangent
 
@@ -32,7 +33,7 @@ Change = tuple[int, int, int]
 """A point, its state and the state that it turns to."""
 
 
-class SingularTangent(ArithmeticError):
+class SingularTangent(SingularMatrix):
     """The tangent has no usable inverse in these states."""
 
 

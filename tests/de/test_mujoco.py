@@ -8,7 +8,7 @@ import sys
 import numpy as np
 import pytest
 
-from harness.engine.judge import equilibrium_residual, yield_violation
+from harness.engine.residuals import force_residuals
 from harness.model.errors import InputError
 from harness.model.method import Finding, Status
 from methods.de.adapter import MujocoHolds
@@ -42,8 +42,8 @@ def test_blocks_and_stacks_have_the_exact_multiplier_and_forces_the_judge_accept
     assert (answer.status, answer.finding) == (Status.OK, Finding.COLLAPSES)
     assert answer.multiplier == pytest.approx(exact, rel=1e-3)
     assert answer.bracket[0] <= exact * (1 + 1e-4)
-    assert equilibrium_residual(wall, answer.forces, answer.forces_multiplier) < 1e-5
-    assert yield_violation(wall, answer.forces, answer.forces_multiplier) < 1e-8
+    assert force_residuals(wall, answer.forces, answer.forces_multiplier)["equilibrium"] < 1e-5
+    assert force_residuals(wall, answer.forces, answer.forces_multiplier)["yield"] < 1e-8
 
 
 @needs_mujoco
@@ -68,7 +68,7 @@ def test_wall_without_live_load_stands_or_falls_and_repeats_are_bit_identical():
     one, two = run_mujoco(wall, orders=1), run_mujoco(wall, orders=1)
     assert one.finding is Finding.STANDS
     assert np.array_equal(one.forces, two.forces)
-    assert equilibrium_residual(wall, one.forces, 0.0) < 1e-5
+    assert force_residuals(wall, one.forces, 0.0)["equilibrium"] < 1e-5
     falls = run_mujoco(assembly(stack(3) | {"offsets": [0.0, 0.0, 0.2]}, 0.7, **still), orders=1)
     assert falls.finding is Finding.FALLS
 
@@ -80,7 +80,7 @@ def test_wall_of_21_bricks_agrees_with_the_other_engine(friction):
     wall = assembly(running_bond(6, 3), friction)
     answer = run_mujoco(wall, orders=1)
     assert answer.multiplier == pytest.approx(min(friction, 13 / 23), rel=5e-3)
-    assert equilibrium_residual(wall, answer.forces, answer.forces_multiplier) < MujocoHolds.tolerance
+    assert force_residuals(wall, answer.forces, answer.forces_multiplier)["equilibrium"] < MujocoHolds.tolerance
 
 
 @needs_mujoco

@@ -7,7 +7,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from harness.engine.judge import displaced_residuals, judge
+from harness.engine.judge import judge
+from harness.engine.residuals import displaced_residuals
 from harness.model.displaced import DisplacedState
 from harness.model.method import Finding, Status
 from harness.model.result import result_of

@@ -5,7 +5,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from harness.engine.judge import block_sums, collapse_residuals, judge
+from harness.engine.judge import judge
+from harness.engine.residuals import block_sums, collapse_residuals
 from harness.engine.symmetry import VIEWS
 from harness.model.assembly import Assembly
 from harness.model.method import Answer, Finding, Status

@@ -210,3 +210,18 @@ def test_no_spoiled_state_is_accepted_at_an_impossible_multiplier(bonded: tuple[
 
 
 KINDS = ["multiplier", "both", "forces", "all forces", "scale", "block", "ground", "translation"]
+
+
+def test_block_that_flies_hides_no_penetration_of_its_neighbours():
+    wall = assembly(stack(2), 0.5)
+    idle = np.zeros((3, 3))
+    idle[2, 1] = 1.0
+    weightless = replace(wall, dead=wall.dead.copy(), live=wall.live.copy())
+    for load in (weightless.dead, weightless.live):
+        load[2] = 0.0
+    alone = state_of(weightless)
+    assert said(weightless, alone).accepted
+    sinking = np.zeros((3, 3))
+    sinking[1] = [1e-10, -0.5e-10, 0.0]
+    assert said(weightless, replace(alone, mechanism=sinking)).outcome == "rejected"
+    assert said(weightless, replace(alone, mechanism=sinking + idle)).outcome == "rejected"

@@ -1,0 +1,228 @@
+"""The residuals by which the judge tells whether a claim holds; none shares a matrix with the methods.
+
+They are relative to what acts where they arise (F = sum of the magnitudes of load and contact forces on a block,
+r = its largest radius; each independent component's mechanism scaled so that its fastest vertex has speed 1, or so that
+its live work is that of its largest live load at speed 1, whichever makes it larger: a block that moves fast and does
+no work hides nothing):
+
+supports            fastest vertex of a fixed block, to the fastest of the wall
+equilibrium         out-of-balance force or moment/r of a free block / F of that block
+yield               tension or excess of |s| over mu (n1 + n2) / the smaller F of the two blocks
+interpenetration    closing velocity at a contact point (beyond what the flow rule asks for)
+dilatancy           opening of a contact point that still carries force: min(force / smaller F, velocity)
+sliding             slip against slack of the friction cone, the same way
+complementarity     work of contact forces where nothing should move, in live work at max(unit, |multiplier|)
+virtual_work        |multiplier - (dissipation - dead work)/live work|, relative to max(unit, |multiplier|)
+multiplier          |multiplier - that of the forces|, relative to max(unit, |multiplier|)
+live_work           not a residual to be small: live work of the mechanism of a component, must be positive
+
+The unit is the multiplier at which the live load is as large as the dead load: one for a tilt. So a live load that is
+given ten times larger, with a multiplier ten times smaller, is judged alike. An independent structure beside a wall,
+however heavy, however fast, changes no residual of the wall.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from harness.model.assembly import Assembly, FloatArray, IntArray
+from harness.model.components import components_of
+from harness.model.displaced import DisplacedState
+from harness.model.result import fastest_vertex, relative_velocities
+
+AT_REST = 1e-12
+"""A component slower than this beside the fastest of the wall is taken as at rest: rounding of its speeds."""
+
+
+UNLOADED = 1e-6
+"""Share of the largest sum of its component by which a block without load is measured at least.
+
+Rounding leaves forces of 1e-16 to 1e-14 of that sum (measured on walls with weightless blocks), which then count as
+1e-10 to 1e-8."""
+
+
+def block_sums(assembly: Assembly, forces: FloatArray) -> FloatArray:
+    """(n, 3) sums (fx, fy, moment about the centroid) of the contact forces (m, 3) on every block.
+
+    The two normal forces act at the contact points; the shear acts half at each, along the line that joins them.
+    """
+    sums = np.zeros((assembly.n_blocks, 3))
+    shear = 0.5 * forces[:, 2:3] * assembly.tangent
+    for point, normal_force in ((assembly.end1, forces[:, 0:1]), (assembly.end2, forces[:, 1:2])):
+        force = normal_force * assembly.normal + shear
+        for block, sign in ((assembly.block_b, 1.0), (assembly.block_a, -1.0)):
+            arm = point - assembly.centroid[block]
+            moment = arm[:, 0] * force[:, 1] - arm[:, 1] * force[:, 0]
+            np.add.at(sums, block, sign * np.column_stack([force, moment]))
+    return sums
+
+
+def acting(assembly: Assembly, forces: FloatArray, multiplier: float) -> FloatArray:
+    """Sum (n,) of the magnitudes of the loads at a multiplier and of the contact forces (m, 3) on every block [force].
+
+    A block without any load has nothing of its own to measure by, and may bear nothing but rounding of the others'
+    forces: for it the sum is at least `UNLOADED` of the largest of its component.
+    """
+    total = np.zeros(assembly.n_blocks)
+    for load in (assembly.dead, multiplier * assembly.live):
+        total += np.hypot(load[:, 0], load[:, 1]) + abs(load[:, 2]) / assembly.radius
+    unloaded = total == 0.0
+    size = abs(forces).sum(axis=1)
+    np.add.at(total, assembly.block_a, size)
+    np.add.at(total, assembly.block_b, size)
+    if unloaded[assembly.free].any():
+        for part in components_of(assembly):
+            own = part.blocks[unloaded[part.blocks]]
+            total[own] = np.maximum(total[own], UNLOADED * total[part.blocks].max())
+    return np.where(total > 0.0, total, 1.0)
+
+
+def between(assembly: Assembly, scale: FloatArray) -> FloatArray:
+    """The smaller (m,) of a measure (n,) of the two blocks of every interface, of the free one where one is fixed."""
+    movable = np.where(assembly.fixed, np.inf, scale)
+    smaller = np.minimum(movable[assembly.block_a], movable[assembly.block_b])
+    both = np.minimum(scale[assembly.block_a], scale[assembly.block_b])
+    return np.where(np.isfinite(smaller), smaller, both)
+
+
+def force_residuals(
+    assembly: Assembly, forces: FloatArray, multiplier: float, scale: FloatArray | None = None
+) -> dict[str, float]:
+    """Equilibrium and yield of contact forces (m, 3) with dead + multiplier x live.
+
+    Args:
+        assembly: the wall; forces: (m, 3) contact forces (n1, n2, s) [force]; multiplier: of the live load.
+        scale: (n,) what acts on every block, where it is known already (`acting`).
+    """
+    scale = acting(assembly, forces, multiplier) if scale is None else scale
+    balance = block_sums(assembly, forces) + assembly.dead + multiplier * assembly.live
+    balance[:, 2] /= assembly.radius
+    unbalanced = abs(balance).max(axis=1) / scale
+    normal = forces[:, :2]
+    excess = abs(forces[:, 2]) - assembly.friction * normal.sum(axis=1)
+    violation = np.maximum((-normal).max(axis=1), excess) / between(assembly, scale)
+    return {
+        "equilibrium": float(unbalanced[assembly.free].max(initial=0.0)),
+        "yield": float(violation.max(initial=0.0)),
+    }
+
+
+def displaced_residuals(assembly: Assembly, state: DisplacedState, multiplier: float) -> dict[str, float]:
+    """Equilibrium and yield of a wall at rest where its blocks have moved to, under loads that keep their directions.
+
+    These two are relative to the whole wall: forces at measured places are no better than that.
+
+    Args:
+        assembly: the wall before it moved; state: its contacts and forces; multiplier: of the live load.
+    """
+    balance = assembly.dead + multiplier * assembly.live
+    a, b = assembly.block_a[state.interface], assembly.block_b[state.interface]
+    for block, force in ((state.onto, state.force), (a + b - state.onto, -state.force)):
+        arm = state.point - assembly.centroid[block] - state.places[block, :2]
+        moment = arm[:, 0] * force[:, 1] - arm[:, 1] * force[:, 0]
+        np.add.at(balance, block, np.column_stack([force, moment]))
+    balance[:, 2] /= assembly.length_scale
+    normal = (state.force * state.normal).sum(axis=1)
+    shear = abs(state.force[:, 1] * state.normal[:, 0] - state.force[:, 0] * state.normal[:, 1])
+    excess = shear - assembly.friction[state.interface] * normal
+    worst = max(0.0, float((-normal).max(initial=0.0)), float(excess.max(initial=0.0)))
+    return {
+        "equilibrium": float(abs(balance[assembly.free]).max(initial=0.0)) / assembly.force_scale,
+        "yield": worst / assembly.force_scale,
+    }
+
+
+def power(load: FloatArray, mechanism: FloatArray) -> float:
+    """Power of a generalised load (n, 3) on a mechanism (n, 3) [force x velocity]."""
+    return float((load * mechanism).sum())
+
+
+def moving_parts(
+    assembly: Assembly, mechanism: FloatArray
+) -> tuple[float, list[tuple[Assembly, IntArray, FloatArray]]]:
+    """The speed of the supports beside the fastest vertex, and the components that move.
+
+    A component comes with the indices of its interfaces and its motion, whose fastest vertex has speed 1.
+
+    Args:
+        assembly: the wall; mechanism: (n, 3) block velocities at any scale.
+    """
+    largest = float(abs(mechanism).max(initial=0.0))
+    if largest == 0.0:
+        return 0.0, []
+    motion = mechanism / largest
+    ground = np.where(assembly.fixed[:, None], motion, 0.0)
+    supports = fastest_vertex(assembly, ground) / fastest_vertex(assembly, motion)
+    motion = motion - ground
+    parts = [(part, motion[part.blocks]) for part in components_of(assembly)]
+    speeds = [fastest_vertex(part.assembly, own) for part, own in parts]
+    fastest = max(speeds, default=0.0)
+    return supports, [
+        (part.assembly, part.interfaces, own / speed)
+        for (part, own), speed in zip(parts, speeds, strict=True)
+        if speed > AT_REST * fastest
+    ]
+
+
+def collapse_residuals(
+    assembly: Assembly, forces: FloatArray, multiplier: float, mechanism: FloatArray, flow: str
+) -> dict[str, float]:
+    """The residuals of a collapse state, by the names of this module's docstring.
+
+    Args:
+        assembly: the wall.
+        forces: (m, 3) contact forces (n1, n2, s) [force].
+        multiplier: of the live load.
+        mechanism: (n, 3) block velocities at any scale.
+        flow: "non-associated" or "associated".
+    """
+    supports, parts = moving_parts(assembly, mechanism)
+    sums = acting(assembly, forces, multiplier)
+    scale = between(assembly, sums)
+    residuals = force_residuals(assembly, forces, multiplier, sums) | {"supports": supports}
+    works: list[float] = []
+    for part, interfaces, motion in parts:
+        own = _mechanism_residuals(part, forces[interfaces], scale[interfaces], multiplier, motion, flow)
+        works.append(own.pop("live_work"))
+        for name, value in own.items():
+            residuals[name] = max(residuals.get(name, 0.0), value)
+    return residuals | {"live_work": max(works, default=0.0)}
+
+
+def _mechanism_residuals(
+    assembly: Assembly, forces: FloatArray, scale: FloatArray, multiplier: float, mechanism: FloatArray, flow: str
+) -> dict[str, float]:
+    """Residuals of the mechanism of one component, of fastest vertex 1; `scale` (m,) is what acts at its interfaces."""
+    live_work = power(assembly.live, mechanism)
+    largest = float((np.hypot(*assembly.live[:, :2].T) + abs(assembly.live[:, 2]) / assembly.radius).max())
+    if 0.0 < live_work < largest:
+        mechanism, live_work = mechanism * (largest / live_work), largest
+    opening, slip = relative_velocities(assembly, mechanism)
+    if flow == "associated":
+        opening = opening - (assembly.friction * abs(slip))[:, None]
+    normal, shear = forces[:, :2], forces[:, 2]
+    strength = assembly.friction * normal.sum(axis=1)
+    forward, backward = np.maximum(slip, 0.0), np.maximum(-slip, 0.0)
+    slack_forward, slack_backward = strength + shear, strength - shear
+    idle_work = float(
+        abs(normal * opening).sum() + abs(slack_forward * forward).sum() + abs(slack_backward * backward).sum()
+    )
+    # Virtual work: contact forces do work r.q on the mechanism; friction dissipates, openings do not.
+    dissipation = 0.0 if flow == "associated" else float((strength * abs(slip)).sum())
+    residuals = {
+        "interpenetration": max(0.0, float((-opening).max(initial=0.0))),
+        "dilatancy": float(np.minimum(abs(normal) / scale[:, None], np.maximum(opening, 0.0)).max(initial=0.0)),
+        "sliding": float(
+            max(
+                np.minimum(abs(slack_forward) / scale, forward).max(initial=0.0),
+                np.minimum(abs(slack_backward) / scale, backward).max(initial=0.0),
+            )
+        ),
+        "live_work": live_work / (assembly.force_scale or 1.0),
+    }
+    if live_work > 0.0:
+        by_virtual_work = (dissipation - power(assembly.dead, mechanism)) / live_work
+        size = max(assembly.load_unit, abs(multiplier))
+        residuals["complementarity"] = idle_work / live_work / size
+        residuals["virtual_work"] = abs(by_virtual_work - multiplier) / size
+    return residuals
