@@ -213,15 +213,22 @@ KINDS = ["multiplier", "both", "forces", "all forces", "scale", "block", "ground
 
 
 def test_block_that_flies_hides_no_penetration_of_its_neighbours():
-    wall = assembly(stack(2), 0.5)
-    idle = np.zeros((3, 3))
-    idle[2, 1] = 1.0
-    weightless = replace(wall, dead=wall.dead.copy(), live=wall.live.copy())
-    for load in (weightless.dead, weightless.live):
-        load[2] = 0.0
-    alone = state_of(weightless)
-    assert said(weightless, alone).accepted
-    sinking = np.zeros((3, 3))
-    sinking[1] = [1e-10, -0.5e-10, 0.0]
-    assert said(weightless, replace(alone, mechanism=sinking)).outcome == "rejected"
-    assert said(weightless, replace(alone, mechanism=sinking + idle)).outcome == "rejected"
+    """A slides into B, which stands in its way and gets no force, while C on top weighs nothing and flies."""
+    panel = {"type": "panel", "cell_length": 0.5, "cell_height": 0.2, "layout": ["CC", "AB", "__"], "fixed": "_"}
+    wall = assembly(panel, 0.5)
+    wall = replace(wall, dead=wall.dead.copy(), live=wall.live.copy())
+    base, a, b, c = range(4)
+    wall.dead[c] = wall.live[c] = wall.live[b] = 0.0
+    pairs = list(zip(wall.block_a.tolist(), wall.block_b.tolist(), strict=True))
+    forces = np.zeros((5, 3))
+    forces[pairs.index((base, a))] = [1.2, 0.8, 1.0]
+    forces[pairs.index((base, b))] = [1.0, 1.0, 0.0]
+    mechanism = np.zeros((4, 3))
+    mechanism[a, 0] = 1e-10
+    answer = Answer(Status.OK, Finding.COLLAPSES, "", 0.5, forces=forces, mechanism=mechanism)
+    assert said(wall, answer).residuals["interpenetration"] == pytest.approx(1.0)
+    mechanism[c, 1] = 1.0
+    judgement = said(wall, replace(answer, mechanism=mechanism))
+    assert judgement.outcome == "rejected"
+    assert [name for name, value in judgement.residuals.items() if value > 1e-9] == ["interpenetration", "live_work"]
+    assert (state_of(wall).multiplier or 0.0) == pytest.approx(1.0)
