@@ -121,7 +121,7 @@ def _ending(wall: dict[str, Any], finding: Finding) -> Check:
             return f"says {result.finding} instead of {finding}: {result.sentence}"
         if result.multiplier is not None:
             return f"gives the multiplier {result.multiplier} to a wall that {finding}"
-        return judgement.sentence if judgement.accepted is False else ""
+        return "" if judgement.accepted else judgement.sentence
 
     return check
 

@@ -71,7 +71,7 @@ def run(
         print_json(result.model_dump(mode="json") if fields else result.summary())
     else:
         terminal.print_result(result, found)
-    sys.exit(0 if result.status is Status.OK and result.judge.accepted is not False else 1)
+    sys.exit(1 if result.status is not Status.OK else terminal.JUDGED[result.judge.accepted])
 
 
 def _settings(method: str, pairs: tuple[str, ...]) -> dict[str, Any]:

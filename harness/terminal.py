@@ -27,6 +27,9 @@ from harness.model.method import Answer, Finding, Status
 from harness.model.result import Judgement, Result
 from harness.model.wall import LARGEST
 
+JUDGED = {True: 0, False: 1, None: 3}
+"""Exit codes for an answer that is accepted, rejected, or shows nothing that proves or refutes its claim."""
+
 MARKS = {
     "agrees": "✓ agrees",
     "outside_tolerance": "✗ outside tolerance",
@@ -102,9 +105,8 @@ def _expected(result: Result) -> str:
 
 def _residual(result: Result) -> str:
     worst = worst_residual(result.judge)
-    if worst is None:
-        return "-"
-    return f"{worst:.1e}" + ("" if result.judge.accepted else " ✗")
+    mark = {True: "", False: " ✗", None: " not judged" if result.status is Status.OK else ""}[result.judge.accepted]
+    return ("-" if worst is None and not mark else "" if worst is None else f"{worst:.1e}") + mark
 
 
 def print_comparison(compared: ComparisonRun, report: Path | None) -> None:

@@ -82,10 +82,6 @@ def expand(wall: Path, output: Path | None) -> None:
         output.write_text(text, encoding="utf-8")
 
 
-NOT_JUDGED = 3
-"""Exit code of `drystone judge` for an answer that shows nothing which proves or refutes its claim."""
-
-
 @click.command()
 @click.argument("wall", type=click.Path(path_type=Path))
 @click.argument("result", type=click.Path(path_type=Path))
@@ -112,7 +108,7 @@ def judge(wall: Path, result: Path, tolerance: float, as_json: bool) -> None:
         )
     else:
         terminal.print_judgement(judgement)
-    sys.exit({True: 0, False: 1, None: NOT_JUDGED}[judgement.accepted])
+    sys.exit(terminal.JUDGED[judgement.accepted])
 
 
 @click.command()

@@ -41,10 +41,10 @@ class Study:
 
 
 def solved(result: Result) -> bool:
-    """Whether a run counts as solved: it ended, the judge did not reject it, and no reference contradicts it."""
+    """Whether a run counts as solved: it ended, the judge accepts it, and no reference contradicts it."""
     return (
         result.status is Status.OK
-        and result.judge.accepted is not False
+        and bool(result.judge.accepted)
         and result.verdict in (Verdict.AGREES, Verdict.NO_REFERENCE)
     )
 

@@ -139,7 +139,7 @@ def run_row(case_number: int, result_number: int, item: CaseResults) -> RunRow:
         method=result.method,
         family=result.family,
         failed=failed,
-        trouble=failed or accepted is False or result.verdict in (Verdict.OUTSIDE_TOLERANCE, Verdict.VIOLATES_BOUND),
+        trouble=failed or not accepted or result.verdict in (Verdict.OUTSIDE_TOLERANCE, Verdict.VIOLATES_BOUND),
         multiplier=_multiplier_cell(result),
         proved=bool(result.details.get("proved_least")),
         bracket=Cell(
@@ -331,9 +331,11 @@ def findings(run: ComparisonRun) -> str:
     held = sum(comparison.verdict is Verdict.AGREES for comparison in gated)
     rejected = sum(result.judge.accepted is False for result in results)
     accepted = sum(result.judge.accepted is True for result in results)
+    unjudged = len(ended) - accepted - rejected
     sentences = [
         f"Of {numbers.count(len(results), 'run')} on {numbers.count(len(run.cases), 'case')}, "
-        f"{len(ended)} ended with an answer; the judge accepted {accepted} and rejected {rejected}."
+        f"{len(ended)} ended with an answer; the judge accepted {accepted} and rejected {rejected}"
+        + (f", and {unjudged} {_are(unjudged)} not judged." if unjudged else ".")
     ]
     if gated:
         sentences.append(f"Of {numbers.count(len(gated), 'gated reference value')}, {held} {_are(held)} met.")

@@ -80,8 +80,9 @@ def write_baseline(path: Path, baseline: Baseline) -> None:
 
 
 def value_of(result: Result) -> Value:
-    """What of a result the baseline keeps. An answer the judge rejects counts as not converged."""
-    status = Status.NOT_CONVERGED if result.judge.accepted is False else result.status
+    """What of a result the baseline keeps. An answer that the judge does not accept counts as not converged."""
+    shown = result.status is not Status.OK or result.judge.accepted
+    status = result.status if shown else Status.NOT_CONVERGED
     return Value(status=status, finding=str(result.finding), multiplier=result.multiplier, bracket=result.bracket)
 
 

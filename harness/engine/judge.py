@@ -49,7 +49,7 @@ def judge(assembly: Assembly, result: Result, tolerance: float) -> Judgement:
             return _said(tolerance, False, f"Its {name} hold numbers that are not finite.")
     match result.finding:
         case Finding.FALLS:
-            return _judge_fall(assembly, mechanism, result.flow, tolerance)
+            return _judge_fall(assembly, mechanism, result, tolerance)
         case Finding.STANDS:
             return _judge_standing(assembly, forces, result, tolerance)
         case Finding.UNBOUNDED:
@@ -144,9 +144,17 @@ def _judge_unbounded(assembly: Assembly, forces: FloatArray | None, result: Resu
     return _decide(residuals, tolerance, f"Forces at multiplier {at:.6g} and forces that balance the live load alone")
 
 
-def _judge_fall(assembly: Assembly, mechanism: FloatArray | None, flow: str, tolerance: float) -> Judgement:
-    """No equilibrium: a dilatant mechanism of a component, supports at rest, on which the dead load does work."""
-    if flow == "approximate" or mechanism is None:
+def _judge_fall(assembly: Assembly, mechanism: FloatArray | None, result: Result, tolerance: float) -> Judgement:
+    """No equilibrium: a dilatant mechanism of a component, supports at rest, on which the dead load does work.
+
+    A method that measured the motion may hand it over beside it, as `details["dilatant_mechanism"]`.
+    """
+    shown = result.details.get("dilatant_mechanism")
+    if shown is not None:
+        mechanism = np.asarray(shown, dtype=float).reshape(-1, 3)
+        if mechanism.shape != (assembly.n_blocks, 3) or not np.isfinite(mechanism).all():
+            return _said(tolerance, False, f"`dilatant_mechanism` is not {assembly.n_blocks} finite triples.")
+    elif result.flow == "approximate" or mechanism is None:
         told = "The motion was measured, which is no proof" if mechanism is not None else "It gives no mechanism"
         return _said(tolerance, None, f"{told}; that no equilibrium exists was not shown.")
     supports, parts = moving_parts(assembly, mechanism)

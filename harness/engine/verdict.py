@@ -14,7 +14,7 @@ BOUND_TOLERANCE = 1e-6
 
 
 def compare(reference: Reference, result: Result) -> Comparison:
-    """How a result stands to one reference. A run without a value, or rejected by the judge, does not agree."""
+    """How a result stands to one reference. Without a value that the judge accepts it does not agree."""
     value = _value(reference, result)
     verdict, sentence = _verdict(reference, result, value)
     return Comparison(
@@ -49,8 +49,9 @@ def _verdict(reference: Reference, result: Result, value: float | list[float] | 
         return Verdict.OUTSIDE_TOLERANCE, f"no value: {result.status}. {result.sentence}"
     if value is None:
         return Verdict.OUTSIDE_TOLERANCE, f"no value: {result.finding}. {result.sentence}"
-    if reference.quantity in ("multiplier", "finding") and result.judge.accepted is False:
-        return Verdict.OUTSIDE_TOLERANCE, f"the judge rejects the answer: {result.judge.sentence}"
+    if reference.quantity in ("multiplier", "finding") and not result.judge.accepted:
+        said = "the judge rejects the answer" if result.judge.accepted is False else "the answer is not judged"
+        return Verdict.OUTSIDE_TOLERANCE, f"{said}: {result.judge.sentence}"
     expected = reference.value
     if isinstance(value, str) or isinstance(expected, str):
         return (
@@ -96,9 +97,7 @@ def theory_gates(results: CaseResults) -> list[Gate]:
     Livesley 1978 for masonry); a finite-element plateau is a collapse state (Baggio and Trovalusci 1995, section 2).
     """
     usable = {
-        result.method: result
-        for result in results.results
-        if result.status is Status.OK and result.judge.accepted is not False
+        result.method: result for result in results.results if result.status is Status.OK and result.judge.accepted
     }
     gates: list[Gate] = []
 

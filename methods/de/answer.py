@@ -13,6 +13,7 @@ from methods.de.bracket import LOOSE, Bracket, Search, held_forces, mechanism_at
 from methods.de.courses import Tuning, courses, insertion_orders, tunings
 from methods.de.engine import Engine
 from methods.de.settings import HoldSettings
+from methods.numerics.statics import with_proof
 
 BRACKET_MEANING = (
     "[lowest multiplier held, highest multiplier moving] over the body orders: every order was held at or above the "
@@ -60,7 +61,7 @@ def solve_by_holds(
         if answer.finding is Finding.COLLAPSES:
             answer.mechanism, answer.flow = mechanism_at(engine, settings, best), "approximate"
         answer.iterations += engine.steps
-    return answer
+    return with_proof(assembly, answer)
 
 
 def first_bracket(

@@ -20,6 +20,7 @@ from methods.de.courses import courses, number_of_courses
 from methods.de.hold import State, goes_on
 from methods.de.loading import REACH, raise_until_it_falls
 from methods.de.soft_wall import SoftWall
+from methods.numerics.statics import with_proof
 
 STIFF = 1e6
 """Stiffness of joints where none is given, in mean dead loads of a block over the square of the length scale."""
@@ -173,7 +174,7 @@ class DeformableJoints:
         if answer.finding in (Finding.COLLAPSES, Finding.FALLS):
             answer.mechanism = holds.motion
         answer.details |= _told(holds, stiffness)
-        return answer
+        return with_proof(assembly, answer)
 
     def _loaded(self, holds: Holds, joints: str, unit: float) -> Answer:
         """The answer for a wall that stands its dead load, in multiples of the multiplier that equals it."""

@@ -9,7 +9,6 @@ from typing import Any, ClassVar
 import numpy as np
 
 from harness.model.assembly import Assembly
-from harness.model.components import analysed_apart
 from harness.model.method import Answer, Finding, Settings, Status
 from methods.fe.answers import (
     bracket_answer,
@@ -25,7 +24,7 @@ from methods.fe.convex_steps import bracket_collapse
 from methods.fe.histories import LARGE_ABOVE, HistoryResult, Plan, trace_history, with_initial_shear
 from methods.fe.incremental import march
 from methods.fe.settings import ConvexSettings, GapSpringsSettings, NewtonSettings
-from methods.numerics.statics import bear
+from methods.numerics.statics import analysed
 from methods.springs.equilibrium import equilibrium, gravity_state
 from methods.springs.factor import Factor, make_factor
 from methods.springs.newton import Equilibrium
@@ -58,7 +57,7 @@ class GapSprings:
 
     def solve(self, assembly: Assembly, settings: Any) -> Answer:
         """Gravity first, then the live load to the plateau under every history asked for."""
-        return analysed_apart(assembly, lambda part: self._of_component(part, settings), bear)
+        return analysed(assembly, lambda part: self._of_component(part, settings))
 
     def _of_component(self, assembly: Assembly, settings: Any) -> Answer:
         answer = self._solve(build_model(assembly, settings, settings.friction_cap), settings)
@@ -140,7 +139,7 @@ class IncrementalNewton:
 
     def solve(self, assembly: Assembly, settings: Any) -> Answer:
         """March as a general code does; a value only where a mechanism was reached and checked."""
-        return analysed_apart(assembly, lambda part: self._of_component(part, settings), bear)
+        return analysed(assembly, lambda part: self._of_component(part, settings))
 
     def _of_component(self, assembly: Assembly, settings: Any) -> Answer:
         model = build_model(assembly, settings)
@@ -177,7 +176,7 @@ class ConvexSteps:
 
     def solve(self, assembly: Assembly, settings: Any) -> Answer:
         """Bracket the multiplier at which the steps lose their equilibrium; refused above the set number of blocks."""
-        return analysed_apart(assembly, lambda part: self._of_component(part, settings), bear)
+        return analysed(assembly, lambda part: self._of_component(part, settings))
 
     def _of_component(self, assembly: Assembly, settings: Any) -> Answer:
         if assembly.n_free > settings.max_blocks:

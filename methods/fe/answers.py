@@ -11,10 +11,9 @@ from harness.model.errors import first_few
 from harness.model.method import Answer, Finding, Status
 from methods.fe.convex_steps import SETTLED, ConvexResult
 from methods.fe.histories import HistoryResult
-from methods.numerics.statics import dilatant_fall
 from methods.springs.newton import FALLING, Equilibrium
 from methods.springs.path_record import PathEnd, PathRecord
-from methods.springs.plateau import CERTIFICATE, CollapseState
+from methods.springs.plateau import CollapseState
 from methods.springs.wall_model import WallModel
 
 PATH_POINTS = 300
@@ -38,17 +37,16 @@ def gravity_failure(model: WallModel, gravity: Equilibrium) -> Answer:
 def falling(model: WallModel, rate: FloatArray, why: str, iterations: int) -> Answer:
     """The answer for a wall that falls under its dead load along displacements (N,), which are approximate.
 
-    Its mechanism is the dilatant one that proves the fall; where there is none, the displacements.
+    `methods.numerics.statics.with_proof` adds the dilatant mechanism that proves the fall.
     """
     motion = model.block_displacements(rate)
     blocks = model.moving_blocks(motion, FALLING)
-    proof = dilatant_fall(model.assembly, 10.0 * CERTIFICATE)
     return Answer(
         Status.OK,
         Finding.FALLS,
         f"the wall falls under its dead load: {why} for {first_few(blocks, 8)}",
-        mechanism=motion / np.abs(motion).max() if proof is None else proof,
-        flow="approximate" if proof is None else "associated",
+        mechanism=motion / np.abs(motion).max(),
+        flow="approximate",
         iterations=iterations,
         details={"path_status": "gravity_failure", "moving_blocks": blocks},
     )

@@ -6,12 +6,11 @@ from abc import ABC, abstractmethod
 from typing import Any, ClassVar
 
 from harness.model.assembly import Assembly
-from harness.model.components import analysed_apart
 from harness.model.method import Answer
 from methods.la.answers import dead_load_answer
 from methods.la.newton_matrix import NewtonMatrix
 from methods.la.problem import Problem, make_problem
-from methods.numerics.statics import bear
+from methods.numerics.statics import analysed
 
 
 class LimitAnalysisFamily(ABC):
@@ -21,7 +20,7 @@ class LimitAnalysisFamily(ABC):
 
     def solve(self, assembly: Assembly, settings: Any) -> Answer:
         """The answer from those for the independent components of the wall."""
-        return analysed_apart(assembly, lambda part: self._of_component(part, settings), bear)
+        return analysed(assembly, lambda part: self._of_component(part, settings))
 
     def _of_component(self, assembly: Assembly, settings: Any) -> Answer:
         """The answer of the dead load where it decides, else that of `answer`."""

@@ -2,12 +2,19 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+from dataclasses import replace
+
 import numpy as np
 import scipy.sparse as sp
 
 from harness.model.assembly import Assembly, FloatArray, IntArray
-from harness.model.method import Answer
+from harness.model.components import analysed_apart
+from harness.model.method import Answer, Finding, Status
 from methods.numerics.linear_programme import INFINITY, Programme
+
+LEAST_WORK = 1e-7
+"""Work of the dead load that shows a fall, as total weight times speed: a programme to 1e-9 makes up less."""
 
 
 def shear_limits(friction: FloatArray) -> sp.csr_matrix:
@@ -66,11 +73,11 @@ def admissible_forces(assembly: Assembly, load: FloatArray) -> FloatArray | None
     return within_yield(vertex.value.reshape(-1, 3), assembly.friction) * unit
 
 
-def dilatant_fall(assembly: Assembly, least: float) -> FloatArray | None:
+def dilatant_fall(assembly: Assembly) -> FloatArray | None:
     """A mechanism (n, 3) of dilatant flow on which the dead load does positive work, so that no equilibrium exists.
 
     Speeds are bounded by one (rotations: by one over the block size), which makes it the mechanism of the greatest
-    work. None where that is `least` or less, in total weight times speed, or where the programme fails: exactly no work
+    work. None where that is `LEAST_WORK` or less, or where the programme fails: exactly no work
     would mean an equilibrium (Farkas' lemma), but the programme holds to its tolerances only.
     """
     length = assembly.length_scale or 1.0
@@ -82,7 +89,7 @@ def dilatant_fall(assembly: Assembly, least: float) -> FloatArray | None:
     size, ones = rows.shape[0], np.ones(len(dead))
     bounds = (np.zeros(size), np.full(size, INFINITY))
     status, motion, _ = Programme(sp.csc_matrix(rows), -dead, (-ones, ones), bounds).run()
-    if status != "optimal" or not dead @ motion > least:
+    if status != "optimal" or not dead @ motion > LEAST_WORK:
         return None
     mechanism = np.zeros((assembly.n_blocks, 3))
     mechanism[assembly.free] = (motion * column).reshape(-1, 3)
@@ -101,3 +108,33 @@ def bear(assembly: Assembly, answer: Answer, multiplier: float) -> FloatArray | 
             share = multiplier / highest
             return (1.0 - share) * dead + share * answer.forces
     return admissible_forces(assembly, assembly.dead + multiplier * assembly.live)
+
+
+def analysed(assembly: Assembly, solve: Callable[[Assembly], Answer]) -> Answer:
+    """The answer of a method for a wall from those for its independent components, with what shows it."""
+    return with_proof(assembly, analysed_apart(assembly, solve, bear))
+
+
+def with_proof(assembly: Assembly, answer: Answer) -> Answer:
+    """An answer with what proves its claim where statics alone can: forces that grow for ever, a dilatant mechanism.
+
+    `details["live_forces"]` (m, 3) balance the live load alone, so that with forces under the dead load they bear any
+    multiplier; `details["dilatant_mechanism"]` (n, 3) shows that a wall falls whose motion was measured only. Where
+    there is none the answer stays as it is, and is not judged.
+    """
+    if answer.status is not Status.OK:
+        return answer
+    if answer.finding is Finding.UNBOUNDED:
+        growth = admissible_forces(assembly, assembly.live)
+        own = (answer.forces, answer.forces_multiplier)
+        forces, at = own if answer.forces is not None else (admissible_forces(assembly, assembly.dead), 0.0)
+        if growth is None or forces is None:
+            return answer
+        return replace(
+            answer, forces=forces, forces_multiplier=at, details=answer.details | {"live_forces": growth.tolist()}
+        )
+    if answer.finding is Finding.FALLS and answer.flow == "approximate":
+        proof = dilatant_fall(assembly)
+        if proof is not None:
+            return replace(answer, details=answer.details | {"dilatant_mechanism": proof.tolist()})
+    return answer

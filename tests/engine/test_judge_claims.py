@@ -102,7 +102,8 @@ def test_measured_fall_is_not_judged():
     wall = assembly(stack(2) | {"offsets": [0.0, 0.2]}, 0.5)
     proof = state_of(wall, "fe")
     assert said(wall, proof, 1e-8).outcome == "accepted"
-    assert said(wall, replace(proof, flow="approximate"), 1e-8).outcome == "not_judged"
+    assert said(wall, replace(proof, details={}), 1e-8).outcome == "not_judged"
+    assert said(wall, replace(proof, details={"dilatant_mechanism": [[0, 0, 0]]}), 1e-8).outcome == "rejected"
 
 
 def test_lower_end_of_a_bracket_is_what_forces_show(bonded: tuple[Assembly, Answer]):
@@ -232,3 +233,17 @@ def test_block_that_flies_hides_no_penetration_of_its_neighbours():
     assert judgement.outcome == "rejected"
     assert [name for name, value in judgement.residuals.items() if value > 1e-9] == ["interpenetration", "live_work"]
     assert (state_of(wall).multiplier or 0.0) == pytest.approx(1.0)
+
+
+METHODS = ["la", "la-associated", "la-paper", "la-tresca", "fe", "fe-newton", "fe-qp", "de", "de-soft"]
+
+
+@pytest.mark.parametrize("name", METHODS)
+def test_methods_show_that_no_multiplier_is_too_high_and_that_a_wall_falls(name: str):
+    method = load_method(name)
+    pressed = assembly(running_bond(2, 2), 0.5, loads={"live": {"body": [{"per_weight": [0, -1]}]}})
+    leaning = assembly(stack(3) | {"offsets": [0.0, 0.2, 0.3]}, 0.5)
+    for wall, finding in ((pressed, Finding.UNBOUNDED), (leaning, Finding.FALLS)):
+        answer = state_of(wall, name)
+        assert answer.finding is finding
+        assert said(wall, answer, method.tolerance).accepted, (finding, said(wall, answer, method.tolerance).sentence)

@@ -23,11 +23,11 @@ RESAMPLES = 400
 
 
 def answered(table: pd.DataFrame) -> pd.DataFrame:
-    """The rows that say at which multiplier a wall collapses: ended well, not rejected by the judge.
+    """The rows that say at which multiplier a wall collapses: ended well, accepted by the judge.
 
     A wall that falls under its dead load collapses at multiplier zero.
     """
-    good = (table["status"] == str(Status.OK)) & ~table["judge_accepted"].eq(False).fillna(False)
+    good = (table["status"] == str(Status.OK)) & table["judge_accepted"].eq(True).fillna(False)
     falls = table["finding"] == str(Finding.FALLS)
     kept = table[good & (falls | table["multiplier"].notna())].copy()
     kept.loc[kept["finding"] == str(Finding.FALLS), "multiplier"] = 0.0
