@@ -158,14 +158,14 @@ def _judge_fall(assembly: Assembly, mechanism: FloatArray | None, result: Result
         told = "The motion was measured, which is no proof" if mechanism is not None else "It gives no mechanism"
         return _said(tolerance, None, f"{told}; that no equilibrium exists was not shown.")
     supports, parts = moving_parts(assembly, mechanism)
-    shown: list[tuple[bool, float, float]] = []
+    parts_shown: list[tuple[bool, float, float]] = []
     for part, _, motion in parts:
         opening, slip = relative_velocities(part, motion)
         closing = max(0.0, float(((part.friction * abs(slip))[:, None] - opening).max(initial=0.0)))
         gain = power(part.dead, motion) / part.force_scale
         # A gain within the tolerance may be made of the closing that the tolerance allows.
-        shown.append((closing <= tolerance < gain, gain, closing))
-    proves, gain, closing = max(shown, default=(False, 0.0, 0.0))
+        parts_shown.append((closing <= tolerance < gain, gain, closing))
+    proves, gain, closing = max(parts_shown, default=(False, 0.0, 0.0))
     proved = proves and supports <= tolerance
     sentence = (
         "The mechanism gains dead work with dilatant flow and supports at rest: no equilibrium exists, which proves "
