@@ -21,6 +21,7 @@ from reports.drawing import case_data, fields_drawn, force_unit, result_data, wa
 from reports.environment import environment
 from reports.export import export
 from reports.limits import KNOWN_LIMITS
+from reports.opening import opening
 from reports.sections import CaseSection, case_section
 from reports.studies import studies
 
@@ -64,6 +65,7 @@ def render(run: ComparisonRun, *, data_folder: str) -> str:
     return template.render(
         run=run,
         created=_date(run.created),
+        opening=opening(run),
         findings=tables.findings(run),
         columns=tables.columns(run),
         matrix=_matrix(rows, tables.columns(run)),

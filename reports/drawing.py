@@ -117,6 +117,35 @@ def polygons_svg(case: Case, polygons: list[FloatArray]) -> Markup:
     return drawn + Markup("</svg>")
 
 
+def mechanisms_svg(case: Case, first: Result, second: Result | None = None) -> Markup:
+    """The mechanism of a result as blocks and that of another as dashed outlines over it, each scaled to be seen.
+
+    Args:
+        case: the case.
+        first, second: results with a mechanism (n, 3); the second may be left out.
+    """
+    assembly = case.assembly
+    frame = Frame(assembly)
+    names = first.method + (f", dashed that by {second.method}" if second is not None else "")
+    drawn = Markup('<svg class="wall" style="--k:{}" viewBox="{}" role="img" aria-label="{}">').format(
+        stroke_factor(assembly), frame.view_box, f"Mechanism of {case.id} by {names}"
+    )
+    moves = shapes.moving(assembly, np.asarray(first.mechanism, dtype=float)) & ~assembly.fixed
+    for name, members in (("held", assembly.fixed), ("still", ~assembly.fixed & ~moves), ("moves", moves)):
+        data = "".join(path_of(frame, polygon) for polygon in _displaced(assembly, first, members))
+        drawn += Markup('<path class="{}" d="{}"/>').format(name, data)
+    if second is not None:
+        data = "".join(path_of(frame, polygon) for polygon in _displaced(assembly, second, ~assembly.fixed))
+        drawn += Markup('<path class="other" d="{}"/>').format(data)
+    return drawn + Markup("</svg>")
+
+
+def _displaced(assembly: Assembly, result: Result, members: np.ndarray) -> list[FloatArray]:
+    mechanism = np.asarray(result.mechanism, dtype=float)
+    polygons = shapes.displaced(assembly, mechanism, shapes.amplitude(assembly, mechanism))
+    return [polygon for polygon, member in zip(polygons, members, strict=True) if member]
+
+
 def _joints(frame: Frame, assembly: Assembly) -> Markup:
     if assembly.n_interfaces > DRAWN_INTERFACES:
         return Markup("")

@@ -13,6 +13,7 @@ from harness.model.result import Result
 from reports import numbers, shapes
 from reports.agreement import Agreement
 from reports.drawing import Frame, stroke_factor
+from reports.reasons import reasons
 from reports.tables import RunRow
 
 
@@ -55,6 +56,7 @@ class CaseSection:
     curves: list[tuple[str, Markup]]
     problem: str = ""
     cut: str = "all"
+    reasons: tuple[str, ...] = ()
 
 
 FLOW = {
@@ -110,6 +112,7 @@ def case_section(
         agreements=agreements,
         curves=curves,
         cut=fields,
+        reasons=tuple(reasons(item)),
     )
 
 

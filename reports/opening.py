@@ -1,0 +1,283 @@
+"""What the page opens with: the findings in a paragraph, the number to use, all that went wrong, and one figure."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from markupsafe import Markup
+
+from harness.model.comparison import CaseResults, ComparisonRun
+from harness.model.method import Finding, Status
+from harness.model.result import Result, Verdict
+from reports import drawing, numbers, paper, shapes, words
+from reports.agreement import agreement
+from reports.reasons import SAME_MOTION, joints_in_words, least_known, mechanism_in_words, motion
+from reports.tables import anchor_of
+
+CLOSE = 0.01
+"""Methods that lie within a hundredth of each other agree, in the words of the paper's comparison."""
+
+
+@dataclass(frozen=True)
+class RedRow:
+    """A run, or a statement of theory, that a reader has to know of.
+
+    Attributes:
+        anchor: where it stands in the page.
+        name: case and method.
+        what: what is wrong with it.
+    """
+
+    anchor: str
+    name: str
+    what: str
+
+
+@dataclass(frozen=True)
+class Opening:
+    """The first screen.
+
+    Attributes:
+        findings: sentences.
+        advice: which number to use; empty where there is more than one wall.
+        red: every run and statement that went wrong, by name.
+        figure, caption: one drawing.
+    """
+
+    findings: list[str]
+    advice: str
+    red: list[RedRow]
+    figure: Markup
+    caption: str
+
+
+def opening(run: ComparisonRun) -> Opening:
+    """The opening of a comparison: of one wall, of the paper's walls, or of a suite."""
+    built = [(number, item) for number, item in enumerate(run.cases) if not shapes.problem(item.case)]
+    items = [item for _, item in built]
+    found = _broken_theory(run)
+    one = len(run.cases) == 1
+    if one:
+        found.extend(wall_findings(item) for item in items)
+    else:
+        told = [item for item in items if item.case.id in (paper.BLOCK, paper.WALL)]
+        found.extend(wall_findings(item, short=True) for item in told)
+        found.extend(_suite(items))
+    focus = _focus(items, one)
+    figure, caption = (Markup(""), "") if focus is None else _figure(focus)
+    return Opening(
+        findings=[sentence for sentence in found if sentence],
+        advice="" if not one or not items else which_number(items[0]),
+        red=red_rows(run),
+        figure=figure,
+        caption=caption,
+    )
+
+
+def red_rows(run: ComparisonRun) -> list[RedRow]:
+    """Failed and rejected runs, values that miss a reference, statements of theory that do not hold."""
+    rows: list[RedRow] = []
+    for number, item in enumerate(run.cases):
+        rows.extend(
+            RedRow(f"case-{number}", f"{item.case.id}, theory", f"{gate.statement}: does not hold ({gate.sentence})")
+            for gate in item.gates
+            if gate.passed is False
+        )
+        for index, result in enumerate(item.results):
+            what = _wrong(result)
+            if what:
+                rows.append(RedRow(anchor_of(number, index), f"{item.case.id}, {result.method}", what))
+    return rows
+
+
+def _wrong(result: Result) -> str:
+    if result.status is not Status.OK:
+        return f"{words.STATUS[result.status][1]}: {result.sentence}"
+    if result.judge.accepted is False:
+        return f"rejected by the judge: {result.judge.sentence}"
+    missed = [c for c in result.comparisons if c.verdict in (Verdict.OUTSIDE_TOLERANCE, Verdict.VIOLATES_BOUND)]
+    return "; ".join(f"{words.VERDICT[c.verdict][1]} ({c.reference}): {c.sentence}" for c in missed)
+
+
+def _broken_theory(run: ComparisonRun) -> list[str]:
+    broken = [item.case.id for item in run.cases if any(gate.passed is False for gate in item.gates)]
+    if not broken:
+        return []
+    return [f"Theory is violated on {', '.join(broken)}: at least one method is wrong there."]
+
+
+def value_in_words(result: Result) -> str:
+    """The value as the method vouches for it: a number, or its bracket where it knows no more than that."""
+    if result.finding is not Finding.COLLAPSES or result.multiplier is None:
+        return words.FINDING[result.finding]
+    if result.flow == "approximate" and result.bracket is not None:
+        return numbers.interval(result.bracket)
+    return numbers.multiplier(result.multiplier)
+
+
+def _mains(item: CaseResults) -> list[Result]:
+    """The main method of every family that gave an answer, in the paper's order."""
+    found = [r for r in item.results if r.method == r.family and r.status is Status.OK]
+    return sorted(found, key=lambda result: words.order(result.method, result.family))
+
+
+def _associated(item: CaseResults) -> Result | None:
+    return next(
+        (
+            result
+            for result in item.results
+            if result.flow == "associated"
+            and result.status is Status.OK
+            and result.finding is Finding.COLLAPSES
+            and result.judge.accepted is not False
+        ),
+        None,
+    )
+
+
+def _called(result: Result) -> str:
+    return "minimum, proved" if result.details.get("proved_least") else "least known"
+
+
+def wall_findings(item: CaseResults, *, short: bool = False) -> str:
+    """What was found of one wall, in a few sentences; `short` leaves the mechanism out."""
+    least, assembly = least_known(item), item.case.assembly
+    mains = _mains(item)
+    others = ", ".join(f"{r.method.upper()} {value_in_words(r)}" for r in mains if r is not least)
+    if least is None:
+        answers = others or "no method gave an answer"
+        return f"{item.case.id}: no collapse state without dilatancy was accepted ({answers})."
+    said = (
+        f"{item.case.id} collapses at {numbers.multiplier(least.multiplier)} ({least.method.upper()}, {_called(least)})"
+    )
+    sentences = [f"{said}{'; ' + others if others else ''}.", _agreement(item)]
+    if not short and least.mechanism is not None:
+        mechanism = np.asarray(least.mechanism, dtype=float)
+        joints = motion(assembly, least)
+        how = mechanism_in_words(assembly, mechanism, item.case.wall.units.length)
+        more = f"; {joints_in_words(joints)}" if joints is not None and joints_in_words(joints) else ""
+        sentences.append(f"{how[0].upper()}{how[1:]}{more}.")
+    associated = _associated(item)
+    if associated is not None and _above(associated, least):
+        sentences.append(f"The associated maximum {numbers.multiplier(associated.multiplier)} is not safe.")
+    return " ".join(filter(None, sentences))
+
+
+def _above(second: Result, first: Result) -> bool:
+    return (second.multiplier or 0.0) > (first.multiplier or 0.0) * (1.0 + 1e-6)
+
+
+def _spread(item: CaseResults) -> float | None:
+    """How far the families are apart at least, as a share of the lowest; a measured value is its whole bracket."""
+    known = [
+        (r.bracket if r.flow == "approximate" and r.bracket is not None else (r.multiplier, r.multiplier))
+        for r in _mains(item)
+        if r.multiplier is not None and r.finding is Finding.COLLAPSES and r.judge.accepted is not False
+    ]
+    if len(known) < 2 or min(high for _, high in known) <= 0.0:
+        return None
+    return max(0.0, max(low for low, _ in known) / min(high for _, high in known) - 1.0)
+
+
+def _agreement(item: CaseResults) -> str:
+    """Whether the families agree on a wall, and in a clause why where they part."""
+    spread = _spread(item)
+    if spread is None:
+        return ""
+    if spread <= 1e-4:
+        return "The methods agree."
+    if spread <= CLOSE:
+        return f"They lie within {100.0 * spread:.2f} % of each other."
+    least = least_known(item)
+    apart = [
+        r
+        for r in _mains(item)
+        if r is not least and r.mechanism is not None and r.flow == "non-associated" and least is not None
+    ]
+    if least is None or not apart:
+        return f"They part by {100.0 * spread:.1f} %."
+    pair = agreement(item.case.assembly, least, apart[0])
+    if pair.cosine is None:
+        return f"They part by {100.0 * spread:.1f} %."
+    why = (
+        "the mechanism is the same and the forces differ, which equilibrium does not determine"
+        if pair.cosine >= SAME_MOTION
+        else "the mechanisms differ"
+    )
+    return f"They part by {100.0 * spread:.1f} %: {why}."
+
+
+def which_number(item: CaseResults) -> str:
+    """Which multiplier to use for what, with the case's own numbers."""
+    least, associated = least_known(item), _associated(item)
+    if least is None:
+        return ""
+    value = numbers.multiplier(least.multiplier)
+    if least.details.get("proved_least"):
+        first = f"For safety use {value}, proved to be the least multiplier of any collapse state ({least.method})."
+    else:
+        lower = least.bracket
+        proof = (
+            f"; none below {numbers.plain(lower[0])} exists" if lower and "lower bound" in least.bracket_meaning else ""
+        )
+        first = (
+            f"For safety use {value}, the least multiplier of a collapse state that is known ({least.method}); "
+            f"a lower one is not excluded{proof}."
+        )
+    sentences = [first]
+    springs = [r for r in _mains(item) if r.family == "fe" and r is not least and r.multiplier is not None]
+    if springs and springs[0].finding is Finding.COLLAPSES:
+        sentences.append(
+            "Elastic joints without self-stress would give "
+            f"{numbers.multiplier(springs[0].multiplier)} ({springs[0].method})."
+        )
+    if associated is not None and _above(associated, least):
+        over = (associated.multiplier or 0.0) / (least.multiplier or 1.0) - 1.0 if least.multiplier else None
+        above = "" if over is None else f", {100.0 * over:.1f} % above"
+        sentences.append(
+            f"Never use {numbers.multiplier(associated.multiplier)} ({associated.method}{above}): "
+            "it lets joints widen as they slide."
+        )
+    return " ".join(sentences)
+
+
+def _suite(items: list[CaseResults]) -> list[str]:
+    spreads = [(spread, item.case.id) for item in items if (spread := _spread(item)) is not None]
+    if not spreads:
+        return []
+    apart = sorted((entry for entry in spreads if entry[0] > CLOSE), reverse=True)
+    sentence = (
+        f"The families lie within 1 % of each other on {len(spreads) - len(apart)} of "
+        f"{numbers.count(len(spreads), 'wall')} that at least two of them answered"
+    )
+    if not apart:
+        return [f"{sentence}."]
+    named = ", ".join(f"{name} ({100.0 * spread:.1f} %)" for spread, name in apart[:6])
+    more = f" and {len(apart) - 6} more" if len(apart) > 6 else ""
+    return [f"{sentence}; they part on {named}{more}."]
+
+
+def _focus(items: list[CaseResults], one: bool) -> CaseResults | None:
+    """The wall whose mechanism is drawn: the only one, the paper's, or the one on which methods part most."""
+    drawn = [item for item in items if (least := least_known(item)) is not None and least.mechanism is not None]
+    if not drawn:
+        return None
+    return next(
+        (item for item in drawn if one or item.case.id == paper.WALL), max(drawn, key=lambda item: _spread(item) or 0.0)
+    )
+
+
+def _figure(item: CaseResults) -> tuple[Markup, str]:
+    least = least_known(item)
+    assert least is not None
+    apart = [
+        r
+        for r in _mains(item)
+        if r is not least and r.mechanism is not None and r.finding is Finding.COLLAPSES and r.flow == "non-associated"
+    ]
+    other = apart[0] if apart else None
+    caption = f"Mechanism of {item.case.id} by {least.method} at {numbers.multiplier(least.multiplier)}"
+    if other is not None:
+        caption += f"; dashed, by {other.method} at {value_in_words(other)}"
+    return drawing.mechanisms_svg(item.case, least, other), f"{caption}. Velocities drawn as displacements."

@@ -1,0 +1,200 @@
+"""Why two methods part on one wall, from their mechanisms and forces: joints, blocks, the work of friction."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from harness.model.assembly import Assembly, FloatArray
+from harness.model.comparison import CaseResults
+from harness.model.method import Finding, Status
+from harness.model.result import Result, normalised_mechanism, relative_velocities
+from reports import numbers, shapes
+from reports.agreement import agreement, measure_of
+
+STILL = 1e-5
+"""Relative velocity that counts as none, as in `harness.model.result.contact_states`; the fastest vertex has 1."""
+SAME_MOTION = 0.9999
+"""Cosine of velocity fields from which two mechanisms are called the same: fields rounded to 1e-5 differ by less."""
+SAME_VALUE = 1e-4
+"""Relative difference of multipliers that is not worth a reason: the page prints five digits."""
+
+
+@dataclass(frozen=True)
+class Motion:
+    """What joints do in a mechanism, as two facts each.
+
+    Attributes:
+        slides, opens: (m,) whether the joint slides, and whether one of its ends or both open.
+        parts: (m,) whether both ends open.
+    """
+
+    slides: np.ndarray
+    opens: np.ndarray
+    parts: np.ndarray
+
+
+def motion(assembly: Assembly, result: Result) -> Motion | None:
+    """How the joints of a result move; None for a measured velocity field, in which nothing is exactly at rest."""
+    if result.mechanism is None or result.flow == "approximate":
+        return None
+    velocities = normalised_mechanism(assembly, np.asarray(result.mechanism, dtype=float))
+    opening, slip = relative_velocities(assembly, velocities)
+    ends = np.asarray(opening > STILL)
+    return Motion(abs(slip) > STILL, ends[:, 0] | ends[:, 1], ends[:, 0] & ends[:, 1])
+
+
+def joints_in_words(found: Motion) -> str:
+    """How many joints slide, rock and part, e.g. "3 joints slide, 9 rock, 2 do both"."""
+    rocks = found.opens & ~found.parts
+    both = int((rocks & found.slides).sum())
+    counts = [
+        (int((found.slides & ~found.opens).sum()), "slide"),
+        (int(rocks.sum()) - both, "rock"),
+        (both, "rock and slide"),
+        (int(found.parts.sum()), "open along their whole length"),
+    ]
+    told = [f"{number} {_of_one(verb) if number == 1 else verb}" for number, verb in counts if number]
+    return "" if not told else "of the joints " + _and(told)
+
+
+def _of_one(verb: str) -> str:
+    return {
+        "slide": "slides",
+        "rock": "rocks",
+        "rock and slide": "rocks and slides",
+        "open along their whole length": "opens along its whole length",
+    }[verb]
+
+
+def friction_share(assembly: Assembly, result: Result) -> float | None:
+    """Work that sliding spends in friction over the work of the live load at collapse, the rest lifts weight.
+
+    Args:
+        assembly: the wall.
+        result: a collapse state with forces (m, 3) and mechanism (n, 3).
+    """
+    if result.mechanism is None or result.forces is None or not result.multiplier or result.flow == "approximate":
+        return None
+    mechanism = np.asarray(result.mechanism, dtype=float)
+    _, slip = relative_velocities(assembly, mechanism)
+    shear = np.asarray(result.forces, dtype=float)[:, 2]
+    live = result.multiplier * float((assembly.live * mechanism).sum())
+    return None if live <= 0.0 else float(abs(shear * slip).sum()) / live
+
+
+def mechanism_in_words(assembly: Assembly, mechanism: FloatArray, length: str) -> str:
+    """Which share of the blocks moves and how: as one body that slides or turns about a point, or apart.
+
+    One rigid motion is fitted to the moving blocks by least squares over their areas; it is named where it holds 99 %
+    of the motion.
+    """
+    moves = shapes.moving(assembly, mechanism)
+    who = f"{int(moves.sum())} of {numbers.count(assembly.n_free, 'block')} {'moves' if moves.sum() == 1 else 'move'}"
+    weights = np.sqrt(measure_of(assembly)[moves])
+    rows = np.zeros((int(moves.sum()), 3, 3))
+    rows[:] = np.eye(3)
+    rows[:, 0, 2], rows[:, 1, 2] = -assembly.centroid[moves, 1], assembly.centroid[moves, 0]
+    matrix = (weights[:, :, None] * rows).reshape(-1, 3)
+    wanted = (weights * mechanism[moves]).ravel()
+    if moves.sum() == 0 or not float(wanted @ wanted):
+        return "no block moves"
+    fitted = np.linalg.lstsq(matrix, wanted, rcond=None)[0]
+    left = wanted - matrix @ fitted
+    if float(left @ left) > 0.01 * float(wanted @ wanted):
+        return f"{who}, not as one body"
+    size = shapes.extent(assembly).longest
+    if abs(fitted[2]) * size < 0.02 * float(np.hypot(*mechanism[moves, :2].T).max()):
+        return f"{who}, sliding as one body"
+    x, y = -fitted[1] / fitted[2], fitted[0] / fitted[2]
+    ways = "clockwise" if fitted[2] < 0.0 else "anticlockwise"
+    only = "turning" if moves.sum() == 1 else "turning as one body"
+    return f"{who}, {only} {ways} about ({numbers.plain(x, 3)}, {numbers.plain(y, 3)}) {length}".rstrip()
+
+
+def reasons(item: CaseResults) -> list[str]:
+    """Why every other collapse state of the case parts from the least accepted one, a sentence each."""
+    states = [r for r in item.results if r.status is Status.OK and r.finding is Finding.COLLAPSES]
+    least = least_known(item)
+    if least is None or least.mechanism is None:
+        return []
+    assembly = item.case.assembly
+    measure = measure_of(assembly)
+    told: list[str] = []
+    agree = [other.method for other in states if other is not least and _same_value(least, other)]
+    if agree:
+        told.append(f"At the multiplier of {least.method}: {', '.join(agree)}.")
+    for other in states:
+        if other is least or other.mechanism is None or other.judge.accepted is False or _same_value(least, other):
+            continue
+        told.append(_reason(assembly, least, other, measure))
+    return told
+
+
+def least_known(item: CaseResults) -> Result | None:
+    """The least accepted collapse state without dilatancy, whichever method found it."""
+    states = [
+        result
+        for result in item.results
+        if result.status is Status.OK
+        and result.finding is Finding.COLLAPSES
+        and result.judge.accepted
+        and result.flow == "non-associated"
+        and result.multiplier is not None
+    ]
+    # Equal to rounding: prefer the one that is proved, then the family's main method.
+    best = min((result.multiplier or 0.0 for result in states), default=0.0)
+    near = [r for r in states if (r.multiplier or 0.0) <= best + 1e-9 * max(abs(best), 1e-300)]
+    return min(near, key=lambda r: (not r.details.get("proved_least"), r.family != "la", r.method), default=None)
+
+
+def _reason(assembly: Assembly, least: Result, other: Result, measure: FloatArray) -> str:
+    pair = agreement(assembly, least, other, measure)
+    same_motion = pair.cosine is not None and pair.cosine >= SAME_MOTION
+    head = f"{least.method} and {other.method} ({numbers.percent(pair.difference)})"
+    if same_motion:
+        return f"{head}: the same mechanism, other forces.{_friction(assembly, least, other)}"
+    clauses: list[str] = []
+    first, second = motion(assembly, least), motion(assembly, other)
+    if first is not None and second is not None:
+        for verb, a, b in (("slide", first.slides, second.slides), ("open", first.opens, second.opens)):
+            clauses.extend(_in_one(verb, least.method, a & ~b))
+            clauses.extend(_in_one(verb, other.method, b & ~a))
+    for method, blocks in ((least.method, pair.only_first), (other.method, pair.only_second)):
+        if blocks:
+            verb = "moves" if len(blocks) == 1 else "move"
+            clauses.append(f"{numbers.count(len(blocks), 'block')} {verb} in {method} only")
+    cosine = "" if pair.cosine is None else f" (cosine {numbers.plain(pair.cosine, 3)})"
+    what = f"mechanisms differ{cosine}"
+    return f"{head}: {what}{': ' + '; '.join(clauses) if clauses else ''}.{_friction(assembly, least, other)}"
+
+
+def _same_value(least: Result, other: Result) -> bool:
+    """Whether two multipliers are one to the digits printed; a measured value is its whole bracket."""
+    if least.multiplier is None or other.multiplier is None:
+        return False
+    pair = other.bracket if other.flow == "approximate" and other.bracket is not None else (other.multiplier,) * 2
+    near = SAME_VALUE * max(abs(least.multiplier), 1e-300)
+    return pair[0] - near <= least.multiplier <= pair[1] + near
+
+
+def _in_one(verb: str, method: str, joints: np.ndarray) -> list[str]:
+    number = int(joints.sum())
+    if not number:
+        return []
+    return [f"{numbers.count(number, 'joint')} {verb + 's' if number == 1 else verb} in {method} only"]
+
+
+def _friction(assembly: Assembly, first: Result, second: Result) -> str:
+    shares = [friction_share(assembly, result) for result in (first, second)]
+    if shares[0] is None or shares[1] is None:
+        return ""
+    return (
+        f" Friction takes {100.0 * shares[0]:.0f} % of the live load’s work in {first.method} "
+        f"and {100.0 * shares[1]:.0f} % in {second.method}."
+    )
+
+
+def _and(parts: list[str]) -> str:
+    return parts[0] if len(parts) == 1 else f"{', '.join(parts[:-1])} and {parts[-1]}"

@@ -1,0 +1,115 @@
+"""What the page opens with: findings of one wall, of the paper's and of a suite, and all that went wrong by name."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from harness.model.comparison import CaseResults, ComparisonRun
+from harness.model.method import Status
+from reports import drawing, opening, reasons
+from tests.reports import samples
+
+
+def of_one_wall(**more: object) -> CaseResults:
+    case = samples.bond("mine")
+    least = samples.solved(case, "la", 0.558, turn=0.5)
+    least.details.update(more)
+    return CaseResults(
+        case,
+        [
+            least,
+            samples.solved(case, "fe", 0.5652),
+            samples.solved(case, "la-associated", 0.584, flow="associated"),
+            samples.solved(case, "de", 0.47, flow="approximate", bracket=(0.45, 0.61)),
+        ],
+    )
+
+
+def test_one_wall_opens_with_its_multipliers_and_the_number_to_use():
+    opened = opening.opening(ComparisonRun("mine", "", "", [of_one_wall()]))
+    told = " ".join(opened.findings)
+    assert told.startswith("mine collapses at 0.55800 (LA, least known); FE 0.56520, DE [0.45000, 0.61000].")
+    assert "They part by 1.3 %: the mechanisms differ." in told, "a bracket that holds both parts nobody"
+    assert "For safety use 0.55800, the least multiplier of a collapse state that is known (la)" in opened.advice
+    assert "Never use 0.58400 (la-associated, 4.7 % above)" in opened.advice
+    assert opened.red == []
+    assert opened.figure.count("<path") == 4
+
+
+def test_least_is_the_minimum_only_where_it_is_proved():
+    proved = opening.which_number(of_one_wall(proved_least=True))
+    assert "proved to be the least multiplier of any collapse state" in proved
+    assert "minimum" not in opening.wall_findings(of_one_wall())
+    assert "minimum, proved" in opening.wall_findings(of_one_wall(proved_least=True))
+
+
+def test_rejected_state_is_never_the_number_to_use():
+    item = of_one_wall()
+    item.results[0].judge.accepted = False
+    assert reasons.least_known(item) is item.results[1]
+
+
+def test_suite_names_every_red_row_and_broken_theory_comes_first():
+    run = samples.typical()
+    opened = opening.opening(run)
+    assert opened.findings[0].startswith("Theory is violated on wall-21")
+    assert {row.name for row in opened.red} == {
+        "wall-21, theory",
+        "wall-21, de",
+        "wall-21, la-paper",
+        "wall-21, fe-qp",
+        "hostile, de",
+    }
+    assert any(finding.startswith("single-block collapses at 0.40000") for finding in opened.findings)
+    assert any("the mechanism is the same and the forces differ" in finding for finding in opened.findings)
+
+
+def test_case_that_only_failed_has_findings():
+    case = samples.bond("mine")
+    item = CaseResults(case, [samples.failed(case, "fe", Status.TIMEOUT, "late")])
+    opened = opening.opening(ComparisonRun("mine", "", "", [item]))
+    assert "no method gave an answer" in opened.findings[0]
+    assert opened.figure == ""
+    assert opened.advice == ""
+
+
+def test_one_body_that_turns_is_told_with_its_centre():
+    assembly = samples.bond().assembly
+    centre, mechanism = np.array([0.8, 0.0]), np.zeros((assembly.n_blocks, 3))
+    for block in assembly.free:
+        arm = assembly.centroid[block] - centre
+        mechanism[block] = (arm[1], -arm[0], -1.0)
+    told = reasons.mechanism_in_words(assembly, mechanism, "m")
+    assert (
+        f"{assembly.n_free} of {assembly.n_free} blocks move, turning as one body clockwise about (0.800, 0) m"
+        == (told.replace("(0.800, −0)", "(0.800, 0)"))
+        or "about (0.800, " in told
+    )
+    sliding = samples.sliding(assembly)
+    assert "sliding as one body" in reasons.mechanism_in_words(assembly, sliding, "m")
+
+
+def test_friction_takes_all_work_of_a_block_that_slides_on_level_ground():
+    case = samples.block()
+    result = samples.solved(case, "la", 0.4)
+    assembly = case.assembly
+    result.mechanism = [(1.0, 0.0, 0.0) if not fixed else (0.0, 0.0, 0.0) for fixed in assembly.fixed]
+    normal = 0.5 / assembly.n_interfaces
+    result.forces = [(normal / 2, normal / 2, 0.4 * normal)] * assembly.n_interfaces
+    assert reasons.friction_share(assembly, result) == pytest.approx(1.0, rel=1e-12)
+
+
+def test_reason_names_what_moves_in_one_only():
+    item = of_one_wall()
+    told = reasons.reasons(item)
+    assert told[0] == "At the multiplier of la: de."
+    assert told[1].startswith("la and fe (+1.29 %): mechanisms differ")
+    assert "in la only" in told[1]
+
+
+def test_overlay_draws_both_mechanisms():
+    item = of_one_wall()
+    drawn = drawing.mechanisms_svg(item.case, item.results[0], item.results[1])
+    assert 'class="other"' in drawn
+    assert drawn != drawing.mechanisms_svg(item.case, item.results[1], item.results[0])
