@@ -14,7 +14,7 @@ from harness.engine.judge import judge
 from harness.engine.symmetry import VIEWS
 from harness.model.assembly import Assembly
 from harness.model.build import build
-from harness.model.method import Finding, Method, Status, load_method, method_names
+from harness.model.method import Finding, Method, Status, load_method, method_names, traits_of
 from harness.model.result import Judgement, Result, result_of
 from harness.model.wall import Wall
 
@@ -66,16 +66,18 @@ def assembly_of(wall: dict[str, Any], name: str = "wall") -> Assembly:
 def answered(method: Method, assembly: Assembly, **settings: Any) -> tuple[Result, Judgement]:
     """What a method answers in this process, and what the judge says of it."""
     answer = method.solve(assembly, method.Settings.model_validate(settings))
-    result = result_of(answer, assembly, case=assembly.name, method=method.name, family=method.family)
+    result = result_of(
+        answer, assembly, case=assembly.name, method=method.name, family=method.family, traits=traits_of(method)
+    )
     return result, judge(assembly, result, method.tolerance)
 
 
 def slack_of(method: Method) -> float:
-    """Relative error a multiplier may have: 0.5 % for distinct elements, which measure, rounding for the others.
+    """Relative error a multiplier may have: 0.5 % for methods that measure between two loads, rounding for the others.
 
     A calculating method with a bracket conforms if that holds the value within the method's tolerance.
     """
-    return 5e-3 if method.family == "de" else 1e-8
+    return 5e-3 if traits_of(method).brackets else 1e-8
 
 
 def _closed_form(form: ClosedForm) -> Check:
@@ -92,7 +94,7 @@ def _fault(result: Result, judgement: Judgement, expected: float, slack: float) 
     if not judgement.accepted:
         return judgement.sentence
     assert result.multiplier is not None
-    if result.bracket is not None and result.family != "de":
+    if result.bracket is not None and not result.traits.brackets:
         low, high = result.bracket
         wider = judgement.tolerance * abs(expected)
         if low - wider <= expected <= high + wider and high - low <= WIDEST_BRACKET * abs(expected):

@@ -77,7 +77,7 @@ def _value(result: Result) -> str:
         return str(result.status).replace("_", " ")
     if result.finding is not Finding.COLLAPSES:
         return str(result.finding)
-    if result.family == "de" and result.bracket is not None:
+    if result.traits.brackets and result.bracket is not None:
         return f"[{_number(result.bracket[0], 5)}, {_number(result.bracket[1], 5)}]"
     return "-" if result.multiplier is None else _number(result.multiplier, 7)
 

@@ -219,8 +219,14 @@ def columns(run: ComparisonRun) -> list[Column]:
         for item in run.cases
         for result in item.results
     }
+    captions = {
+        result.method: result.traits.caption
+        for item in run.cases
+        for result in item.results
+        if result.traits.caption  # a run without an answer of its method tells none
+    }
     return [
-        Column(method, words.family_of(method, family), words.NUMBER_IS.get(method, ""))
+        Column(method, words.family_of(method, family), captions.get(method, ""))
         for method, family in sorted(found, key=lambda pair: found[pair])
     ]
 

@@ -32,20 +32,6 @@ FINDING: dict[Finding, str] = {
 
 FAMILY: dict[str, str] = {"fe": "Finite elements", "la": "Limit analysis", "de": "Distinct elements"}
 
-NUMBER_IS: dict[str, str] = {
-    "fe": "plateau of the traced path",
-    "fe-newton": "plateau, where it arrives",
-    "fe-qp": "plateau, by convex steps",
-    "la": "least known collapse state",
-    "la-associated": "associated maximum",
-    "la-associated-cvxpy": "associated maximum, in cvxpy",
-    "la-paper": "local optimum of the paper's programme",
-    "la-tresca": "fixed point of Tresca steps",
-    "la-from-fe": "least known, started from FE",
-    "de": "between held and moving",
-    "de-tilt": "as de, then released and followed",
-}
-
 STATE_LETTER: dict[str, str] = {"stick": "k", "slip": "s", "rock": "r", "open": "o"}
 
 PURPOSE: dict[str, tuple[str, tuple[ReferenceType, ...], str]] = {

@@ -20,7 +20,6 @@ from harness.model.method import Status
 from harness.model.reading import read_json, validate
 from harness.model.result import Result
 
-SEEKS_LEAST = ("la", "la-from-fe", "la-paper", "la-tresca")
 ROUNDING = 1e-8
 """Relative change of a multiplier that counts as none: what differs between processors and library builds."""
 
@@ -86,7 +85,7 @@ def value_of(result: Result) -> Value:
     return Value(status=status, finding=str(result.finding), multiplier=result.multiplier, bracket=result.bracket)
 
 
-def change(method: str, old: Value | None, new: Value) -> tuple[Change, str]:
+def change(old: Value | None, new: Value, *, seeks_least: bool) -> tuple[Change, str]:
     """How a value stands to the recorded one, with the figures."""
     if old is None:
         return Change.NEW, _text(new)
@@ -102,7 +101,7 @@ def change(method: str, old: Value | None, new: Value) -> tuple[Change, str]:
     difference = new.multiplier - old.multiplier
     if abs(difference) <= ROUNDING * max(1.0, abs(old.multiplier)):
         return Change.SAME, _text(new)
-    better = method in SEEKS_LEAST and difference < 0.0
+    better = seeks_least and difference < 0.0
     return (Change.BETTER if better else Change.WORSE), f"{_text(old)} -> {_text(new)} ({difference:+.2g})"
 
 
@@ -121,7 +120,7 @@ def compare_with(baseline: Baseline, runs: Sequence[Run], results: Sequence[Resu
         if run.settings:
             continue
         old = baseline.values.get(run.case.id, {}).get(run.method)
-        kind, figures = change(run.method, old, value_of(result))
+        kind, figures = change(old, value_of(result), seeks_least=result.traits.seeks_least)
         rows.append({"case": run.case.id, "method": run.method, "change": str(kind), "figures": figures})
     return rows
 

@@ -26,7 +26,7 @@ from harness.engine import preload, worker
 from harness.engine.provenance import machine, versions
 from harness.engine.threads import pin
 from harness.engine.worker import Task
-from harness.model.method import Answer, Finding, Status
+from harness.model.method import Answer, Finding, Status, Traits
 from harness.model.result import Result, result_of
 
 LOOK_SECONDS, LOOKS_AT_CHILDREN = 0.05, 10
@@ -318,6 +318,7 @@ class _UnderWay:
             case=self.case,
             method=task.method,
             family=record.get("family") or task.method.split("-", maxsplit=1)[0],
+            traits=Traits.model_validate(record.get("traits") or {}),
         )
         update = {
             "cpu_seconds": record["cpu_seconds"],

@@ -101,11 +101,10 @@ def theory_gates(results: CaseResults) -> list[Gate]:
     }
     gates: list[Gate] = []
 
-    def below(name: str, statement: str, low: str, high: str) -> None:
-        if low not in usable or high not in usable:
+    def below(name: str, statement: str, lower: Result, upper: Result | None) -> None:
+        if upper is None:
             return
-        lower, upper = usable[low], usable[high]
-        value = lower.bracket[0] if lower.family == "de" and lower.bracket is not None else lower.multiplier
+        value = lower.bracket[0] if lower.traits.brackets and lower.bracket is not None else lower.multiplier
         if value is None or upper.multiplier is None:
             return
         slack = BOUND_TOLERANCE * max(1.0, abs(upper.multiplier))
@@ -114,35 +113,26 @@ def theory_gates(results: CaseResults) -> list[Gate]:
                 name=name,
                 statement=statement,
                 passed=value <= upper.multiplier + slack,
-                sentence=f"{low} {value:.9g}, {high} {upper.multiplier:.9g}",
+                sentence=f"{lower.method} {value:.9g}, {upper.method} {upper.multiplier:.9g}",
             )
         )
 
+    bounding = next((usable[name] for name in sorted(usable) if usable[name].traits.bounds_above), None)
+    least = next((item for item in usable.values() if item.traits.seeks_least and item.method == item.family), None)
     for method in sorted(usable):
-        if method.startswith("la-associated"):
+        result = usable[method]
+        if result.traits.bounds_above:
             continue
-        if usable[method].family == "de":
-            below(
-                "de-held-below-associated",
-                "a held state is in equilibrium within yield, so it lies below the associated maximum",
-                method,
-                "la-associated",
-            )
+        if result.traits.brackets:
+            statement = "a held state is in equilibrium within yield, so it lies below the associated maximum"
+            below(f"{result.family}-held-below-associated", statement, result, bounding)
         else:
-            below(
-                f"{method}-below-associated",
-                "every collapse state lies below the associated maximum",
-                method,
-                "la-associated",
-            )
-        if usable[method].family != "de" and method != "la":
-            below(
-                f"la-below-{method}",
-                "the least collapse state known lies below every other collapse state",
-                "la",
-                method,
-            )
-    no_equilibrium = usable.get("la-associated") or usable.get("la")
+            statement = "every collapse state lies below the associated maximum"
+            below(f"{method}-below-associated", statement, result, bounding)
+        if least is not None and result is not least and not result.traits.brackets:
+            statement = "the least collapse state known lies below every other collapse state"
+            below(f"{least.method}-below-{method}", statement, least, result)
+    no_equilibrium = bounding or least
     if no_equilibrium is not None and no_equilibrium.finding is Finding.FALLS:
         for method, result in usable.items():
             if result.finding is Finding.FALLS:

@@ -30,7 +30,7 @@ import scipy.sparse.linalg  # noqa: F401  (preloaded for the methods)
 
 from harness.model.assembly import Assembly
 from harness.model.errors import InputError
-from harness.model.method import Answer, Finding, Method, OutOfTime, Status, load_method
+from harness.model.method import Answer, Finding, Method, OutOfTime, Status, load_method, traits_of
 from harness.model.reading import validate
 
 LAST_WORDS = (0.05, 5.0)
@@ -131,6 +131,7 @@ def _record(task: Task, method: Method | None, failure: Answer | None) -> dict[s
     return {
         "answer": _plain(answer),
         "family": getattr(method, "family", ""),
+        "traits": traits_of(method).model_dump(),
         "tolerance": getattr(method, "tolerance", 0.0),
         "settings": settings,
         "cpu_seconds": cpu,

@@ -45,14 +45,15 @@ class CaseResults:
     def split_on_dead_load(self) -> str:
         """Which methods say that the wall falls under its dead load and which that it stands; empty if they agree."""
         answered = [result for result in self.results if result.status is Status.OK]
-        fall = {result.method: result.family for result in answered if result.finding is Finding.FALLS}
+        fall = {result.method: result.traits for result in answered if result.finding is Finding.FALLS}
         stand = {
-            result.method: result.family for result in answered if result.finding not in (Finding.FALLS, Finding.NONE)
+            result.method: result.traits for result in answered if result.finding not in (Finding.FALLS, Finding.NONE)
         }
         if not fall or not stand:
             return ""
         who = f"Under the dead load the wall falls for {', '.join(fall)} and stands for {', '.join(stand)}"
-        if set(stand.values()) != {"la"} or "la" in fall.values():
+        by_self_stress = all(traits.any_self_stress for traits in stand.values())
+        if not by_self_stress or any(traits.any_self_stress for traits in fall.values()):
             return f"{who}: it may be at the limit of standing, or one of them is wrong"
         return (
             f"{who}. Limit analysis lets the joints carry any self-stress that statics and friction allow; springs "

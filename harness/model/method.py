@@ -6,9 +6,9 @@ from dataclasses import dataclass, field
 from enum import StrEnum
 from functools import cache
 from importlib.metadata import EntryPoint, entry_points
-from typing import Any, ClassVar, Protocol
+from typing import Any, ClassVar, Literal, Protocol
 
-from pydantic import BaseModel, ConfigDict
+from pydantic import BaseModel, ConfigDict, Field
 
 from harness.model.assembly import Assembly, FloatArray
 from harness.model.errors import InputError
@@ -90,6 +90,32 @@ class Settings(BaseModel):
     model_config = ConfigDict(frozen=True, extra="forbid", allow_inf_nan=False, ser_json_inf_nan="constants")
 
 
+class Traits(BaseModel):
+    """What the numbers of a method are, and how curves of them are drawn: said by the method itself.
+
+    Attributes:
+        caption: what its multiplier is, in a few words for the head of a column; empty: nothing is said.
+        brackets: its multiplier is measured and lies between the ends of its bracket, a load held and one that moved;
+            shown as the bracket, and held against exact values to 0.5 %.
+        seeks_least: it looks for the least collapse state, so that a lower accepted value is a better one.
+        bounds_above: no wall bears more than its multiplier, whatever the flow: the associated maximum.
+        any_self_stress: it lets joints carry any self-stress that statics and friction allow; others start without.
+        colour: of its curves, as "#rrggbb"; empty: the drawing chooses.
+        marker: of its points, by the name matplotlib gives it; empty: the drawing chooses.
+        line: "solid", "dashed", "dotted" or "dashdot".
+    """
+
+    model_config = ConfigDict(frozen=True, extra="forbid")
+    caption: str = ""
+    brackets: bool = False
+    seeks_least: bool = False
+    bounds_above: bool = False
+    any_self_stress: bool = False
+    colour: str = Field(default="", pattern="^(#[0-9a-f]{6})?$")
+    marker: str = ""
+    line: Literal["solid", "dashed", "dotted", "dashdot"] = "solid"
+
+
 class Method(Protocol):
     """A method: found by name through the entry-point group `drystone.methods`.
 
@@ -99,6 +125,9 @@ class Method(Protocol):
         title: a few words for the head of a column.
         tolerance: the largest relative residual the judge may find in an answer of this method
         Settings: the class of its settings; its defaults are what `drystone compare` runs.
+
+    A method says what its numbers are by `traits = Traits(...)` (a class attribute; without it nothing is said).
+    They travel with each result, so that whoever shows results need not load the method.
 
     A method whose library keeps something from one run to the next says `fresh_process = True` (a class attribute that
     others leave out): each of its runs then has a process of its own.
@@ -113,6 +142,12 @@ class Method(Protocol):
     def solve(self, assembly: Assembly, settings: Any) -> Answer:
         """Answer for this assembly. May raise; the engine turns any exception into a row with a sentence."""
         ...
+
+
+def traits_of(method: Method | None) -> Traits:
+    """What a method says of its numbers; nothing where it does not, or where there is no method."""
+    traits: Traits = getattr(method, "traits", Traits())
+    return traits
 
 
 GROUP = "drystone.methods"

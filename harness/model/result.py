@@ -9,7 +9,7 @@ import numpy as np
 from pydantic import BaseModel, ConfigDict, Field
 
 from harness.model.assembly import Assembly, FloatArray
-from harness.model.method import Answer, Finding, Status
+from harness.model.method import Answer, Finding, Status, Traits
 
 
 class Verdict(StrEnum):
@@ -90,6 +90,7 @@ class Result(BaseModel):
     machine: dict[str, Any] = Field(default_factory=dict)
     started: str = ""
     flow: str = "non-associated"
+    traits: Traits = Field(default_factory=Traits)
     forces_multiplier: float | None = None
     path: dict[str, list[float]] = Field(default_factory=dict)
     details: dict[str, Any] = Field(default_factory=dict)
@@ -156,8 +157,10 @@ def contact_states(assembly: Assembly, mechanism: FloatArray | None) -> list[str
     return [str(item) for item in state]
 
 
-def result_of(answer: Answer, assembly: Assembly, *, case: str, method: str, family: str) -> Result:
-    """The result an answer makes before it is judged, compared and measured."""
+def result_of(
+    answer: Answer, assembly: Assembly, *, case: str, method: str, family: str, traits: Traits | None = None
+) -> Result:
+    """The result an answer makes before it is judged, compared and measured; `traits` are those of its method."""
     mechanism = (
         None if answer.mechanism is None else normalised_mechanism(assembly, np.asarray(answer.mechanism, float))
     )
@@ -177,6 +180,7 @@ def result_of(answer: Answer, assembly: Assembly, *, case: str, method: str, fam
         iterations=int(answer.iterations),
         unknowns=int(unknowns) if unknowns is not None else None,
         flow=answer.flow,
+        traits=traits or Traits(),
         forces_multiplier=answer.multiplier if answer.forces_multiplier is None else answer.forces_multiplier,
         path=answer.path,
         details=answer.details,

@@ -7,7 +7,7 @@ from typing import ClassVar
 import numpy as np
 
 from harness.model.assembly import Assembly, IntArray
-from harness.model.method import Answer, Finding, Settings, Status
+from harness.model.method import Answer, Finding, Settings, Status, Traits
 from methods.de.answer import solve_by_holds
 from methods.de.courses import Tuning
 from methods.de.mujoco_wall import MujocoWall, SolverFailed, load_mujoco, mujoco_tunings
@@ -24,6 +24,12 @@ class DampedHolds:
     family: ClassVar[str] = "de"
     title: ClassVar[str] = "distinct elements (pymunk, damped holds)"
     tolerance: ClassVar[float] = 1e-6
+    traits: ClassVar[Traits] = Traits(
+        caption="between held and moving",
+        brackets=True,
+        colour="#2f6b3a",
+        marker="d",
+    )
     Settings: ClassVar[type[Settings]] = HoldSettings
 
     def solve(self, assembly: Assembly, settings: HoldSettings) -> Answer:
@@ -45,6 +51,13 @@ class MujocoHolds:
     family: ClassVar[str] = "de"
     title: ClassVar[str] = "distinct elements (MuJoCo, damped holds)"
     tolerance: ClassVar[float] = 1e-4
+    traits: ClassVar[Traits] = Traits(
+        caption="between held and moving, in MuJoCo",
+        brackets=True,
+        colour="#2f6b3a",
+        marker="<",
+        line="dashed",
+    )
     Settings: ClassVar[type[Settings]] = MujocoSettings
 
     def solve(self, assembly: Assembly, settings: MujocoSettings) -> Answer:
@@ -76,6 +89,13 @@ class ReleasedCollapse:
     family: ClassVar[str] = "de"
     title: ClassVar[str] = "distinct elements, released after the bracket"
     tolerance: ClassVar[float] = 1e-6
+    traits: ClassVar[Traits] = Traits(
+        caption="as de, then released and followed",
+        brackets=True,
+        colour="#2f6b3a",
+        marker=">",
+        line="dotted",
+    )
     Settings: ClassVar[type[Settings]] = ReleaseSettings
 
     def solve(self, assembly: Assembly, settings: ReleaseSettings) -> Answer:

@@ -14,7 +14,7 @@ from typing import Any, ClassVar
 from pydantic import Field
 
 from harness.model.assembly import Assembly
-from harness.model.method import Answer, Finding, Settings, Status, load_method
+from harness.model.method import Answer, Finding, Settings, Status, Traits, load_method
 from methods.de.gapped import GappedWall, load_gapped
 from methods.de.imperfect import BRACKET_MEANING, UnevenSettings
 from methods.de.loading import REACH
@@ -42,6 +42,13 @@ class ClosedContacts:
     family: ClassVar[str] = "de"
     title: ClassVar[str] = "distinct elements find contacts and gaps, FE loads them"
     tolerance: ClassVar[float] = 1e-6
+    traits: ClassVar[Traits] = Traits(
+        caption="plateau over the contacts that closed",
+        brackets=True,
+        colour="#2f6b3a",
+        marker="p",
+        line="dashed",
+    )
     Settings: ClassVar[type[Settings]] = ClosedSettings
 
     def solve(self, assembly: Assembly, settings: ClosedSettings) -> Answer:

@@ -7,7 +7,7 @@ from typing import ClassVar
 from pydantic import Field
 
 from harness.model.assembly import Assembly
-from harness.model.method import Answer, Finding, Settings, Status
+from harness.model.method import Answer, Finding, Settings, Status, Traits
 from methods.de.defects import Faces
 from methods.de.uneven import load_uneven
 
@@ -44,6 +44,13 @@ class UnevenBlocks:
     family: ClassVar[str] = "de"
     title: ClassVar[str] = "distinct elements, uneven blocks"
     tolerance: ClassVar[float] = 1e-6
+    traits: ClassVar[Traits] = Traits(
+        caption="between held and moving, uneven blocks",
+        brackets=True,
+        colour="#2f6b3a",
+        marker="h",
+        line="dashdot",
+    )
     Settings: ClassVar[type[Settings]] = UnevenSettings
 
     def solve(self, assembly: Assembly, settings: UnevenSettings) -> Answer:

@@ -14,7 +14,7 @@ import numpy as np
 from pydantic import Field
 
 from harness.model.assembly import Assembly, FloatArray
-from harness.model.method import Answer, Finding, OutOfTime, Settings, Status
+from harness.model.method import Answer, Finding, OutOfTime, Settings, Status, Traits
 from methods.de.bracket import LOOSE
 from methods.de.courses import courses, number_of_courses
 from methods.de.hold import State, goes_on
@@ -152,6 +152,13 @@ class DeformableJoints:
     family: ClassVar[str] = "de"
     title: ClassVar[str] = "distinct elements, deformable joints"
     tolerance: ClassVar[float] = 1e-5
+    traits: ClassVar[Traits] = Traits(
+        caption="between held and moving, joints that give",
+        brackets=True,
+        colour="#2f6b3a",
+        marker="*",
+        line="dotted",
+    )
     Settings: ClassVar[type[Settings]] = SoftSettings
 
     def solve(self, assembly: Assembly, settings: SoftSettings) -> Answer:

@@ -9,7 +9,7 @@ from typing import Any, ClassVar
 import numpy as np
 
 from harness.model.assembly import Assembly
-from harness.model.method import Answer, Finding, Settings, Status
+from harness.model.method import Answer, Finding, Settings, Status, Traits
 from methods.fe.answers import (
     bracket_answer,
     collapse_answer,
@@ -53,6 +53,11 @@ class GapSprings:
     family: ClassVar[str] = "fe"
     title: ClassVar[str] = "FE, exact continuation"
     tolerance: ClassVar[float] = 1e-8
+    traits: ClassVar[Traits] = Traits(
+        caption="plateau of the traced path",
+        colour="#1f4e79",
+        marker="o",
+    )
     Settings: ClassVar[type[Settings]] = GapSpringsSettings
 
     def solve(self, assembly: Assembly, settings: Any) -> Answer:
@@ -135,6 +140,12 @@ class IncrementalNewton:
     family: ClassVar[str] = "fe"
     title: ClassVar[str] = "FE, incremental Newton"
     tolerance: ClassVar[float] = 1e-8
+    traits: ClassVar[Traits] = Traits(
+        caption="plateau, where it arrives",
+        colour="#1f4e79",
+        marker="x",
+        line="dashed",
+    )
     Settings: ClassVar[type[Settings]] = NewtonSettings
 
     def solve(self, assembly: Assembly, settings: Any) -> Answer:
@@ -172,6 +183,12 @@ class ConvexSteps:
     family: ClassVar[str] = "fe"
     title: ClassVar[str] = "FE, convex steps"
     tolerance: ClassVar[float] = 1e-3
+    traits: ClassVar[Traits] = Traits(
+        caption="plateau, by convex steps",
+        colour="#1f4e79",
+        marker="+",
+        line="dotted",
+    )
     Settings: ClassVar[type[Settings]] = ConvexSettings
 
     def solve(self, assembly: Assembly, settings: Any) -> Answer:

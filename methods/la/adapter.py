@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Any, ClassVar
 
 from harness.model.assembly import Assembly
-from harness.model.method import Answer, Settings
+from harness.model.method import Answer, Settings, Traits
 from methods.la.associated_adapter import AssociatedLimitAnalysis, AssociatedLimitAnalysisCvxpy
 from methods.la.extra_adapters import FromFiniteElements, PaperProgramme, TrescaSequence
 from methods.la.family import LimitAnalysisFamily
@@ -33,6 +33,13 @@ class LimitAnalysis(LimitAnalysisFamily):
     name: ClassVar[str] = "la"
     title: ClassVar[str] = "LA, least known"
     tolerance: ClassVar[float] = 1e-10
+    traits: ClassVar[Traits] = Traits(
+        caption="least known collapse state",
+        seeks_least=True,
+        any_self_stress=True,
+        colour="#a8431e",
+        marker="s",
+    )
     Settings: ClassVar[type[Settings]] = SearchSettings
 
     def answer(self, assembly: Assembly, problem: Problem, newton: NewtonMatrix, settings: Any) -> Answer:

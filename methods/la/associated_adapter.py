@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Any, ClassVar
 
 from harness.model.assembly import Assembly
-from harness.model.method import Answer, Settings
+from harness.model.method import Answer, Settings, Traits
 from methods.la.answers import collapse_answer, not_converged, unbounded_answer
 from methods.la.associated import AssociatedResult, solve_associated, solve_with_cvxpy, with_mechanism
 from methods.la.family import LimitAnalysisFamily
@@ -20,6 +20,14 @@ class AssociatedLimitAnalysis(LimitAnalysisFamily):
     name: ClassVar[str] = "la-associated"
     title: ClassVar[str] = "LA, associated (greatest)"
     tolerance: ClassVar[float] = 1e-9
+    traits: ClassVar[Traits] = Traits(
+        caption="associated maximum",
+        bounds_above=True,
+        any_self_stress=True,
+        colour="#7a3b69",
+        marker="^",
+        line="dashed",
+    )
     Settings: ClassVar[type[Settings]] = AssociatedSettings
 
     def answer(self, assembly: Assembly, problem: Problem, newton: NewtonMatrix, settings: Any) -> Answer:
@@ -33,6 +41,14 @@ class AssociatedLimitAnalysisCvxpy(LimitAnalysisFamily):
     name: ClassVar[str] = "la-associated-cvxpy"
     title: ClassVar[str] = "LA, associated (cvxpy)"
     tolerance: ClassVar[float] = 1e-9
+    traits: ClassVar[Traits] = Traits(
+        caption="associated maximum, in cvxpy",
+        bounds_above=True,
+        any_self_stress=True,
+        colour="#7a3b69",
+        marker="v",
+        line="dotted",
+    )
     Settings: ClassVar[type[Settings]] = CvxpySettings
 
     def answer(self, assembly: Assembly, problem: Problem, newton: NewtonMatrix, settings: Any) -> Answer:

@@ -7,7 +7,7 @@ from typing import Any, ClassVar
 import numpy as np
 
 from harness.model.assembly import Assembly
-from harness.model.method import Answer, Finding, Settings, Status, load_method
+from harness.model.method import Answer, Finding, Settings, Status, Traits, load_method
 from methods.la.answers import NO_MOTION, collapse_answer, not_converged, unbounded_answer
 from methods.la.associated import solve_associated
 from methods.la.cooperation import project_forces
@@ -41,6 +41,14 @@ class PaperProgramme(LimitAnalysisFamily):
     name: ClassVar[str] = "la-paper"
     title: ClassVar[str] = "LA, programme of 1995"
     tolerance: ClassVar[float] = 1e-9
+    traits: ClassVar[Traits] = Traits(
+        caption="local optimum of the paper's programme",
+        seeks_least=True,
+        any_self_stress=True,
+        colour="#a8431e",
+        marker="P",
+        line="dotted",
+    )
     Settings: ClassVar[type[Settings]] = PaperSettings
 
     def answer(self, assembly: Assembly, problem: Problem, newton: NewtonMatrix, settings: Any) -> Answer:
@@ -100,6 +108,14 @@ class TrescaSequence(LimitAnalysisFamily):
     name: ClassVar[str] = "la-tresca"
     title: ClassVar[str] = "LA, friction-bound sequence"
     tolerance: ClassVar[float] = 1e-8
+    traits: ClassVar[Traits] = Traits(
+        caption="fixed point of Tresca steps",
+        seeks_least=True,
+        any_self_stress=True,
+        colour="#a8431e",
+        marker="X",
+        line="dashdot",
+    )
     Settings: ClassVar[type[Settings]] = TrescaSettings
 
     def answer(self, assembly: Assembly, problem: Problem, newton: NewtonMatrix, settings: Any) -> Answer:
@@ -139,6 +155,14 @@ class FromFiniteElements(LimitAnalysisFamily):
     name: ClassVar[str] = "la-from-fe"
     title: ClassVar[str] = "LA started from FE"
     tolerance: ClassVar[float] = 1e-10
+    traits: ClassVar[Traits] = Traits(
+        caption="least known, started from FE",
+        seeks_least=True,
+        any_self_stress=True,
+        colour="#a8431e",
+        marker="D",
+        line="dashed",
+    )
     Settings: ClassVar[type[Settings]] = FromFeSettings
 
     def answer(self, assembly: Assembly, problem: Problem, newton: NewtonMatrix, settings: Any) -> Answer:

@@ -26,20 +26,20 @@ def value(multiplier: float | None = None, **more) -> Value:
     ],
 )
 def test_lower_is_better_only_for_methods_that_seek_the_least(method, old, new, expected):
-    assert change(method, value(old), value(new))[0] is expected
+    assert change(value(old), value(new), seeks_least=method.startswith("la"))[0] is expected
 
 
 def test_brackets_must_meet():
     one, two, three = value(bracket=(0.4, 0.5)), value(bracket=(0.45, 0.55)), value(bracket=(0.51, 0.6))
-    assert change("de", one, two)[0] is Change.SAME
-    assert change("de", one, three)[0] is Change.WORSE
+    assert change(one, two, seeks_least=False)[0] is Change.SAME
+    assert change(one, three, seeks_least=False)[0] is Change.WORSE
 
 
 def test_answer_where_there_was_none_is_better_and_the_reverse_is_worse():
     failed = value(status=Status.TIMEOUT)
-    assert change("fe", failed, value(0.5))[0] is Change.BETTER
-    assert change("fe", value(0.5), failed)[0] is Change.WORSE
-    assert change("fe", None, value(0.5))[0] is Change.NEW
+    assert change(failed, value(0.5), seeks_least=False)[0] is Change.BETTER
+    assert change(value(0.5), failed, seeks_least=False)[0] is Change.WORSE
+    assert change(None, value(0.5), seeks_least=False)[0] is Change.NEW
 
 
 def test_file_keeps_values_and_history(tmp_path: Path):

@@ -22,7 +22,7 @@ from harness.engine.verdict import compare, theory_gates
 from harness.model.case import Reference
 from harness.model.comparison import CaseResults
 from harness.model.errors import InputError
-from harness.model.method import Finding, Status
+from harness.model.method import Finding, Status, Traits
 from harness.model.result import Judgement, Result, Verdict
 from tests.walls import case, stack
 
@@ -41,6 +41,13 @@ def reference(**changes: Any) -> Reference:
     return Reference.model_validate(data | changes)
 
 
+TRAITS = {
+    "la": Traits(seeks_least=True, any_self_stress=True),
+    "la-associated": Traits(bounds_above=True, any_self_stress=True),
+    "de": Traits(brackets=True),
+}
+
+
 def result(method: str = "la", multiplier: float | None = 0.5, **changes: Any) -> Result:
     data: dict[str, Any] = {
         "case": "made-up",
@@ -53,6 +60,7 @@ def result(method: str = "la", multiplier: float | None = 0.5, **changes: Any) -
         "blocks": 1,
         "interfaces": 1,
         "judge": Judgement(accepted=True),
+        "traits": TRAITS.get(method, Traits()),
     }
     return Result.model_validate(data | changes)
 
@@ -241,3 +249,24 @@ def test_what_many_runs_share_is_kept_once_and_fields_are_small(tmp_path: Path):
     (size,) = connection.execute("SELECT max(length(result) + length(fields)) FROM run").fetchone()
     connection.close()
     assert size < len(made.model_dump_json()) / 3
+
+
+def test_gates_go_by_what_methods_say_of_themselves_and_not_by_names():
+    bounding = result("ceiling", 0.6, traits=Traits(bounds_above=True))
+    least = result("floor", 0.5, traits=Traits(seeks_least=True))
+    held = result("measured", 0.65, bracket=(0.55, 0.75), traits=Traits(brackets=True))
+    assert gates(bounding, least, held, result("path", 0.7)) == {
+        "floor-below-associated": True,
+        "measured-held-below-associated": True,
+        "path-below-associated": False,
+        "floor-below-path": True,
+    }
+
+
+def test_what_a_method_says_of_itself_comes_back_from_its_own_process_and_the_store(tmp_path: Path):
+    run = Run(case(stack(1)), "la-associated", {}, Limits(seconds=60.0))
+    with open_store(tmp_path / "s.sqlite") as store:
+        made, kept = (execute([run], store, 1)[0].traits for _ in range(2))
+    assert made == kept
+    assert made.bounds_above
+    assert made.caption == "associated maximum"

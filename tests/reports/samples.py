@@ -9,7 +9,7 @@ import numpy as np
 from harness.model.assembly import Assembly, FloatArray
 from harness.model.case import Case, CaseFile
 from harness.model.comparison import CaseResults, ComparisonRun, Gate
-from harness.model.method import Answer, Finding, Status
+from harness.model.method import Answer, Finding, Status, Traits
 from harness.model.reading import parse_wall
 from harness.model.result import Comparison, Judgement, Result, Verdict, result_of
 
@@ -25,6 +25,12 @@ FAMILY = {
     "la-tresca": "la",
     "fe-qp": "fe",
 } | {"fe-newton": "fe"}
+TRAITS = {
+    "fe": Traits(caption="plateau of the traced path"),
+    "la": Traits(caption="least known collapse state", seeks_least=True, any_self_stress=True),
+    "la-associated": Traits(caption="associated maximum", bounds_above=True, any_self_stress=True),
+    "de": Traits(caption="between held and moving", brackets=True),
+}
 
 
 def bond(
@@ -130,7 +136,9 @@ def solved(case: Case, method: str, multiplier: float, *, cpu: float = 0.5, turn
         iterations=7,
         **more,
     )
-    result = result_of(answer, assembly, case=case.id, method=method, family=FAMILY.get(method, method))
+    result = result_of(
+        answer, assembly, case=case.id, method=method, family=FAMILY.get(method, method), traits=TRAITS.get(method)
+    )
     result.judge = Judgement(
         residuals={"equilibrium": 3e-16, "yield": 0.0, "live_work": 0.4},
         tolerance=1e-8,
@@ -149,6 +157,7 @@ def failed(case: Case, method: str, status: Status, sentence: str) -> Result:
         case=case.id,
         method=method,
         family=FAMILY.get(method, method),
+        traits=TRAITS.get(method),
     )
     measured(result, 60.0)
     return result
