@@ -7,6 +7,7 @@ import hashlib
 import json
 import os
 import tempfile
+from dataclasses import replace
 from datetime import datetime
 from importlib.resources import files
 from pathlib import Path
@@ -21,7 +22,7 @@ from reports.drawing import case_data, fields_drawn, force_unit, result_data, wa
 from reports.environment import environment
 from reports.export import export
 from reports.limits import KNOWN_LIMITS
-from reports.opening import opening
+from reports.opening import in_order, opening
 from reports.sections import CaseSection, case_section
 from reports.studies import studies
 
@@ -58,7 +59,9 @@ def render(run: ComparisonRun, *, data_folder: str) -> str:
         run: the comparison.
         data_folder: name of the folder with the data, for the text.
     """
+    run = replace(run, cases=in_order(run.cases))
     rows = tables.run_rows(run)
+    shown = tables.overview_columns(run)
     scripts = [_static(name) for name in ("table.js", "draw.js")]
     fields = fields_drawn(run, DRAWING_BUDGET)
     template = environment().get_template("report.html.j2")
@@ -68,7 +71,8 @@ def render(run: ComparisonRun, *, data_folder: str) -> str:
         opening=opening(run),
         findings=tables.findings(run),
         columns=tables.columns(run),
-        matrix=_matrix(rows, tables.columns(run)),
+        shown=shown,
+        matrix=_matrix(rows, shown),
         rows=[row for case_rows in rows for row in case_rows],
         failures=tables.failures(row for case_rows in rows for row in case_rows),
         failed_runs=sum(row.failed or row.judged == "rejected" for case_rows in rows for row in case_rows),

@@ -75,6 +75,21 @@ def opening(run: ComparisonRun) -> Opening:
     )
 
 
+def in_order(items: list[CaseResults]) -> list[CaseResults]:
+    """Cases as a reader wants them: their own walls (of which no reference is known), the paper's, those on which
+    methods part or something went wrong, the rest."""
+
+    def rank(item: CaseResults) -> int:
+        if shapes.problem(item.case) or not item.case.file.references:
+            return 0
+        if item.case.id in (paper.BLOCK, paper.WALL):
+            return 1
+        wrong = any(gate.passed is False for gate in item.gates) or any(_wrong(result) for result in item.results)
+        return 2 if wrong or (_spread(item) or 0.0) > CLOSE else 3
+
+    return sorted(items, key=rank)
+
+
 def red_rows(run: ComparisonRun) -> list[RedRow]:
     """Failed and rejected runs, values that miss a reference, statements of theory that do not hold."""
     rows: list[RedRow] = []

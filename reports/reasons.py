@@ -107,7 +107,7 @@ def mechanism_in_words(assembly: Assembly, mechanism: FloatArray, length: str) -
     size = shapes.extent(assembly).longest
     if abs(fitted[2]) * size < 0.02 * float(np.hypot(*mechanism[moves, :2].T).max()):
         return f"{who}, sliding as one body"
-    x, y = -fitted[1] / fitted[2], fitted[0] / fitted[2]
+    x, y = (value if abs(value) > 1e-9 * size else 0.0 for value in (-fitted[1] / fitted[2], fitted[0] / fitted[2]))
     ways = "clockwise" if fitted[2] < 0.0 else "anticlockwise"
     only = "turning" if moves.sum() == 1 else "turning as one body"
     return f"{who}, {only} {ways} about ({numbers.plain(x, 3)}, {numbers.plain(y, 3)}) {length}".rstrip()
@@ -152,7 +152,7 @@ def least_known(item: CaseResults) -> Result | None:
 def _reason(assembly: Assembly, least: Result, other: Result, measure: FloatArray) -> str:
     pair = agreement(assembly, least, other, measure)
     same_motion = pair.cosine is not None and pair.cosine >= SAME_MOTION
-    head = f"{least.method} and {other.method} ({numbers.percent(pair.difference)})"
+    head = f"{least.method} and {other.method} ({_difference(least, other)})"
     if same_motion:
         return f"{head}: the same mechanism, other forces.{_friction(assembly, least, other)}"
     clauses: list[str] = []
@@ -177,6 +177,16 @@ def _same_value(least: Result, other: Result) -> bool:
     pair = other.bracket if other.flow == "approximate" and other.bracket is not None else (other.multiplier,) * 2
     near = SAME_VALUE * max(abs(least.multiplier), 1e-300)
     return pair[0] - near <= least.multiplier <= pair[1] + near
+
+
+def _difference(least: Result, other: Result) -> str:
+    """How far another multiplier is from the least, in percent; of a measured value, both ends of its bracket."""
+    base = least.multiplier
+    if not base or other.multiplier is None:
+        return numbers.NOTHING
+    if other.flow == "approximate" and other.bracket is not None:
+        return " to ".join(numbers.percent(end / base - 1.0) for end in other.bracket)
+    return numbers.percent(other.multiplier / base - 1.0)
 
 
 def _in_one(verb: str, method: str, joints: np.ndarray) -> list[str]:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from collections import Counter
 from collections.abc import Iterable
 from dataclasses import dataclass
 from typing import Any
@@ -123,6 +124,8 @@ def _multiplier_cell(result: Result) -> Cell:
         return Cell(words.STATUS[result.status][1])
     if result.multiplier is None:
         return Cell(words.FINDING[result.finding])
+    if result.flow == "approximate" and result.bracket is not None:
+        return Cell(numbers.interval(result.bracket), numbers.every_digit(result.bracket), result.multiplier)
     return Cell(numbers.multiplier(result.multiplier), repr(result.multiplier), result.multiplier)
 
 
@@ -229,6 +232,12 @@ def columns(run: ComparisonRun) -> list[Column]:
         Column(method, words.family_of(method, family), captions.get(method, ""))
         for method, family in sorted(found, key=lambda pair: found[pair])
     ]
+
+
+def overview_columns(run: ComparisonRun) -> list[Column]:
+    """The methods that were run on at least a third of the cases: the others would be columns of blanks."""
+    runs = Counter(result.method for item in run.cases for result in item.results)
+    return [column for column in columns(run) if 3 * runs[column.method] >= len(run.cases)]
 
 
 @dataclass(frozen=True)
