@@ -53,6 +53,25 @@ class SearchSettings(Settings):
     rational_interfaces: int = Field(default=100, ge=0)
 
 
+class BoundSettings(Settings):
+    """Settings of `la-bound`.
+
+    Attributes:
+        seed, effort: of the search of `la` that comes first.
+        seconds: of CPU time for the bound, which is the best one reached by then.
+        most_interfaces: walls with more have no bound, because the matrices of products are dense.
+    """
+
+    seed: int = Field(default=0, ge=0)
+    effort: Literal["quick", "normal", "deep"] = "normal"
+    seconds: float = Field(default=120.0, gt=0.0)
+    most_interfaces: int = Field(default=120, ge=0)
+
+    def search(self) -> SearchSettings:
+        """The settings of the search."""
+        return SearchSettings(seed=self.seed, effort=self.effort)
+
+
 class PaperSettings(Settings):
     """Settings of `la-paper`.
 

@@ -1,0 +1,1 @@
+"""Lower bounds on the least collapse multiplier of joints that slide without dilatancy."""

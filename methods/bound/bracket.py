@@ -1,0 +1,154 @@
+"""The bracket of the least collapse multiplier: windows, each with its relaxation, until the bound meets the state."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from harness.model.assembly import FloatArray
+from methods.bound.dual import DualBound
+from methods.bound.equations import Equations
+from methods.bound.halpern import Splitting, carried_over
+from methods.bound.relaxation import Relaxation
+from methods.bound.slack_bounds import SlackProgramme
+
+CLOSED = 1e-6
+"""Relative distance of bound and state at which the bracket is closed."""
+NARROW = 4e-3
+"""Relative width of a window below which a narrower one costs more than it gains."""
+GAIN = 0.3
+"""Part of the bracket that one window must gain before the next is built."""
+ABOVE = 1e-9
+"""Relative distance of the window's upper end above the state, so that rounding does not cut the state off."""
+FIRST_STEPS = {"size": 1.0, "multiplier": 1e3}
+LEAST_STEPS = {"size": 1e-2, "multiplier": 100.0}
+LAST_LEAST_STEP = 300.0
+
+
+@dataclass
+class Bracket:
+    """What is known of the least multiplier.
+
+    Attributes:
+        lower: no collapse state has a smaller multiplier, to rounding; upper: multiplier of a collapse state.
+        windows: lower ends of the windows, in order.
+        iterations: of the splitting.
+    """
+
+    lower: float
+    upper: float
+    windows: list[float] = field(default_factory=list)
+    iterations: int = 0
+
+    @property
+    def closed(self) -> bool:
+        """Whether both ends agree to `CLOSED`."""
+        return self.lower >= self.upper * (1.0 - CLOSED)
+
+
+def bracket(equations: Equations, upper: float, seconds: float, lower: float = 0.0) -> Bracket:
+    """The bracket that this much CPU time gives.
+
+    Args:
+        equations: the scaled wall, which stands under its dead load.
+        upper: scaled multiplier of a collapse state, above zero.
+        seconds: of CPU time; a window whose slacks are being bounded is finished.
+        lower: a bound that is known.
+    """
+    search = _Search(equations, Bracket(lower, upper), time.process_time() + seconds)
+    while not search.found.closed and time.process_time() < search.until:
+        if not search.window():
+            break
+    return search.found
+
+
+class _Search:
+    """The windows of one bracket, with what each hands to the next."""
+
+    def __init__(self, equations: Equations, found: Bracket, until: float) -> None:
+        self.equations, self.found, self.until = equations, found, until
+        self._began = time.process_time()
+        self._slacks = SlackProgramme(equations)
+        self._runs: dict[str, Splitting] = {}
+        self._relaxation: Relaxation | None = None
+        self._size = np.inf
+
+    def window(self) -> bool:
+        """Bound the multipliers of one window, or go on with the last one; whether another may gain more."""
+        found, last = self.found, self._relaxation is not None and self._is_last(self._relaxation)
+        unfinished = self._relaxation is not None and not np.isfinite(self._size)
+        if not last and not unfinished and not self._build():
+            found.lower = found.upper
+            return False
+        before = found.lower
+        if not np.isfinite(self._size):
+            self._bound_size()
+        if not np.isfinite(self._size):
+            return True
+        stalled = self._bound_multiplier()
+        return found.lower - before > 1e-3 * (found.upper - before) or not (stalled and last)
+
+    def _is_last(self, relaxation: Relaxation) -> bool:
+        return self.found.upper - relaxation.low < NARROW * self.found.upper
+
+    def _build(self) -> bool:
+        """Build the relaxation of the present bracket; False if no forces within yield exist in it."""
+        found, old = self.found, self._relaxation
+        high = found.upper * (1.0 + ABOVE)
+        bounds = self._slacks.bounds(found.lower, high)
+        if bounds is None:
+            return False
+        new = Relaxation(self.equations, found.lower, high, bounds)
+        costs: dict[str, FloatArray] = {"size": new.size_cost(), "multiplier": new.multiplier_cost()}
+        for name, cost in costs.items():
+            run = Splitting(new, cost, FIRST_STEPS[name], LEAST_STEPS[name])
+            if old is not None and self._runs[name].iterate.size:
+                run.step = self._runs[name].step
+                run.iterate = carried_over(new, old, self._runs[name].iterate, run.step)
+            self._runs[name] = run
+        self._relaxation, self._size = new, np.inf
+        found.windows.append(found.lower)
+        return True
+
+    def _bound_size(self) -> None:
+        """Bound the size of this window's mechanisms; within half of the relaxation's own value will do."""
+        spent = time.process_time() - self._began
+
+        def stop(bound: DualBound | None, primal: float) -> bool:
+            if bound is None:
+                return False
+            self._size = min(self._size, bound.greatest_size())
+            return self._size < 1.5 * max(abs(bound.value), 1e-9)
+
+        self._run("size", max(5.0, 0.25 * spent), stop)
+
+    def _bound_multiplier(self) -> bool:
+        """Bound the multipliers of this window; whether the relaxation has no more to give."""
+        found, relaxation = self.found, self._runs["multiplier"].relaxation
+        start, last = found.lower, self._is_last(relaxation)
+        agreeing = 0
+
+        def stop(bound: DualBound | None, primal: float) -> bool:
+            nonlocal agreeing
+            if bound is None:
+                return False
+            found.lower = min(max(found.lower, relaxation.low + bound.of(self._size)), found.upper)
+            if found.closed or (not last and found.lower > start + GAIN * (found.upper - start)):
+                return True
+            close = 0.05 * (found.upper - found.lower)
+            ends = (relaxation.low + primal - found.lower, primal - bound.value)
+            agreeing += found.lower > start and max(map(abs, ends)) < close
+            return agreeing >= 5
+
+        self._run("multiplier", np.inf, stop)
+        return agreeing >= 5
+
+    def _run(self, name: str, seconds: float, stop: Callable[[DualBound | None, float], bool]) -> None:
+        run, before = self._runs[name], self._runs[name].iterations
+        run.run(min(self.until, time.process_time() + seconds), stop)
+        self.found.iterations += run.iterations - before
+        if name == "multiplier":
+            run.step = max(run.step, LAST_LEAST_STEP)

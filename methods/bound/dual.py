@@ -1,0 +1,89 @@
+"""A bound that holds at any iterate: what a dual matrix proves, whatever the solver left undone."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from harness.model.assembly import FloatArray
+from methods.bound.relaxation import Relaxation
+
+SETTLED = 1e-24
+"""Squared residual, relative to the first, at which the repair of unused products ends."""
+ROUNDING = 1e-9
+"""Multiplier of a product that must not be used, relative to the largest, beyond which a dual matrix proves nothing."""
+
+
+@dataclass(frozen=True)
+class DualBound:
+    """cost >= value - constant - per_size * G for every collapse state of the window, G the size of its mechanism."""
+
+    value: float
+    constant: float
+    per_size: float
+
+    def of(self, size: float) -> float:
+        """The least cost of collapse states whose mechanism is of this size or smaller."""
+        return self.value - self.constant - (self.per_size * size if self.per_size > 0.0 else 0.0)
+
+    def greatest_size(self) -> float:
+        """The greatest G, where the cost is -G; inf if this dual proves none."""
+        return (self.constant - self.value) / (1.0 - self.per_size) if self.per_size < 0.9 else np.inf
+
+
+def dual_bound(relaxation: Relaxation, iterate: FloatArray, step: float, cost: FloatArray) -> DualBound | None:
+    """What the dual matrix of an iterate of the splitting proves; None where it uses products it must not use.
+
+    Negative reduced costs are paid with the greatest slack in the window times the greatest size of the mechanism.
+    """
+    matrix = _repaired(relaxation, (relaxation.project(iterate) - iterate) / step)
+    reduced = cost - matrix
+    unused = float(abs(reduced[relaxation.unused]).max(initial=0.0))
+    if unused > ROUNDING * max(1.0, float(abs(reduced).max())):
+        return None
+    m, f, columns = relaxation.equations.n_interfaces, len(relaxation.free), relaxation.lift_column + 1
+    value = float(reduced[relaxation.unit_row, relaxation.work_column] * relaxation.unit)
+    true = reduced * relaxation.row_scale[:, None] * relaxation.column_scale
+    paid = np.maximum(-true[: 4 * m + 3, :columns], 0.0)
+    paid[relaxation.free, np.arange(f)] = 0.0
+    paid[relaxation.unit_row, relaxation.work_column] = 0.0
+    limit = np.where(paid > 0.0, relaxation.row_limit[:, None], 0.0)
+    price = (limit * paid).sum(axis=0)
+    per_size = max(float(price[:f].max(initial=0.0)), float(price[-1])) + _paid_for_signed_slips(relaxation, true)
+    return DualBound(value, float(price[f]), per_size)
+
+
+def _paid_for_signed_slips(relaxation: Relaxation, true: FloatArray) -> float:
+    """Price per size of the mechanism of slips of unloadable interfaces, whose friction work the lift bounds."""
+    q = relaxation.unloadable
+    if not len(q):
+        return 0.0
+    equations, m = relaxation.equations, relaxation.equations.n_interfaces
+    column = relaxation.lift_column + 1 + np.arange(len(q))
+    local = 4 * m + 3 + np.arange(len(q))
+    minus, plus = -true[4 * q + 2, column], true[4 * q + 3, column]
+    first, second = true[local, column], true[local + len(q), column]
+    worst = max(0.0, -float(np.min([plus + first, plus + second, minus + second, minus + first])))
+    strength = float(relaxation.friction_work().max(initial=0.0)) * equations.n_blocks
+    return 2.0 * worst * (equations.n_blocks + strength)
+
+
+def _repaired(relaxation: Relaxation, matrix: FloatArray, most: int = 1000) -> FloatArray:
+    """The matrix made orthogonal to all A Z B' and zero on unused products, by conjugate gradients."""
+    matrix = matrix - relaxation.project(matrix)
+    unused = relaxation.unused
+    residual = -np.where(unused, matrix, 0.0)
+    change, direction = np.zeros_like(matrix), residual.copy()
+    size = first = float((residual * residual).sum())
+    for _ in range(most):
+        if size <= SETTLED * max(first, 1e-300):
+            break
+        image = np.where(unused, direction - relaxation.project(direction), 0.0)
+        length = size / float((direction * image).sum())
+        change += length * direction
+        residual -= length * image
+        before, size = size, float((residual * residual).sum())
+        direction = residual + size / before * direction
+    matrix = matrix + change - relaxation.project(change)
+    return np.asarray(matrix - relaxation.project(matrix))

@@ -1,0 +1,124 @@
+"""The relaxation of one window of multipliers: products of static with kinematic inequalities.
+
+A row of A is an inequality of statics (homogenised by s = 1), a row of B one of kinematics. In a collapse state every
+product of the two is at least zero, and y_k g_k = 0. The matrix of products is T = A Z B'; with Z free this is the
+first-level reformulation-linearisation of Sherali and Adams (1990). The slip of an interface that the window may
+unload is one signed column, multiplied with slacks of its own interface only (facial reduction): without that the dual
+has no interior. docs/theory-bound.md holds the proofs.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+import scipy.linalg
+
+from harness.model.assembly import FloatArray, IntArray
+from methods.bound.equations import Equations
+from methods.bound.slack_bounds import MARGIN, SlackBounds
+
+NO_ROW = 1e-9
+"""Norm below which an inequality vanishes on its whole space."""
+
+
+class Relaxation:
+    """Spaces, inequalities and bounds of the products of one window.
+
+    m = interfaces, f = openings and slips that may move (`free`), q = interfaces that may be unloaded.
+    Rows: 4m slacks, s, multiplier - low s, high s - multiplier, and two local rows per unloadable interface.
+    Columns: f rates, live work b, the lift, and q signed slips.
+
+    Attributes:
+        rows, columns: (a, .) and (c, .) matrices A and B over orthonormal bases of statics and mechanisms.
+        lower, upper: (a, c) bounds of the scaled products; -inf and inf where a product is not used.
+        row_scale, column_scale: (a,), (c,) factors that make rows of A and B unit vectors.
+        free: (f,) contacts; unloadable: (q,) interfaces; normal: (m,) least normal forces.
+    """
+
+    def __init__(self, equations: Equations, low: float, high: float, bounds: SlackBounds) -> None:
+        self.equations, self.low, self.high, self.bounds = equations, low, high, bounds
+        m = equations.n_interfaces
+        still = bounds.least > MARGIN
+        self.normal = bounds.normal(equations.friction)
+        loaded = (self.normal > MARGIN) | still.reshape(-1, 4)[:, 2:].any(axis=1)
+        self.unloadable: IntArray = np.flatnonzero(~loaded)
+        may = ~still.reshape(-1, 4)
+        may[self.unloadable, 2:] = False
+        self.free: IntArray = np.flatnonzero(may.ravel())
+        self.unit_row, self.multiplier_row = 4 * m, 4 * m + 1
+        self.work_column, self.lift_column = len(self.free), len(self.free) + 1
+        self.rows, self.columns = self._static_rows(), self._kinematic_columns()
+        self.row_scale, self.column_scale = _scales(self.rows), _scales(self.columns)
+        self.row_basis, self.row_factor = np.linalg.qr(self.rows * self.row_scale[:, None])
+        self.column_basis, self.column_factor = np.linalg.qr(self.columns * self.column_scale[:, None])
+        self.unit = float(self.row_scale[self.unit_row] * self.column_scale[self.work_column])
+        self.lower, self.upper = self._product_bounds()
+        self.unused = np.isneginf(self.lower) & np.isposinf(self.upper)
+        self.row_limit = np.concatenate([bounds.greatest, [1.0, high - low, high - low]])
+
+    def _static_rows(self) -> FloatArray:
+        equations, m, q = self.equations, self.equations.n_interfaces, self.unloadable
+        balance = np.hstack([equations.kinematic.T.toarray(), equations.live[:, None], equations.dead[:, None]])
+        self.statics = scipy.linalg.null_space(balance)
+        forces, multiplier, unit = self.statics[: 3 * m], self.statics[3 * m], self.statics[3 * m + 1]
+        window = [unit, multiplier - self.low * unit, self.high * unit - multiplier]
+        difference = equations.friction[q, None] * (forces[3 * q] - forces[3 * q + 1])
+        shear = forces[3 * q + 2]
+        return np.vstack([equations.slack @ forces, *window, difference - shear, -difference - shear])
+
+    def _kinematic_columns(self) -> FloatArray:
+        equations, m, q = self.equations, self.equations.n_interfaces, self.unloadable
+        slips = np.zeros((3 * m, len(q)))
+        slips[3 * q + 2, np.arange(len(q))] = 1.0
+        strains = [equations.kinematic.toarray(), -equations.flow[:, self.free], -slips]
+        self.motions = scipy.linalg.null_space(np.hstack(strains))
+        velocities, rest = np.split(self.motions, [len(equations.dead)])
+        rates, signed = np.split(rest, [len(self.free)])
+        work = equations.live @ velocities / equations.n_blocks
+        dead = equations.dead @ velocities / equations.n_blocks
+        lift = self.high * work + dead - self.friction_work() @ rates
+        return np.vstack([rates, work, lift, signed])
+
+    def friction_work(self) -> FloatArray:
+        """(f,) least friction work of unit rates, over the live work n: mu N_min / n of slips, zero of openings."""
+        interface = self.free // 4
+        strength = self.equations.friction[interface] * self.normal[interface] / self.equations.n_blocks
+        return np.where(self.free % 4 >= 2, strength, 0.0)
+
+    def _product_bounds(self) -> tuple[FloatArray, FloatArray]:
+        m, q, f = self.equations.n_interfaces, self.unloadable, len(self.free)
+        lower = np.zeros((len(self.rows), len(self.columns)))
+        upper = np.full(lower.shape, np.inf)
+        upper[self.free, np.arange(f)] = 0.0
+        lower[4 * m + 3 :] = -np.inf
+        lower[:, f + 2 :] = -np.inf
+        column = f + 2 + np.arange(len(q))
+        upper[4 * q + 2, column] = 0.0
+        lower[4 * q + 3, column] = 0.0
+        for first in (0, len(q)):
+            lower[4 * m + 3 + first + np.arange(len(q)), column] = 0.0
+        lower[self.unit_row, self.work_column] = upper[self.unit_row, self.work_column] = self.unit
+        return lower, upper
+
+    def project(self, products: FloatArray) -> FloatArray:
+        """The nearest matrix of the form A Z B'."""
+        inner = self.row_basis.T @ products @ self.column_basis
+        return np.asarray(self.row_basis @ inner @ self.column_basis.T)
+
+    def multiplier_cost(self) -> FloatArray:
+        """Cost of (multiplier - low) b, which is multiplier - low for b = 1."""
+        cost = np.zeros(self.lower.shape)
+        row, column = self.multiplier_row, self.work_column
+        cost[row, column] = 1.0 / (self.row_scale[row] * self.column_scale[column])
+        return cost
+
+    def size_cost(self) -> FloatArray:
+        """Cost of minus the size of a mechanism, G = sum of free rates + lift."""
+        cost = np.zeros(self.lower.shape)
+        columns = np.append(np.arange(len(self.free)), self.lift_column)
+        cost[self.unit_row, columns] = -1.0 / (self.row_scale[self.unit_row] * self.column_scale[columns])
+        return cost
+
+
+def _scales(matrix: FloatArray) -> FloatArray:
+    norms = np.linalg.norm(matrix, axis=1)
+    return np.where(norms < NO_ROW, 1.0, 1.0 / np.maximum(norms, NO_ROW))

@@ -1,0 +1,82 @@
+"""The least state known and a lower bound on every other, as the harness knows it."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import Any, ClassVar
+
+from harness.model.assembly import Assembly
+from harness.model.method import Answer, Finding, Settings, Status, Traits
+from methods.bound.bracket import Bracket, bracket
+from methods.bound.equations import Equations
+from methods.la.family import LimitAnalysisFamily
+from methods.la.least import least_known
+from methods.la.newton_matrix import NewtonMatrix
+from methods.la.problem import Problem
+from methods.la.settings import BoundSettings
+from methods.numerics.statics import analysed
+from methods.springs.warm_up import load_kernels
+
+load_kernels()
+
+
+class BoundedLimitAnalysis(LimitAnalysisFamily):
+    """The state of `la`, and a multiplier below which there is no collapse state (`la-bound`)."""
+
+    name: ClassVar[str] = "la-bound"
+    title: ClassVar[str] = "LA, least known and lower bound"
+    tolerance: ClassVar[float] = 1e-10
+    Settings: ClassVar[type[Settings]] = BoundSettings
+    traits: ClassVar[Traits] = Traits(
+        caption="least known, with a lower bound", seeks_least=True, any_self_stress=True, colour="#a8431e", marker="P"
+    )
+
+    def solve(self, assembly: Assembly, settings: Any) -> Answer:
+        """The answer of the component that fails first, with the least of the bounds of all components."""
+        parts: list[Answer] = []
+
+        def solve_part(part: Assembly) -> Answer:
+            parts.append(self._of_component(part, settings))
+            return parts[-1]
+
+        answer = analysed(assembly, solve_part)
+        if len(parts) == 1 or answer.finding is not Finding.COLLAPSES or answer.multiplier is None:
+            return answer
+        bounds = [part.details.get("lower_bound", 0.0) for part in parts if part.finding is not Finding.STANDS]
+        lower = min(bounds)
+        proved = all(part.details.get("proved_least", False) for part in parts if part.finding is not Finding.STANDS)
+        return replace(answer, details=answer.details | {"lower_bound": lower, "proved_least": proved})
+
+    def answer(self, assembly: Assembly, problem: Problem, newton: NewtonMatrix, settings: Any) -> Answer:
+        """The search of `la`, then windows on the multiplier below its state."""
+        known = least_known(problem, newton, settings.search(), self.tolerance)
+        multiplier = known.multiplier
+        if known.status is not Status.OK or known.finding is not Finding.COLLAPSES or multiplier is None:
+            return known
+        if known.details["proved_least"] or multiplier <= 0.0 or problem.n_interfaces > settings.most_interfaces:
+            return known
+        lower = max(float(known.details["lower_bound"]), 0.0) / problem.unit_multiplier
+        found = bracket(equations_of(problem), multiplier / problem.unit_multiplier, settings.seconds, lower)
+        return bounded(problem, known, found)
+
+
+def equations_of(problem: Problem) -> Equations:
+    """The equations of a problem as the bound takes them."""
+    return Equations(problem.kinematic, problem.dead, problem.live, problem.friction)
+
+
+def bounded(problem: Problem, known: Answer, found: Bracket) -> Answer:
+    """The answer of `la` with the bracket, which holds to rounding and is therefore not called a proof."""
+    lower = found.lower * problem.unit_multiplier
+    details = known.details | {
+        "lower_bound": lower,
+        "bound_windows": [value * problem.unit_multiplier for value in found.windows],
+        "bound_iterations": found.iterations,
+        "bound_closed": found.closed,
+    }
+    least = f"The least collapse multiplier known is {known.multiplier:.7g}"
+    if found.closed:
+        sentence = f"{least}; a relaxation solved in floating point leaves none below {lower:.7g}."
+    else:
+        sentence = f"{least}; the least is at least {lower:.7g}, by a relaxation solved in floating point."
+    return replace(known, sentence=sentence, details=details)

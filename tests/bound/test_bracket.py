@@ -1,0 +1,94 @@
+"""The lower bound is never above a collapse state, and meets the least one where that is known."""
+
+from __future__ import annotations
+
+import itertools
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from harness.model.assembly import Assembly
+from methods.bound.bracket import bracket
+from methods.bound.relaxation import Relaxation
+from methods.bound.slack_bounds import SlackProgramme
+from methods.la.bound_adapter import BoundedLimitAnalysis, equations_of
+from methods.la.newton_matrix import NewtonMatrix
+from methods.la.problem import make_problem
+from methods.la.search import Search
+from methods.la.settings import BoundSettings
+from tests.la.bodies import column, running_bond
+from tests.la.test_enumeration import least_by_enumeration
+from tests.walls import assembly
+
+
+@settings(max_examples=8, deadline=None, derandomize=True)
+@given(
+    st.lists(st.tuples(st.floats(0.2, 1.5), st.floats(0.1, 1.0)), min_size=1, max_size=2),
+    st.floats(0.1, 1.5),
+    st.floats(1.0, 1.3),
+)
+def test_the_bound_passes_no_mechanism_of_all(blocks: list[tuple[float, float]], friction: float, above: float) -> None:
+    wall = column([width for width, _ in blocks], [height for _, height in blocks], friction)
+    problem = make_problem(wall)
+    least = least_by_enumeration(wall) / problem.unit_multiplier
+    found = bracket(equations_of(problem), above * least, 0.3)
+    # Enumeration and bound both come from linear programmes with tolerances of 1e-7 and less.
+    assert found.lower <= least * (1.0 + 1e-6)
+
+
+@pytest.mark.parametrize(
+    ("courses", "bricks", "least"),
+    [(2, 2, 0.65), pytest.param(3, 2, 7 / 11, marks=pytest.mark.slow), pytest.param(4, 2, 0.6, marks=pytest.mark.slow)],
+)
+def test_the_bracket_of_a_bonded_wall_closes(courses: int, bricks: int, least: float) -> None:
+    answer = BoundedLimitAnalysis().solve(running_bond(courses, bricks, 0.2, 0.65), BoundSettings(seconds=60.0))
+    assert answer.multiplier == pytest.approx(least, rel=1e-9)
+    assert answer.details["lower_bound"] == pytest.approx(least, rel=1e-6)  # CLOSED
+    assert answer.details["lower_bound"] <= least * (1.0 + 1e-9)
+
+
+def test_a_bound_cut_short_is_smaller_but_holds() -> None:
+    problem = make_problem(running_bond(3, 3, 0.2, 0.65))
+    bounds = [bracket(equations_of(problem), 7 / 11, seconds).lower for seconds in (1e-3, 0.5)]
+    assert all(0.0 <= bound <= 7 / 11 for bound in bounds)
+    assert bounds[0] < 7 / 11
+
+
+@pytest.mark.parametrize("wall", [running_bond(2, 2, 0.2, 0.65), running_bond(3, 3, 0.2, 0.9)], ids=["2x2", "3x3"])
+def test_products_of_collapse_states_satisfy_the_relaxation(wall: Assembly) -> None:
+    """The relaxation must not cut off any collapse state, the least or not."""
+    problem = make_problem(wall)
+    search = Search(problem, NewtonMatrix(problem))
+    equations = equations_of(problem)
+    programme = SlackProgramme(equations)
+    states = [state for state in (search.interior(spread=2.0) for _ in range(3)) if state is not None]
+    assert states
+    for state, share in itertools.product(states, (0.0, 0.97)):
+        low, high = share * state.multiplier, 1.01 * state.multiplier
+        bounds = programme.bounds(low, high)
+        assert bounds is not None
+        relaxation = Relaxation(equations, low, high, bounds)
+        rates = problem.rates_of_velocities(state.velocities, False)
+        scale = equations.n_blocks / float(problem.live @ state.velocities)
+        statics = np.concatenate([state.forces.ravel(), [state.multiplier, 1.0]])
+        slip = (rates[:, 2] - rates[:, 3])[relaxation.unloadable]
+        motion = scale * np.concatenate([state.velocities, rates.ravel()[relaxation.free], slip])
+        rows = relaxation.rows @ (relaxation.statics.T @ statics) * relaxation.row_scale
+        columns = relaxation.columns @ (relaxation.motions.T @ motion) * relaxation.column_scale
+        products = np.outer(rows, columns)
+        size = abs(products).max()
+        assert rates.ravel()[bounds.least > 1e-6].max(initial=0.0) * scale <= 1e-8
+        assert products[~np.isneginf(relaxation.lower)].size
+        assert (relaxation.lower - products).max() <= 1e-8 * size
+        assert (products - relaxation.upper).max() <= 1e-8 * size
+
+
+def test_the_bound_of_a_wall_of_two_components_is_the_lesser_of_theirs() -> None:
+    panel = {"type": "panel", "cell_length": 0.3, "cell_height": 1.0, "layout": ["A.B", "A.C"]}
+    wall = assembly(panel, 0.5)
+    answer = BoundedLimitAnalysis().solve(wall, BoundSettings(seconds=5.0))
+    assert len(answer.details["components"]) == 2
+    assert answer.multiplier is not None
+    assert 0.0 < answer.details["lower_bound"] <= answer.multiplier * (1.0 + 1e-9)
