@@ -86,7 +86,7 @@ def test_products_of_collapse_states_satisfy_the_relaxation(wall: Assembly) -> N
 
 
 def test_the_bound_of_a_wall_of_two_components_is_the_lesser_of_theirs() -> None:
-    panel = {"type": "panel", "cell_length": 0.3, "cell_height": 1.0, "layout": ["A.B", "A.C"]}
+    panel = {"type": "panel", "cell_length": 0.3, "cell_height": 1.0, "layout": ["A.B", "A.C", "GGG"], "fixed": "G"}
     wall = assembly(panel, 0.5)
     answer = BoundedLimitAnalysis().solve(wall, BoundSettings(seconds=5.0))
     assert len(answer.details["components"]) == 2
