@@ -8,51 +8,21 @@ import json
 import os
 import re
 import tempfile
+from collections.abc import Sequence
 from importlib.util import find_spec
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from harness.model.comparison import CaseResults, ComparisonRun
 from harness.model.result import Result
-from reports import shapes, words
+from reports import columns, shapes, words
 from reports.tables import reference_of, worst_residual
+
+if TYPE_CHECKING:
+    import pandas as pd
 
 FIGURE_BLOCKS, MOST_PANELS = 400, 4
 """Walls with more blocks are drawn on demand only (`drystone figure`), and a strip holds so many methods."""
-
-RESULT_COLUMNS: dict[str, str] = {
-    "case": "string",
-    "method": "string",
-    "family": "string",
-    "status": "string",
-    "finding": "string",
-    "sentence": "string",
-    "multiplier": "Float64",
-    "bracket_low": "Float64",
-    "bracket_high": "Float64",
-    "bracket_meaning": "string",
-    "verdict": "string",
-    "judge_accepted": "boolean",
-    "judge_tolerance": "Float64",
-    "judge_worst_residual": "Float64",
-    "judge_worst_residual_name": "string",
-    "judge_sentence": "string",
-    "cpu_seconds": "Float64",
-    "wall_seconds": "Float64",
-    "peak_memory_bytes": "Int64",
-    "blocks": "Int64",
-    "interfaces": "Int64",
-    "iterations": "Int64",
-    "unknowns": "Int64",
-    "flow": "string",
-    "started": "string",
-    "key": "string",
-    "settings": "string",
-    "limits": "string",
-    "versions": "string",
-    "machine": "string",
-}
-"""Columns of results.csv and results.parquet, their types in pandas; times [s], memory [bytes], residuals relative."""
 
 COMPARISON_COLUMNS = (
     "case",
@@ -83,7 +53,7 @@ def export(run: ComparisonRun, folder: Path, *, drawn: bool = False) -> None:
     folder.mkdir(parents=True, exist_ok=True)
     rows = [_result_row(result) for item in run.cases for result in item.results]
     contents: dict[str, bytes] = {
-        "results.csv": _csv(tuple(RESULT_COLUMNS), rows),
+        "results.csv": _csv(tuple(columns.TYPES), rows),
         "comparisons.csv": _csv(COMPARISON_COLUMNS, _comparison_rows(run)),
     }
     if find_spec("pyarrow") is not None:
@@ -154,7 +124,7 @@ def _json(data: Any) -> bytes:
 
 def _result_row(result: Result) -> dict[str, Any]:
     worst = worst_residual(result)
-    row = result.model_dump(mode="json", include=set(RESULT_COLUMNS))
+    row = result.model_dump(mode="json", include=set(columns.TYPES))
     return row | {
         "bracket_low": result.bracket[0] if result.bracket else None,
         "bracket_high": result.bracket[1] if result.bracket else None,
@@ -212,9 +182,20 @@ def _field(value: Any) -> Any:
 
 
 def _parquet(rows: list[dict[str, Any]]) -> bytes:
-    """The results as Parquet, with the types of `RESULT_COLUMNS`; what is missing is null."""
+    """The results as Parquet, with the types of their columns; what is missing is null."""
+    sink = io.BytesIO()
+    _frame(rows).to_parquet(sink, index=False)
+    return sink.getvalue()
+
+
+def result_frame(results: Sequence[Result]) -> pd.DataFrame:
+    """Results as a table with the columns of results.csv and their types; units in `attrs["units"]`."""
+    table = _frame([_result_row(result) for result in results])
+    table.attrs["units"] = dict(columns.UNITS)
+    return table
+
+
+def _frame(rows: list[dict[str, Any]]) -> pd.DataFrame:
     import pandas as pd
 
-    sink = io.BytesIO()
-    pd.DataFrame(rows, columns=list(RESULT_COLUMNS)).astype(RESULT_COLUMNS).to_parquet(sink, index=False)
-    return sink.getvalue()
+    return pd.DataFrame(rows, columns=list(columns.TYPES)).astype(columns.TYPES)

@@ -62,6 +62,19 @@ def figure(case: Case, results: list[Result], kind: str, path: Path) -> None:
     if kind == "wall":
         show_wall(case.built, path)
         return
+    target = _checked(path)
+    with style():
+        results_figure(case, results, kind).savefig(target, metadata=_metadata(path))
+
+
+def results_figure(case: Case, results: list[Result], kind: str) -> Figure:
+    """Results of one case side by side: "mechanism", "forces", "thrust" or "comparison".
+
+    Raises:
+        InputError: an unknown kind, or results without the field to draw.
+    """
+    if kind not in KINDS or kind == "wall":
+        raise InputError(f'there is no figure "{kind}"', f"Ask for one of {', '.join(set(KINDS) - {'wall'})}")
     needed = {"mechanism": ["mechanism"], "comparison": ["mechanism", "forces"]}.get(kind, ["forces"])
     usable = [r for r in results if any(getattr(r, name) is not None for name in needed)]
     if not usable:
@@ -73,7 +86,7 @@ def figure(case: Case, results: list[Result], kind: str, path: Path) -> None:
         )
     rows = ["mechanism", "forces"] if kind == "comparison" else [kind]
     with style():
-        _panels(case, usable, rows).savefig(_checked(path), metadata=_metadata(path))
+        return _panels(case, usable, rows)
 
 
 def show_wall(built: Built, path: Path) -> None:
@@ -89,6 +102,12 @@ def show_wall(built: Built, path: Path) -> None:
     target = _checked(path)
     with style():
         _wall(built.assembly).savefig(target, metadata=_metadata(path))
+
+
+def wall_figure(built: Built) -> Figure:
+    """A wall before anything is run: blocks with numbers, joints, contact points, supports and loads."""
+    with style():
+        return _wall(built.assembly)
 
 
 def show_window(built: Built, title: str) -> None:

@@ -1,0 +1,81 @@
+"""Drystone as a library: walls in, judged answers out.
+
+>>> import drystone
+>>> wall = drystone.new_wall("stack", count=3, width=0.3, height=0.2, friction=0.8)
+>>> result = drystone.analyse(wall, "la-associated")
+>>> print(f"{result.multiplier:.6f}, {result.judge.outcome}")
+0.500000, accepted
+
+`read_wall`, `build_wall`, `new_wall` and `library_wall` give a `Wall`; `analyse` runs one method in this process,
+`compare` many, each run in a process of its own; `judge` holds an answer against equilibrium, yield and flow.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+__version__ = "0.2.0"
+
+__all__ = [
+    "Answer",
+    "Comparison",
+    "Finding",
+    "InputError",
+    "Judgement",
+    "Result",
+    "Status",
+    "Traits",
+    "Verdict",
+    "Wall",
+    "__version__",
+    "analyse",
+    "build_wall",
+    "compare",
+    "judge",
+    "library_wall",
+    "library_walls",
+    "methods",
+    "new_wall",
+    "read_wall",
+]
+
+if TYPE_CHECKING:
+    from drystone.analysis import Result, analyse, judge, methods
+    from drystone.comparing import Comparison, compare
+    from drystone.walls import Wall, build_wall, library_wall, library_walls, new_wall, read_wall
+    from harness.model.errors import InputError
+    from harness.model.method import Answer, Finding, Status, Traits
+    from harness.model.result import Judgement, Verdict
+
+_HOME = {
+    "drystone.analysis": ("Result", "analyse", "judge", "methods"),
+    "drystone.comparing": ("Comparison", "compare"),
+    "drystone.walls": ("Wall", "build_wall", "library_wall", "library_walls", "new_wall", "read_wall"),
+    "harness.model.errors": ("InputError",),
+    "harness.model.method": ("Answer", "Finding", "Status", "Traits"),
+    "harness.model.result": ("Judgement", "Verdict"),
+}
+
+
+def __getattr__(name: str) -> Any:
+    """Public names are imported when they are used first, so that the command starts at once.
+
+    Raises:
+        ImportError: a file lies in the way of a package of Drystone; the message names it.
+    """
+    import importlib
+
+    from drystone.place import in_the_way
+
+    for module, names in _HOME.items():
+        if name in names:
+            obstacle = in_the_way()
+            if obstacle:
+                raise ImportError(obstacle)
+            return getattr(importlib.import_module(module), name)
+    raise AttributeError(f"module 'drystone' has no attribute {name!r}")
+
+
+def __dir__() -> list[str]:
+    """The public names."""
+    return sorted(__all__)

@@ -1,0 +1,145 @@
+"""One method on one wall, in this process, judged."""
+
+from __future__ import annotations
+
+import time
+from datetime import UTC, datetime
+from typing import Any
+
+import pandas as pd
+from matplotlib.figure import Figure
+from pydantic import PrivateAttr
+
+from drystone.walls import Wall
+from harness.engine.compare import judged
+from harness.engine.judge import judge as judge_result
+from harness.engine.plan import Limits, Run, check_methods
+from harness.engine.provenance import machine, versions
+from harness.model.method import Answer, load_method, method_names, traits_of
+from harness.model.reading import validate
+from harness.model.result import Judgement, result_of
+from harness.model.result import Result as Record
+
+
+class Result(Record):
+    """What a method found on a wall, with the judge's word. In a notebook it draws itself.
+
+    The fields are those of `drystone run --json`: `multiplier`, `bracket`, `finding`, `status`, `judge`, `forces`, ...
+    """
+
+    _wall: Wall = PrivateAttr()
+
+    @classmethod
+    def on(cls, wall: Wall, record: Record) -> Result:
+        """A result together with its wall."""
+        made = cls.model_construct(**{name: getattr(record, name) for name in Record.model_fields})
+        made._wall = wall
+        return made
+
+    @property
+    def wall(self) -> Wall:
+        """The wall it is about."""
+        return self._wall
+
+    def to_pandas(self) -> pd.DataFrame:
+        """One row with the columns of results.csv; `attrs["units"]` names the unit of each measured column."""
+        from reports.export import result_frame
+
+        return result_frame([self])
+
+    def forces_to_pandas(self) -> pd.DataFrame:
+        """Contact forces: one row an interface with its blocks and n1, n2, s; `attrs["units"]` names the unit."""
+        assembly = self._wall.assembly
+        ends = zip(assembly.block_a, assembly.block_b, strict=True)
+        pairs = [(assembly.block_ids[a], assembly.block_ids[b]) for a, b in ends]
+        table = pd.DataFrame(pairs, columns=["block_a", "block_b"])
+        table[["n1", "n2", "s"]] = pd.DataFrame(self.forces or [], columns=["n1", "n2", "s"]).reindex(table.index)
+        table.attrs["units"] = dict.fromkeys(("n1", "n2", "s"), self._wall.units["force"])
+        return table
+
+    def mechanism_to_pandas(self) -> pd.DataFrame:
+        """The mechanism: one row a block with ux, uy, omega, scaled so that the fastest vertex has speed 1."""
+        table = pd.DataFrame({"block": self._wall.assembly.block_ids})
+        names = ["ux", "uy", "omega"]
+        table[names] = pd.DataFrame(self.mechanism or [], columns=names).reindex(table.index)
+        table.attrs["units"] = {"ux": "1", "uy": "1", "omega": f"1/{self._wall.units['length']}"}
+        return table
+
+    def plot(self, kind: str = "mechanism") -> Figure:
+        """A figure of the answer.
+
+        Args:
+            kind: "mechanism", "forces", "thrust" or "comparison" (mechanism above forces).
+
+        Raises:
+            InputError: an unknown kind, or an answer without the field to draw.
+        """
+        from reports.figures import results_figure
+
+        return results_figure(self._wall.case, [self], kind)
+
+    def _repr_html_(self) -> str:
+        from drystone.pictures import html
+
+        drawn = self.plot() if self.mechanism is not None else None
+        return html(f"{self._wall.name}, {self.method}: {self.sentence} ({self.judge.outcome})", drawn)
+
+
+def methods() -> list[str]:
+    """Names of all installed methods.
+
+    >>> "la" in methods() and "fe" in methods() and "de" in methods()
+    True
+    """
+    return method_names()
+
+
+def analyse(wall: Wall, method: str = "la", **settings: Any) -> Result:
+    """What a method finds on a wall, in this process and without limits of time or memory; judged.
+
+    Args:
+        wall: the wall.
+        method: its name; `methods()` lists them.
+        settings: of the method, by name; what is not given has its default.
+
+    Raises:
+        InputError: an unknown method or setting, or a wall that the method refuses.
+    """
+    check_methods([method], "method")
+    loaded = load_method(method)
+    chosen = validate(loaded.Settings, settings, "settings")
+    started, clock, work = datetime.now(UTC), time.perf_counter(), time.process_time()
+    answer = loaded.solve(wall.assembly, chosen)
+    cost = {"cpu_seconds": time.process_time() - work, "wall_seconds": time.perf_counter() - clock}
+    record = result_of(
+        answer, wall.assembly, case=wall.name, method=method, family=loaded.family, traits=traits_of(loaded)
+    ).model_copy(
+        update={
+            **cost,
+            "settings": chosen.model_dump(mode="json"),
+            "versions": versions(),
+            "machine": machine(),
+            "started": started.isoformat(timespec="seconds"),
+        }
+    )
+    references = tuple(item for item in wall.case.file.references if method in item.applies_to)
+    fitting = tuple(item for item in references if item.settings == settings)
+    return Result.on(wall, judged(Run(wall.case, method, settings, Limits(), fitting), record, loaded.tolerance))
+
+
+def judge(wall: Wall, answer: Answer | Record, tolerance: float = 1e-9) -> Judgement:
+    """Hold an answer from anywhere against equilibrium, yield, flow and virtual work, by code that no method shares.
+
+    >>> from drystone import new_wall
+    >>> wall = new_wall("stack", count=1, friction=0.3)
+    >>> judge(wall, analyse(wall, "la-associated")).accepted
+    True
+
+    Args:
+        wall: the wall the answer is about.
+        answer: forces (m, 3) and a mechanism (n, 3) in the conventions and the order of `Assembly`; or a result.
+        tolerance: the largest relative residual that is accepted.
+    """
+    if isinstance(answer, Answer):
+        answer = result_of(answer, wall.assembly, case=wall.name, method="foreign", family="foreign")
+    return judge_result(wall.assembly, answer, tolerance)

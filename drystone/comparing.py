@@ -1,0 +1,130 @@
+"""Many methods on many walls, each run in a process of its own, judged and held together."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+import pandas as pd
+from matplotlib.figure import Figure
+
+from drystone.analysis import Result, analyse
+from drystone.walls import Wall
+from harness.engine import compare as engine
+from harness.engine.isolate import announce
+from harness.engine.plan import Limits, Run, check_methods, plan_case
+from harness.engine.regression import violations
+from harness.engine.store import open_store
+from harness.model.comparison import ComparisonRun
+from harness.model.errors import InputError
+from harness.model.result import Result as Record
+
+
+@dataclass(frozen=True)
+class Comparison:
+    """What methods found on walls. In a notebook it shows its table.
+
+    Attributes:
+        walls: the walls, in the order given.
+        results: one for each wall and method.
+        run: what the report is made of, theory gates included.
+    """
+
+    walls: list[Wall]
+    results: list[Result]
+    run: ComparisonRun
+
+    @property
+    def violations(self) -> list[str]:
+        """Sentences about gated references, theory gates and answers that do not hold; empty if all do."""
+        return violations(self.run)
+
+    def to_pandas(self) -> pd.DataFrame:
+        """One row a wall and method, the columns of results.csv; `attrs["units"]` names the units."""
+        from reports.export import result_frame
+
+        return result_frame(self.results)
+
+    def multipliers(self) -> pd.DataFrame:
+        """Multipliers by wall (rows) and method (columns), in the order given."""
+        table = pd.DataFrame([(item.case, item.method, item.multiplier) for item in self.results])
+        table.columns = pd.Index(["wall", "method", "multiplier"])
+        wide = table.pivot(index="wall", columns="method", values="multiplier")
+        rows = list(dict.fromkeys(table["wall"]))
+        return wide.reindex(index=rows, columns=list(dict.fromkeys(table["method"])))
+
+    def report(self, path: str | Path) -> Path:
+        """Write the HTML report, with its data folder beside it."""
+        from reports.build import write_report
+
+        target = Path(path)
+        target.parent.mkdir(parents=True, exist_ok=True)
+        write_report(self.run, target)
+        return target
+
+    def plot(self) -> Figure:
+        """Multipliers of all methods, one group of points a wall, in the colours and marks that the methods name."""
+        from reports.multipliers import multipliers_figure
+
+        return multipliers_figure(self.run)
+
+    def _repr_html_(self) -> str:
+        from drystone.pictures import html
+
+        return html(self.run.title, None, str(self.multipliers().to_html(na_rep="-", float_format="{:.6g}".format)))
+
+
+def compare(
+    walls: Wall | Iterable[Wall],
+    methods: Sequence[str] | None = None,
+    *,
+    isolated: bool = True,
+    jobs: int = 1,
+    seconds: float = Limits().seconds,
+    memory_bytes: int = Limits().memory_bytes,
+    store: str | Path | None = None,
+) -> Comparison:
+    """Run methods on walls, judge every answer, and hold them against references and theory.
+
+    Args:
+        walls: one wall or several.
+        methods: names of methods; None: those of each case, else fe, la, la-associated and de.
+        isolated: each run in a process of its own, so that one that hangs or crashes costs its row only; False: in this
+            process, one after the other, without limits.
+        jobs: isolated runs at a time.
+        seconds: wall-clock limit of an isolated run [s].
+        memory_bytes: memory limit of an isolated run [bytes].
+        store: file in which results are looked for and kept; None: nowhere.
+
+    Raises:
+        InputError: an unknown method, two walls of one name, or a store that is damaged.
+    """
+    chosen = [walls] if isinstance(walls, Wall) else list(walls)
+    names = [wall.name for wall in chosen]
+    if len(set(names)) < len(names):
+        twice = next(name for name in names if names.count(name) > 1)
+        raise InputError(f'two walls are called "{twice}"', 'Give one another name: wall.called("...")', "walls")
+    if methods is not None:
+        check_methods(methods, "methods")
+    limits = Limits(seconds, memory_bytes)
+    planned = [run for wall in chosen for run in plan_case(wall.case, methods, limits)]
+    results = _isolated(planned, jobs, store) if isolated else _here(chosen, planned)
+    cases = [wall.case for wall in chosen]
+    run = engine.comparison_run(", ".join(names), "drystone.compare", cases, planned, results)
+    by_name = {wall.name: wall for wall in chosen}
+    rows = [Result.on(by_name[item.case.id], result) for item in run.cases for result in item.results]
+    return Comparison(chosen, rows, run)
+
+
+def _isolated(planned: list[Run], jobs: int, store: str | Path | None) -> list[Record]:
+    announce(run.method for run in planned)
+    if store is None:
+        return engine.execute(planned, None, jobs)
+    with open_store(Path(store)) as opened:
+        return engine.execute(planned, opened, jobs)
+
+
+def _here(walls: list[Wall], planned: list[Run]) -> list[Record]:
+    by_case = {id(wall.case): wall for wall in walls}
+    return [analyse(by_case[id(run.case)], run.method, **run.settings) for run in planned]

@@ -1,0 +1,155 @@
+"""Walls: read from files and drawings, built from data, made from a few numbers, or taken from the library."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from matplotlib.figure import Figure
+
+from harness import formats
+from harness.engine.plan import find_cases
+from harness.model import reading
+from harness.model.assembly import Assembly
+from harness.model.case import Case, CaseFile, case_folders, case_of_wall, id_of, shipped_cases
+from harness.model.errors import InputError, did_you_mean
+from harness.model.wall import Wall as Description
+
+formats.register()
+
+
+@dataclass(frozen=True)
+class Wall:
+    """A wall that is ready to be analysed. In a notebook it draws itself.
+
+    Attributes:
+        case: the wall as the engine runs it, with the references it is held against, if it has any.
+    """
+
+    case: Case
+
+    @property
+    def name(self) -> str:
+        """The name under which its results are listed."""
+        return self.case.id
+
+    @property
+    def title(self) -> str:
+        """What it is, in a few words."""
+        return self.case.file.title
+
+    @property
+    def assembly(self) -> Assembly:
+        """Its numeric view: blocks, interfaces, loads; `Assembly` has the sign conventions."""
+        return self.case.assembly
+
+    @property
+    def warnings(self) -> tuple[str, ...]:
+        """Sentences about what is doubtful in it."""
+        return self.case.warnings
+
+    @property
+    def units(self) -> dict[str, str]:
+        """Names of its units of force and length."""
+        return {"force": self.case.wall.units.force, "length": self.case.wall.units.length}
+
+    def called(self, name: str) -> Wall:
+        """The same wall under another name."""
+        return Wall(self.case.called(id_of(name)))
+
+    def document(self, *, explicit: bool = False) -> dict[str, Any]:
+        """The wall as JSON data in the format wall/1.
+
+        Args:
+            explicit: every block with its weight and every interface with its friction, in place of patterns and rules.
+        """
+        return (self.case.built.wall if explicit else self.case.wall).document()
+
+    def save(self, path: str | Path) -> None:
+        """Write the wall as a WALL.json."""
+        Path(path).write_text(reading.wall_json(self.case.wall), encoding="utf-8")
+
+    def plot(self) -> Figure:
+        """A figure of the blocks with their names, joints, supports and loads."""
+        from reports.figures import wall_figure
+
+        return wall_figure(self.case.built)
+
+    def _repr_html_(self) -> str:
+        from drystone.pictures import html
+
+        free, joints = self.assembly.n_free, self.assembly.n_interfaces
+        return html(f"{self.title}: {free} free blocks, {joints} interfaces", self.plot())
+
+    def __repr__(self) -> str:
+        free, joints = self.assembly.n_free, self.assembly.n_interfaces
+        return f"<Wall {self.name}: {free} free blocks, {joints} interfaces>"
+
+
+def read_wall(path: str | Path) -> Wall:
+    """The wall of a WALL.json or of a drawing (DXF, SVG, GeoJSON, WKT, shapefile, CSV, gmsh, COMPAS).
+
+    Raises:
+        InputError: naming the file, the element and what would be right.
+    """
+    wall = Wall(case_of_wall(Path(path)))
+    _ = wall.case.built  # faults are told here and not at the first use
+    return wall
+
+
+def build_wall(document: Mapping[str, Any] | Description, name: str = "wall") -> Wall:
+    """The wall of JSON data in the format wall/1.
+
+    >>> stone = {"id": "a", "polygon": [[0, 0], [0.4, 0], [0.4, 0.2], [0, 0.2]]}
+    >>> ground = {"id": "g", "fixed": True, "polygon": [[0, -0.1], [0.4, -0.1], [0.4, 0], [0, 0]]}
+    >>> build_wall({"format": "wall/1", "unit_weight": 20, "friction": 0.5, "blocks": [ground, stone]})
+    <Wall wall: 1 free blocks, 1 interfaces>
+
+    Raises:
+        InputError: naming the element and what would be right.
+    """
+    wall = document if isinstance(document, Description) else reading.parse_wall(dict(document), name)
+    title = wall.title or name
+    file = CaseFile(id=id_of(name), title=title, source=str(wall.metadata.get("source", "the user")))
+    made = Wall(Case(file, wall, name))
+    _ = made.case.built
+    return made
+
+
+def new_wall(kind: str, **numbers: Any) -> Wall:
+    """A wall of a kind from a few numbers, as `drystone new` makes it; `drystone new --help` lists the kinds.
+
+    >>> new_wall("stack", count=4)
+    <Wall stack: 4 free blocks, 4 interfaces>
+
+    Raises:
+        InputError: an unknown kind, an unknown number, or numbers of which no wall can be made.
+    """
+    from cases.start import STARTS
+
+    if kind not in STARTS:
+        raise InputError(f'no kind of wall is called "{kind}"', f"{did_you_mean(kind, STARTS)} {', '.join(STARTS)}")
+    try:
+        return build_wall(STARTS[kind](**numbers), kind)
+    except (TypeError, ValueError) as error:
+        raise InputError(f"no such wall can be made ({error})", "Give other numbers", kind) from None
+
+
+def library_wall(name: str) -> Wall:
+    """A wall of the library, with its published references.
+
+    >>> library_wall("wall-21")
+    <Wall wall-21: 21 free blocks, 49 interfaces>
+
+    Raises:
+        InputError: no case is called so.
+    """
+    (case,) = find_cases([name], None, ())
+    return Wall(case)
+
+
+def library_walls() -> list[str]:
+    """Names of all walls of the library."""
+    return list(case_folders([shipped_cases()]))

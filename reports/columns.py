@@ -1,0 +1,57 @@
+"""The columns of results, declared once: for CSV, Parquet, pandas and the docs."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+
+@dataclass(frozen=True)
+class ResultColumn:
+    """One column: its name, its type in pandas, its unit ("1": dimensionless, empty: no quantity), what it holds."""
+
+    name: str
+    dtype: str
+    unit: str
+    meaning: str
+
+
+def _text(name: str, meaning: str) -> ResultColumn:
+    return ResultColumn(name, "string", "", meaning)
+
+
+RESULTS: tuple[ResultColumn, ...] = (
+    _text("case", "id of the wall"),
+    _text("method", "name of the method"),
+    _text("family", "fe, la, de or a third party's word"),
+    _text("status", "how the run ended"),
+    _text("finding", "what the answer says about the wall"),
+    _text("sentence", "the answer in a sentence"),
+    ResultColumn("multiplier", "Float64", "1", "of the live load at collapse"),
+    ResultColumn("bracket_low", "Float64", "1", "lower end of the bracket"),
+    ResultColumn("bracket_high", "Float64", "1", "upper end of the bracket"),
+    _text("bracket_meaning", "what the ends of the bracket are"),
+    _text("verdict", "how the value stands to its references"),
+    ResultColumn("judge_accepted", "boolean", "", "whether the judge accepts the answer; missing: not judged"),
+    ResultColumn("judge_tolerance", "Float64", "1", "the largest relative residual that was acceptable"),
+    ResultColumn("judge_worst_residual", "Float64", "1", "the worst relative residual found"),
+    _text("judge_worst_residual_name", "which residual that is"),
+    _text("judge_sentence", "what was judged, and what failed"),
+    ResultColumn("cpu_seconds", "Float64", "s", "processor time of the method alone"),
+    ResultColumn("wall_seconds", "Float64", "s", "time on the clock"),
+    ResultColumn("peak_memory_bytes", "Int64", "B", "largest resident memory"),
+    ResultColumn("blocks", "Int64", "1", "free blocks"),
+    ResultColumn("interfaces", "Int64", "1", "interfaces"),
+    ResultColumn("iterations", "Int64", "1", "of the method's main loop"),
+    ResultColumn("unknowns", "Int64", "1", "of the method's largest problem"),
+    _text("flow", "flow rule of the mechanism"),
+    _text("started", "when the run began"),
+    _text("key", "under which the result is stored"),
+    _text("settings", "of the method, as JSON"),
+    _text("limits", "of the run, as JSON"),
+    _text("versions", "of the programme and its libraries, as JSON"),
+    _text("machine", "on which the run was made, as JSON"),
+)
+"""Columns of results.csv, results.parquet and `Comparison.to_pandas`, in their order."""
+
+TYPES = {column.name: column.dtype for column in RESULTS}
+UNITS = {column.name: column.unit for column in RESULTS if column.unit}

@@ -1,0 +1,123 @@
+"""`import drystone`: what a notebook or a script does with it, and what it says when files lie in the way."""
+
+from __future__ import annotations
+
+import doctest
+import importlib
+import json
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+import drystone
+
+ROOT = Path(drystone.__file__).resolve().parent.parent
+WALL = drystone.new_wall("stack", count=3, width=0.3, height=0.2, friction=0.8)
+MULTIPLIER = 0.5
+"""Width over height of the whole stack, 0.3 / 0.6: it topples about its lower corner."""
+
+
+@pytest.mark.parametrize("module", ["drystone", "drystone.walls", "drystone.analysis", "drystone.comparing"])
+def test_examples_in_docstrings_say_what_comes_out(module: str):
+    assert doctest.testmod(importlib.import_module(module)).failed == 0
+
+
+def test_every_public_name_is_there_and_documented():
+    for name in drystone.__all__:
+        assert name.startswith("__") or getattr(drystone, name).__doc__
+
+
+def test_an_analysis_is_judged_and_gives_tables_with_units():
+    result = drystone.analyse(WALL, "la-associated")
+    assert result.multiplier == pytest.approx(MULTIPLIER, abs=1e-8)
+    assert result.judge.accepted
+    assert drystone.judge(WALL, result).accepted
+    table = result.to_pandas()
+    assert table["multiplier"][0] == result.multiplier
+    assert table.attrs["units"]["cpu_seconds"] == "s"
+    forces = result.forces_to_pandas()
+    assert forces.attrs["units"]["n1"] == WALL.units["force"]
+    # the lowest joint bears the weight of all three stones
+    weight = WALL.assembly.weight[~WALL.assembly.fixed].sum()
+    assert (forces["n1"] + forces["n2"]).max() == pytest.approx(weight)
+    assert len(result.mechanism_to_pandas()) == WALL.assembly.n_blocks
+
+
+def test_a_comparison_has_a_process_a_run_and_costs_a_row_where_one_dies(tmp_path: Path):
+    compared = drystone.compare(WALL, ["la-associated", "dummy"])
+    assert [item.method for item in compared.results] == ["la-associated", "dummy"]
+    assert compared.multipliers()["la-associated"].iloc[0] == pytest.approx(MULTIPLIER, abs=1e-8)
+    assert compared.report(tmp_path / "report.html").exists()
+    here = drystone.compare([WALL], ["la-associated"], isolated=False)
+    assert here.results[0].multiplier == pytest.approx(compared.results[0].multiplier)
+    assert "<svg" in here.results[0]._repr_html_()
+    assert "<svg" in WALL._repr_html_()
+    assert "la-associated" in compared._repr_html_()
+    assert compared.plot().axes
+
+
+def test_wrong_input_is_told_as_by_the_command(tmp_path: Path):
+    with pytest.raises(drystone.InputError, match="no method is called"):
+        drystone.analyse(WALL, "al")
+    with pytest.raises(drystone.InputError, match="settings"):
+        drystone.analyse(WALL, "la-associated", no_such_setting=1)
+    with pytest.raises(drystone.InputError, match="two walls are called"):
+        drystone.compare([WALL, WALL], ["la-associated"])
+    with pytest.raises(drystone.InputError, match="no kind of wall"):
+        drystone.new_wall("stak")
+    path = tmp_path / "wall.json"
+    WALL.save(path)
+    assert drystone.read_wall(path).document() == WALL.document()
+    path.write_text(json.dumps(WALL.document() | {"frction": 1}), encoding="utf-8")
+    with pytest.raises(drystone.InputError, match="frction"):
+        drystone.read_wall(path)
+
+
+@pytest.mark.parametrize("name", ["harness.py", "methods.py", "cases/__init__.py", "reports.py"])
+def test_a_file_of_one_of_our_names_is_told_in_one_sentence(tmp_path: Path, name: str):
+    obstacle = tmp_path / name
+    obstacle.parent.mkdir(exist_ok=True)
+    obstacle.write_text("", encoding="utf-8")
+    environment = os.environ | {"PYTHONPATH": os.pathsep.join([str(tmp_path), str(ROOT)])}
+    ran = subprocess.run(
+        [sys.executable, "-m", "drystone", "list", "methods"],
+        cwd=tmp_path,
+        env=environment,
+        capture_output=True,
+        text=True,
+        check=False,
+        timeout=60,
+    )
+    assert ran.returncode == 2
+    assert ran.stdout == ""
+    lines = ran.stderr.splitlines()
+    assert len(lines) == 1
+    assert str(tmp_path / name.split("/")[0]) in lines[0]
+    assert "rename" in lines[0]
+
+
+def test_a_script_without_a_main_guard_may_compare(tmp_path: Path):
+    script = tmp_path / "script.py"
+    script.write_text(
+        "import drystone\n"
+        "wall = drystone.new_wall('stack', count=1)\n"
+        "print(len(drystone.compare(wall, ['la-associated', 'dummy']).results))\n",
+        encoding="utf-8",
+    )
+    ran = subprocess.run([sys.executable, str(script)], capture_output=True, text=True, check=False, timeout=120)
+    assert (ran.stdout, ran.returncode) == ("2\n", 0), ran.stderr
+
+
+def test_the_snippets_of_the_docs_run(tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
+    monkeypatch.chdir(tmp_path)
+    text = (ROOT / "docs" / "library.md").read_text(encoding="utf-8")
+    scope: dict[str, object] = {}
+    snippets = [part.split("```", 1)[0] for part in text.split("```python\n")[1:]]
+    assert snippets
+    for snippet in snippets:
+        exec(compile(snippet, "docs/library.md", "exec"), scope)
+    assert (tmp_path / "mechanism.pdf").exists()
+    assert (tmp_path / "report.html").exists()
