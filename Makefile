@@ -5,7 +5,7 @@ BIN := $(VENV)/bin
 READY := $(VENV)/.ready
 RUN := OMP_NUM_THREADS=1 OPENBLAS_NUM_THREADS=1 $(BIN)
 
-.PHONY: compare test check bench lint full schema lock clean
+.PHONY: compare test check bench lint full docs schema lock clean
 
 compare: $(READY)  ## run the main job: three methods on suite "small", judged, with a report
 	$(RUN)/drystone compare --suite small --imperfection 2
@@ -36,6 +36,9 @@ lint: $(READY)  ## style, types and the layer contract
 	$(BIN)/ruff format --check .
 	$(BIN)/mypy
 	$(BIN)/lint-imports --no-cache
+
+docs: $(READY)  ## build the documentation into out/docs; a warning is an error
+	$(RUN)/python -m sphinx -W --keep-going -q -b html docs out/docs
 
 schema: $(READY)  ## write the JSON Schema of the wall format again
 	$(BIN)/drystone schema > docs/wall-1.schema.json
