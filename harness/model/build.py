@@ -3,18 +3,19 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 import scipy.sparse as sp
 from scipy.sparse.csgraph import connected_components
 
 from harness.model import geometry
-from harness.model.assembly import Assembly, FloatArray, IntArray, polygon_area
+from harness.model.assembly import Assembly, BoolArray, FloatArray, IntArray, polygon_area
+from harness.model.contacts import TIMES, JointLimits, check_gap, find_contacts
 from harness.model.errors import InputError, first_few, of_each, raise_faults
 from harness.model.names import faults_of_wall
 from harness.model.pattern import blocks_of, count_of
-from harness.model.plausibility import contact_warnings, force_warnings, interface_warnings
+from harness.model.plausibility import contact_warnings, force_warnings, interface_warnings, near_misses, span
 from harness.model.slips import slip_warnings, thickness_of
 from harness.model.wall import (
     MOST_BLOCKS,
@@ -30,9 +31,6 @@ from harness.model.wall import (
     Wall,
     coefficient_of,
 )
-
-DEFAULT_TOLERANCE = 1e-6
-"""Tolerance of contact detection as a fraction of the typical block size."""
 
 
 @dataclass(frozen=True)
@@ -69,30 +67,12 @@ def build(wall: Wall, name: str = "wall") -> Built:
     centroids = np.array([geometry.centroid(polygon) for polygon in polygons])
 
     size = geometry.typical_size([polygon for polygon, still in zip(polygons, fixed, strict=True) if not still])
-    found = isinstance(wall.interfaces, Detection)
-    tolerance = DEFAULT_TOLERANCE * size
-    if isinstance(wall.interfaces, Detection) and wall.interfaces.tolerance is not None:
-        tolerance = wall.interfaces.tolerance
-    geometry.check_overlaps(polygons, names, fixed, tolerance)
-    corners = np.empty((0, 2), dtype=np.int64)
-    if isinstance(wall.interfaces, Detection):
-        contacts = geometry.find_contacts(polygons, fixed, tolerance)
-        corners = contacts.corners
-        interfaces = [
-            Interface.model_validate({"between": (names[a], names[b]), "from": tuple(start), "to": tuple(end)})
-            for a, b, start, end in zip(
-                contacts.block_a.tolist(),
-                contacts.block_b.tolist(),
-                contacts.start.tolist(),
-                contacts.end.tolist(),
-                strict=True,
-            )
-        ]
-    else:
-        interfaces = wall.interfaces
+    joints_found = _found(wall.interfaces, polygons, names, fixed, size)
+    interfaces = joints_found.interfaces
     block_a, block_b, face1, face2 = _faces(interfaces, index, fixed)
-    _check_held(names, fixed, block_a, block_b, corners)
-    normal = _normals(polygons, centroids, block_a, block_b, face1, face2, interfaces, trusted=found, size=size)
+    _check_held(names, fixed, block_a, block_b, joints_found)
+    trusted = joints_found.trusted
+    normal = _normals(polygons, centroids, block_a, block_b, face1, face2, interfaces, trusted=trusted, size=size)
     joints = tuple(
         interface.joint or _inclination(start, end)
         for interface, start, end in zip(interfaces, face1, face2, strict=True)
@@ -129,13 +109,72 @@ def build(wall: Wall, name: str = "wall") -> Built:
     if not math.isfinite(assembly.force_scale):
         raise InputError("its loads are too large to compute with", "Check the units", "loads")
     warnings = [
-        *contact_warnings(assembly, corners, size),
+        *contact_warnings(assembly, joints_found.corners, size),
+        *near_misses(names, joints_found.missed, joints_found.missed_gap, joints_found.gap),
         *force_warnings(assembly, wall.loads, size),
         *slip_warnings(wall, blocks, assembly),
     ]
-    if not found:
-        warnings += interface_warnings(assembly, size)
+    if trusted < len(interfaces):
+        warnings += interface_warnings(assembly, size, trusted)
     return Built(assembly, _explicit(wall, blocks, weight, interfaces, joints, friction), tuple(warnings))
+
+
+@dataclass(frozen=True)
+class _Joints:
+    """Interfaces of a wall, the first `trusted` of them found, and what was seen while they were looked for."""
+
+    interfaces: list[Interface]
+    trusted: int = 0
+    gap: float = 0.0
+    corners: IntArray = field(default_factory=lambda: np.empty((0, 2), dtype=np.int64))
+    missed: IntArray = field(default_factory=lambda: np.empty((0, 2), dtype=np.int64))
+    missed_gap: FloatArray = field(default_factory=lambda: np.empty(0))
+
+
+def _found(
+    asked: Detection | list[Interface],
+    polygons: tuple[FloatArray, ...],
+    names: tuple[str, ...],
+    fixed: BoolArray,
+    size: float,
+) -> _Joints:
+    """The interfaces that were asked for: found, found and given, or given.
+
+    Raises:
+        InputError: blocks overlap, or a gap is allowed that is as wide as a block.
+    """
+    detection = Detection() if isinstance(asked, list) else asked
+    gap, overlap = detection.gap(size), detection.overlap(size)
+    geometry.check_overlaps(polygons, names, fixed, overlap)
+    if isinstance(asked, list):
+        return _Joints(asked)
+    check_gap(polygons, names, gap)
+    sight = max(TIMES * gap, geometry.NEAR * size)
+    limits = JointLimits(gap, overlap, math.radians(detection.greatest_angle), detection.contact(size), sight)
+    contacts = find_contacts(polygons, fixed, limits)
+    said = {frozenset(item.between) for item in detection.given} | {frozenset(pair) for pair in detection.removed}
+    interfaces = [
+        Interface.model_validate({"between": (names[a], names[b]), "from": tuple(start), "to": tuple(end)})
+        for a, b, start, end in zip(
+            contacts.block_a.tolist(),
+            contacts.block_b.tolist(),
+            contacts.start.tolist(),
+            contacts.end.tolist(),
+            strict=True,
+        )
+        if frozenset((names[a], names[b])) not in said
+    ]
+    open_pairs = np.array(
+        [frozenset((names[a], names[b])) not in said for a, b in contacts.missed.tolist()], dtype=bool
+    )
+    return _Joints(
+        [*interfaces, *detection.given],
+        len(interfaces),
+        gap,
+        contacts.corners,
+        contacts.missed[open_pairs],
+        contacts.missed_gap[open_pairs],
+    )
 
 
 def _all_blocks(wall: Wall) -> list[Block]:
@@ -199,7 +238,7 @@ def _faces(
 
 
 def _check_held(
-    names: tuple[str, ...], fixed: np.ndarray, block_a: IntArray, block_b: IntArray, corners: IntArray
+    names: tuple[str, ...], fixed: np.ndarray, block_a: IntArray, block_b: IntArray, joints: _Joints
 ) -> None:
     count = len(names)
     graph = sp.coo_matrix((np.ones(len(block_a)), (block_a, block_b)), shape=(count, count))
@@ -209,13 +248,23 @@ def _check_held(
         return
     listed = [names[k] for k in np.flatnonzero(floating)]
     shown = first_few([f'"{name}"' for name in listed], 5)
-    at_corner = bool(len(corners) and np.any(floating[corners[:, 0]] | floating[corners[:, 1]]))
+    at_corner = bool(np.any(floating[joints.corners]))
+    near = np.any(floating[joints.missed], axis=1)
+    remedy = "Let faces meet along a length, or raise interfaces.greatest_gap if the drawing has gaps"
+    if near.any():
+        gaps, unlucky = joints.missed_gap[near], joints.missed[near]
+        one, other = (names[k] for k in unlucky[int(np.argmin(gaps))])
+        remedy = (
+            f'Faces look at each other {span(gaps)} apart, those of "{one}" and "{other}" the nearest, '
+            f"and joints are up to {joints.gap:.3g} wide: if they bear on each other, say "
+            f'"interfaces": {{"tolerance": {1.02 * gaps.max():.3g}}}'
+        )
     raise InputError(
         "no chain of interfaces joins "
         + ("it" if len(listed) == 1 else "them")
         + " to a fixed block: floating"
         + (" (a touch at a corner is no interface)" if at_corner else ""),
-        "Let faces meet along a length, or raise interfaces.tolerance if the drawing has gaps",
+        remedy,
         f"block {shown}" if len(listed) == 1 else f"blocks {shown}",
     )
 
@@ -229,20 +278,20 @@ def _normals(
     face2: FloatArray,
     interfaces: list[Interface],
     *,
-    trusted: bool,
+    trusted: int,
     size: float,
 ) -> FloatArray:
-    """Unit normals from a into b: found contacts run counter-clockwise round a, given ones are tested at midpoint."""
+    """Unit normals from a into b: those found run counter-clockwise round a, given ones are tested at midpoint."""
     tangent = face2 - face1
     tangent = tangent / np.linalg.norm(tangent, axis=1)[:, None]
     outward = np.stack([tangent[:, 1], -tangent[:, 0]], axis=1)
-    if trusted or not len(interfaces):
+    if trusted == len(interfaces):
         return outward
     import shapely
 
     middle = 0.5 * (face1 + face2)
     step = 1e-3 * np.minimum(np.linalg.norm(face2 - face1, axis=1), size)[:, None] * outward
-    shapes = geometry._shapes(polygons)
+    shapes = geometry.shapes_of(polygons)
     inside = {
         (side, way): shapely.contains_xy(shapes[block], *(middle + way * step).T)
         for side, block in (("a", block_a), ("b", block_b))
@@ -259,14 +308,16 @@ def _normals(
     same_side = unclear & (
         (inside["a", 1.0] & inside["b", 1.0]) | (inside["a", -1.0] & inside["b", -1.0]) | (abs(across) < 1e-9 * size)
     )
+    same_side[:trusted] = False
     if same_side.any():
         number = int(np.flatnonzero(same_side)[0])
         raise InputError(
             "its blocks do not lie on opposite sides of the segment",
             'Let "from" and "to" run along the faces that touch',
-            f"interfaces[{number}] between {' and '.join(interfaces[number].between)}",
+            f"interfaces[{number - trusted}] between {' and '.join(interfaces[number].between)}",
         )
     sign = np.where(unclear, np.sign(across), np.sign(votes))
+    sign[:trusted] = 1.0
     return np.asarray(outward * sign[:, None])
 
 

@@ -6,7 +6,7 @@ from collections.abc import Iterable, Iterator
 from typing import Any
 
 from harness.model.errors import InputError, did_you_mean
-from harness.model.wall import Block, Friction, Interface, Load, Wall
+from harness.model.wall import Block, Detection, Friction, Load, Wall
 
 MOST_COMPARED = 2000
 """Ids that an unknown one is compared with, in the search for the one that was meant."""
@@ -45,11 +45,14 @@ def _named(wall: Wall) -> Iterator[tuple[str, str]]:
         for number, rule in enumerate(wall.friction.rules):
             for name in rule.between or ():
                 yield f"friction.rules[{number}]", name
-    if isinstance(wall.interfaces, list):
+    if isinstance(wall.interfaces, Detection):
+        for number, pair in enumerate(wall.interfaces.removed):
+            yield from ((f"interfaces.removed[{number}]", name) for name in pair)
+        for number, interface in enumerate(wall.interfaces.given):
+            yield from ((f"interfaces.given[{number}]", name) for name in interface.between)
+    else:
         for number, interface in enumerate(wall.interfaces):
-            assert isinstance(interface, Interface)
-            for name in interface.between:
-                yield f"interfaces[{number}]", name
+            yield from ((f"interfaces[{number}]", name) for name in interface.between)
     for where, load in (("loads.dead", wall.loads.dead), ("loads.live", wall.loads.live or Load())):
         for number, body in enumerate(load.body):
             for name in body.blocks or ():

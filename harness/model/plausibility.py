@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
 
-from harness.model.assembly import Assembly, IntArray
+from harness.model.assembly import Assembly, FloatArray, IntArray
 from harness.model.errors import InputError, first_few
 from harness.model.geometry import distances
 from harness.model.wall import Load, Loads
@@ -20,6 +22,7 @@ SHORT = 1e-3
 def contact_warnings(assembly: Assembly, corners: IntArray, size: float) -> list[str]:
     """Sentences about contacts at corners, pairs (k, 2) of blocks, and about very short interfaces."""
     sentences = []
+    corners = _unbonded(assembly, corners)
     if len(corners):
         shown = first_few([f"{assembly.block_ids[a]}/{assembly.block_ids[b]}" for a, b in corners], 5)
         sentences.append(f"{len(corners)} pair(s) of blocks touch only at a corner, which is no support: {shown}")
@@ -33,8 +36,42 @@ def contact_warnings(assembly: Assembly, corners: IntArray, size: float) -> list
     return sentences
 
 
-def interface_warnings(assembly: Assembly, size: float) -> list[str]:
-    """A sentence about given interfaces whose ends lie off their blocks, as over a mortar joint.
+def _unbonded(assembly: Assembly, corners: IntArray) -> IntArray:
+    """Pairs (k, 2) at a corner that no third block joins: where four bricks meet, the bond holds the corner."""
+    neighbours: dict[int, set[int]] = {}
+    for a, b in zip(assembly.block_a.tolist(), assembly.block_b.tolist(), strict=True):
+        neighbours.setdefault(a, set()).add(b)
+        neighbours.setdefault(b, set()).add(a)
+    alone = [not neighbours.get(a, set()) & neighbours.get(b, set()) for a, b in corners.tolist()]
+    return np.asarray(corners[np.array(alone, dtype=bool)])
+
+
+def span(values: FloatArray) -> str:
+    """The least and the greatest of some numbers (k,), or the one that all are, in three digits."""
+    least, greatest = f"{values.min():.3g}", f"{values.max():.3g}"
+    return least if least == greatest else f"{least} to {greatest}"
+
+
+def near_misses(names: Sequence[str], pairs: IntArray, gaps: FloatArray, greatest: float) -> list[str]:
+    """A sentence about pairs (k, 2) of blocks whose faces look at each other and have no joint.
+
+    Args:
+        names: of the blocks; pairs: (k, 2); gaps: (k,) between them [length]; greatest: gap of a joint [length].
+    """
+    if not len(pairs):
+        return []
+    order = np.argsort(gaps, kind="stable")
+    shown = first_few([f"{names[pairs[k, 0]]}/{names[pairs[k, 1]]} ({gaps[k]:.3g})" for k in order.tolist()], 5)
+    far = 1.02 * gaps.max()
+    return [
+        f"{len(pairs)} pair(s) of faces look at each other {span(gaps)} apart, or lie as deep "
+        f"within each other, and have no joint, because joints are up to {greatest:.3g} wide: {shown}. If they bear on "
+        f'each other the answer is another: say "interfaces": {{"tolerance": {far:.3g}}}'
+    ]
+
+
+def interface_warnings(assembly: Assembly, size: float, first: int = 0) -> list[str]:
+    """A sentence about given interfaces, from number `first` on, whose ends lie off their blocks, as over mortar.
 
     Raises:
         InputError: an end of one lies too far off.
@@ -43,17 +80,20 @@ def interface_warnings(assembly: Assembly, size: float) -> list[str]:
     for block in (assembly.block_a, assembly.block_b):
         for end in (assembly.face1, assembly.face2):
             off = np.maximum(off, distances(assembly.polygons, block, end))
+    off[:first] = 0.0
     if off.max(initial=0.0) > ASTRAY * size:
         number = int(np.argmax(off))
         raise InputError(
             f"an end of it lies {off[number]:.3g} away from one of its blocks, whose typical size is {size:.3g}",
             'Let "from" and "to" lie on the faces that touch',
-            f"interfaces[{number}] between {' and '.join(_blocks_of(assembly, number))}",
+            f"interfaces[{number - first}] between {' and '.join(_blocks_of(assembly, number))}",
         )
     beside = np.flatnonzero(off > BESIDE * size).tolist()
     if not beside:
         return []
-    shown = first_few([f"interfaces[{number}] ({'/'.join(_blocks_of(assembly, number))})" for number in beside], 5)
+    shown = first_few(
+        [f"interfaces[{number - first}] ({'/'.join(_blocks_of(assembly, number))})" for number in beside], 5
+    )
     return [f"{len(beside)} interface(s) end up to {off.max():.3g} away from a block: a gap, or a coordinate? {shown}"]
 
 

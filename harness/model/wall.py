@@ -15,6 +15,10 @@ from harness.model.units import DIMENSIONLESS, KILONEWTONS, METRES, ForceUnit, L
 
 LARGEST = 1e15
 """Greatest size of any number of the format, whatever its unit, so that no product of a few of them overflows."""
+DEFAULT_TOLERANCE = 1e-6
+"""Greatest gap and overlap of the faces of a joint, in typical block sizes, where a wall does not say."""
+LEAST_CONTACT = 0.01
+"""Least length of a contact, in typical block sizes, where the gap may be larger: 3 mm on a brick of 300."""
 MOST_BLOCKS = 100_000
 """Blocks of a wall at most, those that patterns make included."""
 Number = Annotated[float, Field(ge=-LARGEST, le=LARGEST, strict=True)]
@@ -178,9 +182,37 @@ class Interface(Strict):
 
 
 class Detection(Strict):
-    """How interfaces are found: edges that lie along each other within `tolerance`."""
+    """How interfaces are found: faces that look at each other, with the interface in the middle between them."""
 
-    tolerance: Positive | None = Field(None, description="[length]; default 1e-6 of the typical block size")
+    tolerance: Positive | None = Field(
+        None, description="greatest gap and overlap at once [length]; default 1e-6 of the typical block size"
+    )
+    greatest_gap: Positive | None = Field(None, description="between the two faces of a joint [length]; or tolerance")
+    greatest_overlap: Positive | None = Field(None, description="of the two faces of a joint [length]; or tolerance")
+    greatest_angle: Annotated[float, Field(gt=0.0, lt=90.0, strict=True)] = Field(
+        20.0, description="between the two faces of a joint [degrees]: mortar may be a wedge"
+    )
+    least_contact: Positive | None = Field(
+        None,
+        description="faces beside each other along no more than this touch at a corner [length]; default the "
+        "greatest gap, at most a hundredth of the typical block size",
+    )
+    given: list[Interface] = Field(
+        default_factory=list, description="these, in place of those found between their blocks"
+    )
+    removed: list[tuple[Name, Name]] = Field(default_factory=list, description="pairs of blocks without a joint")
+
+    def gap(self, size: float) -> float:
+        """Greatest gap [length] for a typical block size [length]."""
+        return self.greatest_gap or self.tolerance or DEFAULT_TOLERANCE * size
+
+    def overlap(self, size: float) -> float:
+        """Greatest overlap [length] for a typical block size [length]."""
+        return self.greatest_overlap or self.tolerance or DEFAULT_TOLERANCE * size
+
+    def contact(self, size: float) -> float:
+        """Least length of a contact [length] for a typical block size [length]."""
+        return self.least_contact or min(self.gap(size), LEAST_CONTACT * size)
 
 
 class BodyForce(Strict):

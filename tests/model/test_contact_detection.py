@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from harness.model.build import build
-from harness.model.geometry import find_contacts
+from harness.model.contacts import JointLimits, find_contacts
 from harness.model.wall import Wall
 
 
@@ -14,8 +14,9 @@ def rectangle(left: float, bottom: float, right: float, top: float) -> np.ndarra
     return np.array([[left, bottom], [right, bottom], [right, top], [left, top]])
 
 
-def contacts(polygons: list[np.ndarray], tolerance: float = 1e-6):
-    return find_contacts(polygons, np.zeros(len(polygons), bool), tolerance)
+def contacts(polygons: list[np.ndarray], tolerance: float = 1e-6, sight: float = 0.0):
+    limits = JointLimits(tolerance, tolerance, 0.3, tolerance, sight)
+    return find_contacts(polygons, np.zeros(len(polygons), bool), limits)
 
 
 def test_t_junction_gives_one_interface_for_each_block_above():

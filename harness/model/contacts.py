@@ -1,0 +1,214 @@
+"""Where blocks touch: pairs of faces that look at each other, with the interface in the middle between them.
+
+Two edges of different blocks are the faces of one joint if they run in opposite directions within an angle, lie beside
+each other along a length, and are nowhere further apart, or further into each other, than is allowed. The interface
+lies half-way between them: each end of it between a vertex of one face and the foot of its perpendicular on the other.
+So nothing depends on the order or the numbering of the blocks, nor on where a polygon begins. Candidates come from a
+spatial index (shapely STRtree), the rest is done on arrays.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+import shapely
+
+from harness.model.assembly import BoolArray, FloatArray, IntArray
+from harness.model.errors import InputError, first_few
+from harness.model.geometry import following, shapes_of
+
+TIMES = 10.0
+"""The same in greatest gaps: a drawing with joints of 2 mm and one of 15 has lost that one."""
+
+
+@dataclass(frozen=True)
+class JointLimits:
+    """What may be the two faces of one joint.
+
+    Attributes:
+        gap: greatest distance between them [length].
+        overlap: greatest depth by which they lie within each other [length].
+        angle: greatest angle between them [radians].
+        length: contacts no longer than this are corners [length].
+        sight: faces further apart or deeper than that, and up to here, are near misses [length].
+    """
+
+    gap: float
+    overlap: float
+    angle: float
+    length: float
+    sight: float = 0.0
+
+
+@dataclass(frozen=True)
+class Contacts:
+    """Contact segments between blocks. m = number found.
+
+    Attributes:
+        block_a, block_b: (m,) block indices, a < b.
+        start, end: (m, 2) ends of the segments, counter-clockwise round a [length].
+        corners: (k, 2) pairs of blocks that touch at a point only, and so do not support each other here.
+        missed: (j, 2) pairs of blocks without a contact whose faces look at each other from a little further off, or
+            lie a little deeper within each other.
+        missed_gap: (j,) how far or how deep [length].
+    """
+
+    block_a: IntArray
+    block_b: IntArray
+    start: FloatArray
+    end: FloatArray
+    corners: IntArray
+    missed: IntArray
+    missed_gap: FloatArray
+
+
+@dataclass(frozen=True)
+class _Edges:
+    """Directed edges of all blocks, and their owners."""
+
+    owner: IntArray
+    first: FloatArray
+    last: FloatArray
+
+    def foot(self, k: IntArray, point: FloatArray) -> FloatArray:
+        """Feet (p, 2) of the perpendiculars from points (p, 2) on edges k."""
+        vector = self.last[k] - self.first[k]
+        share = ((point - self.first[k]) * vector).sum(axis=1) / (vector * vector).sum(axis=1)
+        return np.asarray(self.first[k] + share[:, None] * vector)
+
+
+def _edges(polygons: Sequence[FloatArray]) -> _Edges:
+    owner = np.repeat(np.arange(len(polygons)), [len(polygon) for polygon in polygons])
+    return _Edges(owner, np.concatenate(list(polygons)), np.concatenate([following(polygon) for polygon in polygons]))
+
+
+def find_contacts(polygons: Sequence[FloatArray], fixed: BoolArray, limits: JointLimits) -> Contacts:
+    """Contact segments between the blocks, sorted by (a, b) and along the segment.
+
+    Args:
+        polygons: (n,) counter-clockwise vertex arrays (k, 2) [length].
+        fixed: (n,) fixed blocks; contacts between two of them are left out, as they carry no unknown.
+        limits: what may be the two faces of one joint.
+    """
+    edges = _edges(polygons)
+    vector = edges.last - edges.first
+    direction = vector / np.linalg.norm(vector, axis=1)[:, None]
+    lines = shapely.linestrings(np.stack([edges.first, edges.last], axis=1))
+    reach = max(limits.gap, limits.overlap, limits.sight)
+    i, j = shapely.STRtree(lines).query(lines, predicate="dwithin", distance=reach)
+    facing = (edges.owner[i] < edges.owner[j]) & ~(fixed[edges.owner[i]] & fixed[edges.owner[j]])
+    facing &= np.einsum("kd,kd->k", direction[i], direction[j]) <= -np.cos(limits.angle)
+    i, j = i[facing], j[facing]
+
+    # Along the bisector of the two faces, about a point between them.
+    axis = direction[i] - direction[j]
+    axis = axis / np.linalg.norm(axis, axis=1)[:, None]
+    origin = 0.25 * ((edges.first[i] + edges.last[i]) + (edges.first[j] + edges.last[j]))
+
+    def along(points: FloatArray) -> FloatArray:
+        relative = points - origin
+        return np.asarray(relative[:, 0] * axis[:, 0] + relative[:, 1] * axis[:, 1])
+
+    first_i, last_i, first_j, last_j = (
+        along(p) for p in (edges.first[i], edges.last[i], edges.first[j], edges.last[j])
+    )
+    low, high = np.maximum(first_i, last_j), np.minimum(last_i, first_j)
+
+    def across(
+        place: FloatArray, own: FloatArray, p: FloatArray, other: FloatArray, q: FloatArray
+    ) -> tuple[FloatArray, FloatArray]:
+        """The points of both faces at an end: a vertex there, or the foot of the other face's vertex."""
+        on_i = np.where((own == place)[:, None], p, edges.foot(i, q))
+        return on_i, np.where((other == place)[:, None], q, edges.foot(j, p))
+
+    ends = [
+        across(low, first_i, edges.first[i], last_j, edges.last[j]),
+        across(high, last_i, edges.last[i], first_j, edges.first[j]),
+    ]
+    gaps = np.stack([(q - p)[:, 0] * axis[:, 1] - (q - p)[:, 1] * axis[:, 0] for p, q in ends])
+    start, end = (0.5 * (p + q) for p, q in ends)
+    widest, deepest = gaps.max(axis=0), -gaps.min(axis=0)
+    beside, off = high - low > limits.length, np.maximum(widest, deepest)
+    near = beside & (widest <= limits.gap) & (deepest <= limits.overlap)
+    seen = beside & ~near & (off <= limits.sight)
+
+    a, b = edges.owner[i], edges.owner[j]
+    kept = np.flatnonzero(near)
+    kept = kept[np.lexsort((end[kept, 1], end[kept, 0], start[kept, 1], start[kept, 0], b[kept], a[kept]))]
+    joined = _merge_collinear(a[kept], b[kept], start[kept], end[kept], max(limits.gap, limits.overlap))
+    corners = _corner_pairs(polygons, fixed, joined[0], joined[1], max(limits.gap, limits.overlap))
+    missed, missed_gap = _missed(a[seen], b[seen], off[seen], joined[0], joined[1], len(polygons))
+    return Contacts(*joined, corners, missed, missed_gap)
+
+
+def _missed(
+    a: IntArray, b: IntArray, gap: FloatArray, joined_a: IntArray, joined_b: IntArray, count: int
+) -> tuple[IntArray, FloatArray]:
+    """Pairs (j, 2) that see each other and have no contact, each with its least gap."""
+    code = a * count + b
+    apart = ~np.isin(code, joined_a * count + joined_b)
+    pairs, place = np.unique(code[apart], return_inverse=True)
+    least = np.full(len(pairs), np.inf)
+    np.minimum.at(least, place, gap[apart])
+    return np.stack([pairs // count, pairs % count], axis=1), least
+
+
+def _merge_collinear(
+    a: IntArray, b: IntArray, start: FloatArray, end: FloatArray, tolerance: float
+) -> tuple[IntArray, IntArray, FloatArray, FloatArray]:
+    """Join segments of the same pair that continue each other in a straight line (a vertex inside a flat face)."""
+    keep: list[int] = []
+    ends = end.copy()
+    starts = start.copy()
+    for k in range(len(a)):
+        joined = False
+        for kept in reversed(keep):
+            if a[kept] != a[k] or b[kept] != b[k]:
+                break
+            one = (ends[kept] - starts[kept]) / np.linalg.norm(ends[kept] - starts[kept])
+            two = ends[k] - starts[k]
+            straight = abs(one[0] * two[1] - one[1] * two[0]) <= tolerance and np.dot(one, two) > 0.0
+            if straight and np.linalg.norm(ends[kept] - starts[k]) <= tolerance:
+                ends[kept] = ends[k]
+                joined = True
+            elif straight and np.linalg.norm(starts[kept] - ends[k]) <= tolerance:
+                starts[kept] = starts[k]
+                joined = True
+            if joined:
+                break
+        if not joined:
+            keep.append(k)
+    return a[keep], b[keep], starts[keep], ends[keep]
+
+
+def _corner_pairs(
+    polygons: Sequence[FloatArray], fixed: BoolArray, a: IntArray, b: IntArray, tolerance: float
+) -> IntArray:
+    shapes = shapes_of(polygons)
+    i, j = shapely.STRtree(shapes).query(shapes, predicate="dwithin", distance=tolerance)
+    wanted = (i < j) & ~(fixed[i] & fixed[j])
+    count = len(polygons)
+    touching = i[wanted] * count + j[wanted]
+    alone = np.setdiff1d(touching, a * count + b)
+    return np.stack([alone // count, alone % count], axis=1)
+
+
+def check_gap(polygons: Sequence[FloatArray], names: Sequence[str], gap: float) -> None:
+    """Refuse a greatest gap as wide as a block: the faces of its two neighbours would meet across it.
+
+    Raises:
+        InputError: naming the thinnest block.
+    """
+    shapes = shapes_of(polygons)
+    width = 2.0 * shapely.area(shapes) / shapely.length(shapes)
+    thin = np.flatnonzero(width <= gap)
+    if len(thin):
+        least = thin[int(np.argmin(width[thin]))]
+        raise InputError(
+            f"a greatest gap of {gap:.3g} swallows {len(thin)} block(s), "
+            f"{first_few([names[k] for k in thin.tolist()], 5)}: the thinnest is about {width[least]:.3g} thick",
+            f"Allow less than {width.min():.3g}",
+            "interfaces",
+        )
