@@ -76,18 +76,22 @@ def opening(run: ComparisonRun) -> Opening:
 
 
 def in_order(items: list[CaseResults]) -> list[CaseResults]:
-    """Cases as a reader wants them: their own walls (of which no reference is known), the paper's, those on which
-    methods part or something went wrong, the rest."""
+    """Cases as a reader wants them: their own, the paper's, those on which methods part or fail, the rest."""
+    return sorted(items, key=_rank)
 
-    def rank(item: CaseResults) -> int:
-        if shapes.problem(item.case) or not item.case.file.references:
-            return 0
-        if item.case.id in (paper.BLOCK, paper.WALL):
-            return 1
-        wrong = any(gate.passed is False for gate in item.gates) or any(_wrong(result) for result in item.results)
-        return 2 if wrong or (_spread(item) or 0.0) > CLOSE else 3
 
-    return sorted(items, key=rank)
+def is_calm(item: CaseResults) -> bool:
+    """Whether a case is one of the rest: known from a source, with methods that agree and nothing that went wrong."""
+    return _rank(item) == 3
+
+
+def _rank(item: CaseResults) -> int:
+    if shapes.problem(item.case) or not item.case.file.references:
+        return 0  # nothing is known of it beforehand: a wall of the user's own
+    if item.case.id in (paper.BLOCK, paper.WALL):
+        return 1
+    wrong = any(gate.passed is False for gate in item.gates) or any(_wrong(result) for result in item.results)
+    return 2 if wrong or (_spread(item) or 0.0) > CLOSE else 3
 
 
 def red_rows(run: ComparisonRun) -> list[RedRow]:
@@ -244,8 +248,7 @@ def which_number(item: CaseResults) -> str:
     springs = [r for r in _mains(item) if r.family == "fe" and r is not least and r.multiplier is not None]
     if springs and springs[0].finding is Finding.COLLAPSES:
         sentences.append(
-            "Elastic joints without self-stress would give "
-            f"{numbers.multiplier(springs[0].multiplier)} ({springs[0].method})."
+            f"Elastic joints without self-stress would give {_or_the_same(springs[0], least)} ({springs[0].method})."
         )
     if associated is not None and _above(associated, least):
         over = (associated.multiplier or 0.0) / (least.multiplier or 1.0) - 1.0 if least.multiplier else None
@@ -255,6 +258,11 @@ def which_number(item: CaseResults) -> str:
             "it lets joints widen as they slide."
         )
     return " ".join(sentences)
+
+
+def _or_the_same(result: Result, least: Result) -> str:
+    value = numbers.multiplier(result.multiplier)
+    return "the same" if value == numbers.multiplier(least.multiplier) else value
 
 
 def _suite(items: list[CaseResults]) -> list[str]:

@@ -106,7 +106,7 @@ def mechanism_in_words(assembly: Assembly, mechanism: FloatArray, length: str) -
         return f"{who}, not as one body"
     size = shapes.extent(assembly).longest
     if abs(fitted[2]) * size < 0.02 * float(np.hypot(*mechanism[moves, :2].T).max()):
-        return f"{who}, sliding as one body"
+        return f"{who}, sliding" if moves.sum() == 1 else f"{who}, sliding as one body"
     x, y = (value if abs(value) > 1e-9 * size else 0.0 for value in (-fitted[1] / fitted[2], fitted[0] / fitted[2]))
     ways = "clockwise" if fitted[2] < 0.0 else "anticlockwise"
     only = "turning" if moves.sum() == 1 else "turning as one body"

@@ -13,7 +13,8 @@ from harness.model.result import Result
 from reports import numbers, shapes
 from reports.agreement import Agreement
 from reports.drawing import Frame, stroke_factor
-from reports.reasons import reasons
+from reports.opening import is_calm
+from reports.reasons import joints_in_words, motion, reasons
 from reports.tables import RunRow
 
 
@@ -26,7 +27,8 @@ class Panel:
         number: its index among the case's results.
         mechanism, forces: whether there is something to draw.
         flow: what the mechanism is, for the caption.
-        states: how many interfaces are in each state, in words.
+        states: how many interfaces move in which way, in words.
+        forces_are: what the forces are, for the caption.
     """
 
     row: RunRow
@@ -35,6 +37,7 @@ class Panel:
     forces: bool
     flow: str
     states: str
+    forces_are: str
 
 
 @dataclass(frozen=True)
@@ -57,6 +60,7 @@ class CaseSection:
     problem: str = ""
     cut: str = "all"
     reasons: tuple[str, ...] = ()
+    calm: bool = False
 
 
 FLOW = {
@@ -94,7 +98,8 @@ def case_section(
                 mechanism=result.mechanism is not None and fields != "none",
                 forces=result.forces is not None and fields == "all",
                 flow=FLOW.get(result.flow, result.flow),
-                states=_states(result),
+                states=_states(item.case, result),
+                forces_are=_forces_are(result),
             )
         )
     return CaseSection(
@@ -113,6 +118,7 @@ def case_section(
         curves=curves,
         cut=fields,
         reasons=tuple(reasons(item)),
+        calm=is_calm(item),
     )
 
 
@@ -126,11 +132,19 @@ def _loads_drawn(case: Case) -> str:
     return f"The wall with its loads{every}; dots are contact points."
 
 
-def _states(result: Result) -> str:
-    if not result.states:
-        return ""
-    counts = {state: result.states.count(state) for state in ("slip", "rock", "open", "stick")}
-    return ", ".join(f"{count} {state}" for state, count in counts.items() if count)
+def _states(case: Case, result: Result) -> str:
+    """How the joints move, in words; nothing for a measured field, in which nothing is exactly at rest."""
+    found = motion(case.assembly, result)
+    return "" if found is None else joints_in_words(found)
+
+
+def _forces_are(result: Result) -> str:
+    if result.flow == "approximate":
+        return "contact forces of the last state that was held; the mechanism above is of the one that moved"
+    at = numbers.multiplier(result.forces_multiplier)
+    if result.forces_multiplier is not None and at != numbers.multiplier(result.multiplier):
+        return f"contact forces at {at}"
+    return "contact forces at collapse"
 
 
 def _facts(case: Case) -> list[tuple[str, str]]:

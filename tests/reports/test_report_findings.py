@@ -7,6 +7,7 @@ import pytest
 
 from harness.model.comparison import CaseResults, ComparisonRun
 from harness.model.method import Status
+from harness.model.result import Verdict
 from reports import build, drawing, opening, reasons, tables
 from tests.reports import samples
 
@@ -138,3 +139,37 @@ def test_methods_run_on_few_cases_take_no_column():
     page = build.render(run, data_folder="x")
     assert "Methods run on a few walls only" in page
     assert "drystone run fe-newton wall-0" in page
+
+
+def test_joints_are_told_by_what_they_do_and_forces_by_the_state_they_are_of():
+    item = of_one_wall()
+    page = build.render(ComparisonRun("mine", "", "", [item]), data_folder="x")
+    assert "of the joints" in page
+    assert (
+        page.count("contact forces of the last state that was held; the mechanism above is of the one that moved") == 1
+    )
+    assert page.count("contact forces at collapse") == 3
+    assert "No result of this comparison stands beside a value of others" in page
+
+
+def test_joint_that_rocks_and_slides_counts_as_both():
+    slides, opens = np.array([True, True, False, False]), np.array([False, True, True, True])
+    moves = reasons.Motion(slides, opens, np.array([False, False, False, True]))
+    assert reasons.joints_in_words(moves) == (
+        "of the joints 1 slides, 1 rocks, 1 rocks and slides and 1 opens along its whole length"
+    )
+
+
+def test_long_table_in_which_all_agree_is_folded_with_its_count():
+    known = [samples.reference(f"known-{n}", "published", 0.5, ["la"]) for n in range(8)]
+    case = samples.bond("known", references=known)
+    result = samples.solved(case, "la", 0.5)
+    for n in range(8):
+        samples.held_against(case, result, f"known-{n}", Verdict.AGREES)
+    page = build.render(ComparisonRun("known", "", "", [CaseResults(case, [result])]), data_folder="x")
+    assert "8 of 8 values agree: show them" in page
+    result.comparisons[3].verdict = Verdict.OUTSIDE_TOLERANCE
+    page = build.render(ComparisonRun("known", "", "", [CaseResults(case, [result])]), data_folder="x")
+    head, folded = page.split("7 of 8 values agree: show them")
+    assert "requirement of known-3" in head.split('id="references"')[1], "what differs is not folded"
+    assert "requirement of known-4" in folded
