@@ -94,12 +94,44 @@ def _one_line(text: str | None) -> str:
     return " ".join((text or "").split()).replace("|", "\\|").replace("$", "\\$")
 
 
+def _signs_figure(folder: Path) -> None:
+    """Two blocks with the interface between them: ends, normal, tangent, and what acts on b."""
+    from matplotlib.figure import Figure
+
+    page = Figure(figsize=(4.6, 3.4))
+    axes = page.subplots()
+    axes.set_aspect("equal")
+    axes.axis("off")
+    for corners, name in ((((0, -1), (4, -1), (4, 0), (0, 0)), "a"), (((0, 0), (4, 0), (4, 1.6), (0, 1.6)), "b")):
+        axes.fill(*zip(*corners, strict=True), facecolor="#eef2f6", edgecolor="#14202b", linewidth=0.8)
+        axes.text(3.7, 0.5 * (corners[0][1] + corners[2][1]), name, fontsize=11, style="italic", va="center")
+    arrow = {"arrowstyle": "-|>", "linewidth": 1.4, "shrinkA": 0, "shrinkB": 0}
+    for (x, y), (dx, dy), words, (tx, ty), colour in (
+        ((0, 0), (0, 0.9), "$n_1$", (0.1, 0.8), "#17508c"),
+        ((4, 0), (0, 0.7), "$n_2$", (4.1, 0.55), "#17508c"),
+        ((1.0, 0.12), (0.9, 0), "$s$", (1.4, 0.2), "#17508c"),
+        ((2.4, 0), (0, 0.6), "$n$", (2.5, 0.5), "#a63c06"),
+        ((2.4, 0), (0.6, 0), "$t$", (2.9, -0.3), "#a63c06"),
+    ):
+        axes.annotate("", (x + dx, y + dy), (x, y), arrowprops={**arrow, "color": colour})
+        axes.text(tx, ty, words, color=colour, fontsize=11)
+    axes.plot([0, 4], [0, 0], "o", color="#14202b", markersize=4)
+    axes.text(-0.3, -0.05, "1", va="center")
+    axes.text(4.15, -0.2, "2", va="center")
+    axes.plot([2], [1.2], "+", color="#14202b")
+    axes.text(2.1, 1.2, "$c$", va="center")
+    axes.annotate("", (1.75, 1.35), (2.3, 0.95), arrowprops={**arrow, "connectionstyle": "arc3,rad=0.9"})
+    axes.text(1.35, 1.2, "$\\omega$", fontsize=11)
+    page.savefig(folder / "signs.svg", bbox_inches="tight", metadata={"Date": None})
+
+
 def _generate(_app: Any) -> None:
     folder = HERE / "generated"
     folder.mkdir(exist_ok=True)
     _command_pages(folder)
     _columns_page(folder)
     _settings_page(folder)
+    _signs_figure(folder)
 
 
 def setup(app: Any) -> None:
