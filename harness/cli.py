@@ -24,6 +24,8 @@ COMMANDS = {
     "list": ("wall_commands", "list_", "List the cases, the methods or the suites there are."),
     "expand": ("wall_commands", "expand", "Print WALL.json in explicit form."),
     "judge": ("wall_commands", "judge", "Judge RESULT.json, an answer from anywhere."),
+    "bound": ("bound_commands", "bound", "Write a certificate that no collapse state lies lower."),
+    "verify-bound": ("bound_commands", "verify_bound", "Check a certificate in fractions."),
     "schema": ("wall_commands", "schema", "Print the JSON Schema of the wall format."),
     "show": ("wall_commands", "show", "Draw CASE to a file or in a window."),
     "figure": ("wall_commands", "figure", "Draw the answers of methods as a figure for a paper."),

@@ -41,11 +41,13 @@ class Proof:
         state: the collapse state of least multiplier that is known after it.
         lower_bound: scaled multiplier below which there is no collapse state.
         nodes: of the tree, two linear programmes each.
+        leaves: slacks held at zero and rates held at zero, (m, 4) each, of every part that was given up.
     """
 
     state: CollapseState
     lower_bound: float
     nodes: int
+    leaves: tuple[tuple[BoolArray, BoolArray], ...] = ()
 
     @property
     def complete(self) -> bool:
@@ -76,7 +78,8 @@ def prove(search: Search, known: CollapseState, most: int) -> Proof:
         return Proof(tree.known, 0.0, tree.nodes)
     bounds = [tree.undecided, _below(tree.known.multiplier), *(node.bound for node in tree.open[:1])]
     search.tally.programmes += 2 * tree.nodes
-    return Proof(tree.known, min(bounds), tree.nodes)
+    leaves = tree.closed + [(node.tight, node.still) for node in tree.open]
+    return Proof(tree.known, min(bounds), tree.nodes, tuple(leaves))
 
 
 def _below(multiplier: float) -> float:

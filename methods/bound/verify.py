@@ -1,0 +1,202 @@
+"""Check of a certificate that no collapse state lies below a multiplier, in fractions, by nothing that found it.
+
+A certificate holds blocks, interfaces and loads as fractions, and a tree over contacts: each leaf holds some slacks at
+zero (tight) and some rates at zero (still), with velocities or forces that exclude every collapse state below the
+multiplier within it. Only the standard library is used. docs/theory-bound.md says why the conditions suffice.
+"""
+
+from __future__ import annotations
+
+import json
+import sys
+from collections.abc import Sequence
+from fractions import Fraction
+from pathlib import Path
+from typing import Any
+
+Vector = list[Fraction]
+
+
+class CertificateError(ValueError):
+    """The certificate does not show what it says."""
+
+
+def _fractions(values: Any, count: int) -> Vector:
+    if not isinstance(values, list) or len(values) != count:
+        raise CertificateError(f"{count} numbers are needed")
+    return [Fraction(str(value)) for value in values]
+
+
+def _dot(a: Vector, b: Vector) -> Fraction:
+    return sum((x * y for x, y in zip(a, b, strict=True) if x and y), Fraction(0))
+
+
+class _Wall:
+    """Strain rows (3m of 3n), loads (3n) and friction (m) from blocks and interfaces given in fractions.
+
+    Normals keep the length of their interface: forces are then per length, the same for normal and shear.
+    """
+
+    def __init__(self, document: Any) -> None:
+        blocks, interfaces = document["blocks"], document["interfaces"]
+        n = len(blocks)
+        centroid = [_fractions(block["centroid"], 2) for block in blocks]
+        self.dead = [x for block in blocks for x in _fractions(block["dead"], 3)]
+        self.live = [x for block in blocks for x in _fractions(block["live"], 3)]
+        self.friction = [Fraction(str(item["friction"])) for item in interfaces]
+        if any(mu < 0 for mu in self.friction):
+            raise CertificateError("friction is zero or more")
+        self.rows: list[Vector] = []
+        for item in interfaces:
+            x1, y1, x2, y2 = _fractions(item["ends"], 4)
+            sign = Fraction(str(item["side"]))
+            if (x1, y1) == (x2, y2) or abs(sign) != 1:
+                raise CertificateError("an interface has two ends and a side of 1 or -1")
+            tangent = (x2 - x1, y2 - y1)
+            normal = (-sign * tangent[1], sign * tangent[0])
+            for x, y, along in ((x1, y1, normal), (x2, y2, normal), ((x1 + x2) / 2, (y1 + y2) / 2, tangent)):
+                row = [Fraction(0)] * (3 * n)
+                for block, sense in ((item["a"], -1), (item["b"], 1)):
+                    if block is None:
+                        continue
+                    if not 0 <= block < n:
+                        raise CertificateError("an interface names a block that is not there")
+                    dx, dy = x - centroid[block][0], y - centroid[block][1]
+                    turning = dx * along[1] - dy * along[0]
+                    for k, value in enumerate((along[0], along[1], turning)):
+                        row[3 * block + k] += sense * value
+                self.rows.append(row)
+
+    def resultant(self, forces: Vector) -> Vector:
+        """C' r of forces (3m,)."""
+        total = [Fraction(0)] * len(self.dead)
+        for row, force in zip(self.rows, forces, strict=True):
+            if force:
+                for k, value in enumerate(row):
+                    if value:
+                        total[k] += value * force
+        return total
+
+
+def verify(document: Any) -> tuple[Fraction, Fraction]:
+    """(lower bound, multiplier of the collapse state) that a certificate proves.
+
+    Raises:
+        CertificateError: it proves nothing of the kind.
+    """
+    try:
+        wall = _Wall(document)
+        bound, upper = Fraction(str(document["bound"])), Fraction(str(document["multiplier"]))
+        _check_state(wall, upper, document["state"])
+        leaves = [_Leaf(wall, leaf) for leaf in document["leaves"]]
+    except (KeyError, TypeError, ValueError, ZeroDivisionError, AttributeError) as error:
+        raise CertificateError(str(error)) from error
+    _check_cover([(leaf.tight, leaf.still) for leaf in leaves])
+    for leaf in leaves:
+        leaf.check(wall, bound)
+    if bound > upper:
+        raise CertificateError("the bound is above the collapse state")
+    return bound, upper
+
+
+def _check_state(wall: _Wall, multiplier: Fraction, state: Any) -> None:
+    forces = _fractions(state["forces"], len(wall.rows))
+    velocities = _fractions(state["velocities"], len(wall.dead))
+    loads = [d + multiplier * f for d, f in zip(wall.dead, wall.live, strict=True)]
+    if any(a + b for a, b in zip(wall.resultant(forces), loads, strict=True)):
+        raise CertificateError("the collapse state is not in equilibrium")
+    if _dot(wall.live, velocities) <= 0:
+        raise CertificateError("the live load does no work in the collapse state")
+    for p, mu in enumerate(wall.friction):
+        n1, n2, s = forces[3 * p : 3 * p + 3]
+        open1, open2, slip = (_dot(row, velocities) for row in wall.rows[3 * p : 3 * p + 3])
+        strength = mu * (n1 + n2)
+        if min(n1, n2, strength - abs(s), open1, open2) < 0 or n1 * open1 or n2 * open2:
+            raise CertificateError("the collapse state violates yield or passes through a joint")
+        if (slip > 0 and s != -strength) or (slip < 0 and s != strength):
+            raise CertificateError("the collapse state slips below the friction limit")
+
+
+def _check_cover(leaves: list[tuple[frozenset[int], frozenset[int]]]) -> None:
+    """Whether every choice of tight or still contacts lies in a leaf: all leaves of a node divide at one contact."""
+    open_nodes = [leaves]
+    while open_nodes:
+        node = open_nodes.pop()
+        if any(not tight and not still for tight, still in node):
+            continue
+        common = frozenset.intersection(*(tight | still for tight, still in node)) if node else frozenset()
+        if not common:
+            raise CertificateError("the leaves do not cover all cases")
+        k = frozenset([min(common)])
+        open_nodes.append([(tight - k, still - k) for tight, still in node if k <= tight])
+        open_nodes.append([(tight - k, still - k) for tight, still in node if k <= still])
+
+
+class _Leaf:
+    def __init__(self, wall: _Wall, document: Any) -> None:
+        self.tight, self.still = frozenset(document["tight"]), frozenset(document["still"])
+        if not all(type(k) is int and 0 <= k < 4 * len(wall.friction) for k in self.tight | self.still):
+            raise CertificateError("a leaf names a contact that is not there")
+        self.velocities = self.forces = None
+        if "velocities" in document:
+            self.velocities = _fractions(document["velocities"], len(wall.dead))
+        else:
+            self.forces = _fractions(document["forces"], len(wall.rows))
+            self.dead, self.live = _fractions(document["parts"], 2)
+
+    def check(self, wall: _Wall, bound: Fraction) -> None:
+        if self.velocities is not None:
+            self._check_velocities(wall, bound, self.velocities)
+        elif self.forces is not None:
+            self._check_forces(wall, bound, self.forces)
+
+    def _check_velocities(self, wall: _Wall, bound: Fraction, velocities: Vector) -> None:
+        """Virtual work: (lambda - bound) live.u >= -(dead + bound live).u for all forces of the leaf."""
+        live = _dot(wall.live, velocities)
+        rest = -_dot(wall.dead, velocities) - bound * live
+        if live < 0 or rest < 0 or live + rest <= 0:
+            raise CertificateError("the velocities of a leaf exclude nothing")
+        for p, mu in enumerate(wall.friction):
+            open1, open2, slip = (_dot(row, velocities) for row in wall.rows[3 * p : 3 * p + 3])
+            above, below = [], []
+            for k, opening in ((4 * p, open1), (4 * p + 1, open2)):
+                if k not in self.tight:
+                    if mu > 0:
+                        above.append(opening / mu)
+                    elif opening > 0:
+                        raise CertificateError("a leaf's velocities open a joint that may press")
+            below += [value for k, value in ((4 * p + 2, -slip), (4 * p + 3, slip)) if k not in self.tight]
+            if above and below and max(above) > min(below):
+                raise CertificateError("a leaf's velocities gain work from forces within yield")
+
+    def _check_forces(self, wall: _Wall, bound: Fraction, forces: Vector) -> None:
+        """Forces without work lost on any mechanism of the leaf, under dead + bound live and more live load."""
+        if self.dead < 0 or self.live < 0 or self.dead + self.live <= 0:
+            raise CertificateError("the forces of a leaf exclude nothing")
+        total = wall.resultant(forces)
+        for value, dead, live in zip(total, wall.dead, wall.live, strict=True):
+            if value + self.dead * (dead + bound * live) + self.live * live:
+                raise CertificateError("the forces of a leaf are not in equilibrium")
+        for p in range(len(wall.friction)):
+            n1, n2, s = forces[3 * p : 3 * p + 3]
+            for k, value in enumerate((n1, n2, s, -s)):
+                if value < 0 and 4 * p + k not in self.still:
+                    raise CertificateError("the forces of a leaf lose work on a mechanism")
+
+
+def main(arguments: Sequence[str] | None = None) -> int:
+    """Check certificate files; 1 if one proves nothing."""
+    failed = 0
+    for name in sys.argv[1:] if arguments is None else arguments:
+        try:
+            lower, upper = verify(json.loads(Path(name).read_text()))
+        except (CertificateError, OSError, json.JSONDecodeError) as error:
+            print(f"{name}: refused: {error}")
+            failed = 1
+        else:
+            print(f"{name}: no collapse state below {lower} = {float(lower):.9g}; one at {upper} = {float(upper):.9g}")
+    return failed
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,73 @@
+"""Certificates prove what they say in fractions, and a changed one is refused."""
+
+from __future__ import annotations
+
+import copy
+import json
+import re
+from fractions import Fraction
+from functools import cache
+from pathlib import Path
+from typing import Any
+
+import pytest
+from click.testing import CliRunner
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from harness.cli import main as drystone
+from methods.bound.verify import CertificateError, main, verify
+from methods.la.certify import certificate
+from tests.walls import assembly, stack, wall_data
+
+
+@cache
+def of_column() -> dict[str, Any]:
+    document = certificate(assembly(stack(2), 0.5))
+    assert document is not None
+    return document
+
+
+def test_the_certificate_of_a_column_proves_its_least_multiplier(tmp_path: Any) -> None:
+    """A column of two blocks .3 wide and .4 high in all on friction .5 slides at 1/2, below its rocking at 3/4."""
+    lower, upper = verify(of_column())
+    assert upper == Fraction(1, 2)
+    assert 0 < upper - lower <= Fraction(2, 10**6) * upper
+    file = tmp_path / "certificate.json"
+    file.write_text(json.dumps(of_column()))
+    assert main([str(file)]) == 0
+
+
+def test_a_bound_above_the_least_multiplier_is_refused() -> None:
+    document = copy.deepcopy(of_column())
+    document["bound"] = "501/1000"
+    with pytest.raises(CertificateError):
+        verify(document)
+
+
+@settings(max_examples=60, deadline=None, derandomize=True)
+@given(st.data())
+def test_a_certificate_never_proves_another_thing_with_one_digit_changed(data: st.DataObject) -> None:
+    """It is refused, or the digit stood where a wall or a weaker claim is told and the claim is still true of it."""
+    text = json.dumps({key: of_column()[key] for key in ("multiplier", "state")})
+    places = [match.start() for match in re.finditer(r"[0-9]", text)]
+    where = data.draw(st.sampled_from(places))
+    digit = data.draw(st.sampled_from([d for d in "0123456789" if d != text[where]]))
+    changed = of_column() | json.loads(text[:where] + digit + text[where + 1 :])
+    try:
+        _, upper = verify(changed)
+    except CertificateError:
+        return
+    assert upper == Fraction(1, 2)  # another collapse state at the same multiplier
+
+
+def test_the_commands_write_and_check_a_certificate(tmp_path: Path) -> None:
+    wall, file = tmp_path / "wall.json", tmp_path / "certificate.json"
+    wall.write_text(json.dumps(wall_data(stack(2), 0.5)))
+    run = CliRunner()
+    assert run.invoke(drystone, ["bound", str(wall), "-o", str(file)]).exit_code == 0
+    assert json.loads(run.invoke(drystone, ["verify-bound", str(file), "--json"]).output)["multiplier"] == "1/2"
+    file.write_text(file.read_text().replace('"bound": "', '"bound": "1'))
+    assert run.invoke(drystone, ["verify-bound", str(file)]).exit_code == 1
+    file.write_text("[]")
+    assert run.invoke(drystone, ["verify-bound", str(file)]).exit_code == 1
