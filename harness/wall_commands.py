@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import sys
+from dataclasses import asdict
 from pathlib import Path
 from typing import Any
 
@@ -12,11 +13,13 @@ from harness import terminal
 from harness.engine import compare as comparing
 from harness.engine.judge import judge as judge_result
 from harness.engine.plan import Limits, Run, check_methods, find_cases
+from harness.engine.sensitivity import over_tolerance, suggested
 from harness.engine.store import open_store
+from harness.model.build import build
 from harness.model.case import Case, case_folders, read_case, shipped_cases
 from harness.model.errors import InputError
 from harness.model.method import Finding, Status, load_method, method_names
-from harness.model.reading import read_json, read_wall, wall_json
+from harness.model.reading import parse_wall, read_document, read_json, read_wall, wall_json
 from harness.model.result import Result, result_of
 from harness.model.wall import Wall
 from harness.options import cases_option, catching, json_flag, print_json, say, say_json, store_option, warn
@@ -116,6 +119,53 @@ def judge(wall: Path, result: Path, tolerance: float, as_json: bool) -> None:
 def schema() -> None:
     """Print the JSON Schema of the wall format."""
     print_json(Wall.model_json_schema(by_alias=True))
+
+
+@click.command()
+@click.argument("wall", type=click.Path(path_type=Path))
+@click.option("--method", default="la-associated", show_default=True, help="That is asked once a set of joints.")
+@json_flag
+@catching
+def validate(wall: Path, method: str, as_json: bool) -> None:
+    """Tell what is doubtful in WALL.json, and what joints and answer it has over the tolerance.
+
+    A tolerance is a good one where its neighbours find the same joints. Exit code 2 if the wall cannot be built as it
+    stands; the table is printed all the same.
+    """
+    check_methods([method], "--method")
+    data, notes = read_document(wall)
+    parsed = parse_wall(data, str(wall))
+    fault, warnings, joints = "", list(notes), None
+    try:
+        built = build(parsed, wall.stem)
+        warnings += built.warnings
+        joints = built.assembly.n_interfaces
+    except InputError as error:
+        fault = str(error)
+    given = isinstance(parsed.interfaces, list)
+    plateaus = [] if given else over_tolerance(parsed, load_method(method))
+    advice = suggested(plateaus)
+    if as_json:
+        told = {"joints": joints, "fault": fault, "warnings": warnings, "suggested_tolerance": advice}
+        print_json(told | {"tolerances": [asdict(plateau) for plateau in plateaus]})
+    else:
+        say(f"{joints} joints are found" if joints is not None else f"fault: {fault}")
+        for warning in warnings:
+            say(f"doubtful: {warning}")
+        if plateaus:
+            terminal.print_rows(
+                [
+                    {
+                        "tolerance": f"{plateau.low:.3g} to {plateau.high:.3g}",
+                        "joints": "-" if plateau.joints is None else plateau.joints,
+                        method: plateau.answer,
+                    }
+                    for plateau in plateaus
+                ]
+            )
+        if advice is not None and joints != max(plateau.joints or 0 for plateau in plateaus):
+            say(f'most joints are found with "interfaces": {{"tolerance": {advice:.3g}}}')
+    sys.exit(2 if fault else 0)
 
 
 @click.command()

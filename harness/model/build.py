@@ -119,6 +119,15 @@ def build(wall: Wall, name: str = "wall") -> Built:
     return Built(assembly, _explicit(wall, blocks, weight, interfaces, joints, friction), tuple(warnings))
 
 
+def typical_block_size(wall: Wall) -> float:
+    """The length that tolerances are measured by: the median over the free blocks of the square root of the area.
+
+    Raises:
+        InputError: a block is no polygon.
+    """
+    return geometry.typical_size(of_each(_polygon, [block for block in _all_blocks(wall) if not block.fixed]))
+
+
 @dataclass(frozen=True)
 class _Joints:
     """Interfaces of a wall, the first `trusted` of them found, and what was seen while they were looked for."""

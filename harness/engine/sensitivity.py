@@ -1,0 +1,87 @@
+"""What a wall is at other tolerances of its drawing: the joints that are found, and the answer with them."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from itertools import groupby
+
+import numpy as np
+
+from harness.engine.judge import judge
+from harness.model.assembly import Assembly
+from harness.model.build import build, typical_block_size
+from harness.model.errors import InputError
+from harness.model.method import Method, Status
+from harness.model.result import result_of
+from harness.model.wall import DEFAULT_TOLERANCE, Detection, Wall
+
+WIDEST = 0.1
+"""Greatest tolerance tried, in typical block sizes: 25 mm of mortar between bricks of 250 mm."""
+A_DECADE = 8
+"""Tolerances tried in a decade: neighbours differ by a third, less than surveys do."""
+
+
+@dataclass(frozen=True)
+class Plateau:
+    """Tolerances in a row at which the same joints are found.
+
+    Attributes:
+        low, high: the least and the greatest of them that was tried [length].
+        joints: number of interfaces; None where the wall cannot be built.
+        answer: what the method says with them, or why the wall cannot be built.
+    """
+
+    low: float
+    high: float
+    joints: int | None
+    answer: str
+
+
+def over_tolerance(wall: Wall, method: Method) -> list[Plateau]:
+    """The plateaus of a wall whose interfaces are found, from a millionth to a tenth of the typical block size.
+
+    Args:
+        wall: as read; method: asked once a plateau, at its default settings.
+    """
+    detection = wall.interfaces if isinstance(wall.interfaces, Detection) else Detection()
+    size = typical_block_size(wall)
+    decades = np.log10(WIDEST / DEFAULT_TOLERANCE)
+    tried = []
+    for tolerance in np.geomspace(DEFAULT_TOLERANCE * size, WIDEST * size, round(decades * A_DECADE) + 1).tolist():
+        allowed = {"tolerance": tolerance, "greatest_gap": None, "greatest_overlap": None}
+        try:
+            found: Assembly | str = build(
+                wall.model_copy(update={"interfaces": detection.model_copy(update=allowed)})
+            ).assembly
+        except InputError as error:
+            found = f"{error.element}: {error.problem}" if error.element else error.problem
+        tried.append((tolerance, found))
+    plateaus = []
+    for _, group in groupby(tried, key=lambda item: _joints(item[1])):
+        members = list(group)
+        first = members[0][1]
+        answer = first if isinstance(first, str) else _said(first, method)
+        joints = None if isinstance(first, str) else first.n_interfaces
+        plateaus.append(Plateau(members[0][0], members[-1][0], joints, answer))
+    return plateaus
+
+
+def suggested(plateaus: list[Plateau]) -> float | None:
+    """A tolerance [length] a little above the least with which the most joints are found; None if none are."""
+    most = max((plateau for plateau in plateaus if plateau.joints), key=lambda item: item.joints or 0, default=None)
+    return None if most is None else min(1.5 * most.low, float(np.sqrt(most.low * most.high)))
+
+
+def _joints(found: Assembly | str) -> str | tuple[tuple[int, int], ...]:
+    if isinstance(found, str):
+        return found
+    return tuple(zip(found.block_a.tolist(), found.block_b.tolist(), strict=True))
+
+
+def _said(assembly: Assembly, method: Method) -> str:
+    answer = method.solve(assembly, method.Settings())
+    if answer.status is not Status.OK:
+        return str(answer.status)
+    judgement = judge(assembly, result_of(answer, assembly, case="", method="", family=""), method.tolerance)
+    value = str(answer.finding) if answer.multiplier is None else f"{answer.multiplier:.6g}"
+    return value if judgement.accepted else f"{value} ({judgement.outcome.replace('_', ' ')})"
