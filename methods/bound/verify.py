@@ -7,6 +7,7 @@ multiplier within it. Only the standard library is used. docs/theory-bound.md sa
 
 from __future__ import annotations
 
+import hashlib
 import json
 import sys
 from collections.abc import Sequence
@@ -25,6 +26,12 @@ def _fractions(values: Any, count: int) -> Vector:
     if not isinstance(values, list) or len(values) != count:
         raise CertificateError(f"{count} numbers are needed")
     return [Fraction(str(value)) for value in values]
+
+
+def digest(document: Any) -> str:
+    """SHA-256 of all that a certificate holds but the digest itself: it shows accidents, the fractions show errors."""
+    content = {name: value for name, value in document.items() if name != "digest"}
+    return hashlib.sha256(json.dumps(content, sort_keys=True).encode()).hexdigest()
 
 
 def _dot(a: Vector, b: Vector) -> Fraction:
@@ -85,6 +92,8 @@ def verify(document: Any) -> tuple[Fraction, Fraction]:
         CertificateError: it proves nothing of the kind.
     """
     try:
+        if document["digest"] != digest(document):
+            raise CertificateError("its digest is not that of its content")
         wall = _Wall(document)
         bound, upper = Fraction(str(document["bound"])), Fraction(str(document["multiplier"]))
         _check_state(wall, upper, document["state"])

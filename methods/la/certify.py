@@ -13,7 +13,7 @@ import numpy as np
 import scipy.sparse as sp
 
 from harness.model.assembly import Assembly, BoolArray, FloatArray
-from methods.bound.verify import CertificateError, verify
+from methods.bound.verify import CertificateError, digest, verify
 from methods.la.newton_matrix import NewtonMatrix
 from methods.la.problem import make_problem
 from methods.la.proof import prove
@@ -51,6 +51,7 @@ def certificate(assembly: Assembly, nodes: int = 1500) -> dict[str, Any] | None:
         bound = upper * (1 - BELOW)
         leaves = [_leaf(wall, bound, tight.ravel(), still.ravel()) for tight, still in proof.leaves]
         document |= {"multiplier": str(upper), "bound": str(bound), "state": state, "leaves": leaves}
+        document["digest"] = digest(document)
         verify(document)
     except (NotShortError, ArithmeticError, CertificateError):
         return None

@@ -16,7 +16,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from harness.cli import main as drystone
-from methods.bound.verify import CertificateError, main, verify
+from methods.bound.verify import CertificateError, digest, main, verify
 from methods.la.certify import certificate
 from tests.walls import assembly, stack, wall_data
 
@@ -40,7 +40,12 @@ def test_the_certificate_of_a_column_proves_its_least_multiplier(tmp_path: Any) 
 
 def test_a_bound_above_the_least_multiplier_is_refused() -> None:
     document = copy.deepcopy(of_column())
-    document["bound"] = "501/1000"
+    document |= {"bound": "499/1000", "multiplier": "499/1000"}
+    document["digest"] = digest(document)
+    with pytest.raises(CertificateError):
+        verify(document)
+    document = copy.deepcopy(of_column()) | {"bound": "501/1000"}
+    document["digest"] = digest(document)
     with pytest.raises(CertificateError):
         verify(document)
 
@@ -48,17 +53,39 @@ def test_a_bound_above_the_least_multiplier_is_refused() -> None:
 @settings(max_examples=60, deadline=None, derandomize=True)
 @given(st.data())
 def test_a_certificate_never_proves_another_thing_with_one_digit_changed(data: st.DataObject) -> None:
-    """It is refused, or the digit stood where a wall or a weaker claim is told and the claim is still true of it."""
+    """Its fractions refuse it even with the digest made anew, or show the same multiplier."""
     text = json.dumps({key: of_column()[key] for key in ("multiplier", "state")})
     places = [match.start() for match in re.finditer(r"[0-9]", text)]
     where = data.draw(st.sampled_from(places))
     digit = data.draw(st.sampled_from([d for d in "0123456789" if d != text[where]]))
     changed = of_column() | json.loads(text[:where] + digit + text[where + 1 :])
     try:
-        _, upper = verify(changed)
+        _, upper = verify(changed | {"digest": digest(changed)})
     except CertificateError:
         return
     assert upper == Fraction(1, 2)  # another collapse state at the same multiplier
+
+
+@settings(max_examples=60, deadline=None, derandomize=True)
+@given(st.data())
+def test_a_certificate_with_one_digit_changed_anywhere_is_refused(data: st.DataObject) -> None:
+    text = json.dumps(of_column())
+    where = data.draw(st.sampled_from([match.start() for match in re.finditer(r"[0-9]", text)]))
+    digit = data.draw(st.sampled_from([d for d in "0123456789" if d != text[where]]))
+    try:
+        changed = json.loads(text[:where] + digit + text[where + 1 :])
+    except json.JSONDecodeError:
+        return
+    with pytest.raises(CertificateError):
+        verify(changed)
+
+
+def test_the_certificates_of_library_walls_hold() -> None:
+    files = sorted((Path(__file__).parent.parent / "data" / "bound").glob("*.json"))
+    assert len(files) >= 7
+    for file in files:
+        lower, upper = verify(json.loads(file.read_text()))
+        assert 0 < upper - lower <= Fraction(2, 10**6) * upper
 
 
 def test_the_commands_write_and_check_a_certificate(tmp_path: Path) -> None:
