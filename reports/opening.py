@@ -65,7 +65,7 @@ def opening(run: ComparisonRun) -> Opening:
         found.extend(wall_findings(item, short=True) for item in told)
         found.extend(_suite(items))
     focus = _focus(items, one)
-    figure, caption = (Markup(""), "") if focus is None else _figure(focus)
+    figure, caption = (Markup(""), "") if focus is None else figure_of(focus)
     return Opening(
         findings=[sentence for sentence in found if sentence],
         advice="" if not one or not items else which_number(items[0]),
@@ -291,9 +291,11 @@ def _focus(items: list[CaseResults], one: bool) -> CaseResults | None:
     )
 
 
-def _figure(item: CaseResults) -> tuple[Markup, str]:
+def figure_of(item: CaseResults) -> tuple[Markup, str]:
+    """The mechanism of the least state with that of another family dashed over it, and its caption; empty if none."""
     least = least_known(item)
-    assert least is not None
+    if least is None or least.mechanism is None:
+        return Markup(""), ""
     apart = [
         r
         for r in _mains(item)
