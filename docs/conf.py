@@ -72,6 +72,31 @@ def _settings_page(folder: Path) -> None:
     (folder / "settings.md").write_text("\n".join(parts), encoding="utf-8")
 
 
+def _case_page(folder: Path) -> None:
+    from harness.model.case import CaseFile, Erratum, Reference
+
+    parts = ["# Fields of case.toml", "", "A case is a folder with `case.toml` and `wall.json`. Each field:", ""]
+    for title, model in (("The case", CaseFile), ("[[references]]", Reference), ("[[errata]]", Erratum)):
+        schema = model.model_json_schema()
+        parts += [f"## {title}", "", "| field | type | default | meaning |", "|---|---|---|---|"]
+        for name, field in schema["properties"].items():
+            default = "needed" if name in schema.get("required", ()) else f"`{field.get('default', [])}`"
+            parts.append(f"| `{name}` | {_type_of(field)} | {default} | {_one_line(field.get('description'))} |")
+        parts.append("")
+    (folder / "case.md").write_text("\n".join(parts), encoding="utf-8")
+
+
+def _type_of(field: dict[str, Any]) -> str:
+    """The type of a field of a JSON Schema, in a few words."""
+    if "anyOf" in field:
+        return " or ".join(dict.fromkeys(_type_of(item) for item in field["anyOf"]))
+    if "enum" in field:
+        return ", ".join(str(item) for item in field["enum"])
+    if "$ref" in field:
+        return str(field["$ref"].rsplit("/", 1)[-1])
+    return f"list of {_type_of(field['items'])}" if "items" in field else str(field.get("type", field.get("const", "")))
+
+
 def _attributes(settings: type) -> dict[str, str]:
     """What the docstrings of a class and its bases say of each attribute under "Attributes:"."""
     found: dict[str, str] = {}
@@ -131,6 +156,7 @@ def _generate(_app: Any) -> None:
     _command_pages(folder)
     _columns_page(folder)
     _settings_page(folder)
+    _case_page(folder)
     _signs_figure(folder)
 
 

@@ -44,20 +44,22 @@ class Reference(Strict):
     (a pair: the whole bracket, or the multiplier), or contains (the bracket must contain the value).
     """
 
-    id: Annotated[str, Field(min_length=1)]
-    type: ReferenceType
+    id: Annotated[str, Field(min_length=1, description="its name within the case")]
+    type: ReferenceType = Field(description="exact, bound, published, measured or regression")
     quantity: Annotated[
         str, Field(description='"multiplier", "finding", "blocks", "interfaces", "unknowns", a detail')
     ] = "multiplier"
-    relation: Literal["equal", "at_most", "at_least", "inside", "contains"] = "equal"
-    value: float | tuple[float, float] | str
-    tolerance: Annotated[float, Field(ge=0.0)] = 0.0
-    tolerance_reason: str = ""
+    relation: Literal["equal", "at_most", "at_least", "inside", "contains"] = Field(
+        "equal", description="how an answer must stand to the value; inside: a pair; contains: the bracket must"
+    )
+    value: float | tuple[float, float] | str = Field(description="a number, a pair for inside, or a finding")
+    tolerance: Annotated[float, Field(ge=0.0, description="absolute")] = 0.0
+    tolerance_reason: str = Field("", description="why the tolerance is what it is")
     applies_to: Annotated[list[str], Field(min_length=1, description="names of methods")]
     gate: bool = Field(False, description="a violation makes `drystone check` fail")
     tier: Literal["quick", "full"] = Field("quick", description="the tier of `drystone check` that runs it")
     settings: dict[str, Any] = Field(default_factory=dict, description="method settings the reference asks for")
-    source: Annotated[str, Field(min_length=1)]
+    source: Annotated[str, Field(min_length=1, description="author, year, and where in it")]
     requirement: Annotated[str, Field(min_length=1, description="one sentence a reader can hold us to")]
 
     @model_validator(mode="after")
@@ -78,16 +80,16 @@ class Erratum(Strict):
 class CaseFile(Strict):
     """The content of `case.toml`."""
 
-    id: Annotated[str, Field(pattern=r"^[a-z0-9][a-z0-9-]*$")]
-    title: Annotated[str, Field(min_length=1)]
-    summary: str = ""
-    kind: Literal["multiplier", "stability"] = "multiplier"
-    wall: str = "wall.json"
-    suites: list[str] = Field(default_factory=list)
-    source: Annotated[str, Field(min_length=1)]
+    id: Annotated[str, Field(pattern=r"^[a-z0-9][a-z0-9-]*$", description="the name of its folder, which users type")]
+    title: Annotated[str, Field(min_length=1, description="a few words for headings")]
+    summary: str = Field("", description="what it shows, for the report")
+    kind: Literal["multiplier", "stability"] = Field("multiplier", description="whether a live load is asked about")
+    wall: str = Field("wall.json", description="file of the wall, in the folder")
+    suites: list[str] = Field(default_factory=list, description='suites it belongs to, as "small"')
+    source: Annotated[str, Field(min_length=1, description="where the wall comes from")]
     methods: list[str] | None = Field(None, description="methods that are run on it; the suite's otherwise")
-    errata: list[Erratum] = Field(default_factory=list)
-    references: list[Reference] = Field(default_factory=list)
+    errata: list[Erratum] = Field(default_factory=list, description="what the source leaves open or has wrong")
+    references: list[Reference] = Field(default_factory=list, description="values it is held against")
 
 
 @dataclass(frozen=True)
