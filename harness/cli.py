@@ -28,6 +28,7 @@ COMMANDS = {
     "verify-bound": ("bound_commands", "verify_bound", "Check a certificate in fractions."),
     "schema": ("wall_commands", "schema", "Print the JSON Schema of the wall format."),
     "validate": ("wall_commands", "validate", "Tell what is doubtful in WALL.json and how it hangs on the tolerance."),
+    "repair": ("wall_commands", "repair", "Close the gaps and overlaps of a drawing, and show what moved."),
     "show": ("wall_commands", "show", "Draw CASE to a file or in a window."),
     "figure": ("wall_commands", "figure", "Draw the answers of methods as a figure for a paper."),
     "import": ("format_commands", "import_", "Make a WALL.json of a drawing."),

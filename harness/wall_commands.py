@@ -20,6 +20,7 @@ from harness.model.case import Case, case_folders, read_case, shipped_cases
 from harness.model.errors import InputError
 from harness.model.method import Finding, Status, load_method, method_names
 from harness.model.reading import parse_wall, read_document, read_json, read_wall, wall_json
+from harness.model.repair import repair as mend
 from harness.model.result import Result, result_of
 from harness.model.wall import Wall
 from harness.options import cases_option, catching, json_flag, print_json, say, say_json, store_option, warn
@@ -166,6 +167,49 @@ def validate(wall: Path, method: str, as_json: bool) -> None:
         if advice is not None and joints != max(plateau.joints or 0 for plateau in plateaus):
             say(f'most joints are found with "interfaces": {{"tolerance": {advice:.3g}}}')
     sys.exit(2 if fault else 0)
+
+
+@click.command()
+@click.argument("wall", type=click.Path(path_type=Path))
+@click.option("-o", "--output", type=click.Path(path_type=Path), required=True, help="The file of the mended wall.")
+@click.option("--snap", type=click.FloatRange(min=0.0, min_open=True), required=True, help="A vertex moves no further.")
+@json_flag
+@catching
+def repair(wall: Path, output: Path, snap: float, as_json: bool) -> None:
+    """Close the gaps and overlaps of WALL.json by moving vertices, and show what moved by how much.
+
+    Lengths are in the unit of the file. Outlines that are drawn twice are taken once; faces get a vertex where another
+    block ends in them.
+    """
+    data, _ = read_document(wall)
+    mended = mend(parse_wall(data, str(wall)), snap)
+    built = build(mended.wall, wall.stem)
+    output.write_text(wall_json(mended.wall), encoding="utf-8")
+    furthest = max((move.distance for move in mended.moves), default=0.0)
+    if as_json:
+        rows = [asdict(move) | {"distance": move.distance} for move in mended.moves]
+        print_json(
+            {"moves": rows, "doubles": mended.doubles, "splits": mended.splits, "joints": built.assembly.n_interfaces}
+        )
+        return
+    if mended.moves:
+        rows = [
+            {"block": move.block, "vertex": move.vertex, "from": _place(move.start), "to": _place(move.end)}
+            | {"moved by": f"{move.distance:.3g}"}
+            for move in sorted(mended.moves, key=lambda move: -move.distance)
+        ]
+        terminal.print_rows(rows)
+    for left, kept in mended.doubles:
+        say(f'left out: block "{left}", which repeats the outline of "{kept}"')
+    for block, count in mended.splits:
+        say(f'block "{block}": {count} vertices put into its faces, where others end')
+    say(f"{len(mended.moves)} vertices moved, {furthest:.3g} at most; {built.assembly.n_interfaces} joints are found")
+    for warning in built.warnings:
+        say(f"doubtful: {warning}")
+
+
+def _place(point: tuple[float, float]) -> str:
+    return f"({point[0]:.6g}, {point[1]:.6g})"
 
 
 @click.command()

@@ -54,10 +54,10 @@ def build(wall: Wall, name: str = "wall") -> Built:
     Raises:
         InputError: naming the block, interface or load that is wrong.
     """
-    blocks = _all_blocks(wall)
+    blocks = blocks_of_wall(wall)
     names = tuple(block.id for block in blocks)
     index = {block_id: k for k, block_id in enumerate(names)}
-    polygons = tuple(of_each(_polygon, blocks))
+    polygons = tuple(of_each(polygon_of, blocks))
     fixed = np.array([block.fixed for block in blocks], dtype=bool)
     if not fixed.any():
         raise InputError("no block is fixed", 'Mark the supports with "fixed": true', "blocks")
@@ -125,7 +125,7 @@ def typical_block_size(wall: Wall) -> float:
     Raises:
         InputError: a block is no polygon.
     """
-    return geometry.typical_size(of_each(_polygon, [block for block in _all_blocks(wall) if not block.fixed]))
+    return geometry.typical_size(of_each(polygon_of, [block for block in blocks_of_wall(wall) if not block.fixed]))
 
 
 @dataclass(frozen=True)
@@ -186,7 +186,12 @@ def _found(
     )
 
 
-def _all_blocks(wall: Wall) -> list[Block]:
+def blocks_of_wall(wall: Wall) -> list[Block]:
+    """All blocks of a wall, those of its patterns first.
+
+    Raises:
+        InputError: there are none, too many, or names are wrong.
+    """
     patterns: list[PatternBase] = (
         [] if wall.pattern is None else list(wall.pattern) if isinstance(wall.pattern, list) else [wall.pattern]
     )
@@ -204,7 +209,12 @@ def _all_blocks(wall: Wall) -> list[Block]:
     return blocks
 
 
-def _polygon(block: Block) -> FloatArray:
+def polygon_of(block: Block) -> FloatArray:
+    """The outline (k, 2) of a block, counter-clockwise [length].
+
+    Raises:
+        InputError: it is no polygon.
+    """
     polygon = np.array(block.polygon, dtype=float)
     geometry.check_polygon(polygon, f'block "{block.id}"')
     return geometry.counter_clockwise(polygon)
