@@ -21,6 +21,10 @@ from harness.model.errors import InputError
 from harness.model.wall import Block, Wall
 
 
+ROUNDING = 1e-9
+"""Share of the snapping distance below which a vertex has not moved: means of equal coordinates differ in last digits."""
+
+
 @dataclass(frozen=True)
 class Move:
     """A vertex that moved.
@@ -76,8 +80,8 @@ def repair(wall: Wall, snap: float) -> Repaired:
     after = _met(before, snap)
     onto = _faces_met(before, after, owner, snap)
     moves = tuple(
-        Move(blocks[owner[k]].id, int(k - np.searchsorted(owner, owner[k])), tuple(before[k]), tuple(after[k]))
-        for k in np.flatnonzero(np.any(after != before, axis=1)).tolist()
+        Move(blocks[owner[k]].id, int(k - np.searchsorted(owner, owner[k])), _pair(before[k]), _pair(after[k]))
+        for k in np.flatnonzero(np.linalg.norm(after - before, axis=1) > ROUNDING * snap).tolist()
     )
     outlines, splits = [], []
     for number, block in enumerate(blocks):
@@ -88,6 +92,10 @@ def repair(wall: Wall, snap: float) -> Repaired:
             splits.append((block.id, added))
     mended = wall.model_copy(update={"pattern": None, "blocks": outlines})
     return Repaired(mended, moves, tuple(doubles), tuple(splits))
+
+
+def _pair(point: FloatArray) -> tuple[float, float]:
+    return float(point[0]), float(point[1])
 
 
 def _once(blocks: list[Block], snap: float) -> tuple[list[Block], list[tuple[str, str]]]:
