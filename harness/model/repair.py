@@ -20,9 +20,8 @@ from harness.model.build import blocks_of_wall, polygon_of
 from harness.model.errors import InputError
 from harness.model.wall import Block, Wall
 
-
 ROUNDING = 1e-9
-"""Share of the snapping distance below which a vertex has not moved: means of equal coordinates differ in last digits."""
+"""Share of the snapping distance below which a vertex has not moved: means of equal numbers differ in last digits."""
 
 
 @dataclass(frozen=True)
