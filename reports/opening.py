@@ -156,7 +156,7 @@ def _associated(item: CaseResults) -> Result | None:
 
 
 def _called(result: Result) -> str:
-    return "minimum, proved" if result.details.get("proved_least") else "least known"
+    return "least by branch and bound, to rounding" if result.details.get("proved_least") else "least known"
 
 
 def wall_findings(item: CaseResults, *, short: bool = False) -> str:
@@ -234,7 +234,10 @@ def which_number(item: CaseResults) -> str:
         return ""
     value = numbers.multiplier(least.multiplier)
     if least.details.get("proved_least"):
-        first = f"For safety use {value}, proved to be the least multiplier of any collapse state ({least.method})."
+        first = (
+            f"For safety use {value}, the least multiplier of any collapse state by branch and bound, to rounding "
+            f"({least.method})."
+        )
     else:
         lower = least.bracket
         proof = (

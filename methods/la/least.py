@@ -314,7 +314,7 @@ def _answer(
         details["associated"] = problem.to_multiplier(associated.state.multiplier)
     if proof.complete:
         nodes = f"{proof.nodes} node{'s' if proof.nodes != 1 else ''}"
-        sentence = f"The least collapse multiplier is {least:.7g}, proved by branch and bound ({nodes})."
+        sentence = f"The least collapse multiplier is {least:.7g}, proved by branch and bound ({nodes}), to rounding."
     else:
         sentence = (
             f"The least collapse multiplier known is {least:.7g}; {agreeing} of {len(values)} starts "

@@ -40,9 +40,9 @@ def test_one_wall_opens_with_its_multipliers_and_the_number_to_use():
 
 def test_least_is_the_minimum_only_where_it_is_proved():
     proved = opening.which_number(of_one_wall(proved_least=True))
-    assert "proved to be the least multiplier of any collapse state" in proved
+    assert "the least multiplier of any collapse state by branch and bound" in proved
     assert "minimum" not in opening.wall_findings(of_one_wall())
-    assert "minimum, proved" in opening.wall_findings(of_one_wall(proved_least=True))
+    assert "least by branch and bound, to rounding" in opening.wall_findings(of_one_wall(proved_least=True))
 
 
 def test_rejected_state_is_never_the_number_to_use():

@@ -182,7 +182,7 @@ def test_only_values_that_are_proved_are_marked_as_proved():
         build.render(ComparisonRun("small", "", "", [CaseResults(case, [result])]), data_folder="x")
         for result in (proved, known)
     ]
-    assert ["proved to be the least</span>" in page for page in pages] == [True, False]
+    assert ["the least by branch and bound, to rounding</span>" in page for page in pages] == [True, False]
 
 
 def test_fifty_cases_by_eight_methods_stay_below_five_megabytes():
