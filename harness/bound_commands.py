@@ -11,6 +11,7 @@ import click
 from harness.model.errors import InputError
 from harness.model.reading import read_json, read_wall
 from harness.options import catching, json_flag, print_json, say
+from methods.bound.same_wall import require_same_wall
 from methods.bound.verify import CertificateError, verify
 
 
@@ -41,12 +42,18 @@ def bound(wall: Path, output: Path, nodes: int) -> None:
 
 @click.command(name="verify-bound")
 @click.argument("certificate", type=click.Path(path_type=Path))
+@click.option("--wall", type=click.Path(path_type=Path), help="The wall it must be of: WALL.json.")
 @json_flag
 @catching
-def verify_bound(certificate: Path, as_json: bool) -> None:
-    """Check CERTIFICATE in fractions, independently of what found it. Exit code 0: it holds; 1: it is refused."""
+def verify_bound(certificate: Path, wall: Path | None, as_json: bool) -> None:
+    """Check CERTIFICATE in fractions, independently of what found it. Exit code 0: it holds; 1: it is refused.
+
+    With --wall, a certificate of another wall is refused too.
+    """
     document = read_json(certificate)
     try:
+        if wall is not None:
+            require_same_wall(document, read_wall(wall).assembly)
         lower, upper = verify(document)
     except CertificateError as error:
         if as_json:
@@ -58,6 +65,8 @@ def verify_bound(certificate: Path, as_json: bool) -> None:
         print_json({"holds": True, "bound": str(lower), "multiplier": str(upper), "value": float(upper)})
     else:
         say(_sentence(str(lower), str(upper)))
+        if wall is not None:
+            say(f"It is of the wall in {wall}.")
 
 
 def _sentence(lower: str, upper: str) -> str:

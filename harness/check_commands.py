@@ -10,6 +10,7 @@ from pathlib import Path
 import click
 
 from harness import terminal
+from harness.certificates import certificate_line, certificate_runs
 from harness.engine import baseline as recording
 from harness.engine import compare as comparing
 from harness.engine import regression
@@ -49,16 +50,21 @@ def check(
     as_json: bool,
     folders: tuple[Path, ...],
 ) -> None:
-    """Hold the methods to their gated references: one line each; exit code 1 on a violation."""
+    """Hold the methods to their gated references: one line each; exit code 1 on a violation.
+
+    The full tier also checks the certificates beside the cases, in fractions and against the wall.
+    """
     chosen = find_cases(cases, suite if cases or suite else "all", folders)
     limits = Limits(seconds=120.0 if tier == "quick" else 3600.0)
     runs = [planned for case in chosen for planned in gated_runs(case, limits, tier)]
     check_methods(sorted({planned.method for planned in runs}), "applies_to of a gated reference")
+    certified = certificate_runs(chosen, limits) if tier == "full" else []
     for case in chosen:
         warn(case)
-    with open_store(store) as opened, terminal.progress(len(runs), quiet=as_json) as told:
-        results = comparing.execute(runs, opened, jobs, fresh=fresh, told=told)
-    lines = regression.lines(runs, results)
+    with open_store(store) as opened, terminal.progress(len(runs) + len(certified), quiet=as_json) as told:
+        results = comparing.execute([*runs, *certified], opened, jobs, fresh=fresh, told=told)
+    lines = regression.lines(runs, results[: len(runs)])
+    lines += [certificate_line(run, result) for run, result in zip(certified, results[len(runs) :], strict=True)]
     if as_json:
         print_json(
             {

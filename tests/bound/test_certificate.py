@@ -15,7 +15,10 @@ from click.testing import CliRunner
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from harness.certificates import CERTIFICATE
 from harness.cli import main as drystone
+from harness.model.case import read_case, shipped_cases
+from methods.bound.same_wall import require_same_wall
 from methods.bound.verify import CertificateError, digest, main, verify
 from methods.la.certify import certificate
 from tests.walls import assembly, stack, wall_data
@@ -81,10 +84,12 @@ def test_a_certificate_with_one_digit_changed_anywhere_is_refused(data: st.DataO
 
 
 def test_the_certificates_of_library_walls_hold() -> None:
-    files = sorted((Path(__file__).parent.parent / "data" / "bound").glob("*.json"))
-    assert len(files) >= 7
+    files = sorted(shipped_cases().glob(f"*/{CERTIFICATE}"))
+    assert len(files) >= 8
     for file in files:
-        lower, upper = verify(json.loads(file.read_text()))
+        document = json.loads(file.read_text())
+        require_same_wall(document, read_case(file.parent).assembly)
+        lower, upper = verify(document)
         assert 0 < upper - lower <= Fraction(2, 10**6) * upper
 
 
@@ -98,3 +103,41 @@ def test_the_commands_write_and_check_a_certificate(tmp_path: Path) -> None:
     assert run.invoke(drystone, ["verify-bound", str(file)]).exit_code == 1
     file.write_text("[]")
     assert run.invoke(drystone, ["verify-bound", str(file)]).exit_code == 1
+
+
+@pytest.mark.parametrize("changed", [wall_data(stack(2), 0.6), wall_data(stack(3), 0.5)])
+def test_a_certificate_of_another_wall_is_refused(tmp_path: Path, changed: dict[str, Any]) -> None:
+    wall, file = tmp_path / "wall.json", tmp_path / "certificate.json"
+    file.write_text(json.dumps(of_column()))
+    wall.write_text(json.dumps(wall_data(stack(2), 0.5)))
+    run = CliRunner()
+    assert run.invoke(drystone, ["verify-bound", str(file), "--wall", str(wall)]).exit_code == 0
+    wall.write_text(json.dumps(changed))
+    answer = run.invoke(drystone, ["verify-bound", str(file), "--wall", str(wall)])
+    assert (answer.exit_code, "another wall" in answer.output) == (1, True)
+
+
+@pytest.mark.parametrize("key", ["centroid", "dead", "live"])
+def test_one_number_of_the_wall_tells_it_from_another(key: str) -> None:
+    document = copy.deepcopy(of_column())
+    value = Fraction(document["blocks"][1][key][1])
+    document["blocks"][1][key][1] = str(value + Fraction(1, 10**6))
+    with pytest.raises(CertificateError, match="another wall"):
+        require_same_wall(document, assembly(stack(2), 0.5))
+
+
+def test_the_full_check_shows_a_certificate_of_another_wall_in_red(tmp_path: Path) -> None:
+    """The case of one wall with the certificate of another; then with its own."""
+    case = tmp_path / "cases" / "mine"
+    case.mkdir(parents=True)
+    library = shipped_cases()
+    (case / "wall.json").write_text((library / "stack-2" / "wall.json").read_text())
+    text = (library / "stack-2" / "case.toml").read_text()
+    (case / "case.toml").write_text(text.replace('id = "stack-2"', 'id = "mine"', 1))
+    asked = ["check", "mine", "--tier", "full", "--cases", str(case.parent), "--store", str(tmp_path / "s"), "--json"]
+    for of, code, verdict in (("stack-10", 1, "violates_bound"), ("stack-2", 0, "agrees")):
+        (case / CERTIFICATE).write_text((library / of / CERTIFICATE).read_text())
+        answer = CliRunner().invoke(drystone, asked)
+        line = json.loads(answer.output)["references"][-1]
+        assert (line["quantity"], line["verdict"]) == ("certificate", verdict)
+        assert code == 0 or answer.exit_code == 1

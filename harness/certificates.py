@@ -1,0 +1,77 @@
+"""Certificates that stand beside cases, held to the case and to what `la` finds."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any
+
+from harness.engine.plan import Limits, Run
+from harness.model.case import Case
+from harness.model.errors import InputError
+from harness.model.method import Finding
+from harness.model.reading import read_json
+from harness.model.result import Result, Verdict
+from methods.bound.same_wall import require_same_wall
+from methods.bound.verify import CertificateError, verify
+
+CERTIFICATE = "certificate.json"
+METHOD = "la"
+ROUNDING = 1e-9
+"""Relative part by which the multiplier of `la`, in floats, may lie below what is proved in fractions."""
+
+
+def certificate_of(case: Case) -> Path | None:
+    """The certificate beside the wall of a case, if there is one."""
+    path = Path(case.origin).parent / CERTIFICATE
+    return path if path.is_file() and (path.parent / "case.toml").is_file() else None
+
+
+def certificate_runs(cases: Sequence[Case], limits: Limits) -> list[Run]:
+    """The runs whose multipliers the certificates of the cases are held to."""
+    return [Run(case, METHOD, {}, limits) for case in cases if certificate_of(case) is not None]
+
+
+def certificate_line(run: Run, result: Result) -> dict[str, Any]:
+    """A row as of a gated reference: the certificate proves its bound, of this wall, and `la` finds nothing below.
+
+    Args:
+        run: one of `certificate_runs`.
+        result: of the run.
+    """
+    path = certificate_of(run.case)
+    assert path is not None
+    lower: float | None = None
+    try:
+        document = read_json(path)
+        require_same_wall(document, run.case.assembly)
+        proved = verify(document)
+        lower = float(proved[0])
+        verdict, sentence = _held(result, lower, f"none lies below {proved[0]}, one at {proved[1]}")
+    except (CertificateError, InputError) as error:
+        verdict, sentence = Verdict.VIOLATES_BOUND, f"the certificate is refused: {error}"
+    return {
+        "case": run.case.id,
+        "reference": "certificate",
+        "quantity": "certificate",
+        "method": run.method,
+        "settings": run.settings,
+        "value": result.multiplier,
+        "relation": "at_least",
+        "expected": lower,
+        "tolerance": 0.0 if lower is None else ROUNDING * abs(lower),
+        "type": "exact",
+        "source": CERTIFICATE,
+        "requirement": "No collapse state lies below the bound that the certificate proves in fractions.",
+        "verdict": str(verdict),
+        "sentence": sentence,
+    }
+
+
+def _held(result: Result, lower: float, proved: str) -> tuple[Verdict, str]:
+    if result.finding is not Finding.COLLAPSES or result.multiplier is None:
+        return Verdict.OUTSIDE_TOLERANCE, f"{proved}: proved in fractions, and {result.method} gives no multiplier"
+    found = f"{result.method} finds {result.multiplier:.9g}"
+    if result.multiplier < lower - ROUNDING * abs(lower):
+        return Verdict.VIOLATES_BOUND, f"{proved}: proved in fractions, and {found}"
+    return Verdict.AGREES, f"{proved}: proved in fractions; {found}"
