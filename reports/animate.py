@@ -15,7 +15,7 @@ from PIL import Image
 from harness.model.case import Case
 from harness.model.errors import InputError
 from harness.model.result import Result
-from reports import figures, numbers, shapes, words
+from reports import figures, joints, numbers, shapes, words
 
 FORMATS = (".gif", ".png", ".apng", ".webp")
 FRAMES = 28
@@ -81,7 +81,7 @@ def frames(case: Case, result: Result) -> list[Image.Image]:
                 figures.draw_mechanism,
                 assembly=assembly,
                 mechanism=mechanism,
-                states=result.states if time > 0.0 else None,
+                states=joints.joint_states(assembly, result) if time > 0.0 else None,
                 scale=float(GREATEST * scale * time**2),
             ),
         )

@@ -17,8 +17,7 @@ from harness.model.assembly import Assembly, FloatArray, polygon_area
 from harness.model.case import Case
 from harness.model.comparison import CaseResults, ComparisonRun
 from harness.model.result import Result
-from reports import numbers, shapes
-from reports.words import STATE_LETTER
+from reports import joints, numbers, shapes
 
 SIZE = 4000
 MARGIN = 560
@@ -27,6 +26,14 @@ FORCE_STEPS = 10_000
 LABELLED_BLOCKS = 160
 DOTTED_INTERFACES = 240
 DRAWN_INTERFACES = 4000
+MARK_CLASS = {
+    joints.SLIDE: "slide",
+    joints.ROCK: "rock",
+    joints.BOTH: "both",
+    joints.OPEN: "open",
+    joints.DILATANT: "dilatant",
+}
+HEAVY = (joints.SLIDE, joints.BOTH, joints.DILATANT)
 
 
 class Frame:
@@ -137,7 +144,33 @@ def mechanisms_svg(case: Case, first: Result, second: Result | None = None) -> M
     if second is not None:
         data = "".join(path_of(frame, polygon) for polygon in _displaced(assembly, second, ~assembly.fixed))
         drawn += Markup('<path class="other" d="{}"/>').format(data)
+    elif assembly.n_interfaces <= DRAWN_INTERFACES:
+        drawn += _marks(frame, assembly, first)
     return drawn + Markup("</svg>")
+
+
+def _marks(frame: Frame, assembly: Assembly, result: Result) -> Markup:
+    """What the joints of a mechanism do, drawn where their block a has moved, as static/draw.js does."""
+    states = np.array(joints.joint_states(assembly, result) or [])
+    mechanism = np.asarray(result.mechanism, dtype=float)
+    scale = shapes.amplitude(assembly, mechanism)
+    size = min(46.0, max(8.0, 0.07 * assembly.length_scale * frame.scale))
+    drawn = Markup("")
+    for state, name in ((k, v) for k, v in MARK_CLASS.items() if (states == k).any()):
+        chosen = np.flatnonzero(states == state)
+        ends = shapes.moved_ends(assembly, mechanism, scale, chosen)
+        data = "".join("M{} {}L{} {}".format(*frame.place(start), *frame.place(end)) for start, end in ends)
+        width = size if state in HEAVY else 0.6 * size
+        dashes = Markup(' stroke-dasharray="{0:.0f} {0:.0f}"').format(0.9 * size) if state == joints.OPEN else ""
+        drawn += Markup('<path class="{}" stroke-width="{:.0f}"{} d="{}"/>').format(name, width, dashes, data)
+        if state == joints.DILATANT:
+            drawn += Markup('<path class="core" stroke-width="{:.0f}" d="{}"/>').format(0.4 * size, data)
+        if state in (joints.ROCK, joints.BOTH):
+            for hinge in shapes.hinges(assembly, mechanism, ends, chosen):
+                drawn += Markup('<circle class="hinge" cx="{}" cy="{}" r="{:.0f}"/>').format(
+                    *frame.place(hinge), 1.1 * size
+                )
+    return drawn
 
 
 def _displaced(assembly: Assembly, result: Result, members: np.ndarray) -> list[FloatArray]:
@@ -255,8 +288,7 @@ def result_data(case: Case, result: Result, force_unit: float, *, fields: str = 
         data["m"] = np.column_stack([shift, turn]).ravel().tolist()
         data["speed"] = 1.0 / (10.0 * scale * frame.scale)
         data["spin"] = 1.0 / (1e4 * scale)
-        if result.states is not None:
-            data["s"] = "".join(STATE_LETTER.get(state, "k") for state in result.states)
+        data["s"] = "".join(joints.LETTER[state] for state in joints.joint_states(assembly, result) or [])
     if fields == "all" and result.forces is not None and len(result.forces) == assembly.n_interfaces:
         steps = np.rint(np.asarray(result.forces, dtype=float) / force_unit * FORCE_STEPS).astype(int)
         data["f"] = steps.ravel().tolist()

@@ -20,8 +20,8 @@ from harness.model.assembly import Assembly, FloatArray
 from harness.model.build import Built
 from harness.model.case import Case
 from harness.model.errors import InputError
-from harness.model.result import Result, relative_velocities
-from reports import numbers, shapes, words
+from harness.model.result import Result
+from reports import joints, numbers, shapes, words
 from reports.drawing import LABELLED_BLOCKS, block_labels
 
 COLUMN, PAGE = 88 / 25.4, 180 / 25.4
@@ -30,6 +30,14 @@ WINDOW_DPI = 220
 KINDS = ("mechanism", "forces", "thrust", "wall", "comparison")
 FORMATS = (".pdf", ".svg", ".png")
 INK, GREY, BLUE, RUST, PLUM = "#14202b", "#8a96a1", "#17508c", "#a63c06", "#6d2077"
+MARKS = {
+    joints.SLIDE: (RUST, 1.8, "-"),
+    joints.DILATANT: (RUST, 2.1, "-"),
+    joints.ROCK: (BLUE, 1.1, "-"),
+    joints.BOTH: (RUST, 1.8, "-"),
+    joints.OPEN: (PLUM, 1.0, "--"),
+}
+"""Colour, width [pt] and line of what a joint does."""
 _STYLE: dict[Any, Any] = {
     "font.family": "DejaVu Sans",
     "font.size": 7.0,
@@ -201,7 +209,8 @@ def _panels(case: Case, results: list[Result], rows: list[str]) -> Figure:
         for row, what in enumerate(rows):
             ax = axes[row][column]
             if what == "mechanism" and result.mechanism is not None:
-                draw_mechanism(ax, assembly, np.asarray(result.mechanism, dtype=float), result.states)
+                states = joints.joint_states(assembly, result)
+                draw_mechanism(ax, assembly, np.asarray(result.mechanism, dtype=float), states)
             elif what != "mechanism" and result.forces is not None:
                 draw_forces(ax, assembly, np.asarray(result.forces, dtype=float), thrust=what == "thrust")
     return page
@@ -229,13 +238,13 @@ def draw_joints(ax: Axes, assembly: Assembly) -> None:
 def draw_mechanism(
     ax: Axes, assembly: Assembly, mechanism: FloatArray, states: list[str] | None, scale: float | None = None
 ) -> None:
-    """A mechanism (n, 3) as displaced blocks; slip bold, rock with a dot at the hinge, open dashed.
+    """A mechanism (n, 3) as displaced blocks; what slides bold, a dot at a hinge, open dashed, dilatant double.
 
     Args:
         ax: where.
         assembly: the wall.
         mechanism: normalised block velocities.
-        states: of the interfaces, or None.
+        states: of the interfaces, as of `joints.joint_states`; or None.
         scale: displacement of the fastest vertex [length]; one that shows well by default.
     """
     scale = shapes.amplitude(assembly, mechanism) if scale is None else scale
@@ -245,26 +254,18 @@ def draw_mechanism(
     draw_blocks(ax, assembly, shapes.displaced(assembly, mechanism, scale), shapes.moving(assembly, mechanism))
     if states is None:
         return
-    opening, _ = relative_velocities(assembly, mechanism)
-    for state, colour, width, line in (("slip", RUST, 1.8, "-"), ("rock", BLUE, 1.1, "-"), ("open", PLUM, 1.0, "--")):
-        chosen = [p for p, name in enumerate(states) if name == state]
-        if not chosen:
+    names = np.array(states)
+    for state, (colour, width, line) in MARKS.items():
+        chosen = np.flatnonzero(names == state)
+        if not len(chosen):
             continue
-        ends = np.stack([_with_a(assembly, mechanism, scale, chosen, k) for k in (1, 2)], axis=1)
+        ends = shapes.moved_ends(assembly, mechanism, scale, chosen)
         ax.add_collection(LineCollection(list(ends), colors=colour, linewidths=width, linestyles=line))
-        if state == "rock":
-            second = opening[chosen, 1] < opening[chosen, 0]
-            hinges = np.where(second[:, None], ends[:, 1], ends[:, 0])
+        if state == joints.DILATANT:
+            ax.add_collection(LineCollection(list(ends), colors="white", linewidths=0.4 * width))
+        if state in (joints.ROCK, joints.BOTH):
+            hinges = shapes.hinges(assembly, mechanism, ends, chosen)
             ax.plot(hinges[:, 0], hinges[:, 1], "o", color=BLUE, markersize=2.8)
-
-
-def _with_a(assembly: Assembly, mechanism: FloatArray, scale: float, chosen: list[int], end: int) -> FloatArray:
-    """Contact points of some interfaces, moved with their block a."""
-    points = (assembly.end1 if end == 1 else assembly.end2)[chosen]
-    block = assembly.block_a[chosen]
-    arm = points - assembly.centroid[block]
-    turned = mechanism[block, 2:3] * np.stack([-arm[:, 1], arm[:, 0]], axis=1)
-    return np.asarray(points + scale * (mechanism[block, :2] + turned))
 
 
 def draw_forces(ax: Axes, assembly: Assembly, forces: FloatArray, *, thrust: bool) -> None:

@@ -12,7 +12,8 @@ from harness.model.method import Finding, Status
 from harness.model.result import Result, Verdict
 from reports import drawing, numbers, paper, shapes, words
 from reports.agreement import agreement
-from reports.reasons import SAME_MOTION, joints_in_words, least_known, mechanism_in_words, motion
+from reports.joints import joints_in_words, motion
+from reports.reasons import SAME_MOTION, least_known, mechanism_in_words
 from reports.tables import anchor_of
 
 CLOSE = 0.01

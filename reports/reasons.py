@@ -2,70 +2,20 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 import numpy as np
 
 from harness.model.assembly import Assembly, FloatArray
 from harness.model.comparison import CaseResults
 from harness.model.method import Finding, Status
-from harness.model.result import Result, normalised_mechanism, relative_velocities
+from harness.model.result import Result, relative_velocities
 from reports import numbers, shapes
 from reports.agreement import agreement, measure_of
+from reports.joints import motion
 
-STILL = 1e-5
-"""Relative velocity that counts as none, as in `harness.model.result.contact_states`; the fastest vertex has 1."""
 SAME_MOTION = 0.9999
 """Cosine of velocity fields from which two mechanisms are called the same: fields rounded to 1e-5 differ by less."""
 SAME_VALUE = 1e-4
 """Relative difference of multipliers that is not worth a reason: the page prints five digits."""
-
-
-@dataclass(frozen=True)
-class Motion:
-    """What joints do in a mechanism, as two facts each.
-
-    Attributes:
-        slides, opens: (m,) whether the joint slides, and whether one of its ends or both open.
-        parts: (m,) whether both ends open.
-    """
-
-    slides: np.ndarray
-    opens: np.ndarray
-    parts: np.ndarray
-
-
-def motion(assembly: Assembly, result: Result) -> Motion | None:
-    """How the joints of a result move; None for a measured velocity field, in which nothing is exactly at rest."""
-    if result.mechanism is None or result.flow == "approximate":
-        return None
-    velocities = normalised_mechanism(assembly, np.asarray(result.mechanism, dtype=float))
-    opening, slip = relative_velocities(assembly, velocities)
-    ends = np.asarray(opening > STILL)
-    return Motion(abs(slip) > STILL, ends[:, 0] | ends[:, 1], ends[:, 0] & ends[:, 1])
-
-
-def joints_in_words(found: Motion) -> str:
-    """How many joints slide, rock and part, e.g. "3 joints slide, 9 rock, 2 do both"."""
-    rocks = found.opens & ~found.parts
-    both = int((rocks & found.slides).sum())
-    counts = [
-        (int((found.slides & ~found.opens).sum()), "slide"),
-        (int(rocks.sum()) - both, "rock"),
-        (both, "rock and slide"),
-        (int(found.parts.sum()), "open along their whole length"),
-    ]
-    told = [f"{number} {_of_one(verb) if number == 1 else verb}" for number, verb in counts if number]
-    return "" if not told else "of the joints " + _and(told)
-
-
-def _of_one(verb: str) -> str:
-    return {
-        "slide": "slides",
-        "rock": "rocks",
-        "rock and slide": "rocks and slides",
-        "open along their whole length": "opens along its whole length",
-    }[verb]
 
 
 def friction_share(assembly: Assembly, result: Result) -> float | None:

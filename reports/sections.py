@@ -13,8 +13,9 @@ from harness.model.result import Result
 from reports import numbers, shapes
 from reports.agreement import Agreement
 from reports.drawing import Frame, mechanisms_svg, stroke_factor
+from reports.joints import joints_in_words, motion, open_with_force
 from reports.opening import figure_of, is_calm
-from reports.reasons import joints_in_words, motion, reasons
+from reports.reasons import reasons
 from reports.tables import RunRow
 
 
@@ -28,6 +29,7 @@ class Panel:
         mechanism, forces: whether there is something to draw.
         flow: what the mechanism is, for the caption.
         states: how many interfaces move in which way, in words.
+        beside: joints drawn as open that carry force, and why; or nothing.
         forces_are: what the forces are, for the caption.
         still: the mechanism for pages without scripts; empty for large walls.
     """
@@ -38,6 +40,7 @@ class Panel:
     forces: bool
     flow: str
     states: str
+    beside: str
     forces_are: str
     still: Markup
 
@@ -109,6 +112,7 @@ def case_section(
                 forces=result.forces is not None and fields == "all",
                 flow=FLOW.get(result.flow, result.flow),
                 states=_states(item.case, result),
+                beside=_forces_beside(item.case, result) if fields == "all" else "",
                 forces_are=_forces_are(result),
                 still=_still(item.case, result, fields),
             )
@@ -149,6 +153,17 @@ def _states(case: Case, result: Result) -> str:
     """How the joints move, in words; nothing for a measured field, in which nothing is exactly at rest."""
     found = motion(case.assembly, result)
     return "" if found is None else joints_in_words(found)
+
+
+def _forces_beside(case: Case, result: Result) -> str:
+    """How the forces of the drawing below and the open joints of this one go together, where they do not."""
+    number = open_with_force(case.assembly, result)
+    if not number:
+        return ""
+    carry = f"{numbers.count(number, 'joint')} drawn as open {'carries' if number == 1 else 'carry'} force below"
+    if result.flow == "approximate":
+        return f"{carry}: the forces are of the state that was held, the mechanism is of the one that moved"
+    return carry
 
 
 def _still(case: Case, result: Result, fields: str) -> Markup:

@@ -9,7 +9,7 @@ import numpy as np
 from harness.model.assembly import Assembly, FloatArray, IntArray
 from harness.model.case import Case
 from harness.model.errors import InputError
-from harness.model.result import Result, vertex_velocities
+from harness.model.result import Result, relative_velocities, vertex_velocities
 
 
 def problem(case: Case) -> str:
@@ -120,6 +120,22 @@ def displaced(assembly: Assembly, mechanism: FloatArray, scale: float) -> list[F
             assembly.polygons, assembly.centroid, np.asarray(mechanism, dtype=float), strict=True
         )
     ]
+
+
+def moved_ends(assembly: Assembly, mechanism: FloatArray, scale: float, chosen: IntArray) -> FloatArray:
+    """Both contact points (p, 2, 2) of some interfaces, moved with their block a."""
+    points = np.stack([assembly.end1[chosen], assembly.end2[chosen]], axis=1)
+    block = assembly.block_a[chosen]
+    arm = points - assembly.centroid[block][:, None]
+    turned = mechanism[block, 2][:, None, None] * np.stack([-arm[..., 1], arm[..., 0]], axis=-1)
+    return np.asarray(points + scale * (mechanism[block, :2][:, None] + turned))
+
+
+def hinges(assembly: Assembly, mechanism: FloatArray, ends: FloatArray, chosen: IntArray) -> FloatArray:
+    """That one (p, 2) of the `ends` (p, 2, 2) of each chosen interface which opens less."""
+    opening, _ = relative_velocities(assembly, mechanism)
+    second = opening[chosen, 1] < opening[chosen, 0]
+    return np.asarray(np.where(second[:, None], ends[:, 1], ends[:, 0]))
 
 
 def released(result: Result, n_blocks: int) -> FloatArray | None:

@@ -3,7 +3,9 @@
   "use strict";
   const NS = "http://www.w3.org/2000/svg";
   const FORCE_STEPS = 10000;
-  const STATES = { k: "stick", s: "slip", r: "rock", o: "open" };
+  const STATES = { k: "stick", s: "slide", r: "rock", b: "rock and slide", o: "open", d: "dilatant slip" };
+  const CLASSES = { s: "slide", r: "rock", b: "both", o: "open", d: "dilatant" };
+  const HEAVY = "sbd";
   const cases = JSON.parse(document.getElementById("data").textContent);
   const drawn = new WeakMap();
 
@@ -70,10 +72,12 @@
       [...result.s].forEach((letter, p) => {
         if (letter === "k") return;
         const [[x0, y0], [x1, y1]] = [end(wall, p, 0), end(wall, p, 1)];
-        const group = make("g", { class: STATES[letter], "data-joint": p }, svg);
-        const line = make("path", { d: `M${x0} ${y0}L${x1} ${y1}`, "stroke-width": letter === "s" ? size : 0.6 * size }, group);
+        const group = make("g", { class: CLASSES[letter], "data-joint": p }, svg);
+        const d = `M${x0} ${y0}L${x1} ${y1}`;
+        const line = make("path", { d, "stroke-width": HEAVY.includes(letter) ? size : 0.6 * size }, group);
+        if (letter === "d") make("path", { class: "core", d, "stroke-width": 0.4 * size }, group);
         if (letter === "o") line.setAttribute("stroke-dasharray", `${0.9 * size} ${0.9 * size}`);
-        if (letter === "r") {
+        if (letter === "r" || letter === "b") {
           const hinge = opening(wall, result, p, 0) <= opening(wall, result, p, 1) ? [x0, y0] : [x1, y1];
           make("circle", { cx: hinge[0], cy: hinge[1], r: 1.1 * size }, group);
         }

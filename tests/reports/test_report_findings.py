@@ -8,7 +8,7 @@ import pytest
 from harness.model.comparison import CaseResults, ComparisonRun
 from harness.model.method import Status
 from harness.model.result import Verdict
-from reports import build, drawing, opening, reasons, tables
+from reports import build, drawing, joints, opening, reasons, tables
 from tests.reports import samples
 
 
@@ -154,8 +154,8 @@ def test_joints_are_told_by_what_they_do_and_forces_by_the_state_they_are_of():
 
 def test_joint_that_rocks_and_slides_counts_as_both():
     slides, opens = np.array([True, True, False, False]), np.array([False, True, True, True])
-    moves = reasons.Motion(slides, opens, np.array([False, False, False, True]))
-    assert reasons.joints_in_words(moves) == (
+    moves = joints.Motion(slides, opens, np.array([False, False, False, True]), np.zeros(4, dtype=bool))
+    assert joints.joints_in_words(moves) == (
         "of the joints 1 slides, 1 rocks, 1 rocks and slides and 1 opens along its whole length"
     )
 
