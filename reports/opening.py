@@ -19,6 +19,10 @@ from reports.tables import anchor_of
 CLOSE = 0.01
 """Methods that lie within a hundredth of each other agree, in the words of the paper's comparison."""
 
+CERTIFIED = 3e-6
+"""Relative height above a certified bound up to which a state is called the minimum: certificates leave 2e-6, and the
+rest is for rounding of the state."""
+
 
 @dataclass(frozen=True)
 class RedRow:
@@ -156,7 +160,19 @@ def _associated(item: CaseResults) -> Result | None:
     )
 
 
-def _called(result: Result) -> str:
+def _certified_bound(item: CaseResults, least: Result) -> float | None:
+    """The bound of a certificate in fractions that the least state lies on, of whichever method wrote it."""
+    value = least.multiplier
+    accepted = [r for r in item.results if r.status is Status.OK and r.judge.accepted is not False]
+    bounds = [float(r.details["certified_bound"]) for r in accepted if "certified_bound" in r.details]
+    if value is None:
+        return None
+    return next((bound for bound in bounds if 0.0 <= value - bound <= CERTIFIED * abs(value)), None)
+
+
+def _called(result: Result, item: CaseResults) -> str:
+    if _certified_bound(item, result) is not None:
+        return "minimum, proved"
     return "least by branch and bound, to rounding" if result.details.get("proved_least") else "least known"
 
 
@@ -168,9 +184,8 @@ def wall_findings(item: CaseResults, *, short: bool = False) -> str:
     if least is None:
         answers = others or "no method gave an answer"
         return f"{item.case.id}: no collapse state without dilatancy was accepted ({answers})."
-    said = (
-        f"{item.case.id} collapses at {numbers.multiplier(least.multiplier)} ({least.method.upper()}, {_called(least)})"
-    )
+    called = f"{least.method.upper()}, {_called(least, item)}"
+    said = f"{item.case.id} collapses at {numbers.multiplier(least.multiplier)} ({called})"
     sentences = [f"{said}{'; ' + others if others else ''}.", _agreement(item)]
     if not short and least.mechanism is not None:
         mechanism = np.asarray(least.mechanism, dtype=float)
@@ -234,7 +249,13 @@ def which_number(item: CaseResults) -> str:
     if least is None:
         return ""
     value = numbers.multiplier(least.multiplier)
-    if least.details.get("proved_least"):
+    certified = _certified_bound(item, least)
+    if certified is not None:
+        first = (
+            f"For safety use {value}, the minimum ({least.method}): "
+            f"no collapse state lies below {certified:.7g}, proved in fractions."
+        )
+    elif least.details.get("proved_least"):
         first = (
             f"For safety use {value}, the least multiplier of any collapse state by branch and bound, to rounding "
             f"({least.method})."

@@ -9,6 +9,9 @@ from harness.model.assembly import Assembly
 from harness.model.method import Answer, Finding, Settings, Status, Traits
 from methods.bound.bracket import Bracket, bracket
 from methods.bound.equations import Equations
+from methods.bound.same_wall import require_same_wall
+from methods.bound.verify import CertificateError, verify
+from methods.la.certify import certificate
 from methods.la.family import LimitAnalysisFamily
 from methods.la.least import least_known
 from methods.la.newton_matrix import NewtonMatrix
@@ -18,6 +21,11 @@ from methods.numerics.statics import analysed
 from methods.springs.warm_up import load_kernels
 
 load_kernels()
+
+SAME = 1e-9
+"""Relative difference within which the state of the certificate is that of the answer, whose forces are floats."""
+SHORT = 40
+"""Characters of a fraction that a sentence shows."""
 
 
 class BoundedLimitAnalysis(LimitAnalysisFamily):
@@ -39,7 +47,7 @@ class BoundedLimitAnalysis(LimitAnalysisFamily):
             parts.append(self._of_component(part, settings))
             return parts[-1]
 
-        answer = analysed(assembly, solve_part)
+        answer = _of_this_wall(analysed(assembly, solve_part), assembly)
         if len(parts) == 1 or answer.finding is not Finding.COLLAPSES or answer.multiplier is None:
             return answer
         bounds = [part.details.get("lower_bound", 0.0) for part in parts if part.finding is not Finding.STANDS]
@@ -53,11 +61,51 @@ class BoundedLimitAnalysis(LimitAnalysisFamily):
         multiplier = known.multiplier
         if known.status is not Status.OK or known.finding is not Finding.COLLAPSES or multiplier is None:
             return known
-        if known.details["proved_least"] or multiplier <= 0.0 or problem.n_interfaces > settings.most_interfaces:
+        if known.details["proved_least"]:
+            return certified(known, certificate(assembly, seconds=settings.seconds))
+        if multiplier <= 0.0 or problem.n_interfaces > settings.most_interfaces:
             return known
         lower = max(float(known.details["lower_bound"]), 0.0) / problem.unit_multiplier
         found = bracket(equations_of(problem), multiplier / problem.unit_multiplier, settings.seconds, lower)
         return bounded(problem, known, found)
+
+
+def certified(known: Answer, document: dict[str, Any] | None) -> Answer:
+    """The answer of `la` with a certificate that its state is the least; unchanged where there is none for it.
+
+    Args:
+        known: a collapse.
+        document: the certificate, or None.
+
+    Raises:
+        CertificateError: it proves nothing.
+    """
+    if document is None or known.multiplier is None:
+        return known
+    lower, upper = verify(document)
+    if abs(float(upper) - known.multiplier) > SAME * max(abs(known.multiplier), SAME):
+        return known
+    exact = str(upper) if len(str(upper)) <= SHORT else f"{float(upper):.9g}"
+    sentence = (
+        f"The minimum collapse multiplier is {exact} to two millionths, proved in fractions: "
+        f"there is a collapse state there, and none below {float(lower):.9g}."
+    )
+    details = known.details | {"certificate": document, "certified_bound": float(lower)}
+    return replace(known, sentence=sentence, details=details)
+
+
+def _of_this_wall(answer: Answer, assembly: Assembly) -> Answer:
+    """The answer without a certificate that is of one component of the wall only."""
+    document = answer.details.get("certificate")
+    if document is None:
+        return answer
+    try:
+        require_same_wall(document, assembly)
+    except CertificateError:
+        details = {k: v for k, v in answer.details.items() if k not in ("certificate", "certified_bound")}
+        sentence = f"The least collapse multiplier is {answer.multiplier:.7g}, by branch and bound."
+        return replace(answer, sentence=sentence, details=details)
+    return answer
 
 
 def equations_of(problem: Problem) -> Equations:

@@ -6,6 +6,8 @@ fractions. What is written is what `methods/bound/verify.py` accepts, which shar
 
 from __future__ import annotations
 
+import math
+import time
 from fractions import Fraction
 from typing import Any
 
@@ -27,13 +29,19 @@ BELOW = Fraction(2, 10**6)
 BASIC = 1
 
 
-def certificate(assembly: Assembly, nodes: int = 1500) -> dict[str, Any] | None:
+class _OutOfTimeError(Exception):
+    """The leaves took longer than they may."""
+
+
+def certificate(assembly: Assembly, nodes: int = 1500, seconds: float = math.inf) -> dict[str, Any] | None:
     """The certificate of a wall of one component, which stands under its dead load; None where none was found.
 
     Args:
         assembly: the wall, whose numbers must be short fractions.
         nodes: of the tree at most.
+        seconds: of CPU time after which no further leaf is begun, and there is no certificate.
     """
+    end = time.process_time() + seconds
     if not assembly.has_live_load:
         return None
     problem = make_problem(assembly)
@@ -49,11 +57,15 @@ def certificate(assembly: Assembly, nodes: int = 1500) -> dict[str, Any] | None:
         wall = _Fractions(document)
         upper, state = _state(wall, proof.state)
         bound = upper * (1 - BELOW)
-        leaves = [_leaf(wall, bound, tight.ravel(), still.ravel()) for tight, still in proof.leaves]
+        leaves = []
+        for tight, still in proof.leaves:
+            if time.process_time() > end:
+                raise _OutOfTimeError
+            leaves.append(_leaf(wall, bound, tight.ravel(), still.ravel()))
         document |= {"multiplier": str(upper), "bound": str(bound), "state": state, "leaves": leaves}
         document["digest"] = digest(document)
         verify(document)
-    except (NotShortError, ArithmeticError, CertificateError):
+    except (NotShortError, ArithmeticError, CertificateError, _OutOfTimeError):
         return None
     return document
 

@@ -20,7 +20,9 @@ from harness.cli import main as drystone
 from harness.model.case import read_case, shipped_cases
 from methods.bound.same_wall import require_same_wall
 from methods.bound.verify import CertificateError, digest, main, verify
+from methods.la.bound_adapter import BoundedLimitAnalysis
 from methods.la.certify import certificate
+from methods.la.settings import BoundSettings
 from tests.walls import assembly, stack, wall_data
 
 
@@ -141,3 +143,16 @@ def test_the_full_check_shows_a_certificate_of_another_wall_in_red(tmp_path: Pat
         line = json.loads(answer.output)["references"][-1]
         assert (line["quantity"], line["verdict"]) == ("certificate", verdict)
         assert code == 0 or answer.exit_code == 1
+
+
+def test_the_bound_hands_over_a_certificate_and_says_so() -> None:
+    wall = assembly(stack(2), 0.5)
+    answer = BoundedLimitAnalysis().solve(wall, BoundSettings(seconds=20.0))
+    document = answer.details["certificate"]
+    require_same_wall(document, wall)
+    assert verify(document) == (Fraction(499999, 10**6), Fraction(1, 2))
+    assert answer.details["certified_bound"] == 0.499999
+    assert "proved in fractions" in answer.sentence
+    hurried = BoundedLimitAnalysis().solve(wall, BoundSettings(seconds=1e-9))
+    assert "certificate" not in hurried.details
+    assert "proved in fractions" not in hurried.sentence

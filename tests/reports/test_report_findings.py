@@ -45,6 +45,14 @@ def test_least_is_the_minimum_only_where_it_is_proved():
     assert "least by branch and bound, to rounding" in opening.wall_findings(of_one_wall(proved_least=True))
 
 
+@pytest.mark.parametrize(("bound", "said"), [(0.557999, True), (0.5579, False), (0.558001, False)])
+def test_the_minimum_is_called_proved_only_where_a_certificate_meets_it(bound: float, said: bool):
+    item = of_one_wall(proved_least=True)
+    item.results[0].details["certified_bound"] = bound
+    assert ("minimum, proved" in opening.wall_findings(item)) is said
+    assert ("proved in fractions" in opening.which_number(item)) is said
+
+
 def test_rejected_state_is_never_the_number_to_use():
     item = of_one_wall()
     item.results[0].judge.accepted = False
