@@ -219,14 +219,15 @@ class LargeSearch:
             self.seconds.append(time.process_time())
 
 
-def large_search(problem: Problem, newton: NewtonMatrix, seed: int, velocities: FloatArray | None) -> LargeSearch:
-    """Exact collapse states of a large wall.
+def large_search(
+    found: LargeSearch, problem: Problem, newton: NewtonMatrix, seed: int, velocities: FloatArray | None
+) -> None:
+    """Add exact collapse states of a large wall to those found, which are kept where the time ends the search.
 
     First at the end of Newton's path of the wall with smoother unloaded joints, then along paths by arc length in the
     part that an associated mechanism with velocities (3n,), if one is known, moves. Where no forces fit those
     mechanisms, from the wall itself with lagged friction bounds, and from its own path.
     """
-    found = LargeSearch()
     whole = problem.n_interfaces <= MOST_INTERFACES
     for factor in SMOOTH if whole else ():
         guide = smoothed(problem, factor)
@@ -240,7 +241,6 @@ def large_search(problem: Problem, newton: NewtonMatrix, seed: int, velocities: 
         found.add(*lagged_state(problem, newton))
     if whole and not found.states:
         found.add(*_path_state(problem, problem, newton, seed))
-    return found
 
 
 def _search_part(found: LargeSearch, problem: Problem, newton: NewtonMatrix, seed: int, velocities: FloatArray) -> None:
@@ -250,7 +250,7 @@ def _search_part(found: LargeSearch, problem: Problem, newton: NewtonMatrix, see
     for lead in FAR_LEADS if blocks > MANY else LEADS + FAR_LEADS:
         if found.states and (lead in FAR_LEADS or (found.steps - before) * blocks > ENOUGH):
             break
-        with suppress(RuntimeError):  # A matrix singular to rounding ends one lead, not the search.
+        with suppress(NumericalFailure):  # A matrix singular to rounding ends one lead, not the search.
             _follow_lead(found, lead, problem, newton, region, seed)
 
 

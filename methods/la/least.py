@@ -11,13 +11,13 @@ from typing import Any
 import numpy as np
 
 from harness.model.errors import first_few
-from harness.model.method import Answer
+from harness.model.method import Answer, OutOfTime
 from methods.la.answers import LOCALLY, NO_MOTION, NO_STATE, collapse_answer, not_converged, unbounded_answer
 from methods.la.associated import AssociatedResult, solve_associated
 from methods.la.continuation import POOL, climb, descend_from, smooth_joints
 from methods.la.exact import exact_mechanism
 from methods.la.extremes import ForceProgramme, Units, units_of
-from methods.la.large import lagged_state, large_search
+from methods.la.large import LargeSearch, lagged_state, large_search
 from methods.la.mechanisms import mechanism_states
 from methods.la.newton_matrix import NewtonMatrix
 from methods.la.prestressed import LIGHT_UP_TO, gravity_of, last_states, light_states
@@ -27,6 +27,7 @@ from methods.la.rational import confirm
 from methods.la.search import Effort, Search
 from methods.la.settings import SearchSettings
 from methods.la.state import CollapseState, local_residuals, polished, residuals
+from methods.numerics.failures import NumericalFailure
 
 
 @dataclass(frozen=True)
@@ -93,7 +94,7 @@ def plan_of(settings: SearchSettings, problem: Problem) -> Plan:
 
 
 def least_known(problem: Problem, newton: NewtonMatrix, settings: SearchSettings, tolerance: float) -> Answer:
-    """The answer with the least collapse state that the search finds.
+    """The answer with the least collapse state that the search finds, in the time there is.
 
     Args:
         problem: the scaled wall, which stands under its dead load and has a live load.
@@ -101,12 +102,44 @@ def least_known(problem: Problem, newton: NewtonMatrix, settings: SearchSettings
         settings: effort and seed.
         tolerance: largest residual of a state that is returned.
     """
+    search, found = Search(problem, newton, settings.seed), LargeSearch()
+    try:
+        if problem.n_interfaces > SIMPLEX_SEARCH:
+            return _large(search, found, settings, tolerance)
+        return _searched(search, settings, tolerance)
+    except OutOfTime:
+        states = [state for state in search.known.values() if state is not None] + found.states
+        if not states:
+            raise
+        return _stopped(problem, newton, states, search.tally.newton_steps + found.steps, tolerance)
+
+
+def _stopped(
+    problem: Problem, newton: NewtonMatrix, states: list[CollapseState], steps: int, tolerance: float
+) -> Answer:
+    """The answer with the least of the states that were known when the time was over."""
+    best = polished(problem, newton, least_of(problem, states))
+    least = problem.to_multiplier(best.multiplier)
+    sentence = (
+        f"The least collapse multiplier known so far is {least:.7g}: the search was stopped by the time limit, with "
+        "starts, descents and paths left to try. It is not proved to be the least."
+    )
+    details = {
+        "stopped_by_limit": True,
+        "starts": len(states),
+        "start_values": [problem.to_multiplier(state.multiplier) for state in states],
+        "newton_steps": steps,
+        "proved_least": False,
+    }
+    return collapse_answer(problem, best, sentence, tolerance, steps, details)
+
+
+def _searched(search: Search, settings: SearchSettings, tolerance: float) -> Answer:
+    """The answer of the whole search on walls of up to `SIMPLEX_SEARCH` interfaces."""
+    problem, newton = search.problem, search.newton
     began = time.process_time()
-    if problem.n_interfaces > SIMPLEX_SEARCH:
-        return _large(problem, newton, settings, tolerance)
     plan = plan_of(settings, problem)
     effort = Effort(failures=plan.failures)
-    search = Search(problem, newton, settings.seed)
     first = search.interior()
     rungs = (smooth_joints(search, factor) for factor in SMOOTH)
     carried = [state for rung in rungs if rung is not None for state in search.adopt(rung, POOL)]
@@ -174,7 +207,7 @@ def confirmed(
             continue
         statics = found.statics
         exact = replace(state, forces=statics.forces, multiplier=statics.multiplier)
-        with suppress(RuntimeError):
+        with suppress(NumericalFailure):
             exact = replace(exact, velocities=exact_mechanism(problem, newton, state.velocities, state.moving, False))
         kept.append(exact)
     return kept
@@ -207,15 +240,16 @@ def _path(search: Search, began: float) -> dict[str, list[float]]:
     return {"cpu_seconds": (seconds - began).tolist(), "multiplier": multipliers.tolist()}
 
 
-def _large(problem: Problem, newton: NewtonMatrix, settings: SearchSettings, tolerance: float) -> Answer:
+def _large(search: Search, found: LargeSearch, settings: SearchSettings, tolerance: float) -> Answer:
+    """The answer of the search on larger walls, which descends from nothing."""
+    problem, newton = search.problem, search.newton
     began = time.process_time()
     associated = solve_associated(problem, newton)
     velocities = None if associated.state is None else associated.state.velocities
-    found = large_search(problem, newton, settings.seed, velocities)
+    large_search(found, problem, newton, settings.seed, velocities)
     details: dict[str, Any] = {"unknowns": 7 * problem.n_interfaces + problem.n_velocities + 1}
     unbounded = associated.outcome == "unbounded"
     falling: list[str] = []
-    search = Search(problem, newton, settings.seed)
     for state in found.states:
         search.record(state.multiplier)
     if problem.n_interfaces <= LIGHT_UP_TO:

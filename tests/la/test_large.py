@@ -15,7 +15,7 @@ from methods.la.associated import solve_associated
 from methods.la.exact import close_tight
 from methods.la.feasible_pair import FEASIBLE, feasible_pair
 from methods.la.interior_point import PathSettings, follow_path, start_point
-from methods.la.large import large_search
+from methods.la.large import LargeSearch, large_search
 from methods.la.least import least_of
 from methods.la.newton_matrix import NewtonMatrix
 from methods.la.newton_step import NewtonStep, Point
@@ -126,7 +126,8 @@ def test_search_of_the_part_that_collapses_gives_a_state_of_the_whole_wall(monke
     associated = solve_associated(problem, newton)
     assert associated.state is not None
     monkeypatch.setattr("methods.la.large.MOST_INTERFACES", 100)
-    found = large_search(problem, newton, 0, associated.state.velocities)
+    found = LargeSearch()
+    large_search(found, problem, newton, 0, associated.state.velocities)
     assert len(found.states) == 1
     state = found.states[0]
     assert state.multiplier <= associated.state.multiplier
