@@ -8,6 +8,7 @@ from dataclasses import dataclass, field
 from markupsafe import Markup
 
 from reports import numbers
+from reports.marks import Mark
 
 WIDTH, HEIGHT = 560, 330
 LEFT, RIGHT, BOTTOM, TOP = 62, 14, 46, 14
@@ -36,6 +37,7 @@ class Series:
         line: whether the points are joined.
         marks: whether every point carries a marker.
         step: whether the line is a staircase (values hold until the next point).
+        mark: of the method it is of; None: the place of the series in the chart chooses.
     """
 
     name: str
@@ -46,6 +48,7 @@ class Series:
     line: bool = True
     marks: bool = True
     step: bool = False
+    mark: Mark | None = None
 
 
 @dataclass(frozen=True)
@@ -188,30 +191,40 @@ def _axes(chart: Chart, across: Axis, up: Axis, height: float, top: float) -> Ma
     return Markup('<path class="grid" d="{}"/><path class="frame" d="{}"/>').format(grid, frame) + texts
 
 
+def _look(series: Series, number: int) -> tuple[Markup, Markup, str, str]:
+    """Attributes of a line and of a marker of a series, its dash array and the path data of its marker."""
+    if series.mark is None:
+        name = f"s{number % COLOURS}"
+        line, marker = Markup('class="line {}"').format(name), Markup('class="mark {}"').format(name)
+        return line, marker, DASHES[number % len(DASHES)], MARKERS[number % len(MARKERS)]
+    line = Markup('class="line" style="stroke:{}"').format(series.mark.colour)
+    marker = Markup('class="mark" style="stroke:{0};fill:{0}"').format(series.mark.colour)
+    return line, marker, series.mark.dashes, series.mark.shape
+
+
 def _series(series: Series, number: int, across: Axis, up: Axis) -> Markup:
     x_values, y_values = thin(series.x, series.y) if not series.low else (series.x, series.y)
     places = [(across.place(x), up.place(y), x, y) for x, y in zip(x_values, y_values, strict=True)]
     points = [(px, py, x, y) for px, py, x, y in places if px is not None and py is not None]
     drawn = Markup("")
-    style = f"s{number % COLOURS}"
+    line, marker, dashes, shape = _look(series, number)
     if series.line and len(points) > 1:
         path = f"M{points[0][0]:.1f} {points[0][1]:.1f}"
         for px, py, _, _ in points[1:]:
             path += f"H{px:.1f}V{py:.1f}" if series.step else f"L{px:.1f} {py:.1f}"
-        drawn += Markup('<path class="line {}" stroke-dasharray="{}" d="{}"/>').format(
-            style, DASHES[number % len(DASHES)], path
-        )
+        drawn += Markup('<path {} stroke-dasharray="{}" d="{}"/>').format(line, dashes, path)
+    bar = Markup(str(line).replace('class="line', 'class="bar'))
     for x, low, high in zip(series.x, series.low, series.high, strict=False):
         place, bottom, top = across.place(x), up.place(low), up.place(high)
         if place is not None and bottom is not None and top is not None:
-            drawn += Markup('<path class="bar {}" d="M{:.1f} {:.1f}V{:.1f}"/>').format(style, place, bottom, top)
+            drawn += Markup('<path {} d="M{:.1f} {:.1f}V{:.1f}"/>').format(bar, place, bottom, top)
     # Later series are smaller, so that points on one place show as rings.
     size = max(0.7, 1.35 - 0.15 * number)
     if series.marks or len(points) == 1:
         for px, py, x, y in points:
             drawn += Markup(
-                '<path class="mark {}" transform="translate({:.1f} {:.1f}) scale({})" d="{}"><title>{}</title></path>'
-            ).format(style, px, py, round(size, 2), MARKERS[number % len(MARKERS)], f"{series.name}: {x:.6g}, {y:.6g}")
+                '<path {} transform="translate({:.1f} {:.1f}) scale({})" d="{}"><title>{}</title></path>'
+            ).format(marker, px, py, round(size, 2), shape, f"{series.name}: {x:.6g}, {y:.6g}")
     return drawn
 
 
@@ -219,14 +232,10 @@ def _legend(series: Series, number: int) -> Markup:
     width = (WIDTH - LEFT - RIGHT) / PER_ROW
     x = LEFT + (number % PER_ROW) * width
     y = TOP + (number // PER_ROW) * ROW - 2
-    style = f"s{number % COLOURS}"
+    line, marker, dashes, shape = _look(series, number)
     sample = Markup("")
     if series.line:
-        sample = Markup('<path class="line {}" stroke-dasharray="{}" d="M{:.0f} {}h26"/>').format(
-            style, DASHES[number % len(DASHES)], x, y
-        )
+        sample = Markup('<path {} stroke-dasharray="{}" d="M{:.0f} {}h26"/>').format(line, dashes, x, y)
     if series.marks:
-        sample += Markup('<path class="mark {}" transform="translate({:.0f} {})" d="{}"/>').format(
-            style, x + 13, y, MARKERS[number % len(MARKERS)]
-        )
+        sample += Markup('<path {} transform="translate({:.0f} {})" d="{}"/>').format(marker, x + 13, y, shape)
     return sample + Markup('<text x="{:.0f}" y="{}">{}</text>').format(x + 32, y + 4, series.name)

@@ -11,6 +11,7 @@ from harness.model.comparison import CaseResults
 from harness.model.result import Result
 from reports import charts, numbers, shapes, words
 from reports.drawing import polygons_svg
+from reports.marks import mark_of
 
 TIMES = ("cpu_seconds", "seconds", "search_seconds")
 """Columns of a path that tell when a value was found [s]."""
@@ -57,7 +58,7 @@ def _load_displacement(item: CaseResults, result: Result, moved: list[float], lo
         title=f"Multiplier against live displacement, {result.method}",
         x_label=f"displacement of the live load [{item.case.wall.units.length}]",
         y_label="multiplier",
-        series=[charts.Series(result.method, moved[:shown], loads[:shown], marks=False)],
+        series=[charts.Series(result.method, moved[:shown], loads[:shown], marks=False, mark=mark_of(result))],
         zero_y=True,
         levels=levels,
     )
@@ -90,7 +91,7 @@ def _release(item: CaseResults, result: Result) -> list[tuple[str, Markup]]:
             title=f"Displacement over time of the released wall, {result.method}",
             x_label=f"time [{unit}]" if unit else "time",
             y_label=f"displacement of the live load [{item.case.wall.units.length}]",
-            series=[charts.Series(result.method, result.path["time"], moved, marks=False)],
+            series=[charts.Series(result.method, result.path["time"], moved, marks=False, mark=mark_of(result))],
         )
         found.append((f"{result.method}: the wall released just above its multiplier.", charts.svg(chart)))
     frames = shapes.released(result, item.case.assembly.n_blocks)
@@ -210,7 +211,11 @@ def _history(results: list[Result]) -> tuple[str, Markup] | None:
         for value in values:
             seen = min(seen, value)
             least.append(seen)
-        series.append(charts.Series(result.method, result.path[column], least, step=True, marks=len(least) <= 40))
+        series.append(
+            charts.Series(
+                result.method, result.path[column], least, step=True, marks=len(least) <= 40, mark=mark_of(result)
+            )
+        )
     if not series:
         return None
     levels = [

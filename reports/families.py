@@ -16,6 +16,7 @@ from harness.model.comparison import CaseResults, ComparisonRun
 from harness.model.method import Status
 from harness.model.result import Result, Verdict
 from reports import charts, numbers, shapes, words
+from reports.marks import mark_of
 
 SMALLEST_FAMILY = 3
 
@@ -114,6 +115,7 @@ def _series(members: Members, methods: list[str]) -> list[charts.Series]:
                 [result.multiplier or 0.0 for _, result in points],
                 low=[pair[0] for pair in brackets] if whole else [],
                 high=[pair[1] for pair in brackets] if whole else [],
+                mark=mark_of(points[0][1]),
             )
         )
     return series

@@ -5,8 +5,10 @@ from __future__ import annotations
 from matplotlib.figure import Figure
 
 from harness.model.comparison import ComparisonRun
+from harness.model.result import Result
 from reports import words
-from reports.figures import COLUMN, GREY, INK, style
+from reports.figures import COLUMN, GREY, style
+from reports.marks import mark_of
 
 TALLEST = 9.2
 """Height of a page [inch]."""
@@ -15,7 +17,7 @@ TALLEST = 9.2
 def multipliers_figure(run: ComparisonRun) -> Figure:
     """One row a wall, one point a method; a bracket is a bar. What is not accepted by the judge is hollow."""
     ordered = sorted(
-        {result.method: result for item in run.cases for result in item.results}.values(),
+        _one_each(run),
         key=lambda result: words.order(result.method, result.family),
     )
     with style():
@@ -23,7 +25,8 @@ def multipliers_figure(run: ComparisonRun) -> Figure:
         axes = page.subplots()
         for place, first in enumerate(ordered):
             shift = 0.6 * ((place + 0.5) / len(ordered) - 0.5)
-            colour, marker = first.traits.colour or INK, first.traits.marker or "o"
+            mark = mark_of(first)
+            colour, marker = mark.colour, mark.marker
             axes.plot([], [], marker, color=colour, markersize=4, label=first.method)
             for row, item in enumerate(run.cases):
                 result = item.of(first.method)
@@ -32,10 +35,21 @@ def multipliers_figure(run: ComparisonRun) -> Figure:
                 fill = colour if result.judge.accepted else "none"
                 axes.plot(result.multiplier, row + shift, marker, color=colour, markerfacecolor=fill, markersize=4)
                 if result.bracket is not None:
-                    axes.plot(result.bracket, (row + shift, row + shift), color=colour, linewidth=0.8)
+                    axes.plot(
+                        result.bracket, (row + shift, row + shift), color=colour, linewidth=0.8, linestyle=mark.line
+                    )
         axes.set_yticks(range(len(run.cases)), [item.case.id for item in run.cases])
         axes.set_ylim(len(run.cases) - 0.4, -0.6)
         axes.set_xlabel("multiplier of the live load")
         axes.grid(axis="x", color=GREY, linewidth=0.3)
         page.legend(loc="outside upper center", ncols=4, frameon=False)
     return page
+
+
+def _one_each(run: ComparisonRun) -> list[Result]:
+    """A result of every method, one with an answer where there is any: a run without tells no traits."""
+    found: dict[str, Result] = {}
+    for result in (result for item in run.cases for result in item.results):
+        if result.method not in found or result.multiplier is not None:
+            found[result.method] = result
+    return list(found.values())

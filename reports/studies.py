@@ -17,6 +17,7 @@ from harness.model.result import Result
 from reports import charts, numbers
 from reports.families import Study, families, methods_of, solved
 from reports.grid import grids
+from reports.marks import Mark, mark_of
 
 
 def studies(run: ComparisonRun) -> list[Study]:
@@ -61,8 +62,17 @@ def _costs(run: ComparisonRun, size: Callable[[CaseResults, Result], int]) -> li
             if (result := item.of(method)) is not None and solved(result) and result.cpu_seconds
         )
         if points:
-            series.append(charts.Series(method, [p[0] for p in points], [p[1] for p in points], line=False))
+            series.append(
+                charts.Series(
+                    method, [p[0] for p in points], [p[1] for p in points], line=False, mark=_mark(run, method)
+                )
+            )
     return series
+
+
+def _mark(run: ComparisonRun, method: str) -> Mark:
+    """How a method that solved some case of a run is drawn: from such a case, as a failed run knows no traits."""
+    return next(mark_of(r) for item in run.cases for r in item.results if r.method == method and solved(r))
 
 
 def _slope(x: list[float], y: list[float], smallest: float = 10.0) -> float | None:
@@ -106,7 +116,7 @@ def performance_profile(run: ComparisonRun) -> Study | None:
             continue
         x = [*values, max(largest, 10.0)]
         y = [(k + 1) / len(run.cases) for k in range(len(values))]
-        series.append(charts.Series(method, x, [*y, y[-1]], marks=False, step=True))
+        series.append(charts.Series(method, x, [*y, y[-1]], marks=False, step=True, mark=_mark(run, method)))
     if len(series) < 2:
         return None
     unsolved = sum(not any(solved(result) for result in item.results) for item in run.cases)
