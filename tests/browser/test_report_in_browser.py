@@ -106,7 +106,8 @@ def test_slider_at_zero_puts_the_wall_back(opened: Opened):
     section.locator("input[type=range]").evaluate(
         "slider => { slider.value = 0; slider.dispatchEvent(new Event('input', {bubbles: true})); }"
     )
-    transforms = section.locator("svg[data-kind] path.moves").evaluate_all("all => all.map(path => path.getAttribute('transform'))")
+    moving = section.locator("svg[data-kind] path.moves")
+    transforms = moving.evaluate_all("all => all.map(path => path.getAttribute('transform'))")
     assert {tuple(float(x) for x in item[7:-1].split()) for item in transforms} == {(1, 0, 0, 1, 0, 0)}
 
 
