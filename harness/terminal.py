@@ -278,10 +278,13 @@ def foreign_answer(data: Any, assembly: Assembly, source: str) -> Answer:
     if not isinstance(data, dict):
         raise InputError("a result is a JSON object", 'Give "multiplier", "forces" and "mechanism"', source=source)
 
+    within = data.get("details")
+    details: dict[str, Any] = within if isinstance(within, dict) else {}
+
     def table(name: str, rows: int, columns: str) -> np.ndarray | None:
-        if data.get(name) is None:
+        listed = details.get(name) if data.get(name) is None else data[name]
+        if listed is None:
             return None
-        listed = data[name]
         if not (
             isinstance(listed, list)
             and len(listed) == rows
@@ -307,7 +310,10 @@ def foreign_answer(data: Any, assembly: Assembly, source: str) -> Answer:
     at = data.get("forces_multiplier")
     if at is not None and not _is_number(at):
         raise InputError("it is no number", "Give the multiplier the forces belong to", "forces_multiplier", source)
-    growth = table("live_forces", assembly.n_interfaces, "n1, n2, s of every interface")
+    proofs = {
+        "live_forces": table("live_forces", assembly.n_interfaces, "n1, n2, s of every interface"),
+        "dilatant_mechanism": table("dilatant_mechanism", assembly.n_blocks, "ux, uy, omega of every block"),
+    }
     return Answer(
         status=Status.OK,
         finding=Finding(finding),
@@ -317,5 +323,5 @@ def foreign_answer(data: Any, assembly: Assembly, source: str) -> Answer:
         forces_multiplier=None if at is None else float(at),
         mechanism=table("mechanism", assembly.n_blocks, "ux, uy, omega of every block"),
         flow=flow,
-        details={} if growth is None else {"live_forces": growth.tolist()},
+        details={name: proof.tolist() for name, proof in proofs.items() if proof is not None},
     )

@@ -247,3 +247,14 @@ def test_methods_show_that_no_multiplier_is_too_high_and_that_a_wall_falls(name:
         answer = state_of(wall, name)
         assert answer.finding is finding
         assert said(wall, answer, method.tolerance).accepted, (finding, said(wall, answer, method.tolerance).sentence)
+
+
+@pytest.mark.parametrize("loads", [{"live": {"body": [{"per_weight": [0, -1]}]}}, PUSH])
+def test_answer_of_a_run_is_judged_from_its_file_as_in_the_run(loads: dict[str, Any]):
+    """`drystone run --json --fields` writes what proves a claim among the details."""
+    offsets = {"offsets": [0.0, 0.2, 0.3]} if loads is PUSH else {}
+    wall = assembly(stack(3) | offsets, 0.5, loads=loads)
+    result = as_result(wall, state_of(wall, "fe"))
+    again = foreign_answer(result.model_dump(mode="json"), wall, "a file")
+    assert result.finding in (Finding.FALLS, Finding.UNBOUNDED)
+    assert said(wall, again, 1e-8).outcome == "accepted"
