@@ -10,12 +10,12 @@ from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from typing import Any
 
-from harness.engine.judge import judge
+from harness.engine.judge import answered
 from harness.engine.symmetry import VIEWS
 from harness.model.assembly import Assembly
 from harness.model.build import build
 from harness.model.method import Finding, Method, Status, load_method, method_names, traits_of
-from harness.model.result import Judgement, Result, result_of
+from harness.model.result import Judgement, Result
 from harness.model.wall import Wall
 
 WIDEST_BRACKET = 0.01
@@ -61,15 +61,6 @@ CLOSED_FORMS = (
 def assembly_of(wall: dict[str, Any], name: str = "wall") -> Assembly:
     """The assembly of a wall given as JSON data."""
     return build(Wall.model_validate(wall), name).assembly
-
-
-def answered(method: Method, assembly: Assembly, **settings: Any) -> tuple[Result, Judgement]:
-    """What a method answers in this process, and what the judge says of it."""
-    answer = method.solve(assembly, method.Settings.model_validate(settings))
-    result = result_of(
-        answer, assembly, case=assembly.name, method=method.name, family=method.family, traits=traits_of(method)
-    )
-    return result, judge(assembly, result, method.tolerance)
 
 
 def slack_of(method: Method) -> float:

@@ -22,14 +22,15 @@ The residuals are those of `harness.engine.residuals`.
 from __future__ import annotations
 
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 
 from harness.engine.residuals import collapse_residuals, displaced_residuals, force_residuals, moving_parts, power
 from harness.model.assembly import Assembly, FloatArray
 from harness.model.displaced import DisplacedState
-from harness.model.method import Finding, Status
-from harness.model.result import Judgement, Result, relative_velocities
+from harness.model.method import Finding, Method, Status, traits_of
+from harness.model.result import Judgement, Result, relative_velocities, result_of
 
 
 def judge(assembly: Assembly, result: Result, tolerance: float) -> Judgement:
@@ -57,6 +58,15 @@ def judge(assembly: Assembly, result: Result, tolerance: float) -> Judgement:
     if result.flow == "approximate":
         return _judge_bracket(assembly, forces, result, tolerance)
     return _judge_collapse(assembly, forces, mechanism, result, tolerance)
+
+
+def answered(method: Method, assembly: Assembly, **settings: Any) -> tuple[Result, Judgement]:
+    """What a method answers in this process, and what the judge says of it."""
+    answer = method.solve(assembly, method.Settings.model_validate(settings))
+    result = result_of(
+        answer, assembly, case=assembly.name, method=method.name, family=method.family, traits=traits_of(method)
+    )
+    return result, judge(assembly, result, method.tolerance)
 
 
 def _said(tolerance: float, accepted: bool | None, sentence: str) -> Judgement:

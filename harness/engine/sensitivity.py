@@ -7,13 +7,13 @@ from itertools import groupby
 
 import numpy as np
 
-from harness.engine.judge import judge
+from harness.engine.judge import answered
 from harness.model.assembly import Assembly
 from harness.model.build import build, typical_block_size
 from harness.model.errors import InputError
+from harness.model.interfaces import DEFAULT_TOLERANCE
 from harness.model.method import Method, Status
-from harness.model.result import result_of
-from harness.model.wall import DEFAULT_TOLERANCE, Detection, Wall
+from harness.model.wall import Detection, Wall
 
 WIDEST = 0.1
 """Greatest tolerance tried, in typical block sizes: 25 mm of mortar between bricks of 250 mm."""
@@ -79,9 +79,8 @@ def _joints(found: Assembly | str) -> str | tuple[tuple[int, int], ...]:
 
 
 def _said(assembly: Assembly, method: Method) -> str:
-    answer = method.solve(assembly, method.Settings())
-    if answer.status is not Status.OK:
-        return str(answer.status)
-    judgement = judge(assembly, result_of(answer, assembly, case="", method="", family=""), method.tolerance)
-    value = str(answer.finding) if answer.multiplier is None else f"{answer.multiplier:.6g}"
+    result, judgement = answered(method, assembly)
+    if result.status is not Status.OK:
+        return str(result.status)
+    value = str(result.finding) if result.multiplier is None else f"{result.multiplier:.6g}"
     return value if judgement.accepted else f"{value} ({judgement.outcome.replace('_', ' ')})"

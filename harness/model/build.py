@@ -3,25 +3,22 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 
 import numpy as np
-import scipy.sparse as sp
-from scipy.sparse.csgraph import connected_components
 
 from harness.model import geometry
-from harness.model.assembly import Assembly, BoolArray, FloatArray, IntArray, polygon_area
-from harness.model.contacts import TIMES, JointLimits, check_gap, find_contacts
-from harness.model.errors import InputError, first_few, of_each, raise_faults
+from harness.model.assembly import Assembly, FloatArray, polygon_area
+from harness.model.errors import InputError, of_each, raise_faults
+from harness.model.interfaces import check_held, faces_of, find_joints, normals_of
 from harness.model.names import faults_of_wall
 from harness.model.pattern import blocks_of, count_of
-from harness.model.plausibility import contact_warnings, force_warnings, interface_warnings, near_misses, span
+from harness.model.plausibility import contact_warnings, force_warnings, interface_warnings, near_misses
 from harness.model.slips import slip_warnings, thickness_of
 from harness.model.wall import (
     MOST_BLOCKS,
     Block,
     BodyForce,
-    Detection,
     Friction,
     Inset,
     Interface,
@@ -67,12 +64,12 @@ def build(wall: Wall, name: str = "wall") -> Built:
     centroids = np.array([geometry.centroid(polygon) for polygon in polygons])
 
     size = geometry.typical_size([polygon for polygon, still in zip(polygons, fixed, strict=True) if not still])
-    joints_found = _found(wall.interfaces, polygons, names, fixed, size)
+    joints_found = find_joints(wall.interfaces, polygons, names, fixed, size)
     interfaces = joints_found.interfaces
-    block_a, block_b, face1, face2 = _faces(interfaces, index, fixed)
-    _check_held(names, fixed, block_a, block_b, joints_found)
+    block_a, block_b, face1, face2 = faces_of(interfaces, index, fixed)
+    check_held(names, fixed, block_a, block_b, joints_found)
     trusted = joints_found.trusted
-    normal = _normals(polygons, centroids, block_a, block_b, face1, face2, interfaces, trusted=trusted, size=size)
+    normal = normals_of(polygons, centroids, block_a, block_b, face1, face2, interfaces, trusted=trusted, size=size)
     joints = tuple(
         interface.joint or _inclination(start, end)
         for interface, start, end in zip(interfaces, face1, face2, strict=True)
@@ -128,64 +125,6 @@ def typical_block_size(wall: Wall) -> float:
     return geometry.typical_size(of_each(polygon_of, [block for block in blocks_of_wall(wall) if not block.fixed]))
 
 
-@dataclass(frozen=True)
-class _Joints:
-    """Interfaces of a wall, the first `trusted` of them found, and what was seen while they were looked for."""
-
-    interfaces: list[Interface]
-    trusted: int = 0
-    gap: float = 0.0
-    corners: IntArray = field(default_factory=lambda: np.empty((0, 2), dtype=np.int64))
-    missed: IntArray = field(default_factory=lambda: np.empty((0, 2), dtype=np.int64))
-    missed_gap: FloatArray = field(default_factory=lambda: np.empty(0))
-
-
-def _found(
-    asked: Detection | list[Interface],
-    polygons: tuple[FloatArray, ...],
-    names: tuple[str, ...],
-    fixed: BoolArray,
-    size: float,
-) -> _Joints:
-    """The interfaces that were asked for: found, found and given, or given.
-
-    Raises:
-        InputError: blocks overlap, or a gap is allowed that is as wide as a block.
-    """
-    detection = Detection() if isinstance(asked, list) else asked
-    gap, overlap = detection.gap(size), detection.overlap(size)
-    geometry.check_overlaps(polygons, names, fixed, overlap)
-    if isinstance(asked, list):
-        return _Joints(asked)
-    check_gap(polygons, names, gap)
-    sight = max(TIMES * gap, geometry.NEAR * size)
-    limits = JointLimits(gap, overlap, math.radians(detection.greatest_angle), detection.contact(size), sight)
-    contacts = find_contacts(polygons, fixed, limits)
-    said = {frozenset(item.between) for item in detection.given} | {frozenset(pair) for pair in detection.removed}
-    interfaces = [
-        Interface.model_validate({"between": (names[a], names[b]), "from": tuple(start), "to": tuple(end)})
-        for a, b, start, end in zip(
-            contacts.block_a.tolist(),
-            contacts.block_b.tolist(),
-            contacts.start.tolist(),
-            contacts.end.tolist(),
-            strict=True,
-        )
-        if frozenset((names[a], names[b])) not in said
-    ]
-    open_pairs = np.array(
-        [frozenset((names[a], names[b])) not in said for a, b in contacts.missed.tolist()], dtype=bool
-    )
-    return _Joints(
-        [*interfaces, *detection.given],
-        len(interfaces),
-        gap,
-        contacts.corners,
-        contacts.missed[open_pairs],
-        contacts.missed_gap[open_pairs],
-    )
-
-
 def blocks_of_wall(wall: Wall) -> list[Block]:
     """All blocks of a wall, those of its patterns first.
 
@@ -235,109 +174,6 @@ def _weight(block: Block, wall: Wall) -> float:
     area = polygon_area(np.array(block.polygon, dtype=float))
     per_area = float(unit_weight) * area * thickness_of(block, wall)
     return per_area if wall.units.unit_weight is None else per_area * wall.units.unit_weight_factor
-
-
-def _faces(
-    interfaces: list[Interface], index: dict[str, int], fixed: np.ndarray
-) -> tuple[IntArray, IntArray, FloatArray, FloatArray]:
-    for number, interface in enumerate(interfaces):
-        element = f"interfaces[{number}]"
-        a, b = (index[block_id] for block_id in interface.between)
-        if a == b:
-            raise InputError("a block cannot touch itself", "Name two blocks", element)
-        if interface.start == interface.end:
-            raise InputError("its two ends coincide", 'Give a segment of some length in "from" and "to"', element)
-        if fixed[a] and fixed[b]:
-            raise InputError("both of its blocks are fixed", "Leave it out: it carries no unknown", element)
-    pairs = np.array([[index[block_id] for block_id in interface.between] for interface in interfaces], dtype=np.int64)
-    pairs = pairs.reshape(-1, 2)
-    starts = np.array([interface.start for interface in interfaces], dtype=float).reshape(-1, 2)
-    ends = np.array([interface.end for interface in interfaces], dtype=float).reshape(-1, 2)
-    return pairs[:, 0], pairs[:, 1], starts, ends
-
-
-def _check_held(
-    names: tuple[str, ...], fixed: np.ndarray, block_a: IntArray, block_b: IntArray, joints: _Joints
-) -> None:
-    count = len(names)
-    graph = sp.coo_matrix((np.ones(len(block_a)), (block_a, block_b)), shape=(count, count))
-    _, component = connected_components(graph, directed=False)
-    floating = ~np.isin(component, component[fixed])
-    if not floating.any():
-        return
-    listed = [names[k] for k in np.flatnonzero(floating)]
-    shown = first_few([f'"{name}"' for name in listed], 5)
-    at_corner = bool(np.any(floating[joints.corners]))
-    near = np.any(floating[joints.missed], axis=1)
-    remedy = "Let faces meet along a length, or raise interfaces.greatest_gap if the drawing has gaps"
-    if near.any():
-        gaps, unlucky = joints.missed_gap[near], joints.missed[near]
-        one, other = (names[k] for k in unlucky[int(np.argmin(gaps))])
-        remedy = (
-            f'Faces look at each other {span(gaps)} apart, those of "{one}" and "{other}" the nearest, '
-            f"and joints are up to {joints.gap:.3g} wide: if they bear on each other, say "
-            f'"interfaces": {{"tolerance": {1.02 * gaps.max():.3g}}}'
-        )
-    raise InputError(
-        "no chain of interfaces joins "
-        + ("it" if len(listed) == 1 else "them")
-        + " to a fixed block: floating"
-        + (" (a touch at a corner is no interface)" if at_corner else ""),
-        remedy,
-        f"block {shown}" if len(listed) == 1 else f"blocks {shown}",
-    )
-
-
-def _normals(
-    polygons: tuple[FloatArray, ...],
-    centroids: FloatArray,
-    block_a: IntArray,
-    block_b: IntArray,
-    face1: FloatArray,
-    face2: FloatArray,
-    interfaces: list[Interface],
-    *,
-    trusted: int,
-    size: float,
-) -> FloatArray:
-    """Unit normals from a into b: those found run counter-clockwise round a, given ones are tested at midpoint."""
-    tangent = face2 - face1
-    tangent = tangent / np.linalg.norm(tangent, axis=1)[:, None]
-    outward = np.stack([tangent[:, 1], -tangent[:, 0]], axis=1)
-    if trusted == len(interfaces):
-        return outward
-    import shapely
-
-    middle = 0.5 * (face1 + face2)
-    step = 1e-3 * np.minimum(np.linalg.norm(face2 - face1, axis=1), size)[:, None] * outward
-    shapes = geometry.shapes_of(polygons)
-    inside = {
-        (side, way): shapely.contains_xy(shapes[block], *(middle + way * step).T)
-        for side, block in (("a", block_a), ("b", block_b))
-        for way in (1.0, -1.0)
-    }
-    votes = (
-        inside["b", 1.0].astype(int)
-        + inside["a", -1.0].astype(int)
-        - inside["b", -1.0].astype(int)
-        - inside["a", 1.0].astype(int)
-    )
-    unclear = votes == 0
-    across = np.einsum("kd,kd->k", centroids[block_b] - centroids[block_a], outward)
-    same_side = unclear & (
-        (inside["a", 1.0] & inside["b", 1.0]) | (inside["a", -1.0] & inside["b", -1.0]) | (abs(across) < 1e-9 * size)
-    )
-    same_side[:trusted] = False
-    if same_side.any():
-        number = int(np.flatnonzero(same_side)[0])
-        raise InputError(
-            "its blocks do not lie on opposite sides of the segment",
-            'Let "from" and "to" run along the faces that touch',
-            f"interfaces[{number - trusted}] between {' and '.join(interfaces[number].between)}",
-        )
-    sign = np.where(unclear, np.sign(across), np.sign(votes))
-    sign[:trusted] = 1.0
-    return np.asarray(outward * sign[:, None])
 
 
 def _inclination(start: FloatArray, end: FloatArray) -> str:

@@ -15,10 +15,6 @@ from harness.model.units import DIMENSIONLESS, KILONEWTONS, METRES, ForceUnit, L
 
 LARGEST = 1e15
 """Greatest size of any number of the format, whatever its unit, so that no product of a few of them overflows."""
-DEFAULT_TOLERANCE = 1e-6
-"""Greatest gap and overlap of the faces of a joint, in typical block sizes, where a wall does not say."""
-LEAST_CONTACT = 0.01
-"""Least length of a contact, in typical block sizes, where the gap may be larger: 3 mm on a brick of 300."""
 MOST_BLOCKS = 100_000
 """Blocks of a wall at most, those that patterns make included."""
 Number = Annotated[float, Field(ge=-LARGEST, le=LARGEST, strict=True)]
@@ -201,18 +197,6 @@ class Detection(Strict):
         default_factory=list, description="these, in place of those found between their blocks"
     )
     removed: list[tuple[Name, Name]] = Field(default_factory=list, description="pairs of blocks without a joint")
-
-    def gap(self, size: float) -> float:
-        """Greatest gap [length] for a typical block size [length]."""
-        return self.greatest_gap or self.tolerance or DEFAULT_TOLERANCE * size
-
-    def overlap(self, size: float) -> float:
-        """Greatest overlap [length] for a typical block size [length]."""
-        return self.greatest_overlap or self.tolerance or DEFAULT_TOLERANCE * size
-
-    def contact(self, size: float) -> float:
-        """Least length of a contact [length] for a typical block size [length]."""
-        return self.least_contact or min(self.gap(size), LEAST_CONTACT * size)
 
 
 class BodyForce(Strict):

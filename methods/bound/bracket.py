@@ -14,18 +14,7 @@ from methods.bound.equations import Equations
 from methods.bound.halpern import Splitting, carried_over
 from methods.bound.relaxation import Relaxation
 from methods.bound.slack_bounds import SlackProgramme
-
-CLOSED = 1e-6
-"""Relative distance of bound and state at which the bracket is closed."""
-NARROW = 4e-3
-"""Relative width of a window below which a narrower one costs more than it gains."""
-GAIN = 0.3
-"""Part of the bracket that one window must gain before the next is built."""
-ABOVE = 1e-9
-"""Relative distance of the window's upper end above the state, so that rounding does not cut the state off."""
-FIRST_STEPS = {"size": 1.0, "multiplier": 1e3}
-LEAST_STEPS = {"size": 1e-2, "multiplier": 100.0}
-LAST_LEAST_STEP = 300.0
+from methods.bound.tuning import STEPS, WINDOWS
 
 
 @dataclass
@@ -45,8 +34,8 @@ class Bracket:
 
     @property
     def closed(self) -> bool:
-        """Whether both ends agree to `CLOSED`."""
-        return self.lower >= self.upper * (1.0 - CLOSED)
+        """Whether both ends agree to `Windows.closed`."""
+        return self.lower >= self.upper * (1.0 - WINDOWS.closed)
 
 
 def bracket(equations: Equations, upper: float, seconds: float, lower: float = 0.0) -> Bracket:
@@ -92,19 +81,19 @@ class _Search:
         return found.lower - before > 1e-3 * (found.upper - before) or not (stalled and last)
 
     def _is_last(self, relaxation: Relaxation) -> bool:
-        return self.found.upper - relaxation.low < NARROW * self.found.upper
+        return self.found.upper - relaxation.low < WINDOWS.narrow * self.found.upper
 
     def _build(self) -> bool:
         """Build the relaxation of the present bracket; False if no forces within yield exist in it."""
         found, old = self.found, self._relaxation
-        high = found.upper * (1.0 + ABOVE)
+        high = found.upper * (1.0 + WINDOWS.above)
         bounds = self._slacks.bounds(found.lower, high)
         if bounds is None:
             return False
         new = Relaxation(self.equations, found.lower, high, bounds)
         costs: dict[str, FloatArray] = {"size": new.size_cost(), "multiplier": new.multiplier_cost()}
         for name, cost in costs.items():
-            run = Splitting(new, cost, FIRST_STEPS[name], LEAST_STEPS[name])
+            run = Splitting(new, cost, STEPS[name].first, STEPS[name].least)
             if old is not None and self._runs[name].iterate.size:
                 run.step = self._runs[name].step
                 run.iterate = carried_over(new, old, self._runs[name].iterate, run.step)
@@ -136,7 +125,7 @@ class _Search:
             if bound is None:
                 return False
             found.lower = min(max(found.lower, relaxation.low + bound.of(self._size)), found.upper)
-            if found.closed or (not last and found.lower > start + GAIN * (found.upper - start)):
+            if found.closed or (not last and found.lower > start + WINDOWS.gain * (found.upper - start)):
                 return True
             close = 0.05 * (found.upper - found.lower)
             ends = (relaxation.low + primal - found.lower, primal - bound.value)
@@ -150,5 +139,4 @@ class _Search:
         run, before = self._runs[name], self._runs[name].iterations
         run.run(min(self.until, time.process_time() + seconds), stop)
         self.found.iterations += run.iterations - before
-        if name == "multiplier":
-            run.step = max(run.step, LAST_LEAST_STEP)
+        run.step = max(run.step, STEPS[name].later)

@@ -8,11 +8,7 @@ import numpy as np
 
 from harness.model.assembly import FloatArray
 from methods.bound.relaxation import Relaxation
-
-SETTLED = 1e-24
-"""Squared residual, relative to the first, at which the repair of unused products ends."""
-ROUNDING = 1e-9
-"""Multiplier of a product that must not be used, relative to the largest, beyond which a dual matrix proves nothing."""
+from methods.bound.tuning import ROUNDING
 
 
 @dataclass(frozen=True)
@@ -40,7 +36,7 @@ def dual_bound(relaxation: Relaxation, iterate: FloatArray, step: float, cost: F
     matrix = _repaired(relaxation, (relaxation.project(iterate) - iterate) / step)
     reduced = cost - matrix
     unused = float(abs(reduced[relaxation.unused]).max(initial=0.0))
-    if unused > ROUNDING * max(1.0, float(abs(reduced).max())):
+    if unused > ROUNDING.unused * max(1.0, float(abs(reduced).max())):
         return None
     m, f, columns = relaxation.equations.n_interfaces, len(relaxation.free), relaxation.lift_column + 1
     value = float(reduced[relaxation.unit_row, relaxation.work_column] * relaxation.unit)
@@ -77,7 +73,7 @@ def _repaired(relaxation: Relaxation, matrix: FloatArray, most: int = 1000) -> F
     change, direction = np.zeros_like(matrix), residual.copy()
     size = first = float((residual * residual).sum())
     for _ in range(most):
-        if size <= SETTLED * max(first, 1e-300):
+        if size <= ROUNDING.settled * max(first, 1e-300):
             break
         image = np.where(unused, direction - relaxation.project(direction), 0.0)
         length = size / float((direction * image).sum())

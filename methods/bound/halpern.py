@@ -14,11 +14,7 @@ import numpy as np
 from harness.model.assembly import FloatArray, IntArray
 from methods.bound.dual import DualBound, dual_bound
 from methods.bound.relaxation import Relaxation
-
-CHECKED_EVERY, CHECKED_LATER = 200, 0.1
-"""Iterations between two safe bounds, and as a share of those made; a safe bound may cost hundreds of iterations."""
-SUFFICIENT, NECESSARY, LONG, PATIENCE = 0.2, 0.8, 0.36, 200
-"""When to restart: the residual fell to a fifth, or to four fifths and rises, or the round is a third of the run."""
+from methods.bound.tuning import RESTARTS
 
 
 @dataclass
@@ -40,7 +36,7 @@ class Splitting:
         iterate = self.iterate if self.iterate.size else np.zeros(problem.lower.shape)
         anchor, count, first, before = iterate.copy(), 0, 0.0, np.inf
         start_point = start_dual = iterate
-        check = self.iterations + CHECKED_EVERY
+        check = self.iterations + RESTARTS.checked_every
         while True:
             projected = problem.project(iterate)
             reflected = 2.0 * projected - iterate
@@ -56,12 +52,13 @@ class Splitting:
             count += 1
             if self.iterations >= check:
                 self.iterate = iterate
-                check = self.iterations + max(CHECKED_EVERY, int(CHECKED_LATER * self.iterations))
+                check = self.iterations + max(RESTARTS.checked_every, int(RESTARTS.checked_later * self.iterations))
                 bound = dual_bound(problem, iterate, self.step, self.cost)
                 if stop(bound, float((reflected[where] * slope).sum())) or time.process_time() > until:
                     return
-            stale = residual <= NECESSARY * first and residual > before
-            if count > 1 and (residual <= SUFFICIENT * first or stale or count > LONG * self.iterations + PATIENCE):
+            stale = residual <= RESTARTS.necessary * first and residual > before
+            long = count > RESTARTS.long * self.iterations + RESTARTS.patience
+            if count > 1 and (residual <= RESTARTS.sufficient * first or stale or long):
                 iterate = self._restarted(iterate, start_point, start_dual)
                 anchor, count = iterate.copy(), 0
             before = residual

@@ -15,9 +15,7 @@ import scipy.linalg
 from harness.model.assembly import FloatArray, IntArray
 from methods.bound.equations import Equations
 from methods.bound.slack_bounds import MARGIN, SlackBounds
-
-NO_ROW = 1e-9
-"""Norm below which an inequality vanishes on its whole space."""
+from methods.bound.tuning import ROUNDING
 
 
 class Relaxation:
@@ -121,4 +119,4 @@ class Relaxation:
 
 def _scales(matrix: FloatArray) -> FloatArray:
     norms = np.linalg.norm(matrix, axis=1)
-    return np.where(norms < NO_ROW, 1.0, 1.0 / np.maximum(norms, NO_ROW))
+    return np.where(norms < ROUNDING.no_row, 1.0, 1.0 / np.maximum(norms, ROUNDING.no_row))

@@ -61,6 +61,8 @@ class BoundedLimitAnalysis(LimitAnalysisFamily):
         multiplier = known.multiplier
         if known.status is not Status.OK or known.finding is not Finding.COLLAPSES or multiplier is None:
             return known
+        if known.details.get("stopped_by_limit"):
+            return known
         if known.details["proved_least"]:
             return certified(known, certificate(assembly, seconds=settings.seconds))
         if multiplier <= 0.0 or problem.n_interfaces > settings.most_interfaces:

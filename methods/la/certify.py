@@ -23,14 +23,10 @@ from methods.la.rational import NotShortError, Row, short_fraction, solve_sparse
 from methods.la.search import Search
 from methods.la.state import CollapseState
 from methods.numerics.linear_programme import INFINITY, Programme
+from methods.numerics.vertex import BASIC
 
 BELOW = Fraction(2, 10**6)
 """Relative distance of the certified bound below the state: twice what the tree closes to."""
-BASIC = 1
-
-
-class _OutOfTimeError(Exception):
-    """The leaves took longer than they may."""
 
 
 def certificate(assembly: Assembly, nodes: int = 1500, seconds: float = math.inf) -> dict[str, Any] | None:
@@ -60,12 +56,12 @@ def certificate(assembly: Assembly, nodes: int = 1500, seconds: float = math.inf
         leaves = []
         for tight, still in proof.leaves:
             if time.process_time() > end:
-                raise _OutOfTimeError
+                return None
             leaves.append(_leaf(wall, bound, tight.ravel(), still.ravel()))
         document |= {"multiplier": str(upper), "bound": str(bound), "state": state, "leaves": leaves}
         document["digest"] = digest(document)
         verify(document)
-    except (NotShortError, ArithmeticError, CertificateError, _OutOfTimeError):
+    except (NotShortError, ArithmeticError, CertificateError):
         return None
     return document
 

@@ -129,6 +129,7 @@ def _stopped(
         "starts": len(states),
         "start_values": [problem.to_multiplier(state.multiplier) for state in states],
         "newton_steps": steps,
+        "lower_bound": 0.0,
         "proved_least": False,
     }
     return collapse_answer(problem, best, sentence, tolerance, steps, details)

@@ -47,3 +47,11 @@ def test_without_a_state_the_time_is_over(monkeypatch: pytest.MonkeyPatch):
     monkeypatch.setattr(least.Search, "interior", out_of_time)
     with pytest.raises(OutOfTime):
         method.solve(assembly(running_bond(6, 3), 0.65), method.Settings())
+
+
+def test_bound_of_a_search_that_was_stopped_is_the_answer_of_the_search(monkeypatch: pytest.MonkeyPatch):
+    wall, method = assembly(running_bond(6, 3), 0.65), load_method("la-bound")
+    monkeypatch.setattr(least, "climb", out_of_time)
+    answer = method.solve(wall, method.Settings())
+    assert answer.status is Status.OK
+    assert answer.details["stopped_by_limit"]

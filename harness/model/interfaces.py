@@ -1,0 +1,200 @@
+"""The interfaces of a wall: found between faces, given, or both; the blocks they hold, and their normals."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, field
+
+import numpy as np
+import scipy.sparse as sp
+import shapely
+from scipy.sparse.csgraph import connected_components
+
+from harness.model import geometry
+from harness.model.assembly import BoolArray, FloatArray, IntArray
+from harness.model.contacts import TIMES, JointLimits, check_gap, find_contacts
+from harness.model.errors import InputError, first_few
+from harness.model.plausibility import span
+from harness.model.wall import Detection, Interface
+
+DEFAULT_TOLERANCE = 1e-6
+"""Greatest gap and overlap of the faces of a joint, in typical block sizes, where a wall does not say."""
+LEAST_CONTACT = 0.01
+"""Least length of a contact, in typical block sizes, where the gap may be larger: 3 mm on a brick of 300."""
+
+
+@dataclass(frozen=True)
+class Joints:
+    """Interfaces of a wall, the first `trusted` of them found, and what was seen while they were looked for."""
+
+    interfaces: list[Interface]
+    trusted: int = 0
+    gap: float = 0.0
+    corners: IntArray = field(default_factory=lambda: np.empty((0, 2), dtype=np.int64))
+    missed: IntArray = field(default_factory=lambda: np.empty((0, 2), dtype=np.int64))
+    missed_gap: FloatArray = field(default_factory=lambda: np.empty(0))
+
+
+def limits_of(detection: Detection, size: float) -> JointLimits:
+    """What may be the two faces of one joint, for a typical block size [length]."""
+    gap = detection.greatest_gap or detection.tolerance or DEFAULT_TOLERANCE * size
+    return JointLimits(
+        gap=gap,
+        overlap=detection.greatest_overlap or detection.tolerance or DEFAULT_TOLERANCE * size,
+        angle=math.radians(detection.greatest_angle),
+        length=detection.least_contact or min(gap, LEAST_CONTACT * size),
+        sight=max(TIMES * gap, geometry.NEAR * size),
+    )
+
+
+def find_joints(
+    asked: Detection | list[Interface],
+    polygons: tuple[FloatArray, ...],
+    names: tuple[str, ...],
+    fixed: BoolArray,
+    size: float,
+) -> Joints:
+    """The interfaces that were asked for: found, found and given, or given.
+
+    Raises:
+        InputError: blocks overlap, or a gap is allowed that is as wide as a block.
+    """
+    detection = Detection() if isinstance(asked, list) else asked
+    limits = limits_of(detection, size)
+    geometry.check_overlaps(polygons, names, fixed, limits.overlap)
+    if isinstance(asked, list):
+        return Joints(asked)
+    check_gap(polygons, names, limits.gap)
+    contacts = find_contacts(polygons, fixed, limits)
+    said = {frozenset(item.between) for item in detection.given} | {frozenset(pair) for pair in detection.removed}
+    interfaces = [
+        Interface.model_validate({"between": (names[a], names[b]), "from": tuple(start), "to": tuple(end)})
+        for a, b, start, end in zip(
+            contacts.block_a.tolist(),
+            contacts.block_b.tolist(),
+            contacts.start.tolist(),
+            contacts.end.tolist(),
+            strict=True,
+        )
+        if frozenset((names[a], names[b])) not in said
+    ]
+    open_pairs = np.array(
+        [frozenset((names[a], names[b])) not in said for a, b in contacts.missed.tolist()], dtype=bool
+    )
+    return Joints(
+        [*interfaces, *detection.given],
+        len(interfaces),
+        limits.gap,
+        contacts.corners,
+        contacts.missed[open_pairs],
+        contacts.missed_gap[open_pairs],
+    )
+
+
+def faces_of(
+    interfaces: list[Interface], index: dict[str, int], fixed: np.ndarray
+) -> tuple[IntArray, IntArray, FloatArray, FloatArray]:
+    """Blocks (m,) and (m,), and ends of the faces (m, 2) and (m, 2), of interfaces.
+
+    Raises:
+        InputError: one joins a block to itself or two fixed ones, or has no length.
+    """
+    for number, interface in enumerate(interfaces):
+        element = f"interfaces[{number}]"
+        a, b = (index[block_id] for block_id in interface.between)
+        if a == b:
+            raise InputError("a block cannot touch itself", "Name two blocks", element)
+        if interface.start == interface.end:
+            raise InputError("its two ends coincide", 'Give a segment of some length in "from" and "to"', element)
+        if fixed[a] and fixed[b]:
+            raise InputError("both of its blocks are fixed", "Leave it out: it carries no unknown", element)
+    pairs = np.array([[index[block_id] for block_id in interface.between] for interface in interfaces], dtype=np.int64)
+    pairs = pairs.reshape(-1, 2)
+    starts = np.array([interface.start for interface in interfaces], dtype=float).reshape(-1, 2)
+    ends = np.array([interface.end for interface in interfaces], dtype=float).reshape(-1, 2)
+    return pairs[:, 0], pairs[:, 1], starts, ends
+
+
+def check_held(names: tuple[str, ...], fixed: np.ndarray, block_a: IntArray, block_b: IntArray, joints: Joints) -> None:
+    """Refuse blocks that no chain of interfaces joins to a fixed one.
+
+    Raises:
+        InputError: naming them, and the faces they look at from a little further off.
+    """
+    count = len(names)
+    graph = sp.coo_matrix((np.ones(len(block_a)), (block_a, block_b)), shape=(count, count))
+    _, component = connected_components(graph, directed=False)
+    floating = ~np.isin(component, component[fixed])
+    if not floating.any():
+        return
+    listed = [names[k] for k in np.flatnonzero(floating)]
+    shown = first_few([f'"{name}"' for name in listed], 5)
+    at_corner = bool(np.any(floating[joints.corners]))
+    near = np.any(floating[joints.missed], axis=1)
+    remedy = "Let faces meet along a length, or raise interfaces.greatest_gap if the drawing has gaps"
+    if near.any():
+        gaps, unlucky = joints.missed_gap[near], joints.missed[near]
+        one, other = (names[k] for k in unlucky[int(np.argmin(gaps))])
+        remedy = (
+            f'Faces look at each other {span(gaps)} apart, those of "{one}" and "{other}" the nearest, '
+            f"and joints are up to {joints.gap:.3g} wide: if they bear on each other, say "
+            f'"interfaces": {{"tolerance": {1.02 * gaps.max():.3g}}}'
+        )
+    raise InputError(
+        "no chain of interfaces joins "
+        + ("it" if len(listed) == 1 else "them")
+        + " to a fixed block: floating"
+        + (" (a touch at a corner is no interface)" if at_corner else ""),
+        remedy,
+        f"block {shown}" if len(listed) == 1 else f"blocks {shown}",
+    )
+
+
+def normals_of(
+    polygons: tuple[FloatArray, ...],
+    centroids: FloatArray,
+    block_a: IntArray,
+    block_b: IntArray,
+    face1: FloatArray,
+    face2: FloatArray,
+    interfaces: list[Interface],
+    *,
+    trusted: int,
+    size: float,
+) -> FloatArray:
+    """Unit normals from a into b: those found run counter-clockwise round a, given ones are tested at midpoint."""
+    tangent = face2 - face1
+    tangent = tangent / np.linalg.norm(tangent, axis=1)[:, None]
+    outward = np.stack([tangent[:, 1], -tangent[:, 0]], axis=1)
+    if trusted == len(interfaces):
+        return outward
+    middle = 0.5 * (face1 + face2)
+    step = 1e-3 * np.minimum(np.linalg.norm(face2 - face1, axis=1), size)[:, None] * outward
+    shapes = geometry.shapes_of(polygons)
+    inside = {
+        (side, way): shapely.contains_xy(shapes[block], *(middle + way * step).T)
+        for side, block in (("a", block_a), ("b", block_b))
+        for way in (1.0, -1.0)
+    }
+    votes = (
+        inside["b", 1.0].astype(int)
+        + inside["a", -1.0].astype(int)
+        - inside["b", -1.0].astype(int)
+        - inside["a", 1.0].astype(int)
+    )
+    unclear = votes == 0
+    across = np.einsum("kd,kd->k", centroids[block_b] - centroids[block_a], outward)
+    same_side = unclear & (
+        (inside["a", 1.0] & inside["b", 1.0]) | (inside["a", -1.0] & inside["b", -1.0]) | (abs(across) < 1e-9 * size)
+    )
+    same_side[:trusted] = False
+    if same_side.any():
+        number = int(np.flatnonzero(same_side)[0])
+        raise InputError(
+            "its blocks do not lie on opposite sides of the segment",
+            'Let "from" and "to" run along the faces that touch',
+            f"interfaces[{number - trusted}] between {' and '.join(interfaces[number].between)}",
+        )
+    sign = np.where(unclear, np.sign(across), np.sign(votes))
+    sign[:trusted] = 1.0
+    return np.asarray(outward * sign[:, None])

@@ -1,0 +1,71 @@
+"""What the bound was tuned with on running bonds of 10 to 49 interfaces, in one place."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+
+@dataclass(frozen=True)
+class Windows:
+    """How windows on the multiplier follow each other.
+
+    Attributes:
+        closed: relative distance of bound and state at which the bracket is closed.
+        narrow: relative width of a window below which a narrower one costs more than it gains.
+        gain: part of the bracket that one window must gain before the next is built.
+        above: relative distance of the window's upper end above the state, so that rounding does not cut it off.
+    """
+
+    closed: float = 1e-6
+    narrow: float = 4e-3
+    gain: float = 0.3
+    above: float = 1e-9
+
+
+@dataclass(frozen=True)
+class Steps:
+    """Step sizes of the splitting for one cost: the first, the least, and the least once a window has run."""
+
+    first: float
+    least: float
+    later: float
+
+
+@dataclass(frozen=True)
+class Restarts:
+    """When the splitting is checked and restarted.
+
+    Attributes:
+        checked_every, checked_later: iterations between two safe bounds, and as a share of those made; a safe bound may
+            cost hundreds of iterations.
+        sufficient, necessary: a restart where the residual fell to the first of these shares, or to the second and
+            rises.
+        long, patience: or where the round is longer than this share of the run and so many iterations.
+    """
+
+    checked_every: int = 200
+    checked_later: float = 0.1
+    sufficient: float = 0.2
+    necessary: float = 0.8
+    long: float = 0.36
+    patience: int = 200
+
+
+@dataclass(frozen=True)
+class Rounding:
+    """What counts as rounding in a dual matrix and in a row of the relaxation.
+
+    Attributes:
+        settled: squared residual, relative to the first, at which the repair of unused products ends.
+        unused: multiplier of a product that must not be used, relative to the largest, beyond which a dual matrix
+            proves nothing.
+        no_row: norm below which an inequality vanishes on its whole space.
+    """
+
+    settled: float = 1e-24
+    unused: float = 1e-9
+    no_row: float = 1e-9
+
+
+WINDOWS, RESTARTS, ROUNDING = Windows(), Restarts(), Rounding()
+STEPS = {"size": Steps(1.0, 1e-2, 1e-2), "multiplier": Steps(1e3, 100.0, 300.0)}
