@@ -14,7 +14,7 @@ import scipy.linalg
 
 from harness.model.assembly import FloatArray, IntArray
 from methods.bound.equations import Equations
-from methods.bound.slack_bounds import MARGIN, SlackBounds
+from methods.bound.slack_bounds import SlackBounds
 from methods.bound.tuning import ROUNDING
 
 
@@ -35,9 +35,9 @@ class Relaxation:
     def __init__(self, equations: Equations, low: float, high: float, bounds: SlackBounds) -> None:
         self.equations, self.low, self.high, self.bounds = equations, low, high, bounds
         m = equations.n_interfaces
-        still = bounds.least > MARGIN
+        still = bounds.least > ROUNDING.margin
         self.normal = bounds.normal(equations.friction)
-        loaded = (self.normal > MARGIN) | still.reshape(-1, 4)[:, 2:].any(axis=1)
+        loaded = (self.normal > ROUNDING.margin) | still.reshape(-1, 4)[:, 2:].any(axis=1)
         self.unloadable: IntArray = np.flatnonzero(~loaded)
         may = ~still.reshape(-1, 4)
         may[self.unloadable, 2:] = False

@@ -8,11 +8,8 @@ from typing import Any
 import numpy as np
 
 from harness.model.assembly import Assembly, FloatArray
+from methods.bound.tuning import ROUNDING
 from methods.bound.verify import CertificateError
-
-CLOSE = 1e-11
-"""Difference, relative to the largest number of its kind, below which a float stands for a fraction: short fractions
-lie within 1e-13 of the float they were read from, and loads are once divided by a unit besides."""
 
 
 def require_same_wall(document: Any, assembly: Assembly) -> None:
@@ -68,7 +65,9 @@ def _numbers(rows: list[list[Any]]) -> FloatArray:
 
 
 def _require(name: str, given: FloatArray, wanted: FloatArray) -> None:
-    if given.shape != wanted.shape or not np.allclose(given, wanted, rtol=0.0, atol=CLOSE * max(1e-300, _size(wanted))):
+    if given.shape != wanted.shape or not np.allclose(
+        given, wanted, rtol=0.0, atol=ROUNDING.wall * max(1e-300, _size(wanted))
+    ):
         raise CertificateError(f"it is of another wall: the {name} are not the same")
 
 

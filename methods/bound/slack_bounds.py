@@ -9,10 +9,8 @@ import scipy.sparse as sp
 
 from harness.model.assembly import FloatArray
 from methods.bound.equations import Equations
+from methods.bound.tuning import ROUNDING
 from methods.numerics.linear_programme import INFINITY, Programme
-
-MARGIN = 1e-6
-"""Added to both sides of a bound from a linear programme, in mean block weights: a thousand times its tolerances."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -20,7 +18,7 @@ class SlackBounds:
     """Bounds of the slacks within a window.
 
     Attributes:
-        least, greatest: (4m,) slacks in mean block weights, widened by `MARGIN`; zero and inf where not known.
+        least, greatest: (4m,) slacks in mean block weights, widened by `Rounding.margin`; zero and inf where not known.
     """
 
     least: FloatArray
@@ -62,5 +60,5 @@ class SlackProgramme:
                 if status == "infeasible":
                     return None
                 if status == "optimal":
-                    values[k] = max(value[3 * m + k] - sign * MARGIN, 0.0)
+                    values[k] = max(value[3 * m + k] - sign * ROUNDING.margin, 0.0)
         return SlackBounds(least, greatest)

@@ -53,18 +53,23 @@ class Restarts:
 
 @dataclass(frozen=True)
 class Rounding:
-    """What counts as rounding in a dual matrix and in a row of the relaxation.
+    """What counts as rounding in dual matrices, in rows of the relaxation, in programmes and in certificates.
 
     Attributes:
         settled: squared residual, relative to the first, at which the repair of unused products ends.
         unused: multiplier of a product that must not be used, relative to the largest, beyond which a dual matrix
             proves nothing.
         no_row: norm below which an inequality vanishes on its whole space.
+        margin: added to both sides of a bound from a linear programme, in mean block weights: a thousand times its
+            tolerances.
+        wall: difference of a number in a certificate from that of the wall, relative to the largest of its kind.
     """
 
     settled: float = 1e-24
     unused: float = 1e-9
     no_row: float = 1e-9
+    margin: float = 1e-6
+    wall: float = 1e-11
 
 
 WINDOWS, RESTARTS, ROUNDING = Windows(), Restarts(), Rounding()

@@ -13,7 +13,7 @@ from methods.bound.same_wall import require_same_wall
 from methods.bound.verify import CertificateError, verify
 from methods.la.certify import certificate
 from methods.la.family import LimitAnalysisFamily
-from methods.la.least import least_known
+from methods.la.least import SAME, least_known
 from methods.la.newton_matrix import NewtonMatrix
 from methods.la.problem import Problem
 from methods.la.settings import BoundSettings
@@ -22,8 +22,6 @@ from methods.springs.warm_up import load_kernels
 
 load_kernels()
 
-SAME = 1e-9
-"""Relative difference within which the state of the certificate is that of the answer, whose forces are floats."""
 SHORT = 40
 """Characters of a fraction that a sentence shows."""
 

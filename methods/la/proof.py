@@ -18,6 +18,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from harness.model.assembly import BoolArray
+from methods.bound.tuning import WINDOWS
 from methods.la.extremes import ForceProgramme, Units, bears_no_load, units_of
 from methods.la.problem import Problem
 from methods.la.programmes import KinematicProgramme
@@ -25,7 +26,7 @@ from methods.la.search import Search
 from methods.la.state import CollapseState
 from methods.numerics.linear_programme import INFINITY
 
-CLOSE = 1e-6
+CLOSE = WINDOWS.closed
 """Relative distance below the least multiplier known within which no other is sought."""
 COMPLEMENTARY = 1e-9
 """Work of slacks on rates, in mean block weights, that is rounding."""
