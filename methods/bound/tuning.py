@@ -62,7 +62,8 @@ class Rounding:
         no_row: norm below which an inequality vanishes on its whole space.
         margin: added to both sides of a bound from a linear programme, in mean block weights: a thousand times its
             tolerances.
-        wall: difference of a number in a certificate from that of the wall, relative to the largest of its kind.
+        wall: difference of a number in a certificate from that of the wall, relative to the largest of its kind: short
+            fractions lie within 1e-13 of the float they were read from, and loads are once divided by a unit besides.
     """
 
     settled: float = 1e-24
