@@ -109,15 +109,3 @@ def test_a_script_without_a_main_guard_may_compare(tmp_path: Path):
     )
     ran = subprocess.run([sys.executable, str(script)], capture_output=True, text=True, check=False, timeout=120)
     assert (ran.stdout, ran.returncode) == ("2\n", 0), ran.stderr
-
-
-def test_the_snippets_of_the_docs_run(tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
-    monkeypatch.chdir(tmp_path)
-    text = (ROOT / "docs" / "library.md").read_text(encoding="utf-8")
-    scope: dict[str, object] = {}
-    snippets = [part.split("```", 1)[0] for part in text.split("```python\n")[1:]]
-    assert snippets
-    for snippet in snippets:
-        exec(compile(snippet, "docs/library.md", "exec"), scope)
-    assert (tmp_path / "mechanism.pdf").exists()
-    assert (tmp_path / "report.html").exists()
