@@ -16,6 +16,7 @@ from harness.engine import compare as comparing
 from harness.engine import regression
 from harness.engine.plan import Limits, check_methods, find_cases, gated_runs, plan_case
 from harness.engine.store import open_store
+from harness.junit import tests_of_check, write_junit
 from harness.model.case import shipped_cases
 from harness.model.errors import InputError
 from harness.options import (
@@ -24,6 +25,7 @@ from harness.options import (
     fresh_flag,
     jobs_option,
     json_flag,
+    junit_option,
     print_json,
     store_option,
     warn,
@@ -37,6 +39,7 @@ from harness.options import (
 @jobs_option
 @store_option
 @fresh_flag
+@junit_option
 @json_flag
 @cases_option
 @catching
@@ -47,6 +50,7 @@ def check(
     jobs: int,
     store: Path,
     fresh: bool,
+    junit: Path | None,
     as_json: bool,
     folders: tuple[Path, ...],
 ) -> None:
@@ -65,6 +69,8 @@ def check(
         results = comparing.execute([*runs, *certified], opened, jobs, fresh=fresh, told=told)
     lines = regression.lines(runs, results[: len(runs)])
     lines += [certificate_line(run, result) for run, result in zip(certified, results[len(runs) :], strict=True)]
+    if junit is not None:
+        write_junit(f"drystone check, {tier} tier", tests_of_check(lines), junit)
     if as_json:
         print_json(
             {

@@ -20,6 +20,7 @@ COMMANDS = {
     "store": ("sweep_commands", "store_", "Merge result stores."),
     "report": ("run_commands", "report", "Build the report of the last comparison again."),
     "check": ("check_commands", "check", "Hold the methods to their gated references."),
+    "diff": ("diff_commands", "diff", "Compare the answers of two stores or baselines."),
     "baseline": ("check_commands", "baseline", "Show how today's values stand to the recorded ones."),
     "list": ("wall_commands", "list_", "List the cases, the methods or the suites there are."),
     "expand": ("wall_commands", "expand", "Print WALL.json in explicit form."),

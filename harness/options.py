@@ -123,6 +123,9 @@ memory_option = click.option(
 report_option = click.option(
     "--report", type=click.Path(path_type=Path), default=REPORT, show_default=True, help="Where the report is written."
 )
+junit_option = click.option(
+    "--junit", type=click.Path(path_type=Path), help="Also write the outcomes as JUnit XML to this file."
+)
 fresh_flag = click.option("--fresh", is_flag=True, help="Run again what is in the store.")
 
 

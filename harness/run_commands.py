@@ -17,6 +17,7 @@ from harness.engine.imperfection import imperfection_runs, imperfection_study
 from harness.engine.isolate import announce
 from harness.engine.plan import Limits, Run, check_methods, find_cases, plan_case
 from harness.engine.store import open_store
+from harness.junit import tests_of_comparison, write_junit
 from harness.model.case import Case
 from harness.model.comparison import ComparisonRun
 from harness.model.errors import InputError, did_you_mean
@@ -27,6 +28,7 @@ from harness.options import (
     fresh_flag,
     jobs_option,
     json_flag,
+    junit_option,
     memory_option,
     print_json,
     report_option,
@@ -135,6 +137,7 @@ def method_settings(pairs: tuple[str, ...]) -> dict[str, dict[str, Any]]:
 @report_option
 @store_option
 @fresh_flag
+@junit_option
 @json_flag
 @cases_option
 @catching
@@ -151,6 +154,7 @@ def compare(
     report: Path,
     store: Path,
     fresh: bool,
+    junit: Path | None,
     as_json: bool,
     folders: tuple[Path, ...],
 ) -> None:
@@ -172,6 +176,8 @@ def compare(
     compared = _compare(
         title, chosen, names, limits, jobs, written, store, fresh, quiet=as_json, study=study, settings=asked
     )
+    if junit is not None:
+        write_junit(f"drystone compare, {title}", tests_of_comparison(compared), junit)
     if as_json:
         print_json(terminal.comparison_json(compared, written))
     else:

@@ -22,6 +22,7 @@ from harness.engine.regression import violations
 from harness.model.assembly import Assembly
 from harness.model.case import Case
 from harness.model.comparison import ComparisonRun
+from harness.model.difference import Difference, Kind
 from harness.model.errors import InputError, first_few, visible
 from harness.model.method import Answer, Finding, Status
 from harness.model.result import Judgement, Result
@@ -145,15 +146,22 @@ def print_comparison(compared: ComparisonRun, report: Path | None) -> None:
             console.print(f"{escape(f'{case.case.id}: {case.split_on_dead_load}')}.", highlight=False)
     broken = violations(compared)
     gated = sum(item.gate for case in compared.cases for result in case.results for item in result.comparisons)
-    gates = sum(len(case.gates) for case in compared.cases)
+    gates = sum(gate.passed is not None for case in compared.cases for gate in case.gates)
     if broken:
-        console.print(f"Of {gated} gated references, {gates} theory gates and the answers, {len(broken)} do not hold:")
+        console.print(f"Of {gated} gated references, {gates} statements of theory and the answers, {len(broken)} do not hold:")
         for sentence in broken:
             console.print(f"  ✗ {escape(sentence)}", highlight=False)
     else:
-        console.print(f"All {gated} gated references and {gates} theory gates hold; the judge rejects no answer.")
+        console.print(_all_well(gated, gates))
     if report is not None:
         print(visible(f"Report: {report}"))
+
+
+def _all_well(gated: int, gates: int) -> str:
+    """What was held against what, where all of it holds; a wall of one's own has no references."""
+    known = f"All {gated} gated references hold" if gated else "Nothing is known beforehand to hold the answers against"
+    theory = f"all {gates} statements of theory that could be tested hold" if gates else "no theory could be tested"
+    return f"{known}; {theory}; the judge rejects no answer."
 
 
 def print_agreement(compared: ComparisonRun, within: float = 0.01) -> None:
@@ -241,6 +249,22 @@ def print_changes(rows: list[dict[str, Any]]) -> None:
             print(visible(f"{row['change']:6s} {row['case']}  {row['method']}: {row['figures']}"))
     counts = Counter(row["change"] for row in rows)
     print(", ".join(f"{counts[kind]} {kind}" for kind in ("same", "better", "worse", "new") if counts[kind]))
+
+
+def print_difference(found: Difference) -> None:
+    """What changed between two sets of answers, times by method, and a count."""
+    for row in found.rows:
+        if row.kind is not Kind.SAME:
+            times = "" if row.ratio is None else f"  [{row.old_seconds:.3g} s -> {row.new_seconds:.3g} s of CPU]"
+            print(visible(f"{row.kind:6s} {row.case}  {row.method}: {row.figures}{times}"))
+    for pair in found.pairs:
+        slower = f"{pair.slower} of {pair.number} pairs slower"
+        print(visible(f"time   {pair.method}: {pair.ratio:.2f} times as long in the median, {slower}"))
+    for sentence in found.remarks:
+        print(visible(sentence))
+    counts = ", ".join(f"{number} {kind}" for kind, number in found.counts.items() if number) or "nothing compared"
+    left = f"; {found.not_run} answers of the baseline were not asked for" if found.not_run else ""
+    print(f"{counts}{left}.")
 
 
 def print_rows(rows: list[dict[str, Any]]) -> None:

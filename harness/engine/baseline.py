@@ -88,24 +88,25 @@ def value_of(result: Result) -> Value:
 def change(old: Value | None, new: Value, *, seeks_least: bool) -> tuple[Change, str]:
     """How a value stands to the recorded one, with the figures."""
     if old is None:
-        return Change.NEW, _text(new)
+        return Change.NEW, text_of(new)
     if new.status is not old.status or new.finding != old.finding:
         better = old.status is not Status.OK and new.status is Status.OK
-        return (Change.BETTER if better else Change.WORSE), f"{_text(old)} -> {_text(new)}"
+        return (Change.BETTER if better else Change.WORSE), f"{text_of(old)} -> {text_of(new)}"
     if new.bracket is not None and old.bracket is not None:
         meets = new.bracket[0] <= old.bracket[1] and old.bracket[0] <= new.bracket[1]
-        return (Change.SAME if meets else Change.WORSE), f"{_text(old)} -> {_text(new)}"
+        return (Change.SAME if meets else Change.WORSE), f"{text_of(old)} -> {text_of(new)}"
     if new.multiplier is None or old.multiplier is None:
         same = new.multiplier == old.multiplier
-        return (Change.SAME if same else Change.WORSE), f"{_text(old)} -> {_text(new)}"
+        return (Change.SAME if same else Change.WORSE), f"{text_of(old)} -> {text_of(new)}"
     difference = new.multiplier - old.multiplier
     if abs(difference) <= ROUNDING * max(1.0, abs(old.multiplier)):
-        return Change.SAME, _text(new)
+        return Change.SAME, text_of(new)
     better = seeks_least and difference < 0.0
-    return (Change.BETTER if better else Change.WORSE), f"{_text(old)} -> {_text(new)} ({difference:+.2g})"
+    return (Change.BETTER if better else Change.WORSE), f"{text_of(old)} -> {text_of(new)} ({difference:+.2g})"
 
 
-def _text(value: Value) -> str:
+def text_of(value: Value) -> str:
+    """A recorded value for a reader: the number, the bracket, or how the run ended."""
     if value.status is not Status.OK:
         return str(value.status).replace("_", " ")
     if value.bracket is not None:
