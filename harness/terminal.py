@@ -148,7 +148,8 @@ def print_comparison(compared: ComparisonRun, report: Path | None) -> None:
     gated = sum(item.gate for case in compared.cases for result in case.results for item in result.comparisons)
     gates = sum(gate.passed is not None for case in compared.cases for gate in case.gates)
     if broken:
-        console.print(f"Of {gated} gated references, {gates} statements of theory and the answers, {len(broken)} do not hold:")
+        held = f"{gated} gated references, {gates} statements of theory and the answers"
+        console.print(f"Of {held}, {len(broken)} do not hold:")
         for sentence in broken:
             console.print(f"  ✗ {escape(sentence)}", highlight=False)
     else:
