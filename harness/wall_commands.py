@@ -1,9 +1,8 @@
-"""Commands about walls and answers that run no comparison: list, expand, judge, schema, show, figure, animate."""
+"""Commands about walls and answers that run no comparison: list, expand, judge, schema, figure, animate."""
 
 from __future__ import annotations
 
 import sys
-from dataclasses import asdict
 from pathlib import Path
 from typing import Any
 
@@ -13,14 +12,11 @@ from harness import terminal
 from harness.engine import compare as comparing
 from harness.engine.judge import judge as judge_result
 from harness.engine.plan import Limits, Run, check_methods, find_cases
-from harness.engine.sensitivity import over_tolerance, suggested
 from harness.engine.store import open_store
-from harness.model.build import build
 from harness.model.case import Case, case_folders, read_case, shipped_cases
 from harness.model.errors import InputError
 from harness.model.method import Finding, Status, load_method, method_names
-from harness.model.reading import parse_wall, read_document, read_json, read_wall, wall_json
-from harness.model.repair import repair as mend
+from harness.model.reading import read_json, read_wall, wall_json
 from harness.model.result import Result, result_of
 from harness.model.wall import Wall
 from harness.options import cases_option, catching, json_flag, print_json, say, say_json, store_option, warn
@@ -120,115 +116,6 @@ def judge(wall: Path, result: Path, tolerance: float, as_json: bool) -> None:
 def schema() -> None:
     """Print the JSON Schema of the wall format."""
     print_json(Wall.model_json_schema(by_alias=True))
-
-
-@click.command()
-@click.argument("wall", type=click.Path(path_type=Path))
-@click.option("--method", default="la-associated", show_default=True, help="That is asked once a set of joints.")
-@json_flag
-@catching
-def validate(wall: Path, method: str, as_json: bool) -> None:
-    """Tell what is doubtful in WALL.json, and what joints and answer it has over the tolerance.
-
-    A tolerance is a good one where its neighbours find the same joints. Exit code 2 if the wall cannot be built as it
-    stands; the table is printed all the same.
-    """
-    check_methods([method], "--method")
-    data, notes = read_document(wall)
-    parsed = parse_wall(data, str(wall))
-    fault, warnings, joints = "", list(notes), None
-    try:
-        built = build(parsed, wall.stem)
-        warnings += built.warnings
-        joints = built.assembly.n_interfaces
-    except InputError as error:
-        fault = str(error)
-    given = isinstance(parsed.interfaces, list)
-    plateaus = [] if given else over_tolerance(parsed, load_method(method))
-    advice = suggested(plateaus)
-    if as_json:
-        told = {"joints": joints, "fault": fault, "warnings": warnings, "suggested_tolerance": advice}
-        print_json(told | {"tolerances": [asdict(plateau) for plateau in plateaus]})
-    else:
-        say(f"{joints} joints are found" if joints is not None else f"fault: {fault}")
-        for warning in warnings:
-            say(f"doubtful: {warning}")
-        if plateaus:
-            terminal.print_rows(
-                [
-                    {
-                        "tolerance": f"{plateau.low:.3g} to {plateau.high:.3g}",
-                        "joints": "-" if plateau.joints is None else plateau.joints,
-                        method: plateau.answer,
-                    }
-                    for plateau in plateaus
-                ]
-            )
-        if advice is not None and joints != max(plateau.joints or 0 for plateau in plateaus):
-            say(f'most joints are found with "interfaces": {{"tolerance": {advice:.3g}}}')
-    sys.exit(2 if fault else 0)
-
-
-@click.command()
-@click.argument("wall", type=click.Path(path_type=Path))
-@click.option("-o", "--output", type=click.Path(path_type=Path), required=True, help="The file of the mended wall.")
-@click.option("--snap", type=click.FloatRange(min=0.0, min_open=True), required=True, help="A vertex moves no further.")
-@json_flag
-@catching
-def repair(wall: Path, output: Path, snap: float, as_json: bool) -> None:
-    """Close the gaps and overlaps of WALL.json by moving vertices, and show what moved by how much.
-
-    Lengths are in the unit of the file. Outlines that are drawn twice are taken once; faces get a vertex where another
-    block ends in them.
-    """
-    data, _ = read_document(wall)
-    mended = mend(parse_wall(data, str(wall)), snap)
-    built = build(mended.wall, wall.stem)
-    output.write_text(wall_json(mended.wall), encoding="utf-8")
-    furthest = max((move.distance for move in mended.moves), default=0.0)
-    if as_json:
-        rows = [asdict(move) | {"distance": move.distance} for move in mended.moves]
-        print_json(
-            {"moves": rows, "doubles": mended.doubles, "splits": mended.splits, "joints": built.assembly.n_interfaces}
-        )
-        return
-    if mended.moves:
-        rows = [
-            {"block": move.block, "vertex": move.vertex, "from": _place(move.start), "to": _place(move.end)}
-            | {"moved by": f"{move.distance:.3g}"}
-            for move in sorted(mended.moves, key=lambda move: -move.distance)
-        ]
-        terminal.print_rows(rows)
-    for left, kept in mended.doubles:
-        say(f'left out: block "{left}", which repeats the outline of "{kept}"')
-    for block, count in mended.splits:
-        say(f'block "{block}": {count} vertices put into its faces, where others end')
-    say(f"{len(mended.moves)} vertices moved, {furthest:.3g} at most; {built.assembly.n_interfaces} joints are found")
-    for warning in built.warnings:
-        say(f"doubtful: {warning}")
-
-
-def _place(point: tuple[float, float]) -> str:
-    return f"({point[0]:.6g}, {point[1]:.6g})"
-
-
-@click.command()
-@click.argument("case")
-@click.option("-o", "--output", type=click.Path(path_type=Path), default=Path("wall.svg"), show_default=True)
-@click.option("--window", is_flag=True, help="Draw in a window instead of to a file.")
-@cases_option
-@catching
-def show(case: str, output: Path, window: bool, folders: tuple[Path, ...]) -> None:
-    """Draw CASE (an id or a WALL.json) to a file (.svg, .pdf, .png) or in a window, before anything is run."""
-    from reports.figures import show_wall, show_window
-
-    (found,) = find_cases([case], None, folders)
-    warn(found)
-    if window:
-        show_window(found.built, found.file.title)
-        return
-    show_wall(found.built, output)
-    say(str(output))
 
 
 @click.command()

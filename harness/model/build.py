@@ -8,8 +8,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from harness.model import geometry
-from harness.model.assembly import Assembly, FloatArray, polygon_area
-from harness.model.errors import InputError, of_each, raise_faults
+from harness.model.assembly import Assembly, BoolArray, FloatArray, polygon_area
+from harness.model.errors import InputError, Spot, of_each, raise_faults
 from harness.model.interfaces import check_held, faces_of, find_joints, normals_of
 from harness.model.names import faults_of_wall
 from harness.model.pattern import blocks_of, count_of
@@ -56,11 +56,8 @@ def build(wall: Wall, name: str = "wall") -> Built:
     index = {block_id: k for k, block_id in enumerate(names)}
     polygons = tuple(of_each(polygon_of, blocks))
     fixed = np.array([block.fixed for block in blocks], dtype=bool)
-    if not fixed.any():
-        raise InputError("no block is fixed", 'Mark the supports with "fixed": true', "blocks")
-    if fixed.all():
-        raise InputError("every block is fixed", "Leave at least one block free to move", "blocks")
-    weight = np.array(of_each(lambda block: _weight(block, wall), blocks))
+    raise_faults(support_faults(fixed))
+    weight = np.array(of_each(lambda block: weight_of(block, wall), blocks))
     centroids = np.array([geometry.centroid(polygon) for polygon in polygons])
 
     size = geometry.typical_size([polygon for polygon, still in zip(polygons, fixed, strict=True) if not still])
@@ -95,7 +92,7 @@ def build(wall: Wall, name: str = "wall") -> Built:
         friction=friction,
         joint=joints,
         dead=_dead_load(wall.loads, blocks, index, weight, centroids, fixed),
-        live=_load(wall.loads.live or Load(), "loads.live", blocks, index, weight, centroids, fixed),
+        live=_load(wall.loads.live or Load(), blocks, index, weight, centroids, fixed),
     )
     if wall.loads.live is not None and not assembly.has_live_load:
         raise InputError(
@@ -131,6 +128,17 @@ def blocks_of_wall(wall: Wall) -> list[Block]:
     Raises:
         InputError: there are none, too many, or names are wrong.
     """
+    blocks = written_out(wall)
+    raise_faults(faults_of_wall(wall, blocks))
+    return blocks
+
+
+def written_out(wall: Wall) -> list[Block]:
+    """All blocks of a wall, those of its patterns first, whatever their names.
+
+    Raises:
+        InputError: there are none, or too many.
+    """
     patterns: list[PatternBase] = (
         [] if wall.pattern is None else list(wall.pattern) if isinstance(wall.pattern, list) else [wall.pattern]
     )
@@ -144,7 +152,6 @@ def blocks_of_wall(wall: Wall) -> list[Block]:
     blocks = [block for pattern in patterns for block in blocks_of(pattern)] + list(wall.blocks)
     if not blocks:
         raise InputError("the wall has no blocks", 'Give "blocks" or a "pattern"', "blocks")
-    raise_faults(faults_of_wall(wall, blocks))
     return blocks
 
 
@@ -159,7 +166,19 @@ def polygon_of(block: Block) -> FloatArray:
     return geometry.counter_clockwise(polygon)
 
 
-def _weight(block: Block, wall: Wall) -> float:
+def support_faults(fixed: BoolArray) -> list[InputError]:
+    """What is wrong where no block is fixed, or every one."""
+    if not fixed.any():
+        return [InputError("no block is fixed", 'Mark the supports with "fixed": true', "blocks")]
+    return [InputError("every block is fixed", "Leave at least one block free to move", "blocks")] * bool(fixed.all())
+
+
+def weight_of(block: Block, wall: Wall) -> float:
+    """The weight of a block of a wall [force].
+
+    Raises:
+        InputError: nothing says it.
+    """
     if block.weight is not None:
         return block.weight
     unit_weight = block.unit_weight if block.unit_weight is not None else wall.unit_weight
@@ -170,6 +189,7 @@ def _weight(block: Block, wall: Wall) -> float:
             "it has no weight",
             'Give it "weight", or "unit_weight" for it or for the wall',
             f'block "{block.id}"',
+            spot=Spot((block.id,)),
         )
     area = polygon_area(np.array(block.polygon, dtype=float))
     per_area = float(unit_weight) * area * thickness_of(block, wall)
@@ -237,9 +257,7 @@ def _dead_load(
     """
     gravity = BodyForce(per_weight=loads.gravity_per_weight)
     if loads.gravity is None and loads.dead.body:
-        multiples = _load(
-            Load(body=loads.dead.body), "loads.dead", blocks, index, np.ones(len(blocks)), centroids, fixed
-        )
+        multiples = _load(Load(body=loads.dead.body), blocks, index, np.ones(len(blocks)), centroids, fixed)
         if bool(np.all(multiples[~fixed, 1] < 0.0)):
             raise InputError(
                 "the dead load presses every block down by a multiple of its weight, and gravity acts besides",
@@ -247,43 +265,33 @@ def _dead_load(
                 "loads.dead.body",
             )
     whole = Load(body=[gravity, *loads.dead.body], points=loads.dead.points)
-    return _load(whole, "loads.dead", blocks, index, weight, centroids, fixed, first=1)
+    return _load(whole, blocks, index, weight, centroids, fixed)
 
 
 def _load(
     load: Load,
-    where: str,
     blocks: list[Block],
     index: dict[str, int],
     weight: FloatArray,
     centroids: FloatArray,
     fixed: np.ndarray,
-    *,
-    first: int = 0,
 ) -> FloatArray:
-    """Generalised forces (n, 3) of a load; `first` is the number of its body forces that the file does not list."""
+    """Generalised forces (n, 3) of a load whose names are known to be of the wall."""
     generalised = np.zeros((len(blocks), 3))
     groups: dict[str, list[int]] = {}
     for k, block in enumerate(blocks):
         for group in block.groups:
             groups.setdefault(group, []).append(k)
-    for number, body in enumerate(load.body):
-        element = f"{where}.body[{number - first}]"
+    for body in load.body:
         if body.group is not None:
-            if body.group not in groups:
-                known = ", ".join(sorted(groups)) or "none"
-                raise InputError(f'no block is in a group "{body.group}"', f"Groups of this wall: {known}", element)
             chosen = groups[body.group]
         elif body.blocks is not None:
             chosen = sorted({index[block_id] for block_id in body.blocks})
         else:
             chosen = list(range(len(blocks)))
         generalised[chosen, :2] += weight[chosen, None] * np.array(body.per_weight)
-    for number, point in enumerate(load.points):
-        element = f"{where}.points[{number}]"
+    for point in load.points:
         k = index[point.block]
-        if fixed[k]:
-            raise InputError(f'block "{point.block}" is fixed', "Load a block that is free to move", element)
         arm = np.array(point.at) - centroids[k]
         force = np.array(point.force)
         generalised[k] += [force[0], force[1], arm[0] * force[1] - arm[1] * force[0]]

@@ -16,7 +16,7 @@ import numpy as np
 import shapely
 
 from harness.model.assembly import BoolArray, FloatArray, IntArray
-from harness.model.errors import InputError, first_few
+from harness.model.errors import InputError, Spot, first_few
 from harness.model.geometry import following, shapes_of
 
 TIMES = 10.0
@@ -53,6 +53,7 @@ class Contacts:
         missed: (j, 2) pairs of blocks without a contact whose faces look at each other from a little further off, or
             lie a little deeper within each other.
         missed_gap: (j,) how far or how deep [length].
+        missed_at: (j, 2) middles of the segments between them [length].
     """
 
     block_a: IntArray
@@ -62,6 +63,7 @@ class Contacts:
     corners: IntArray
     missed: IntArray
     missed_gap: FloatArray
+    missed_at: FloatArray
 
 
 @dataclass(frozen=True)
@@ -139,20 +141,11 @@ def find_contacts(polygons: Sequence[FloatArray], fixed: BoolArray, limits: Join
     kept = kept[np.lexsort((end[kept, 1], end[kept, 0], start[kept, 1], start[kept, 0], b[kept], a[kept]))]
     joined = _merge_collinear(a[kept], b[kept], start[kept], end[kept], max(limits.gap, limits.overlap))
     corners = _corner_pairs(polygons, fixed, joined[0], joined[1], max(limits.gap, limits.overlap))
-    missed, missed_gap = _missed(a[seen], b[seen], off[seen], joined[0], joined[1], len(polygons))
-    return Contacts(*joined, corners, missed, missed_gap)
-
-
-def _missed(
-    a: IntArray, b: IntArray, gap: FloatArray, joined_a: IntArray, joined_b: IntArray, count: int
-) -> tuple[IntArray, FloatArray]:
-    """Pairs (j, 2) that see each other and have no contact, each with its least gap."""
-    code = a * count + b
-    apart = ~np.isin(code, joined_a * count + joined_b)
-    pairs, place = np.unique(code[apart], return_inverse=True)
-    least = np.full(len(pairs), np.inf)
-    np.minimum.at(least, place, gap[apart])
-    return np.stack([pairs // count, pairs % count], axis=1), least
+    code, middle = a * len(polygons) + b, 0.5 * (start + end)
+    seen = np.flatnonzero(seen & ~np.isin(code, joined[0] * len(polygons) + joined[1]))
+    seen = seen[np.lexsort((middle[seen, 1], middle[seen, 0], off[seen], code[seen]))]
+    seen = seen[np.unique(code[seen], return_index=True)[1]]  # of every pair the least
+    return Contacts(*joined, corners, np.stack([a[seen], b[seen]], axis=1), off[seen], middle[seen])
 
 
 def _merge_collinear(
@@ -211,4 +204,5 @@ def check_gap(polygons: Sequence[FloatArray], names: Sequence[str], gap: float) 
             f"{first_few([names[k] for k in thin.tolist()], 5)}: the thinnest is about {width[least]:.3g} thick",
             f"Allow less than {width.min():.3g}",
             "interfaces",
+            spot=Spot((names[least],), size=float(width[least])),
         )

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Sequence
+from dataclasses import dataclass
 from difflib import get_close_matches
 from typing import TypeVar
 
@@ -22,6 +23,21 @@ def visible(text: str) -> str:
     return "".join(letter if letter.isprintable() else letter.encode("unicode_escape").decode() for letter in text)
 
 
+@dataclass(frozen=True)
+class Spot:
+    """Where in the plane of a wall something is wrong.
+
+    Attributes:
+        blocks: names of the blocks concerned.
+        at: a point (x, y) of it [length]; None where the blocks are the place.
+        size: of what is wrong: depth of an overlap, width of a gap [length]; None where it has none.
+    """
+
+    blocks: tuple[str, ...]
+    at: tuple[float, float] | None = None
+    size: float | None = None
+
+
 class InputError(Exception):
     """Something a user gave cannot be used. The command line prints it and exits with code 2.
 
@@ -30,10 +46,13 @@ class InputError(Exception):
         remedy: what would be right; may be empty where the problem says it.
         element: the block, interface, load or field concerned; may be empty.
         source: the file concerned; may be empty and filled in later.
+        spot: where in the plane of the wall; None where it is not in the geometry.
     """
 
-    def __init__(self, problem: str, remedy: str = "", element: str = "", source: str = "") -> None:
-        self.problem, self.remedy, self.element, self.source = problem, remedy, element, source
+    def __init__(
+        self, problem: str, remedy: str = "", element: str = "", source: str = "", spot: Spot | None = None
+    ) -> None:
+        self.problem, self.remedy, self.element, self.source, self.spot = problem, remedy, element, source, spot
         super().__init__(problem)
 
     @property
@@ -45,7 +64,7 @@ class InputError(Exception):
         return visible(_sentence(self, self.source))
 
     def __reduce__(self) -> tuple[type[InputError], tuple[object, ...]]:
-        return InputError, (self.problem, self.remedy, self.element, self.source)
+        return InputError, (self.problem, self.remedy, self.element, self.source, self.spot)
 
 
 class InputFaults(InputError):
@@ -86,7 +105,8 @@ class InputFaults(InputError):
 
 def _sentence(error: InputError, source: str) -> str:
     head = ": ".join(part for part in (source, error.element) if part)
-    text = f"{head}: {error.problem}" if head else error.problem
+    place = f", near ({error.spot.at[0]:.6g}, {error.spot.at[1]:.6g})" if error.spot and error.spot.at else ""
+    text = f"{head}: {error.problem}{place}" if head else f"{error.problem}{place}"
     return f"{text}. {error.remedy}" if error.remedy else text
 
 
@@ -109,14 +129,21 @@ def of_each(make: Callable[[Item], Made], items: Iterable[Item]) -> list[Made]:
     Raises:
         InputError: the one fault, or `InputFaults` of all.
     """
-    made, faults = [], []
-    for item in items:
-        try:
-            made.append(make(item))
-        except InputError as error:
-            faults.append(error)
+    faults, made = sorted_out(make, items)
     raise_faults(faults)
-    return made
+    return list(made.values())
+
+
+def sorted_out(make: Callable[[Item], Made], items: Iterable[Item]) -> tuple[list[InputError], dict[int, Made]]:
+    """The faults of items that nothing can be made of, and what is made of the others, by their numbers."""
+    faults: list[InputError] = []
+    made: dict[int, Made] = {}
+    for number, item in enumerate(items):
+        try:
+            made[number] = make(item)
+        except InputError as error:
+            faults.extend(error.faults)
+    return faults, made
 
 
 def did_you_mean(word: str, known: Iterable[str]) -> str:

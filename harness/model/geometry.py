@@ -9,7 +9,7 @@ import shapely
 from shapely.validation import explain_validity
 
 from harness.model.assembly import BoolArray, FloatArray, IntArray, signed_area
-from harness.model.errors import InputError
+from harness.model.errors import InputError, Spot, raise_faults
 
 NEAR = 0.02
 """Gap or overlap, in typical block sizes, that may be the accuracy of a drawing: 5 mm between bricks of 250 mm."""
@@ -81,12 +81,10 @@ def shapes_of(polygons: Sequence[FloatArray]) -> np.ndarray:
     return np.asarray(shapely.polygons(rings))
 
 
-def check_overlaps(polygons: Sequence[FloatArray], names: Sequence[str], fixed: BoolArray, tolerance: float) -> None:
-    """Refuse blocks that share area beyond what the tolerance explains.
-
-    Raises:
-        InputError: naming the worst pair.
-    """
+def overlaps(
+    polygons: Sequence[FloatArray], names: Sequence[str], fixed: BoolArray, tolerance: float
+) -> list[InputError]:
+    """Pairs of blocks that share area beyond what the tolerance [length] explains, the worst first."""
     shapes = shapes_of(polygons)
     i, j = shapely.STRtree(shapes).query(shapes, predicate="intersects")
     wanted = (i < j) & ~(fixed[i] & fixed[j])
@@ -94,17 +92,35 @@ def check_overlaps(polygons: Sequence[FloatArray], names: Sequence[str], fixed: 
     shared = shapely.area(shapely.intersection(shapes[i], shapes[j]))
     perimeter = shapely.length(shapes)
     excess = shared - tolerance * np.minimum(perimeter[i], perimeter[j])
-    if len(excess) and float(excess.max()) > 0.0:
-        worst = int(np.argmax(excess))
-        where = shapely.intersection(shapes[i[worst]], shapes[j[worst]]).centroid
-        depth = _width(shapely.intersection(shapes[i[worst]], shapes[j[worst]]))
-        size = float(np.sqrt(min(shapely.area(shapes[i[worst]]), shapely.area(shapes[j[worst]]))))
-        allowed = f'; if the drawing is no more accurate, say "interfaces": {{"greatest_overlap": {1.1 * depth:.2g}}}'
-        raise InputError(
-            f"they overlap by an area of {shared[worst]:.3g}, {depth:.3g} deep, near ({where.x:.6g}, {where.y:.6g})",
-            "Blocks may touch but not overlap" + (allowed if depth <= NEAR * size else ""),
-            f'blocks "{names[i[worst]]}" and "{names[j[worst]]}"',
-        )
+    worst = np.flatnonzero(excess > 0.0)
+    worst = worst[np.argsort(-excess[worst], kind="stable")]
+    pairs = zip(i[worst].tolist(), j[worst].tolist(), shared[worst].tolist(), strict=True)
+    return [_overlap(shapes[a], shapes[b], (names[a], names[b]), area) for a, b, area in pairs]
+
+
+def _overlap(one: shapely.Geometry, other: shapely.Geometry, names: tuple[str, str], area: float) -> InputError:
+    common = shapely.intersection(one, other)
+    where, depth = common.centroid, _width(common)
+    size = float(np.sqrt(min(one.area, other.area)))
+    allowed = f'; if the drawing is no more accurate, say "interfaces": {{"greatest_overlap": {1.1 * depth:.2g}}}'
+    return InputError(
+        f"they overlap by an area of {area:.3g}, {depth:.3g} deep",
+        "Blocks may touch but not overlap" + (allowed if depth <= NEAR * size else ""),
+        f'blocks "{names[0]}" and "{names[1]}"',
+        spot=Spot(names, (where.x, where.y), depth),
+    )
+
+
+def check_overlaps(polygons: Sequence[FloatArray], names: Sequence[str], fixed: BoolArray, tolerance: float) -> None:
+    """Refuse blocks that share area beyond what the tolerance explains.
+
+    Raises:
+        InputError: naming the worst pair, and how many more there are.
+    """
+    found = overlaps(polygons, names, fixed, tolerance)
+    if len(found) > 1:
+        found[0].remedy += f"; {len(found) - 1} more pair(s) overlap, and `drystone validate` lists all of them"
+    raise_faults(found[:1])
 
 
 def _width(shape: shapely.Geometry) -> float:

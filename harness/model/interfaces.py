@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -13,7 +14,7 @@ from scipy.sparse.csgraph import connected_components
 from harness.model import geometry
 from harness.model.assembly import BoolArray, FloatArray, IntArray
 from harness.model.contacts import TIMES, JointLimits, check_gap, find_contacts
-from harness.model.errors import InputError, first_few
+from harness.model.errors import InputError, Spot, first_few, raise_faults
 from harness.model.plausibility import span
 from harness.model.wall import Detection, Interface
 
@@ -33,6 +34,7 @@ class Joints:
     corners: IntArray = field(default_factory=lambda: np.empty((0, 2), dtype=np.int64))
     missed: IntArray = field(default_factory=lambda: np.empty((0, 2), dtype=np.int64))
     missed_gap: FloatArray = field(default_factory=lambda: np.empty(0))
+    missed_at: FloatArray = field(default_factory=lambda: np.empty((0, 2)))
 
 
 def limits_of(detection: Detection, size: float) -> JointLimits:
@@ -59,12 +61,22 @@ def find_joints(
     Raises:
         InputError: blocks overlap, or a gap is allowed that is as wide as a block.
     """
-    detection = Detection() if isinstance(asked, list) else asked
-    limits = limits_of(detection, size)
+    limits = limits_of(Detection() if isinstance(asked, list) else asked, size)
     geometry.check_overlaps(polygons, names, fixed, limits.overlap)
     if isinstance(asked, list):
         return Joints(asked)
     check_gap(polygons, names, limits.gap)
+    return joints_of(asked, polygons, names, fixed, limits)
+
+
+def joints_of(
+    detection: Detection,
+    polygons: Sequence[FloatArray],
+    names: Sequence[str],
+    fixed: BoolArray,
+    limits: JointLimits,
+) -> Joints:
+    """The interfaces between blocks as they lie, whether or not they overlap; those given stand at the end."""
     contacts = find_contacts(polygons, fixed, limits)
     said = {frozenset(item.between) for item in detection.given} | {frozenset(pair) for pair in detection.removed}
     interfaces = [
@@ -88,6 +100,7 @@ def find_joints(
         contacts.corners,
         contacts.missed[open_pairs],
         contacts.missed_gap[open_pairs],
+        contacts.missed_at[open_pairs],
     )
 
 
@@ -99,20 +112,29 @@ def faces_of(
     Raises:
         InputError: one joins a block to itself or two fixed ones, or has no length.
     """
-    for number, interface in enumerate(interfaces):
-        element = f"interfaces[{number}]"
-        a, b = (index[block_id] for block_id in interface.between)
-        if a == b:
-            raise InputError("a block cannot touch itself", "Name two blocks", element)
-        if interface.start == interface.end:
-            raise InputError("its two ends coincide", 'Give a segment of some length in "from" and "to"', element)
-        if fixed[a] and fixed[b]:
-            raise InputError("both of its blocks are fixed", "Leave it out: it carries no unknown", element)
+    raise_faults(faults_of_given(interfaces, index, fixed))
     pairs = np.array([[index[block_id] for block_id in interface.between] for interface in interfaces], dtype=np.int64)
     pairs = pairs.reshape(-1, 2)
     starts = np.array([interface.start for interface in interfaces], dtype=float).reshape(-1, 2)
     ends = np.array([interface.end for interface in interfaces], dtype=float).reshape(-1, 2)
     return pairs[:, 0], pairs[:, 1], starts, ends
+
+
+def faults_of_given(interfaces: Sequence[Interface], index: dict[str, int], fixed: np.ndarray) -> list[InputError]:
+    """Interfaces that join a block to itself or two fixed ones, or have no length."""
+    faults = []
+    for number, interface in enumerate(interfaces):
+        a, b = (index[block_id] for block_id in interface.between)
+        if a == b:
+            wrong = ("a block cannot touch itself", "Name two blocks")
+        elif interface.start == interface.end:
+            wrong = ("its two ends coincide", 'Give a segment of some length in "from" and "to"')
+        elif fixed[a] and fixed[b]:
+            wrong = ("both of its blocks are fixed", "Leave it out: it carries no unknown")
+        else:
+            continue
+        faults.append(InputError(*wrong, f"interfaces[{number}]", spot=Spot(interface.between, interface.start)))
+    return faults
 
 
 def check_held(names: tuple[str, ...], fixed: np.ndarray, block_a: IntArray, block_b: IntArray, joints: Joints) -> None:
@@ -121,16 +143,25 @@ def check_held(names: tuple[str, ...], fixed: np.ndarray, block_a: IntArray, blo
     Raises:
         InputError: naming them, and the faces they look at from a little further off.
     """
-    count = len(names)
-    graph = sp.coo_matrix((np.ones(len(block_a)), (block_a, block_b)), shape=(count, count))
-    _, component = connected_components(graph, directed=False)
-    floating = ~np.isin(component, component[fixed])
-    if not floating.any():
-        return
-    listed = [names[k] for k in np.flatnonzero(floating)]
+    groups = floating_groups(fixed, np.stack([block_a, block_b], axis=1))
+    if groups:
+        raise floating(names, np.sort(np.concatenate(groups)), joints)
+
+
+def floating_groups(fixed: BoolArray, pairs: IntArray) -> list[IntArray]:
+    """Blocks that no chain of joined pairs (k, 2) leads from to a fixed one, those joined to each other together."""
+    count = len(fixed)
+    graph = sp.coo_matrix((np.ones(len(pairs)), (pairs[:, 0], pairs[:, 1])), shape=(count, count))
+    component = connected_components(graph, directed=False)[1]
+    return [np.flatnonzero(component == label) for label in np.setdiff1d(component, component[fixed])]
+
+
+def floating(names: Sequence[str], blocks: IntArray, joints: Joints) -> InputError:
+    """What is wrong with blocks of these numbers (k,) that float, and the faces they look at from a little off."""
+    listed = [names[k] for k in blocks.tolist()]
     shown = first_few([f'"{name}"' for name in listed], 5)
-    at_corner = bool(np.any(floating[joints.corners]))
-    near = np.any(floating[joints.missed], axis=1)
+    at_corner = bool(np.isin(joints.corners, blocks).any())
+    near = np.isin(joints.missed, blocks).any(axis=1)
     remedy = "Let faces meet along a length, or raise interfaces.greatest_gap if the drawing has gaps"
     if near.any():
         gaps, unlucky = joints.missed_gap[near], joints.missed[near]
@@ -140,13 +171,14 @@ def check_held(names: tuple[str, ...], fixed: np.ndarray, block_a: IntArray, blo
             f"and joints are up to {joints.gap:.3g} wide: if they bear on each other, say "
             f'"interfaces": {{"tolerance": {1.02 * gaps.max():.3g}}}'
         )
-    raise InputError(
+    return InputError(
         "no chain of interfaces joins "
         + ("it" if len(listed) == 1 else "them")
         + " to a fixed block: floating"
         + (" (a touch at a corner is no interface)" if at_corner else ""),
         remedy,
         f"block {shown}" if len(listed) == 1 else f"blocks {shown}",
+        spot=Spot(tuple(listed)),
     )
 
 

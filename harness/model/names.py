@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator
 from typing import Any
 
-from harness.model.errors import InputError, did_you_mean
+from harness.model.errors import InputError, Spot, did_you_mean
 from harness.model.wall import Block, Detection, Friction, Load, Wall
 
 MOST_COMPARED = 2000
@@ -23,9 +23,8 @@ def name_faults(blocks: Iterable[tuple[str, str]], named: Iterable[tuple[str, st
     seen: set[str] = set()
     for place, name in blocks:
         if name in seen:
-            faults.append(
-                InputError("two blocks have this id", "Give every block an id of its own (patterns: a prefix)", place)
-            )
+            remedy = "Give every block an id of its own (patterns: a prefix)"
+            faults.append(InputError("two blocks have this id", remedy, place, spot=Spot((name,))))
         seen.add(name)
     known = sorted(seen)[:MOST_COMPARED]
     for place, name in named:
@@ -37,7 +36,27 @@ def name_faults(blocks: Iterable[tuple[str, str]], named: Iterable[tuple[str, st
 
 def faults_of_wall(wall: Wall, blocks: list[Block]) -> list[InputError]:
     """The faults of names of a wall whose patterns are blocks by now."""
-    return name_faults(((f'block "{block.id}"', block.id) for block in blocks), _named(wall))
+    found = name_faults(((f'block "{block.id}"', block.id) for block in blocks), _named(wall))
+    return found + _groups_and_supports(wall, blocks)
+
+
+def _groups_and_supports(wall: Wall, blocks: list[Block]) -> list[InputError]:
+    """Loads of groups that no block is in, and of blocks that cannot move."""
+    groups = sorted({group for block in blocks for group in block.groups})
+    fixed = {block.id for block in blocks if block.fixed}
+    faults = []
+    for where, load in (("loads.dead", wall.loads.dead), ("loads.live", wall.loads.live or Load())):
+        for number, body in enumerate(load.body):
+            if body.group is not None and body.group not in groups:
+                remedy = f"{did_you_mean(body.group, groups)} Groups of this wall: {', '.join(groups) or 'none'}"
+                problem = f'no block is in a group "{body.group}"'
+                faults.append(InputError(problem, remedy.strip(), f"{where}.body[{number}]"))
+        for number, point in enumerate(load.points):
+            if point.block in fixed:
+                problem, place = f'block "{point.block}" is fixed', f"{where}.points[{number}]"
+                spot = Spot((point.block,), point.at)
+                faults.append(InputError(problem, "Load a block that is free to move", place, spot=spot))
+    return faults
 
 
 def _named(wall: Wall) -> Iterator[tuple[str, str]]:

@@ -18,6 +18,9 @@ ASTRAY = 0.5
 SHORT = 1e-3
 """Length of an interface, in typical block sizes, below which it is worth a warning."""
 
+NEAR_MISS = "look at each other"
+"""Words of a near miss, by which its sentence is known."""
+
 
 def contact_warnings(assembly: Assembly, corners: IntArray, size: float) -> list[str]:
     """Sentences about contacts at corners, pairs (k, 2) of blocks, and about very short interfaces."""
@@ -64,7 +67,7 @@ def near_misses(names: Sequence[str], pairs: IntArray, gaps: FloatArray, greates
     shown = first_few([f"{names[pairs[k, 0]]}/{names[pairs[k, 1]]} ({gaps[k]:.3g})" for k in order.tolist()], 5)
     far = 1.02 * gaps.max()
     return [
-        f"{len(pairs)} pair(s) of faces look at each other {span(gaps)} apart, or lie as deep "
+        f"{len(pairs)} pair(s) of faces {NEAR_MISS} {span(gaps)} apart, or lie as deep "
         f"within each other, and have no joint, because joints are up to {greatest:.3g} wide: {shown}. If they bear on "
         f'each other the answer is another: say "interfaces": {{"tolerance": {far:.3g}}}'
     ]

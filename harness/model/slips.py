@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 
 import numpy as np
 
 from harness.model.assembly import Assembly
-from harness.model.errors import first_few
+from harness.model.errors import did_you_mean, first_few
 from harness.model.units import KILONEWTONS, METRES, unit_weight_in_kn_m3
 from harness.model.wall import Block, Friction, Wall
 
@@ -81,16 +82,39 @@ def _rule_slips(wall: Wall, blocks: list[Block], assembly: Assembly) -> list[str
         frozenset((assembly.block_ids[a], assembly.block_ids[b]))
         for a, b in zip(assembly.block_a.tolist(), assembly.block_b.tolist(), strict=True)
     }
-    idle = []
+    unknown, idle = unknown_in_rules(wall, blocks), []
     for number, rule in enumerate(wall.friction.rules):
         met = (
             (rule.joint is not None and rule.joint in assembly.joint)
             or (rule.materials is not None and frozenset(rule.materials) in pairs)
             or (rule.between is not None and frozenset(rule.between) in touching)
         )
-        if not met:
+        if not met and number not in unknown:
             idle.append(f"friction.rules[{number}]")
-    return [f"{first_few(idle, 5)}: no interface is of this kind, so the rule does nothing"] if idle else []
+    told = [f"{first_few(idle, 5)}: no interface is of this kind, so the rule does nothing"] if idle else []
+    return [*unknown.values(), *told]
+
+
+def unknown_in_rules(wall: Wall, blocks: Sequence[Block]) -> dict[int, str]:
+    """By number of the rule, sentences about friction of materials that no block is of, and of joints not there.
+
+    "bed" and "head" are names of every wall, and a rule for them may stand where there is none.
+    """
+    if not isinstance(wall.friction, Friction):
+        return {}
+    given = wall.interfaces if isinstance(wall.interfaces, list) else wall.interfaces.given
+    named = {"bed", "head"} | {interface.joint for interface in given if interface.joint is not None}
+    materials = {block.material for block in blocks}
+    sentences = {}
+    for number, rule in enumerate(wall.friction.rules):
+        for name, known, what in (
+            *((name, materials, "no block is of the material") for name in rule.materials or ()),
+            *([(rule.joint, named, "no joint has the name")] if rule.joint is not None else []),
+        ):
+            if name not in known:
+                hint = did_you_mean(name, known) or f"There are: {first_few(sorted(known), 8)}"
+                sentences[number] = f'friction.rules[{number}]: {what} "{name}", so the rule does nothing. {hint}'
+    return sentences
 
 
 def _unit_weight_slips(wall: Wall, blocks: list[Block]) -> list[str]:

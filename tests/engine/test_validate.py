@@ -6,12 +6,13 @@ import json
 from pathlib import Path
 from typing import Any
 
+import pytest
 from click.testing import CliRunner
 
 from harness.cli import main
 from harness.model.build import build
 from harness.model.wall import Wall
-from tests.walls import running_bond, wall_data
+from tests.walls import PUSH, running_bond, wall_data
 
 
 def off(by: float, **more: Any) -> dict[str, Any]:
@@ -33,24 +34,89 @@ def test_brick_a_little_low_is_told_with_the_tolerance_that_finds_its_joints(tmp
     wall = off(0.001, greatest_overlap=0.002)
     code, told = validated(tmp_path, wall)
     assert code == 0
-    assert any("look at each other" in warning for warning in told["warnings"])
+    assert [doubt["size"] for doubt in told["doubts"] if "look at each other" in doubt["text"]] == [
+        pytest.approx(0.001)
+    ] * 2  # both bricks that stand on it
     most = max(told["tolerances"], key=lambda item: item["joints"] or 0)
     assert most["joints"] > told["joints"]
     assert most["low"] <= told["suggested_tolerance"] <= most["high"]
     code, mended = validated(tmp_path, off(0.001, tolerance=told["suggested_tolerance"]))
-    assert (code, mended["joints"], mended["warnings"]) == (0, most["joints"], [])
+    assert (code, mended["joints"], mended["doubts"]) == (0, most["joints"], [])
 
 
 def test_wall_that_cannot_be_built_is_shown_over_the_tolerance_all_the_same(tmp_path: Path):
     code, told = validated(tmp_path, off(0.001))
     assert code == 2
     assert told["joints"] is None
-    assert "overlap" in told["fault"]
+    assert [fault["size"] for fault in told["faults"]] == [pytest.approx(0.001)] * 2  # both that it stands in
+    assert all("overlap" in fault["text"] for fault in told["faults"])
     assert told["tolerances"][-1]["joints"]
+
+
+def square(name: str, x: float, y: float, size: float = 1.0, **more: Any) -> dict[str, Any]:
+    corners = [[x, y], [x + size, y], [x + size, y + size], [x, y + size]]
+    return {"id": name, "polygon": corners, **more}
+
+
+def faulty() -> dict[str, Any]:
+    """A wall with one fault of every kind, and a sound column between them."""
+    return wall_data({}) | {
+        "pattern": None,
+        "friction": {"default": 0.6, "rules": [{"materials": ["stone", "granit"], "value": 0.3}]},
+        "blocks": [
+            {"id": "ground", "polygon": [[-1, -1], [20, -1], [20, 0], [-1, 0]], "fixed": True},
+            square("sound", 0.0, 0.0),
+            square("deep", 2.0, -0.2),
+            square("deeper", 4.0, -0.3),
+            square("away", 6.0, 3.0),
+            square("near", 8.0, 0.01),
+            {"id": "crossed", "polygon": [[10, 0], [11, 1], [11, 0], [10, 1]]},
+            square("on crossed", 10.0, 1.0),
+            square("twice", 12.0, 0.0),
+            square("twice", 14.0, 0.0),
+            square("light", 16.0, 0.0, unit_weight="much"),
+        ],
+        "loads": PUSH | {"dead": {"points": [{"block": "grond", "at": [0, 0], "force": [1, 0]}]}},
+    }
+
+
+def test_every_fault_is_listed_at_once_with_place_and_size(tmp_path: Path):
+    code, told = validated(tmp_path, faulty())
+    assert code == 2
+    by_element = {fault["element"]: fault for fault in told["faults"]}
+    assert set(by_element) == {
+        'blocks "ground" and "deep"',
+        'blocks "ground" and "deeper"',
+        'block "away"',
+        'block "near"',
+        'block "crossed"',
+        'blocks[9] ("twice")',
+        'blocks[10].unit_weight ("light")',
+        "loads.dead.points[0]",
+    }
+    assert by_element['blocks "ground" and "deeper"']["size"] == pytest.approx(0.3)
+    assert by_element['blocks "ground" and "deeper"']["at"] == pytest.approx([4.5, -0.15])
+    assert by_element['block "away"']["at"] == pytest.approx([6.5, 3.5])
+    missed, unknown = told["doubts"]
+    assert 'no block is of the material "granit"' in unknown["text"]
+    assert missed["size"] == pytest.approx(0.01)
+    assert missed["blocks"] == ["ground", "near"]
+    assert missed["at"] == pytest.approx([8.5, 0.005])
+    assert [row["number"] for row in told["faults"] + told["doubts"]] == list(
+        range(1, 1 + len(told["faults"] + told["doubts"]))
+    )
+
+
+def test_material_that_no_block_is_of_is_doubted_with_the_one_that_was_meant(tmp_path: Path):
+    wall = off(0.0) | {"friction": {"default": 0.6, "rules": [{"materials": ["stone", "stome"], "value": 0.3}]}}
+    _, told = validated(tmp_path, wall)
+    (doubt,) = told["doubts"]
+    assert 'no block is of the material "stome"' in doubt["text"]
+    assert 'Did you mean "stone"?' in doubt["text"]
 
 
 def test_sound_wall_has_one_plateau(tmp_path: Path):
     code, told = validated(tmp_path, off(0.0))
     assert code == 0
-    assert told["warnings"] == []
+    assert told["doubts"] == []
     assert [item["joints"] for item in told["tolerances"]] == [told["joints"]]

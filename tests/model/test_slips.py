@@ -160,7 +160,10 @@ def test_a_friction_angle_is_an_angle_wherever_friction_may_stand():
         ({"unit_weight": 0.3}, ["0.3 kN/m3", "5 to 35"]),
         ({"units": {"length": "mm"}}, ["20 kN/mm3", "2e+10 kN/m3", '"unit_weight": "kN/m3"']),
         ({"units": {"length": "km", "unit_weight": "kN/m3"}}, ["2 km across"]),
-        ({"friction": {"default": 0.5, "rules": [{"joint": "hed", "value": 0.3}]}}, ["rules[0]", "does nothing"]),
+        (
+            {"friction": {"default": 0.5, "rules": [{"joint": "hed", "value": 0.3}]}},
+            ["rules[0]", "does nothing", '"head"'],
+        ),
         (
             {"loads": {"live": {"points": [{"block": "a", "at": [0, 1], "force": [1e-6, 0]}]}}},
             ["the live load is 2e-08 of the dead load"],

@@ -1,0 +1,178 @@
+"""Commands about drawings of walls: validate, repair, show."""
+
+from __future__ import annotations
+
+import sys
+from dataclasses import asdict
+from pathlib import Path
+
+import click
+
+from harness import terminal
+from harness.engine.plan import check_methods, find_cases
+from harness.engine.sensitivity import Plateau, over_tolerance, suggested
+from harness.model.build import build
+from harness.model.errors import InputError, raise_faults
+from harness.model.inspection import Inspection, inspect
+from harness.model.method import load_method
+from harness.model.reading import parse_wall, read_document, wall_json
+from harness.model.repair import repair as mend
+from harness.model.salvage import salvaged
+from harness.options import INPUT_ERROR, cases_option, catching, json_flag, print_json, say, warn
+
+
+@click.command()
+@click.argument("wall", type=click.Path(path_type=Path))
+@click.option("--method", default="la-associated", show_default=True, help="That is asked once a set of joints.")
+@json_flag
+@catching
+def validate(wall: Path, method: str, as_json: bool) -> None:
+    """List everything that is wrong or doubtful in WALL.json, and its joints and answer over the tolerance.
+
+    Each fault and doubt has its place, its size and what would mend it; `drystone show` draws them under the same
+    numbers. A tolerance is a good one where its neighbours find the same joints. Exit code 2 if the wall cannot be
+    built as it stands; the list and the table are printed all the same.
+    """
+    check_methods([method], "--method")
+    looked, notes = _looked_at(wall)
+    joints = looked.built.assembly.n_interfaces if looked.built is not None else None
+    plateaus = _plateaus(looked, method)
+    advice = suggested(plateaus)
+    if as_json:
+        rows = [{"number": k} | asdict(mark) | {"text": str(mark)} for k, mark in enumerate(looked.marks, start=1)]
+        told = {f"{kind}s": [row for row in rows if row["kind"] == kind] for kind in ("fault", "doubt")}
+        print_json(
+            {"joints": joints, **told, "notes": list(notes), "suggested_tolerance": advice}
+            | {"tolerances": [asdict(plateau) for plateau in plateaus]}
+        )
+    else:
+        say(f"{joints} joints are found" if joints is not None else f"it cannot be built; faults: {len(looked.faults)}")
+        for note in notes:
+            say(f"doubtful: {note}")
+        _list_marks(looked)
+        if plateaus:
+            terminal.print_rows(
+                [
+                    {
+                        "tolerance": f"{plateau.low:.3g} to {plateau.high:.3g}",
+                        "joints": "-" if plateau.joints is None else plateau.joints,
+                        method: plateau.answer,
+                    }
+                    for plateau in plateaus
+                ]
+            )
+        if advice is not None and joints != max(plateau.joints or 0 for plateau in plateaus):
+            say(f'most joints are found with "interfaces": {{"tolerance": {advice:.3g}}}')
+    sys.exit(INPUT_ERROR if looked.faults else 0)
+
+
+def _looked_at(path: Path) -> tuple[Inspection, tuple[str, ...]]:
+    """A wall file or a drawing looked over, and what a person should hear about how it was read.
+
+    Raises:
+        InputError: nothing in it can be looked at.
+    """
+    data, notes = read_document(path)
+    wall, before = salvaged(data, str(path))
+    if wall is None:
+        raise_faults(before, str(path))
+        raise AssertionError("a wall that is not read has a fault")
+    return inspect(wall, path.stem, before), notes
+
+
+def _list_marks(looked: Inspection) -> None:
+    """Faults and doubts as numbered sentences; the near misses, which may be hundreds, as one table."""
+    near = [(number, mark) for number, mark in enumerate(looked.marks, start=1) if mark.near_miss]
+    for number, mark in enumerate(looked.marks, start=1):
+        if not mark.near_miss:
+            say(f"{number}. {mark.kind}: {mark}")
+    if near:
+        far = max(mark.size or 0.0 for _, mark in near)
+        say(
+            "doubt: faces look at each other, or lie a little within each other, and have no joint; if they bear on "
+            f'each other, say "interfaces": {{"tolerance": {1.02 * far:.3g}}}'
+        )
+        terminal.print_rows(
+            [
+                {
+                    "no.": number,
+                    "blocks": " and ".join(mark.blocks),
+                    "apart": f"{mark.size:.3g}",
+                    "near": _place(mark.at),
+                }
+                for number, mark in near
+            ]
+        )
+
+
+def _plateaus(looked: Inspection, method: str) -> list[Plateau]:
+    """The plateaus over the tolerance; none where joints are given or no tolerance mends the wall."""
+    if isinstance(looked.wall.interfaces, list):
+        return []
+    try:
+        plateaus = over_tolerance(looked.wall, load_method(method))
+    except InputError:  # an outline is no polygon, or names are wrong: the marks say so
+        return []
+    return plateaus if any(plateau.joints is not None for plateau in plateaus) else []
+
+
+@click.command()
+@click.argument("wall", type=click.Path(path_type=Path))
+@click.option("-o", "--output", type=click.Path(path_type=Path), required=True, help="The file of the mended wall.")
+@click.option("--snap", type=click.FloatRange(min=0.0, min_open=True), required=True, help="A vertex moves no further.")
+@json_flag
+@catching
+def repair(wall: Path, output: Path, snap: float, as_json: bool) -> None:
+    """Close the gaps and overlaps of WALL.json by moving vertices, and show what moved by how much.
+
+    Lengths are in the unit of the file. Outlines that are drawn twice are taken once; faces get a vertex where another
+    block ends in them.
+    """
+    data, _ = read_document(wall)
+    mended = mend(parse_wall(data, str(wall)), snap)
+    built = build(mended.wall, wall.stem)
+    output.write_text(wall_json(mended.wall), encoding="utf-8")
+    furthest = max((move.distance for move in mended.moves), default=0.0)
+    if as_json:
+        rows = [asdict(move) | {"distance": move.distance} for move in mended.moves]
+        print_json(
+            {"moves": rows, "doubles": mended.doubles, "splits": mended.splits, "joints": built.assembly.n_interfaces}
+        )
+        return
+    if mended.moves:
+        rows = [
+            {"block": move.block, "vertex": move.vertex, "from": _place(move.start), "to": _place(move.end)}
+            | {"moved by": f"{move.distance:.3g}"}
+            for move in sorted(mended.moves, key=lambda move: -move.distance)
+        ]
+        terminal.print_rows(rows)
+    for left, kept in mended.doubles:
+        say(f'left out: block "{left}", which repeats the outline of "{kept}"')
+    for block, count in mended.splits:
+        say(f'block "{block}": {count} vertices put into its faces, where others end')
+    say(f"{len(mended.moves)} vertices moved, {furthest:.3g} at most; {built.assembly.n_interfaces} joints are found")
+    for warning in built.warnings:
+        say(f"doubtful: {warning}")
+
+
+def _place(point: tuple[float, float] | None) -> str:
+    return f"({point[0]:.6g}, {point[1]:.6g})" if point is not None else ""
+
+
+@click.command()
+@click.argument("case")
+@click.option("-o", "--output", type=click.Path(path_type=Path), default=Path("wall.svg"), show_default=True)
+@click.option("--window", is_flag=True, help="Draw in a window instead of to a file.")
+@cases_option
+@catching
+def show(case: str, output: Path, window: bool, folders: tuple[Path, ...]) -> None:
+    """Draw CASE (an id or a WALL.json) to a file (.svg, .pdf, .png) or in a window, before anything is run."""
+    from reports.figures import show_wall, show_window
+
+    (found,) = find_cases([case], None, folders)
+    warn(found)
+    if window:
+        show_window(found.built, found.file.title)
+        return
+    show_wall(found.built, output)
+    say(str(output))

@@ -1,0 +1,224 @@
+"""Everything that is wrong or doubtful about a wall at once, each with its place, its size and what would mend it.
+
+Building stops at the first stage that cannot go on; a person who mends a drawing wants the whole list, and to see it.
+So the stages are gone through here one by one, each with what the faults of the others leave.
+"""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+import shapely
+
+from harness.model import geometry
+from harness.model.assembly import BoolArray, FloatArray, IntArray
+from harness.model.build import Built, build, polygon_of, support_faults, weight_of, written_out
+from harness.model.contacts import check_gap
+from harness.model.errors import InputError, Spot, sorted_out
+from harness.model.interfaces import Joints, faults_of_given, floating, floating_groups, joints_of, limits_of
+from harness.model.names import faults_of_wall
+from harness.model.plausibility import NEAR_MISS
+from harness.model.slips import unknown_in_rules
+from harness.model.wall import Block, Detection, Interface, Wall
+
+
+@dataclass(frozen=True)
+class Mark:
+    """Something wrong or doubtful.
+
+    Attributes:
+        kind: "fault", and the wall cannot be built, or "doubt", and it may not be the one that was meant.
+        element: the block, interface, load or field; empty where it is none.
+        problem, remedy: what is wrong, and what would mend it.
+        blocks: names of the blocks concerned.
+        at: where (x, y) [length]; None where it is not in the plane.
+        size: depth of an overlap, width of a gap [length]; None where it has none.
+    """
+
+    kind: str
+    element: str
+    problem: str
+    remedy: str = ""
+    blocks: tuple[str, ...] = ()
+    at: tuple[float, float] | None = None
+    size: float | None = None
+
+    @property
+    def near_miss(self) -> bool:
+        """Whether it is a pair of faces that look at each other and have no joint."""
+        return self.kind == "doubt" and self.size is not None
+
+    def __str__(self) -> str:
+        return str(InputError(self.problem, self.remedy, self.element, spot=Spot(self.blocks, self.at)))
+
+
+@dataclass(frozen=True, eq=False)
+class Inspection:
+    """A wall looked over.
+
+    Attributes:
+        wall: as it was read; names, outlines (k, 2) as drawn [length], fixed: of its blocks.
+        marks: faults first, in the order in which they are found.
+        built: the wall, where nothing keeps it from being built.
+    """
+
+    wall: Wall
+    names: tuple[str, ...]
+    outlines: tuple[FloatArray, ...]
+    fixed: BoolArray
+    marks: tuple[Mark, ...]
+    built: Built | None
+
+    @property
+    def faults(self) -> tuple[Mark, ...]:
+        """What keeps the wall from being built."""
+        return tuple(mark for mark in self.marks if mark.kind == "fault")
+
+
+def inspect(wall: Wall, name: str = "wall", before: Sequence[InputError] = ()) -> Inspection:
+    """A wall looked over.
+
+    Args:
+        wall: as read; name: what it is called; before: faults for which parts of the file are already left out of it.
+
+    Raises:
+        InputError: it has no blocks, or too many.
+    """
+    blocks = written_out(wall)
+    apart = _told_apart(blocks)
+    fixed = np.array([block.fixed for block in blocks], dtype=bool)
+    bad, polygons = sorted_out(_outline, blocks)
+    faults = [*faults_of_wall(wall, blocks), *bad, *sorted_out(lambda block: weight_of(block, wall), blocks)[0]]
+    faults += support_faults(fixed)
+    doubts: list[Mark] = []
+    if polygons:
+        kept = np.array(list(polygons), dtype=np.int64)
+        found, doubts = _lying(wall, [apart[k] for k in kept], list(polygons.values()), _hulls(blocks, polygons))
+        faults += found
+    built = None
+    if not faults and not before:
+        try:
+            built = build(wall, name)
+        except InputError as error:
+            faults += error.faults
+    marks = [*(_marked(fault, "fault") for fault in (*before, *faults)), *doubts]
+    # Near misses are in the list one by one, so the sentence that sums them up would be a repetition.
+    warnings = unknown_in_rules(wall, blocks).values() if built is None else built.warnings
+    marks += [Mark("doubt", "", text) for text in warnings if NEAR_MISS not in text]
+    middle = {block.id: np.mean(np.array(block.polygon), axis=0) for block in apart}
+    names = tuple(block.id for block in apart)
+    outlines = tuple(np.array(block.polygon, dtype=float) for block in blocks)
+    return Inspection(wall, names, outlines, fixed, tuple(_placed(mark, middle) for mark in _once(marks)), built)
+
+
+def _outline(block: Block) -> FloatArray:
+    try:
+        return polygon_of(block)
+    except InputError as error:
+        error.spot = Spot((block.id,))
+        raise
+
+
+def _told_apart(blocks: Sequence[Block]) -> list[Block]:
+    """The blocks, a second one of a name with its number behind it."""
+    seen: Counter[str] = Counter()
+    apart = []
+    for block in blocks:
+        seen[block.id] += 1
+        again = {"id": f"{block.id} ({seen[block.id]})"}
+        apart.append(block.model_copy(update=again) if seen[block.id] > 1 else block)
+    return apart
+
+
+def _hulls(blocks: Sequence[Block], polygons: dict[int, FloatArray]) -> list[shapely.Geometry]:
+    """Convex hulls of the blocks whose outlines are no polygons: what bears on them is not to be called floating."""
+    return [shapely.MultiPoint(block.polygon).convex_hull for k, block in enumerate(blocks) if k not in polygons]
+
+
+def _lying(
+    wall: Wall, blocks: Sequence[Block], polygons: Sequence[FloatArray], hulls: Sequence[shapely.Geometry]
+) -> tuple[list[InputError], list[Mark]]:
+    """What is wrong and doubtful about where blocks of sound outlines lie."""
+    names = [block.id for block in blocks]
+    fixed = np.array([block.fixed for block in blocks], dtype=bool)
+    if fixed.all() or not fixed.any():
+        return [], []
+    asked = wall.interfaces
+    size = geometry.typical_size([polygon for polygon, still in zip(polygons, fixed, strict=True) if not still])
+    limits = limits_of(Detection() if isinstance(asked, list) else asked, size)
+    faults = geometry.overlaps(polygons, names, fixed, limits.overlap)
+    joints = Joints(asked) if isinstance(asked, list) else joints_of(asked, polygons, names, fixed, limits)
+    if isinstance(asked, Detection):
+        try:
+            check_gap(polygons, names, limits.gap)
+        except InputError as error:
+            faults.append(error)
+    index = {name: k for k, name in enumerate(names)}
+    known = [item for item in joints.interfaces if set(item.between) <= index.keys()]
+    faults += faults_of_given(known, index, fixed)
+    pairs = _joined(known, faults, index)
+    held = fixed | _beside(polygons, hulls, limits.sight)
+    faults += [floating(names, group, joints) for group in floating_groups(held, pairs)]
+    said = {fault.spot.blocks for fault in faults if fault.spot is not None}
+    return faults, [mark for mark in _missed(names, joints) if mark.blocks not in said]
+
+
+def _joined(interfaces: Iterable[Interface], faults: Sequence[InputError], index: dict[str, int]) -> IntArray:
+    """Pairs (k, 2) of blocks with an interface, and those that overlap: once mended, they bear on each other."""
+    pairs: list[tuple[str, ...]] = [item.between for item in interfaces]
+    pairs += [fault.spot.blocks for fault in faults if fault.spot is not None and len(fault.spot.blocks) == 2]
+    return np.array([[index[name] for name in pair] for pair in pairs], dtype=np.int64).reshape(-1, 2)
+
+
+def _beside(polygons: Sequence[FloatArray], hulls: Sequence[shapely.Geometry], sight: float) -> BoolArray:
+    """Which blocks (n,) lie within sight of one of the hulls."""
+    near = np.zeros(len(polygons), dtype=bool)
+    if hulls:
+        near[shapely.STRtree(geometry.shapes_of(polygons)).query(hulls, predicate="dwithin", distance=sight)[1]] = True
+    return near
+
+
+def _missed(names: Sequence[str], joints: Joints) -> list[Mark]:
+    """The near misses one by one, the nearest first."""
+    marks = []
+    for k in np.argsort(joints.missed_gap, kind="stable").tolist():
+        pair, gap = tuple(names[i] for i in joints.missed[k].tolist()), float(joints.missed_gap[k])
+        at = (float(joints.missed_at[k, 0]), float(joints.missed_at[k, 1]))
+        marks.append(
+            Mark(
+                "doubt",
+                f'blocks "{pair[0]}" and "{pair[1]}"',
+                f"faces {NEAR_MISS} {gap:.3g} apart, or as deep within each other, and have no joint, because "
+                f"joints are up to {joints.gap:.3g} wide",
+                f'If they bear on each other, say "interfaces": {{"tolerance": {1.02 * gap:.3g}}}',
+                pair,
+                at,
+                gap,
+            )
+        )
+    return marks
+
+
+def _marked(error: InputError, kind: str) -> Mark:
+    spot = error.spot or Spot(())
+    return Mark(kind, error.element, error.problem, error.remedy, spot.blocks, spot.at, spot.size)
+
+
+def _once(marks: Sequence[Mark]) -> list[Mark]:
+    """The marks without repetitions: a wrong name shows in the file, and again in what is left of it."""
+    first: dict[tuple[object, ...], Mark] = {}
+    for mark in marks:
+        first.setdefault((mark.problem, mark.blocks, mark.at) if mark.blocks else (mark.problem, mark.element), mark)
+    return list(first.values())
+
+
+def _placed(mark: Mark, middle: dict[str, FloatArray]) -> Mark:
+    """The mark at the middle of its blocks where nothing says a closer place."""
+    there = [middle[name] for name in mark.blocks if name in middle]
+    if mark.at is not None or not there:
+        return mark
+    x, y = np.mean(there, axis=0).tolist()
+    return replace(mark, at=(x, y))
