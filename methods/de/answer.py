@@ -108,6 +108,7 @@ def describe(assembly: Assembly, brackets: list[Bracket]) -> dict[str, Any]:
                 "order": b.order,
                 "held": b.held,
                 "moving": b.moving,
+                "proof": None if b.proof is None else str(b.proof),
                 "undecided": b.undecided,
                 "holds": b.holds,
                 "time_steps": b.steps,

@@ -6,7 +6,8 @@ from dataclasses import dataclass, field
 
 from harness.model.assembly import FloatArray
 from methods.de.engine import Engine
-from methods.de.hold import Hold, State, hold, hold_limit, settle
+from methods.de.hold import Hold, State, hold, settle
+from methods.de.motion import Proof
 from methods.de.settings import HoldSettings
 
 WIDE = 5e-3
@@ -28,6 +29,7 @@ class Bracket:
         undecided: multipliers of holds that could not be told, none of them called held.
         state: contact state of the engine at `held`.
         velocity: (n, 3) velocity field at `moving`.
+        proof: what shows that it moved there.
         holds: number of holds.
         steps: time steps made.
         capped: whether the load cap was held.
@@ -41,6 +43,7 @@ class Bracket:
     undecided: list[float] = field(default_factory=list)
     state: FloatArray | None = None
     velocity: FloatArray | None = None
+    proof: Proof | None = None
     holds: int = 0
     steps: int = 0
     capped: bool = False
@@ -116,13 +119,13 @@ class Search:
             self.engine.restore(found.state)
         self.engine.load(multiplier)
         patience = 4 if multiplier == 0.0 else 1
-        end = hold(self.engine, self.settings, patience * hold_limit(self.engine, self.settings))
+        end = hold(self.engine, self.settings, patience)
         found.holds += 1
         found.trials.append((multiplier, end.residual))
         if end.state is State.HELD:
             found.held, found.state = multiplier, self.engine.save()
         elif end.state is State.MOVING and (found.moving is None or multiplier < found.moving):
-            found.moving, found.velocity = multiplier, end.velocity
+            found.moving, found.velocity, found.proof = multiplier, end.velocity, end.proof
         elif end.state is State.UNDECIDED:
             found.undecided.append(multiplier)
         return end

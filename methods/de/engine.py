@@ -4,10 +4,26 @@ from __future__ import annotations
 
 from typing import Protocol
 
-from harness.model.assembly import FloatArray
+from harness.model.assembly import Assembly, FloatArray
 
 
-class Engine(Protocol):
+class Measured(Protocol):
+    """A wall under a load whose contact forces can be read.
+
+    Attributes:
+        assembly: the wall.
+        multiplier: of the live load that acts now.
+    """
+
+    assembly: Assembly
+    multiplier: float
+
+    def contact_forces(self) -> FloatArray:
+        """(m, 3) contact forces (n1, n2, s) of the last time step [force], conventions of the assembly."""
+        ...
+
+
+class Engine(Measured, Protocol):
     """A wall at frozen geometry inside a rigid-body engine.
 
     Attributes:
@@ -45,22 +61,10 @@ class Engine(Protocol):
         """
         ...
 
-    def surplus(self, velocity: FloatArray) -> float:
-        """Power of the loads less that of the damping, in the units of `velocity` and `unbalance`.
-
-        Friction takes power too. A wall that moves on, or comes back, has a mean of at least zero: what shakes in place
-        with less is fed by the contact solver's errors.
-        """
-        ...
-
     def save(self) -> FloatArray:
         """The contact state, to be given to `restore`."""
         ...
 
     def restore(self, state: FloatArray) -> None:
         """Back to rest with this contact state."""
-        ...
-
-    def contact_forces(self) -> FloatArray:
-        """(m, 3) contact forces (n1, n2, s) of the last time step [force], conventions of the assembly."""
         ...

@@ -2,27 +2,15 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field, replace
 from enum import StrEnum
 
 import numpy as np
 
 from harness.model.assembly import FloatArray
-from methods.de.engine import Engine
+from methods.de.engine import Engine, Measured
+from methods.de.motion import Motion, Proof, Trend, by_power, by_virtual_work
 from methods.de.settings import HoldSettings
-
-RUNAWAY = 1e4
-"""Out-of-balance acceleration, as a part of gravity, that no hold comes back from (masses are scaled: hence large)."""
-
-STEADY = 0.003
-"""Largest relative change of the velocity field from one check to the next that counts as steady."""
-
-STEADY_CHECKS = 4
-"""Checks in a row that must find a steady velocity field, or a residual small enough to hold (two of them)."""
-
-ALIKE, UNSLOWED = 0.9, 0.9
-"""Least cosine between the mean velocity fields of two quarters of a hold, and least ratio of the speeds along the
-first, of an unsteady motion that goes on."""
 
 
 class State(StrEnum):
@@ -42,82 +30,128 @@ class Hold:
         residual: largest out-of-balance force at the end, as a part of the mean dead load of a block.
         steps: time steps made.
         velocity: (n, 3) velocity field at the end, its mean if unsteady, scaled as `Engine.velocity`.
+        proof: what shows that it moves; None unless it does.
     """
 
     state: State
     residual: float
     steps: int
     velocity: FloatArray
+    proof: Proof | None = None
 
 
-def hold(engine: Engine, settings: HoldSettings, limit: int | None = None) -> Hold:
+@dataclass(eq=False)
+class Watch:
+    """What a hold shows from check to check.
+
+    Attributes:
+        held, moving: residuals below which a wall rests, and from which it may move.
+        velocities: (n, 3) velocity fields, lengths in length scales.
+        residuals: largest forces out of balance, as parts of the mean dead load of a block.
+        trend: when a motion counts as one that goes on.
+    """
+
+    held: float
+    moving: float
+    trend: Trend = field(default_factory=Trend)
+    velocities: list[FloatArray] = field(default_factory=list)
+    residuals: list[float] = field(default_factory=list)
+
+    def note(self, velocity: FloatArray, residual: float) -> None:
+        """Add a check."""
+        self.velocities.append(velocity)
+        self.residuals.append(residual)
+
+    @property
+    def rests(self) -> bool:
+        """Whether the residual was small enough at the last two checks."""
+        return len(self.residuals) > 1 and max(self.residuals[-2:]) < self.held
+
+    @property
+    def steady(self) -> bool:
+        """Whether the field has hardly changed over the last few checks, for the first time after as many others."""
+        count = self.trend.checks
+        if len(self.velocities) <= count or len(self.velocities) % count:
+            return False
+        last = self.velocities[-1]
+        change = max(float(np.abs(before - last).max(initial=0.0)) for before in self.velocities[-count - 1 : -1])
+        return change <= self.trend.steady * count * float(np.abs(last).max(initial=0.0))
+
+    @property
+    def doubled(self) -> bool:
+        """Whether there are as many checks as a power of two, from 16 on."""
+        count = len(self.residuals)
+        return count >= 16 and count & (count - 1) == 0
+
+    @property
+    def quarters(self) -> list[FloatArray]:
+        """Mean fields of the second, third and last quarter."""
+        part = len(self.velocities) // 4
+        return [np.mean(self.velocities[-k * part : len(self.velocities) - (k - 1) * part], axis=0) for k in (3, 2, 1)]
+
+    @property
+    def decay(self) -> float:
+        """Rate at which the residual falls towards rest, in logarithms a check; 0 where it does not do so evenly.
+
+        That is the slowest relaxation of the wall itself: contacts pass their forces on from block to block, and a
+        long chain of blocks takes many relaxation times of the damping for it.
+        """
+        part = len(self.residuals) // 4
+        if part < 2:
+            return 0.0
+        old, middle, new = (float(np.log(np.mean(self.residuals[-k * part :][:part]))) for k in (3, 2, 1))
+        return (middle - new) / part if 0.5 * (old - middle) <= middle - new and middle > new else 0.0
+
+    def motion(self, engine: Measured) -> Motion | None:
+        """The motion, where it is shown that the wall moves; else None."""
+        if len(self.velocities) < 8 or self.residuals[-1] <= self.moving:
+            return None
+        wall, load = engine.assembly, engine.assembly.dead + engine.multiplier * engine.assembly.live
+        quarters = self.quarters
+        last = self.velocities[-1] if self.steady else quarters[-1]
+        motion = by_virtual_work(wall, load, last * [wall.length_scale, wall.length_scale, 1.0])
+        if motion is None and self.trend.goes_on(quarters):
+            motion = by_power(wall, load, last * [wall.length_scale, wall.length_scale, 1.0], engine.contact_forces())
+        return None if motion is None else replace(motion, field=last)
+
+
+def hold(engine: Engine, settings: HoldSettings, patience: int = 1) -> Hold:
     """Let the engine settle under its present load.
 
-    Held: the residual stays below `held_residual` at two checks in a row. Moving: the velocity field is steady over
-    four checks above `moving_residual`; at the end of the hold an unsteady motion that goes on counts too (`lasting`).
-    Undecided: anything else when `hold_steps` relaxation times are over.
+    Held: the residual stays below `held_residual` at two checks in a row. Moving: `methods.de.motion` shows it; this
+    is asked where the field is steady, at each doubling of the checks, and at the end. Undecided: neither, when
+    `hold_steps` relaxation times are over. That is the time of the damping, or of the wall on its way to rest where
+    that is longer (`Watch.decay`).
 
     Args:
         engine: the wall with its load.
         settings: tolerances.
-        limit: most time steps, or None for `hold_limit`.
+        patience: factor on the longest time.
     """
     check = max(10, round(engine.relaxation / 3.0))
-    limit = hold_limit(engine, settings) if limit is None else limit
-    start = engine.steps
-    velocity = engine.velocity()
-    velocities: list[FloatArray] = []
-    residuals: list[float] = []
-    surpluses: list[float] = []
-    low = steady = 0
-    while engine.steps - start < limit:
+    usual = patience * hold_limit(engine, settings) / check
+    affordable = (settings.work / max(engine.interfaces, 1) - engine.steps) / check
+    start, watch = engine.steps, Watch(settings.held_residual, settings.moving_residual)
+    while True:
         engine.advance(check)
-        before, velocity = velocity, engine.velocity()
-        residual = engine.unbalance(velocity)
-        velocities.append(velocity)
-        residuals.append(residual)
-        surpluses.append(engine.surplus(velocity))
-        low = low + 1 if residual < settings.held_residual else 0
-        if low == 2:
+        velocity = engine.velocity()
+        watch.note(velocity, engine.unbalance(velocity))
+        residual, count = watch.residuals[-1], len(watch.residuals)
+        if watch.rests:
             return Hold(State.HELD, residual, engine.steps - start, velocity)
-        change = float(np.abs(velocity - before).max(initial=0.0)) / max(
-            float(np.abs(velocity).max(initial=0.0)), 1e-300
-        )
-        still = residual > settings.moving_residual and change <= STEADY
-        steady = steady + 1 if still else 0
-        if steady == STEADY_CHECKS or residual > RUNAWAY or not np.isfinite(residual):
-            return Hold(State.MOVING, residual, engine.steps - start, velocity)
-    motion = lasting(velocities, residuals, surpluses, settings)
-    state, velocity = (State.UNDECIDED, velocity) if motion is None else (State.MOVING, motion)
-    return Hold(state, residuals[-1] if residuals else float("inf"), engine.steps - start, velocity)
+        decay = watch.decay if usual <= count < affordable else 0.0
+        over = count >= usual and not count * decay < patience * settings.hold_steps * (decay > 0.0)
+        if over or watch.steady or watch.doubled:
+            motion = watch.motion(engine)
+            if motion is not None:
+                return Hold(State.MOVING, residual, engine.steps - start, motion.field, motion.proof)
+        if over or not np.isfinite(residual):
+            return Hold(State.UNDECIDED, residual, engine.steps - start, velocity)
 
 
 def hold_limit(engine: Engine, settings: HoldSettings) -> int:
-    """Most time steps of one hold."""
+    """Most time steps of one hold that does not come nearer to rest."""
     return int(settings.hold_steps * max(engine.relaxation, 3.0 * engine.courses, 100.0))
-
-
-def lasting(
-    velocities: list[FloatArray], residuals: list[float], surpluses: list[float], settings: HoldSettings
-) -> FloatArray | None:
-    """The mean velocity field (n, 3) of an unsteady motion that goes on, None where there is none.
-
-    Such a motion is large, and in the last quarter of the hold it is that of the third. Contacts that chatter make
-    every single velocity field another one; their means over a quarter of the hold tell a wall that moves along one
-    mechanism at one speed from one that shakes where it stands. What drives it are the loads (`Engine.surplus`).
-    """
-    half, n = len(residuals) // 2, len(residuals)
-    if n < 16 or min(residuals[half:]) <= 50.0 * settings.moving_residual or np.mean(surpluses[half:]) < 0.0:
-        return None
-    third = np.mean(velocities[half : 3 * n // 4], axis=0)
-    last: FloatArray = np.mean(velocities[3 * n // 4 :], axis=0)
-    return last if goes_on(third, last) else None
-
-
-def goes_on(third: FloatArray, last: FloatArray, speed: float = UNSLOWED) -> bool:
-    """Whether a motion goes on: in the last quarter of a hold along that of the third, at `speed` times its speed."""
-    common, size = float(np.sum(third * last)), float(np.linalg.norm(third))
-    return common >= ALIKE * size * float(np.linalg.norm(last)) and common >= speed * size**2
 
 
 def settle(engine: Engine, settings: HoldSettings) -> float:

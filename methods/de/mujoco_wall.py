@@ -212,6 +212,7 @@ class MujocoWall:
 
     def load(self, multiplier: float) -> None:
         """Put dead + multiplier x live on the blocks from now on."""
+        self.multiplier = multiplier
         self._data.qfrc_applied[:] = (self._dead + multiplier * self._live).ravel()
 
     def advance(self, steps: int) -> None:
@@ -249,11 +250,6 @@ class MujocoWall:
     def unbalance(self, velocity: FloatArray) -> float:
         """Largest out-of-balance force of this velocity field, see `Engine.unbalance`."""
         return float(np.abs(self._mass * velocity[self._blocks]).max(initial=0.0))
-
-    def surplus(self, velocity: FloatArray) -> float:
-        """Power of the loads less that of the damping, see `Engine.surplus`."""
-        moved = velocity[self._blocks]
-        return float(np.sum((self._data.qfrc_applied.reshape(-1, 3) - self._mass * moved) * moved))
 
     def save(self) -> FloatArray:
         """(9 n_free,) displacements, velocities and accelerations: penetrations and creep carry the forces."""

@@ -17,8 +17,9 @@ from harness.model.assembly import Assembly, FloatArray
 from harness.model.method import Answer, Finding, OutOfTime, Settings, Status, Traits
 from methods.de.bracket import LOOSE
 from methods.de.courses import courses, number_of_courses
-from methods.de.hold import State, goes_on
+from methods.de.hold import Hold, State, Watch
 from methods.de.loading import REACH, raise_until_it_falls
+from methods.de.motion import Proof, by_travel
 from methods.de.soft_wall import SoftWall
 from methods.numerics.statics import with_proof
 
@@ -27,12 +28,9 @@ STIFF = 1e6
 ROUND = 2e-4
 """Radius of corners where none is given, in length scales."""
 AWAY = 300.0
-"""Multiple of what the blocks had moved at the last rest that is far enough for a fall too, as joints may be stiff."""
-FASTER = 1.0
-"""Ratio of its displacements in the last and the third quarter of a hold from which a motion goes on.
-
-What falls is damped against its acceleration only and does not slow down; what creeps to rest does.
-"""
+"""Multiple of what the blocks had moved at the last rest from which it is asked whether the wall falls."""
+RELAXATIONS = 20
+"""Relaxation times of its own for which a wall is followed on its way to rest, and most multiple of a hold's length."""
 LOOK = 500
 """Time steps from one look at a hold to the next."""
 LOW = 7
@@ -57,8 +55,8 @@ class SoftSettings(Settings):
         accuracy: the bracket is narrowed to this live load, as a share of the dead load, or to a 500th of the
             multiplier where that is less.
         held_residual: largest force out of balance of a wall at rest, as a part of the mean dead load of a block.
-        reach: a wall falls when a block has moved by this many length scales under one load, or by 300 times as much as
-            any had until then; also when its motion has not slowed down by the end of a hold.
+        reach: a wall falls when a block has moved by this many length scales under one load, the loads doing work; or
+            earlier, where `methods.de.motion` shows it.
         hold_steps: most time steps under one load on a wall of up to 7 courses; higher walls get more, with the square
             of the courses, and all ten times as many under the dead load alone.
     """
@@ -82,7 +80,7 @@ class Holds:
     Attributes:
         wall, settings: what is held, and how.
         rest: the last rest.
-        motion: (n, 3) displacements of the last fall under one load.
+        motion, proof: (n, 3) displacements of the last fall under one load, and what shows that it is one.
         undecided: multipliers at which the wall neither rested nor fell.
         path: multiplier and displacement of the live load at every rest.
     """
@@ -91,6 +89,7 @@ class Holds:
     settings: SoftSettings
     rest: tuple[FloatArray, FloatArray] = field(init=False)
     motion: FloatArray | None = None
+    proof: Proof | None = None
     undecided: list[float] = field(default_factory=list)
     path: dict[str, list[float]] = field(default_factory=lambda: {"multiplier": [], "live_displacement": []})
 
@@ -112,37 +111,51 @@ class Holds:
         """Hold the wall at a multiplier from its last rest, and note what came of it."""
         wall = self.wall
         wall.load(multiplier)
-        state = self._settled(self._looks * (1 if multiplier else 10))
+        end = self._settled(self._looks * (1 if multiplier else 10))
+        state = end.state
         if state is State.HELD:
             self.rest = wall.save()
             self.path["multiplier"].append(multiplier)
             self.path["live_displacement"].append(_live_displacement(wall))
             return state
         if state is State.MOVING:
-            self.motion = wall.places - self.rest[0]
+            self.motion, self.proof = end.velocity, end.proof
         else:
             self.undecided.append(multiplier)
         wall.restore(self.rest)
         return state
 
-    def _settled(self, looks: int) -> State:
-        """Whether the wall comes to rest under its load, falls, or does neither within so many looks."""
+    def _settled(self, looks: int) -> Hold:
+        """What the wall does under its load within so many looks, or within twenty times its own slowest relaxation.
+
+        `methods.de.motion` says whether it moves: asked at each doubling of the looks, where a block has come far
+        beyond what any had moved until then, and at the end.
+        """
         wall, settings = self.wall, self.settings
-        before = self.rest[0]
-        far = settings.reach * wall.assembly.length_scale
-        if np.any(before[:, :2]):
-            far = min(far, AWAY * float(np.abs(before[:, :2]).max()))
-        half = three_quarters = before
-        for look in range(looks):
-            half = wall.places.copy() if look == looks // 2 else half
-            three_quarters = wall.places.copy() if look == 3 * looks // 4 else three_quarters
+        before, size = self.rest[0], wall.assembly.length_scale
+        load = wall.assembly.dead + wall.multiplier * wall.assembly.live
+        away = AWAY * float(np.abs(before[:, :2]).max()) if np.any(before[:, :2]) else np.inf
+        watch, places, start = Watch(settings.held_residual, settings.held_residual), before, wall.steps
+        affordable = RELAXATIONS * looks
+        while True:
             residual = wall.advance(LOOK)
-            if not np.abs(wall.places - before)[:, :2].max(initial=0.0) < far:
-                return State.MOVING
-            if residual < settings.held_residual:
-                return State.HELD
-        goes = goes_on(three_quarters - half, wall.places - three_quarters, FASTER)
-        return State.MOVING if goes else State.UNDECIDED
+            moved, places = wall.places - places, wall.places.copy()
+            watch.note(moved / [size, size, 1.0], residual)
+            count = len(watch.residuals)
+            if residual < settings.held_residual or not np.all(np.isfinite(places)):
+                state = State.HELD if residual < settings.held_residual else State.UNDECIDED
+                return Hold(state, residual, wall.steps - start, places - before)
+            decay = watch.decay if looks <= count < affordable else 0.0
+            over = count >= looks and not count * decay < RELAXATIONS * (decay > 0.0)
+            motion = by_travel(wall.assembly, load, places - before, settings.reach)
+            far = float(np.abs((places - before)[:, :2]).max(initial=0.0)) > away
+            if motion is None and (over or watch.doubled or far):
+                motion = watch.motion(wall)
+                away *= 2.0 if far else 1.0
+            if motion is not None:
+                return Hold(State.MOVING, residual, wall.steps - start, places - before, motion.proof)
+            if over:
+                return Hold(State.UNDECIDED, residual, wall.steps - start, places - before)
 
 
 class DeformableJoints:
@@ -269,6 +282,7 @@ def _told(holds: Holds, stiffness: float) -> dict[str, Any]:
         "rounding": float(wall.contacts.radius.max()),
         "undecided": len(holds.undecided),
         "undecided_at": holds.undecided,
+        "proof": None if holds.proof is None else str(holds.proof),
         **wall.state().as_details(),
     }
 

@@ -122,6 +122,7 @@ class SoftWall:
     Attributes:
         places: (n, 3) displacements (x, y) [length] and rotations of the blocks.
         shear: (2m,) shear forces of the contacts, on the face, along the normal turned by a right angle [force].
+        multiplier: of the live load that acts now.
         steps: time steps made.
     """
 
@@ -135,7 +136,7 @@ class SoftWall:
         self.contacts = contacts_of(assembly, stiffness, shear_ratio, least_radius)
         self.places = np.zeros((assembly.n_blocks, 3))
         self.shear = np.zeros(len(self.contacts.kn))
-        self.steps = 0
+        self.steps, self.multiplier = 0, 0.0
         self._velocity = np.zeros_like(self.places)
         self._loads = assembly.dead.copy()
         self._mass = self._masses()
@@ -143,6 +144,7 @@ class SoftWall:
 
     def load(self, multiplier: float) -> None:
         """Put dead + multiplier x live on the blocks from now on."""
+        self.multiplier = multiplier
         self._loads = self.assembly.dead + multiplier * self.assembly.live
 
     def advance(self, steps: int) -> float:
@@ -194,6 +196,14 @@ class SoftWall:
             normal=normal,
             force=pressed[:, None] * normal + shear[:, None] * along,
         )
+
+    def contact_forces(self) -> FloatArray:
+        """(m, 3) contact forces (n1, n2, s) [force] as on the wall that has not moved, see `Measured`."""
+        now, wall = self.state(), self.assembly
+        sign = np.where(now.onto == wall.block_b[now.interface], 1.0, -1.0)[:, None]
+        force = (sign * now.force).reshape(-1, 2, 2)
+        normal = np.sum(force * wall.normal[:, None], axis=2)
+        return np.column_stack([normal, np.sum(force.sum(axis=1) * wall.tangent, axis=1)])
 
     def save(self) -> tuple[FloatArray, FloatArray]:
         """Places and shears, to be given to `restore`."""

@@ -108,6 +108,7 @@ class StripSpace:
 
     def load(self, multiplier: float) -> None:
         """Put dead + multiplier x live on the blocks from now on."""
+        self.multiplier = multiplier
         self._now = np.ascontiguousarray(self._dead + multiplier * self._live).ravel()
         self._loads.set_float_buf(self._now)
 
@@ -130,12 +131,6 @@ class StripSpace:
     def unbalance(self, velocity: FloatArray) -> float:
         """Largest out-of-balance force of this velocity field, see `Engine.unbalance`."""
         return float(np.abs(self._mass * velocity).max(initial=0.0))
-
-    def surplus(self, velocity: FloatArray) -> float:
-        """Power of the loads less that of the damping, see `Engine.surplus`."""
-        loads = self._now.reshape(-1, 3)[:-1] / GRAVITY
-        moved = velocity[self._blocks]
-        return float(np.sum((loads - self._mass[self._blocks] * moved) * moved))
 
     def save(self) -> FloatArray:
         """(m, 2, 2) normal and tangential impulse of both contact points of every interface."""

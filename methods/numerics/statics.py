@@ -73,23 +73,30 @@ def admissible_forces(assembly: Assembly, load: FloatArray) -> FloatArray | None
     return within_yield(vertex.value.reshape(-1, 3), assembly.friction) * unit
 
 
-def dilatant_fall(assembly: Assembly) -> FloatArray | None:
-    """A mechanism (n, 3) of dilatant flow on which the dead load does positive work, so that no equilibrium exists.
+def dilatant_mechanism(
+    assembly: Assembly, load: FloatArray, about: FloatArray | None = None, within: float = 1.0
+) -> FloatArray | None:
+    """A mechanism (n, 3) of dilatant flow on which a load does positive work, so that no equilibrium exists under it.
 
-    Speeds are bounded by one (rotations: by one over the block size), which makes it the mechanism of the greatest
-    work. None where that is `LEAST_WORK` or less, or where the programme fails: exactly no work
-    would mean an equilibrium (Farkas' lemma), but the programme holds to its tolerances only.
+    It is that of the greatest work near `about`; None where that is `LEAST_WORK` or less, or where the programme
+    fails: exactly no work would mean an equilibrium (Farkas' lemma), but the programme holds to its tolerances only.
+
+    Args:
+        assembly: the wall.
+        load: (n, 3) generalised loads on the blocks [force, force, moment].
+        about: (n, 3) velocities [length, length, radian], or None for rest.
+        within: largest difference from `about` of a speed, or of a rotation times the length scale.
     """
     length = assembly.length_scale or 1.0
     column = np.tile([1.0, 1.0, 1.0 / length], assembly.n_free)
-    dead = assembly.dead[assembly.free].ravel() * column / assembly.force_scale
+    pull = load[assembly.free].ravel() * column / assembly.force_scale
+    centre = np.zeros(len(pull)) if about is None else about[assembly.free].ravel() / column
     rates = (assembly.kinematic_matrix @ sp.diags(column)).tocsr()
     slip = sp.diags(assembly.friction) @ rates[2::3]
     rows = sp.vstack([rates[end::3] + sign * slip for end in (0, 1) for sign in (1.0, -1.0)])
-    size, ones = rows.shape[0], np.ones(len(dead))
-    bounds = (np.zeros(size), np.full(size, INFINITY))
-    status, motion, _ = Programme(sp.csc_matrix(rows), -dead, (-ones, ones), bounds).run()
-    if status != "optimal" or not dead @ motion > LEAST_WORK:
+    bounds = (np.zeros(rows.shape[0]), np.full(rows.shape[0], INFINITY))
+    status, motion, _ = Programme(sp.csc_matrix(rows), -pull, (centre - within, centre + within), bounds).run()
+    if status != "optimal" or not pull @ motion > LEAST_WORK:
         return None
     mechanism = np.zeros((assembly.n_blocks, 3))
     mechanism[assembly.free] = (motion * column).reshape(-1, 3)
@@ -134,7 +141,7 @@ def with_proof(assembly: Assembly, answer: Answer) -> Answer:
             answer, forces=forces, forces_multiplier=at, details=answer.details | {"live_forces": growth.tolist()}
         )
     if answer.finding is Finding.FALLS and answer.flow == "approximate":
-        proof = dilatant_fall(assembly)
+        proof = dilatant_mechanism(assembly, assembly.dead)
         if proof is not None:
             return replace(answer, details=answer.details | {"dilatant_mechanism": proof.tolist()})
     return answer
