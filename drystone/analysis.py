@@ -15,7 +15,7 @@ from harness.engine.compare import judged
 from harness.engine.judge import judge as judge_result
 from harness.engine.plan import Limits, Run, check_methods
 from harness.engine.provenance import machine, versions
-from harness.model.method import Answer, load_method, method_names, traits_of
+from harness.model.method import Answer, Method, load_method, method_names, traits_of
 from harness.model.reading import validate
 from harness.model.result import Judgement, result_of
 from harness.model.result import Result as Record
@@ -94,25 +94,29 @@ def methods() -> list[str]:
     return method_names()
 
 
-def analyse(wall: Wall, method: str = "la", **settings: Any) -> Result:
+def analyse(wall: Wall, method: str | Method = "la", **settings: Any) -> Result:
     """What a method finds on a wall, in this process and without limits of time or memory; judged.
 
     Args:
         wall: the wall.
-        method: its name; `methods()` lists them.
+        method: its name; `methods()` lists them. Or a method of your own, as an object.
         settings: of the method, by name; what is not given has its default.
 
     Raises:
         InputError: an unknown method or setting, or a wall that the method refuses.
     """
-    check_methods([method], "method")
-    loaded = load_method(method)
+    if isinstance(method, str):
+        check_methods([method], "method")
+        loaded = load_method(method)
+    else:
+        loaded = method
+    name = loaded.name
     chosen = validate(loaded.Settings, settings, "settings")
     started, clock, work = datetime.now(UTC), time.perf_counter(), time.process_time()
     answer = loaded.solve(wall.assembly, chosen)
     cost = {"cpu_seconds": time.process_time() - work, "wall_seconds": time.perf_counter() - clock}
     record = result_of(
-        answer, wall.assembly, case=wall.name, method=method, family=loaded.family, traits=traits_of(loaded)
+        answer, wall.assembly, case=wall.name, method=name, family=loaded.family, traits=traits_of(loaded)
     ).model_copy(
         update={
             **cost,
@@ -122,9 +126,9 @@ def analyse(wall: Wall, method: str = "la", **settings: Any) -> Result:
             "started": started.isoformat(timespec="seconds"),
         }
     )
-    references = tuple(item for item in wall.case.file.references if method in item.applies_to)
+    references = tuple(item for item in wall.case.file.references if name in item.applies_to)
     fitting = tuple(item for item in references if item.settings == settings)
-    return Result.on(wall, judged(Run(wall.case, method, settings, Limits(), fitting), record, loaded.tolerance))
+    return Result.on(wall, judged(Run(wall.case, name, settings, Limits(), fitting), record, loaded.tolerance))
 
 
 def judge(wall: Wall, answer: Answer | Record, tolerance: float = 1e-9) -> Judgement:

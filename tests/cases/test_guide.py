@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 from harness.model.build import build
-from harness.model.case import CaseFile
+from harness.model.case import CaseFile, Reference
 from harness.model.errors import InputError
 from harness.model.reading import parse_wall
 from harness.model.wall import Panel, Ring, RunningBond, Stack
@@ -54,6 +54,10 @@ def test_friction_rules_of_the_guide_do_what_they_say() -> None:
     assert sorted(set(assembly.friction.tolist())) == [0.0, 0.2, 0.6, 0.8]
 
 
-def test_case_of_the_guide_is_a_case() -> None:
-    (text,) = re.findall(r"```toml\n(.*?)```", GUIDE, re.DOTALL)
-    assert CaseFile.model_validate(tomllib.loads(text)).id == "my-wall"
+def test_the_case_of_the_guide_shows_every_field() -> None:
+    text = (Path(__file__).parents[2] / "docs" / "own-case.md").read_text(encoding="utf-8")
+    (toml,) = re.findall(r"```toml [^\n]*\n(.*?)```", text, re.DOTALL)
+    shown = tomllib.loads(toml)
+    assert CaseFile.model_validate(shown).id == "my-wall"
+    assert set(shown) == set(CaseFile.model_fields)
+    assert set(shown["references"][0]) == set(Reference.model_fields)
