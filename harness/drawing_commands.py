@@ -18,7 +18,7 @@ from harness.model.method import load_method
 from harness.model.reading import parse_wall, read_document, wall_json
 from harness.model.repair import repair as mend
 from harness.model.salvage import salvaged
-from harness.options import INPUT_ERROR, cases_option, catching, json_flag, print_json, say, warn
+from harness.options import INPUT_ERROR, cases_option, catching, json_flag, print_json, say
 
 
 @click.command()
@@ -163,16 +163,30 @@ def _place(point: tuple[float, float] | None) -> str:
 @click.argument("case")
 @click.option("-o", "--output", type=click.Path(path_type=Path), default=Path("wall.svg"), show_default=True)
 @click.option("--window", is_flag=True, help="Draw in a window instead of to a file.")
+@click.option("--axes/--no-axes", default=True, show_default=True, help="Coordinates of the file, and a scale.")
+@click.option("--dimensions", is_flag=True, help="Sizes of the wall and of every block.")
 @cases_option
 @catching
-def show(case: str, output: Path, window: bool, folders: tuple[Path, ...]) -> None:
-    """Draw CASE (an id or a WALL.json) to a file (.svg, .pdf, .png) or in a window, before anything is run."""
-    from reports.figures import show_wall, show_window
+def show(case: str, output: Path, window: bool, axes: bool, dimensions: bool, folders: tuple[Path, ...]) -> None:
+    """Draw CASE (an id, a WALL.json or a drawing) to a file (.svg, .pdf, .png) or in a window, before anything is run.
 
-    (found,) = find_cases([case], None, folders)
-    warn(found)
+    A wall with faults is drawn too, with the faults marked under the numbers of `drystone validate`; exit code 2 then.
+    """
+    from reports.figures import show_window
+    from reports.inspected import draw_inspected, inspected_figure
+
+    if Path(case).is_file():
+        looked, notes = _looked_at(Path(case))
+    else:
+        (found,) = find_cases([case], None, folders)
+        looked, notes = inspect(found.wall, found.id), found.notes
+    for note in notes:
+        say(f"drystone: {note}", err=True)
+    for number, mark in enumerate(looked.marks, start=1):
+        say(f"drystone: {number}. {mark.kind}: {mark}", err=True)
     if window:
-        show_window(found.built, found.file.title)
-        return
-    show_wall(found.built, output)
-    say(str(output))
+        show_window(inspected_figure(looked, axes=axes, dimensions=dimensions), looked.wall.title or case)
+    else:
+        draw_inspected(looked, output, axes=axes, dimensions=dimensions)
+        say(str(output))
+    sys.exit(INPUT_ERROR if looked.faults else 0)

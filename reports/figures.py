@@ -70,9 +70,9 @@ def figure(case: Case, results: list[Result], kind: str, path: Path) -> None:
     if kind == "wall":
         show_wall(case.built, path)
         return
-    target = _checked(path)
+    target = checked(path)
     with style():
-        results_figure(case, results, kind).savefig(target, metadata=_metadata(path))
+        results_figure(case, results, kind).savefig(target, metadata=metadata(path))
 
 
 def results_figure(case: Case, results: list[Result], kind: str) -> Figure:
@@ -107,9 +107,9 @@ def show_wall(built: Built, path: Path) -> None:
     Raises:
         InputError: another ending.
     """
-    target = _checked(path)
+    target = checked(path)
     with style():
-        _wall(built.assembly).savefig(target, metadata=_metadata(path))
+        _wall(built.assembly).savefig(target, metadata=metadata(path))
 
 
 def wall_figure(built: Built) -> Figure:
@@ -118,14 +118,13 @@ def wall_figure(built: Built) -> Figure:
         return _wall(built.assembly)
 
 
-def show_window(built: Built, title: str) -> None:
-    """Draw a wall in a window, where it can be zoomed, and wait until the user closes it.
+def show_window(page: Figure, title: str) -> None:
+    """Show a figure in a window, where it can be zoomed, and wait until the user closes it.
 
     Raises:
         InputError: no window can be opened here.
     """
     with style(), mpl.rc_context({"figure.dpi": WINDOW_DPI}):
-        page = _wall(built.assembly)
         try:
             from tkinter import TclError
 
@@ -152,8 +151,8 @@ def _wall(assembly: Assembly) -> Figure:
     draw_blocks(axes[0][0], assembly, list(assembly.polygons))
     draw_joints(axes[0][0], assembly)
     _labels(axes[0][0], assembly)
-    _loads(axes[0][0], assembly, shapes.extra_dead_load(assembly), RUST, "dead")
-    _loads(axes[0][0], assembly, assembly.live, BLUE, "live")
+    draw_loads(axes[0][0], assembly, shapes.extra_dead_load(assembly), RUST, "dead")
+    draw_loads(axes[0][0], assembly, assembly.live, BLUE, "live")
     return page
 
 
@@ -166,14 +165,19 @@ def style() -> Iterator[None]:
         yield
 
 
-def _checked(path: Path) -> Path:
+def checked(path: Path) -> Path:
+    """The path of a figure, with its folder made.
+
+    Raises:
+        InputError: an ending that no figure has.
+    """
     if path.suffix.lower() not in FORMATS:
         raise InputError(f'no figure is written as "{path.suffix}"', f"Use {', '.join(FORMATS)}", source=str(path))
     path.parent.mkdir(parents=True, exist_ok=True)
     return path
 
 
-def _metadata(path: Path) -> dict[str, Any]:
+def metadata(path: Path) -> dict[str, Any]:
     """File information without dates, so that the bytes depend on the input alone."""
     suffix = path.suffix.lower()
     if suffix == ".pdf":
@@ -307,7 +311,8 @@ def _labels(ax: Axes, assembly: Assembly) -> None:
         ax.annotate(label, centroid, xytext=(0, 2.2), textcoords="offset points", ha="center", color=INK, fontsize=5.5)
 
 
-def _loads(ax: Axes, assembly: Assembly, load: FloatArray, colour: str, kind: str) -> None:
+def draw_loads(ax: Axes, assembly: Assembly, load: FloatArray, colour: str, kind: str) -> None:
+    """A load (n, 3) as arrows at its blocks, dashed where it is dead."""
     arrows = shapes.load_arrows(assembly, load)
     if not arrows:
         return

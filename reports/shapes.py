@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -48,7 +49,12 @@ class Extent:
 
 def extent(assembly: Assembly) -> Extent:
     """The rectangle round all blocks."""
-    points = np.concatenate(assembly.polygons)
+    return extent_of(assembly.polygons)
+
+
+def extent_of(polygons: Sequence[FloatArray]) -> Extent:
+    """The rectangle round polygons (k, 2)."""
+    points = np.concatenate(list(polygons))
     low, high = points.min(axis=0), points.max(axis=0)
     return Extent(float(low[0]), float(low[1]), float(high[0]), float(high[1]))
 

@@ -85,4 +85,4 @@ def test_animation_shows_a_collapse_that_was_followed(tmp_path: Path):
 def test_without_a_display_the_window_is_refused_with_the_way_out(monkeypatch: pytest.MonkeyPatch):
     monkeypatch.delenv("DISPLAY", raising=False)
     with pytest.raises(InputError, match=r"no window.*-o wall\.svg"):
-        figures.show_window(CASE.built, "wall")
+        figures.show_window(figures.wall_figure(CASE.built), "wall")
