@@ -68,11 +68,19 @@ class Contacts:
 
 @dataclass(frozen=True)
 class _Edges:
-    """Directed edges of all blocks, and their owners."""
+    """Directed edges of all blocks, and their owners. `before` is the edge that ends where each begins."""
 
     owner: IntArray
     first: FloatArray
     last: FloatArray
+    before: IntArray
+
+    def near(self, distance: float) -> tuple[IntArray, IntArray]:
+        """Vertices, by the edge that begins there, and the edges of other blocks within a distance of them [length]."""
+        lines = shapely.linestrings(np.stack([self.first, self.last], axis=1))
+        vertex, edge = shapely.STRtree(lines).query(shapely.points(self.first), predicate="dwithin", distance=distance)
+        others = self.owner[vertex] != self.owner[edge]
+        return vertex[others], edge[others]
 
     def foot(self, k: IntArray, point: FloatArray) -> FloatArray:
         """Feet (p, 2) of the perpendiculars from points (p, 2) on edges k."""
@@ -82,8 +90,30 @@ class _Edges:
 
 
 def _edges(polygons: Sequence[FloatArray]) -> _Edges:
-    owner = np.repeat(np.arange(len(polygons)), [len(polygon) for polygon in polygons])
-    return _Edges(owner, np.concatenate(list(polygons)), np.concatenate([following(polygon) for polygon in polygons]))
+    sizes = np.array([len(polygon) for polygon in polygons])
+    owner = np.repeat(np.arange(len(polygons)), sizes)
+    before = np.arange(len(owner)) - 1
+    before[np.cumsum(sizes) - sizes] += sizes
+    return _Edges(
+        owner,
+        np.concatenate(list(polygons)),
+        np.concatenate([following(polygon) for polygon in polygons]),
+        before,
+    )
+
+
+def _faces_at(edges: _Edges, vertex: IntArray, edge: IntArray) -> tuple[IntArray, IntArray]:
+    """Pairs of edges, each way round, of which one ends at a vertex that lies near the other.
+
+    Wherever two faces lie beside each other, their common length ends at a vertex of one of them, which is no further
+    from the other than they are apart there. So the pairs near vertices are all there are, and they are few where long
+    faces lie side by side: a box about a slanting face holds hundreds of others, and the box about a vertex few.
+    """
+    count = len(edges.owner)
+    own = np.concatenate([vertex, edges.before[vertex]])
+    other = np.concatenate([edge, edge])
+    code = np.unique(np.concatenate([own * count + other, other * count + own]))
+    return code // count, code % count
 
 
 def find_contacts(polygons: Sequence[FloatArray], fixed: BoolArray, limits: JointLimits) -> Contacts:
@@ -97,9 +127,9 @@ def find_contacts(polygons: Sequence[FloatArray], fixed: BoolArray, limits: Join
     edges = _edges(polygons)
     vector = edges.last - edges.first
     direction = vector / np.linalg.norm(vector, axis=1)[:, None]
-    lines = shapely.linestrings(np.stack([edges.first, edges.last], axis=1))
-    reach = max(limits.gap, limits.overlap, limits.sight)
-    i, j = shapely.STRtree(lines).query(lines, predicate="dwithin", distance=reach)
+    reach = max(limits.gap, limits.overlap, limits.sight) / np.cos(limits.angle)
+    vertex, edge = edges.near(reach)
+    i, j = _faces_at(edges, vertex, edge)
     facing = (edges.owner[i] < edges.owner[j]) & ~(fixed[edges.owner[i]] & fixed[edges.owner[j]])
     facing &= np.einsum("kd,kd->k", direction[i], direction[j]) <= -np.cos(limits.angle)
     i, j = i[facing], j[facing]
@@ -140,7 +170,7 @@ def find_contacts(polygons: Sequence[FloatArray], fixed: BoolArray, limits: Join
     kept = np.flatnonzero(near)
     kept = kept[np.lexsort((end[kept, 1], end[kept, 0], start[kept, 1], start[kept, 0], b[kept], a[kept]))]
     joined = _merge_collinear(a[kept], b[kept], start[kept], end[kept], max(limits.gap, limits.overlap))
-    corners = _corner_pairs(polygons, fixed, joined[0], joined[1], max(limits.gap, limits.overlap))
+    corners = _corner_pairs(edges, fixed, joined[0], joined[1], max(limits.gap, limits.overlap))
     code, middle = a * len(polygons) + b, 0.5 * (start + end)
     seen = np.flatnonzero(seen & ~np.isin(code, joined[0] * len(polygons) + joined[1]))
     seen = seen[np.lexsort((middle[seen, 1], middle[seen, 0], off[seen], code[seen]))]
@@ -176,15 +206,13 @@ def _merge_collinear(
     return a[keep], b[keep], starts[keep], ends[keep]
 
 
-def _corner_pairs(
-    polygons: Sequence[FloatArray], fixed: BoolArray, a: IntArray, b: IntArray, tolerance: float
-) -> IntArray:
-    shapes = shapes_of(polygons)
-    i, j = shapely.STRtree(shapes).query(shapes, predicate="dwithin", distance=tolerance)
-    wanted = (i < j) & ~(fixed[i] & fixed[j])
-    count = len(polygons)
-    touching = i[wanted] * count + j[wanted]
-    alone = np.setdiff1d(touching, a * count + b)
+def _corner_pairs(edges: _Edges, fixed: BoolArray, a: IntArray, b: IntArray, tolerance: float) -> IntArray:
+    """Pairs (k, 2) of blocks without a contact of which one has a vertex within the tolerance of the other."""
+    vertex, edge = edges.near(tolerance)
+    i, j = np.sort([edges.owner[vertex], edges.owner[edge]], axis=0)
+    wanted = ~(fixed[i] & fixed[j])
+    count = len(fixed)
+    alone = np.setdiff1d(i[wanted] * count + j[wanted], a * count + b)
     return np.stack([alone // count, alone % count], axis=1)
 
 
