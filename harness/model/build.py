@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -54,7 +55,7 @@ def build(wall: Wall, name: str = "wall") -> Built:
     blocks = blocks_of_wall(wall)
     names = tuple(block.id for block in blocks)
     index = {block_id: k for k, block_id in enumerate(names)}
-    polygons = tuple(of_each(polygon_of, blocks))
+    polygons = tuple(polygons_of(blocks))
     fixed = np.array([block.fixed for block in blocks], dtype=bool)
     raise_faults(support_faults(fixed))
     weight = np.array(of_each(lambda block: weight_of(block, wall), blocks))
@@ -119,7 +120,7 @@ def typical_block_size(wall: Wall) -> float:
     Raises:
         InputError: a block is no polygon.
     """
-    return geometry.typical_size(of_each(polygon_of, [block for block in blocks_of_wall(wall) if not block.fixed]))
+    return geometry.typical_size(polygons_of([block for block in blocks_of_wall(wall) if not block.fixed]))
 
 
 def blocks_of_wall(wall: Wall) -> list[Block]:
@@ -155,15 +156,15 @@ def written_out(wall: Wall) -> list[Block]:
     return blocks
 
 
-def polygon_of(block: Block) -> FloatArray:
-    """The outline (k, 2) of a block, counter-clockwise [length].
+def polygons_of(blocks: Sequence[Block]) -> list[FloatArray]:
+    """The outlines (k, 2) of blocks, counter-clockwise [length].
 
     Raises:
-        InputError: it is no polygon.
+        InputError: some are no polygons; all of them are told.
     """
-    polygon = np.array(block.polygon, dtype=float)
-    geometry.check_polygon(polygon, f'block "{block.id}"')
-    return geometry.counter_clockwise(polygon)
+    polygons = [np.array(block.polygon, dtype=float) for block in blocks]
+    raise_faults(geometry.polygon_faults(polygons, [f'block "{block.id}"' for block in blocks]))
+    return [geometry.counter_clockwise(polygon) for polygon in polygons]
 
 
 def support_faults(fixed: BoolArray) -> list[InputError]:

@@ -16,7 +16,7 @@ from scipy.spatial import cKDTree
 
 from harness.model import geometry
 from harness.model.assembly import FloatArray, IntArray
-from harness.model.build import blocks_of_wall, polygon_of
+from harness.model.build import blocks_of_wall, polygons_of
 from harness.model.errors import InputError
 from harness.model.wall import Block, Wall
 
@@ -65,7 +65,7 @@ def repair(wall: Wall, snap: float) -> Repaired:
         InputError: a block would vanish, because one of its edges is no longer than `snap`.
     """
     blocks, doubles = _once(blocks_of_wall(wall), snap)
-    drawn = [polygon_of(block) for block in blocks]
+    drawn = polygons_of(blocks)
     for block, polygon in zip(blocks, drawn, strict=True):
         shortest = float(np.linalg.norm(geometry.following(polygon) - polygon, axis=1).min())
         if shortest <= snap:
@@ -99,7 +99,7 @@ def _pair(point: FloatArray) -> tuple[float, float]:
 
 def _once(blocks: list[Block], snap: float) -> tuple[list[Block], list[tuple[str, str]]]:
     """The blocks without those that repeat the outline of an earlier one, and the pairs of names."""
-    shapes = geometry.shapes_of([polygon_of(block) for block in blocks])
+    shapes = geometry.shapes_of(polygons_of(blocks))
     i, j = shapely.STRtree(shapes).query(shapes, predicate="intersects")
     i, j = i[i < j], j[i < j]
     apart = shapely.area(shapely.symmetric_difference(shapes[i], shapes[j]))
