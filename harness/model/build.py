@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from functools import cached_property, partial
 
 import numpy as np
 
@@ -37,13 +38,18 @@ class Built:
 
     Attributes:
         assembly: the numeric view of the wall.
-        wall: the explicit form, with every block and interface written out.
         warnings: sentences about contacts at corners, very short interfaces, and points that lie off their block.
+        explicit: makes the explicit form.
     """
 
     assembly: Assembly
-    wall: Wall
     warnings: tuple[str, ...]
+    explicit: Callable[[], Wall]
+
+    @cached_property
+    def wall(self) -> Wall:
+        """The explicit form, with every block and interface written out; made when it is first asked for."""
+        return self.explicit()
 
 
 def build(wall: Wall, name: str = "wall") -> Built:
@@ -111,7 +117,8 @@ def build(wall: Wall, name: str = "wall") -> Built:
     ]
     if trusted < len(interfaces):
         warnings += interface_warnings(assembly, size, trusted)
-    return Built(assembly, _explicit(wall, blocks, weight, interfaces, joints, friction), tuple(warnings))
+    explicit = partial(_explicit, wall, blocks, weight, interfaces, joints, friction)
+    return Built(assembly, tuple(warnings), explicit)
 
 
 def typical_block_size(wall: Wall) -> float:

@@ -67,7 +67,7 @@ class Contacts:
 
 
 @dataclass(frozen=True)
-class _Edges:
+class Edges:
     """Directed edges of all blocks, and their owners. `before` is the edge that ends where each begins."""
 
     owner: IntArray
@@ -82,6 +82,19 @@ class _Edges:
         others = self.owner[vertex] != self.owner[edge]
         return vertex[others], edge[others]
 
+    def side_by_side(self, distance: float) -> tuple[IntArray, IntArray]:
+        """Pairs of edges, each way round, of which one ends at a vertex within a distance of the other [length].
+
+        Wherever two faces lie beside each other, their common length ends at a vertex of one of them, which is no
+        further from the other than they are apart there. So these are all the pairs there are, and they are few: a box
+        about a slanting face holds hundreds of others where long faces lie side by side, the box about a vertex a few.
+        """
+        count = len(self.owner)
+        vertex, edge = self.near(distance)
+        own, other = np.concatenate([vertex, self.before[vertex]]), np.concatenate([edge, edge])
+        code = np.unique(np.concatenate([own * count + other, other * count + own]))
+        return code // count, code % count
+
     def foot(self, k: IntArray, point: FloatArray) -> FloatArray:
         """Feet (p, 2) of the perpendiculars from points (p, 2) on edges k."""
         vector = self.last[k] - self.first[k]
@@ -89,31 +102,18 @@ class _Edges:
         return np.asarray(self.first[k] + share[:, None] * vector)
 
 
-def _edges(polygons: Sequence[FloatArray]) -> _Edges:
+def edges_of(polygons: Sequence[FloatArray]) -> Edges:
+    """The edges of polygons (k, 2), counter-clockwise each."""
     sizes = np.array([len(polygon) for polygon in polygons])
     owner = np.repeat(np.arange(len(polygons)), sizes)
     before = np.arange(len(owner)) - 1
     before[np.cumsum(sizes) - sizes] += sizes
-    return _Edges(
+    return Edges(
         owner,
         np.concatenate(list(polygons)),
         np.concatenate([following(polygon) for polygon in polygons]),
         before,
     )
-
-
-def _faces_at(edges: _Edges, vertex: IntArray, edge: IntArray) -> tuple[IntArray, IntArray]:
-    """Pairs of edges, each way round, of which one ends at a vertex that lies near the other.
-
-    Wherever two faces lie beside each other, their common length ends at a vertex of one of them, which is no further
-    from the other than they are apart there. So the pairs near vertices are all there are, and they are few where long
-    faces lie side by side: a box about a slanting face holds hundreds of others, and the box about a vertex few.
-    """
-    count = len(edges.owner)
-    own = np.concatenate([vertex, edges.before[vertex]])
-    other = np.concatenate([edge, edge])
-    code = np.unique(np.concatenate([own * count + other, other * count + own]))
-    return code // count, code % count
 
 
 def find_contacts(polygons: Sequence[FloatArray], fixed: BoolArray, limits: JointLimits) -> Contacts:
@@ -124,12 +124,10 @@ def find_contacts(polygons: Sequence[FloatArray], fixed: BoolArray, limits: Join
         fixed: (n,) fixed blocks; contacts between two of them are left out, as they carry no unknown.
         limits: what may be the two faces of one joint.
     """
-    edges = _edges(polygons)
+    edges = edges_of(polygons)
     vector = edges.last - edges.first
     direction = vector / np.linalg.norm(vector, axis=1)[:, None]
-    reach = max(limits.gap, limits.overlap, limits.sight) / np.cos(limits.angle)
-    vertex, edge = edges.near(reach)
-    i, j = _faces_at(edges, vertex, edge)
+    i, j = edges.side_by_side(max(limits.gap, limits.overlap, limits.sight) / np.cos(limits.angle))
     facing = (edges.owner[i] < edges.owner[j]) & ~(fixed[edges.owner[i]] & fixed[edges.owner[j]])
     facing &= np.einsum("kd,kd->k", direction[i], direction[j]) <= -np.cos(limits.angle)
     i, j = i[facing], j[facing]
@@ -206,7 +204,7 @@ def _merge_collinear(
     return a[keep], b[keep], starts[keep], ends[keep]
 
 
-def _corner_pairs(edges: _Edges, fixed: BoolArray, a: IntArray, b: IntArray, tolerance: float) -> IntArray:
+def _corner_pairs(edges: Edges, fixed: BoolArray, a: IntArray, b: IntArray, tolerance: float) -> IntArray:
     """Pairs (k, 2) of blocks without a contact of which one has a vertex within the tolerance of the other."""
     vertex, edge = edges.near(tolerance)
     i, j = np.sort([edges.owner[vertex], edges.owner[edge]], axis=0)

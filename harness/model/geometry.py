@@ -79,11 +79,12 @@ def distances(polygons: Sequence[FloatArray], which: IntArray, points: FloatArra
 
 def shapes_of(polygons: Sequence[FloatArray]) -> np.ndarray:
     """The polygons (n,) as shapely geometries."""
-    sizes = [len(polygon) for polygon in polygons]
-    rings = shapely.linearrings(
-        np.concatenate([np.vstack([polygon, polygon[:1]]) for polygon in polygons]),
-        indices=np.repeat(np.arange(len(polygons)), np.array(sizes) + 1),
-    )
+    closed = np.array([len(polygon) for polygon in polygons]) + 1
+    ring = np.repeat(np.arange(len(polygons)), closed)
+    vertex = np.arange(len(ring)) - ring
+    last = np.cumsum(closed) - 1
+    vertex[last] = vertex[last] - closed + 1
+    rings = shapely.linearrings(np.concatenate(list(polygons))[vertex], indices=ring)
     return np.asarray(shapely.polygons(rings))
 
 
