@@ -96,7 +96,7 @@ def overlaps(
     perimeter = shapely.length(shapes)
     # No pair shares more than all blocks together, and their union is found in n log n, where pairs are many.
     if shapely.area(shapes).sum() - shapely.union_all(shapes).area <= tolerance * perimeter.min():
-        return
+        return []
     i, j = shapely.STRtree(shapes).query(shapes, predicate="intersects")
     wanted = (i < j) & ~(fixed[i] & fixed[j])
     i, j = i[wanted], j[wanted]

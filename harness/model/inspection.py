@@ -15,7 +15,7 @@ import shapely
 
 from harness.model import geometry
 from harness.model.assembly import BoolArray, FloatArray, IntArray
-from harness.model.build import Built, build, polygon_of, support_faults, weight_of, written_out
+from harness.model.build import Built, build, polygons_of, support_faults, weight_of, written_out
 from harness.model.contacts import check_gap
 from harness.model.errors import InputError, Spot, sorted_out
 from harness.model.interfaces import Joints, faults_of_given, floating, floating_groups, joints_of, limits_of
@@ -116,7 +116,7 @@ def inspect(wall: Wall, name: str = "wall", before: Sequence[InputError] = ()) -
 
 def _outline(block: Block) -> FloatArray:
     try:
-        return polygon_of(block)
+        return polygons_of([block])[0]
     except InputError as error:
         error.spot = Spot((block.id,))
         raise
