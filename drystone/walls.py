@@ -75,7 +75,7 @@ class Wall:
         """A figure of the blocks with their names, joints, supports and loads."""
         from reports.figures import wall_figure
 
-        return wall_figure(self.case.built)
+        return wall_figure(self.case.built, self.title)
 
     def _repr_html_(self) -> str:
         from drystone.pictures import html

@@ -16,6 +16,7 @@ from harness.model.case import Case
 from harness.model.errors import InputError
 from harness.model.result import Result
 from reports import figures, joints, numbers, shapes, words
+from reports.force_figure import INK
 
 FORMATS = (".gif", ".png", ".apng", ".webp")
 FRAMES = 28
@@ -94,7 +95,7 @@ def _picture(case: Case, result: Result, draw: Callable[[Axes], None]) -> Image.
     with figures.style():
         page, axes = figures.blank(case.assembly, 1, 1)
         value = "" if result.multiplier is None else f" at {numbers.multiplier(result.multiplier)}"
-        axes[0][0].set_title(f"{case.id}, {result.method}{value}", pad=3, color=figures.INK)
+        axes[0][0].set_title(f"{case.id}, {result.method}{value}", pad=3, color=INK)
         draw(axes[0][0])
         page.set_dpi(DOTS_PER_INCH)
         canvas: Any = FigureCanvasAgg(page)

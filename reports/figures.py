@@ -21,15 +21,16 @@ from harness.model.build import Built
 from harness.model.case import Case
 from harness.model.errors import InputError
 from harness.model.result import Result
-from reports import joints, numbers, shapes, words
+from reports import flow, joints, shapes
 from reports.drawing import LABELLED_BLOCKS, block_labels
+from reports.facts import friction_text, value_in_words
+from reports.force_figure import BLUE, GREY, INK, PLUM, RUST, draw_forces, length_scale
 
 COLUMN, PAGE = 88 / 25.4, 180 / 25.4
 """Width of one and of two columns [inch]."""
 WINDOW_DPI = 220
 KINDS = ("mechanism", "forces", "thrust", "wall", "comparison")
 FORMATS = (".pdf", ".svg", ".png")
-INK, GREY, BLUE, RUST, PLUM = "#14202b", "#8a96a1", "#17508c", "#a63c06", "#6d2077"
 MARKS = {
     joints.SLIDE: (RUST, 1.8, "-"),
     joints.DILATANT: (RUST, 2.1, "-"),
@@ -68,7 +69,7 @@ def figure(case: Case, results: list[Result], kind: str, path: Path) -> None:
     if kind not in KINDS:
         raise InputError(f'there is no figure "{kind}"', f"Ask for one of {', '.join(KINDS)}")
     if kind == "wall":
-        show_wall(case.built, path)
+        show_wall(case.built, path, title=case.file.title)
         return
     target = checked(path)
     with style():
@@ -97,25 +98,26 @@ def results_figure(case: Case, results: list[Result], kind: str) -> Figure:
         return _panels(case, usable, rows)
 
 
-def show_wall(built: Built, path: Path) -> None:
+def show_wall(built: Built, path: Path, *, title: str = "") -> None:
     """Draw a wall before anything is run: blocks with numbers, joints, contact points, supports and loads.
 
     Args:
         built: the wall.
         path: the file; its ending .pdf, .svg or .png says the format.
+        title: above the drawing.
 
     Raises:
         InputError: another ending.
     """
     target = checked(path)
     with style():
-        _wall(built.assembly).savefig(target, metadata=metadata(path))
+        _wall(built, title).savefig(target, metadata=metadata(path))
 
 
-def wall_figure(built: Built) -> Figure:
+def wall_figure(built: Built, title: str = "") -> Figure:
     """A wall before anything is run: blocks with numbers, joints, contact points, supports and loads."""
     with style():
-        return _wall(built.assembly)
+        return _wall(built, title)
 
 
 def show_window(page: Figure, title: str) -> None:
@@ -146,8 +148,10 @@ def _no_window(error: Exception) -> InputError:
     )
 
 
-def _wall(assembly: Assembly) -> Figure:
-    page, axes = blank(assembly, 1, 1)
+def _wall(built: Built, title: str = "") -> Figure:
+    assembly = built.assembly
+    page, axes = blank(assembly, 1, 1, head=_title(title, assembly) if title else "")
+    length_scale(axes[0][0], assembly, built.wall.units)
     draw_blocks(axes[0][0], assembly, list(assembly.polygons))
     draw_joints(axes[0][0], assembly)
     _labels(axes[0][0], assembly)
@@ -185,17 +189,20 @@ def metadata(path: Path) -> dict[str, Any]:
     return {"Date": None, "Creator": "Drystone"} if suffix == ".svg" else {"Software": "Drystone"}
 
 
-def blank(assembly: Assembly, rows: int, columns: int) -> tuple[Figure, Any]:
-    """A figure of a journal's width whose axes have the shape of the wall."""
+def blank(assembly: Assembly, rows: int, columns: int, head: str = "") -> tuple[Figure, Any]:
+    """A figure of a journal's width whose axes have the shape of the wall, with a line of text above all."""
     extent = shapes.extent(assembly)
     margin = 0.14 * extent.longest
     width = COLUMN if columns == 1 else PAGE
     aspect = (extent.height + 2 * margin) / (extent.width + 2 * margin)
     each = width / columns
-    height = min(rows * (each * min(aspect, 1.6) + 0.28), 9.2)
+    above = 0.22 + (0.34 if head else 0.0)
+    height = min(rows * (each * min(aspect, 1.6) + 0.28) + above - 0.22, 9.2)
     page = Figure(figsize=(width, height))
     axes = page.subplots(rows, columns, squeeze=False)
-    page.subplots_adjust(left=0.01, right=0.99, bottom=0.01, top=1.0 - 0.22 / height, wspace=0.03, hspace=0.12)
+    page.subplots_adjust(left=0.01, right=0.99, bottom=0.01, top=1.0 - above / height, wspace=0.03, hspace=0.12)
+    if head:
+        page.suptitle(_fitting(head, width), x=0.01, y=1.0 - 0.05 / height, ha="left", va="top", fontsize=7.5)
     for ax in axes.ravel():
         ax.set_xlim(extent.left - margin, extent.right + margin)
         ax.set_ylim(extent.bottom - margin, extent.top + margin)
@@ -204,20 +211,40 @@ def blank(assembly: Assembly, rows: int, columns: int) -> tuple[Figure, Any]:
     return page, axes
 
 
+def _fitting(text: str, width: float) -> str:
+    """As much of each line of a text as fits a width [inch] at the size of titles: about 18 letters an inch."""
+    most = int(18.0 * width)
+    return "\n".join(line if len(line) <= most else f"{line[: most - 1]}…" for line in text.split("\n"))
+
+
+def _title(title: str, assembly: Assembly) -> str:
+    return f"{title}\ntan φ = {friction_text(assembly)}"
+
+
 def _panels(case: Case, results: list[Result], rows: list[str]) -> Figure:
-    assembly = case.assembly
-    page, axes = blank(assembly, len(rows), len(results))
+    assembly, units = case.assembly, case.wall.units
+    page, axes = blank(assembly, len(rows), len(results), head=_title(case.file.title, assembly))
     for column, result in enumerate(results):
-        value = words.FINDING[result.finding] if result.multiplier is None else numbers.multiplier(result.multiplier)
-        axes[0][column].set_title(f"{result.method}: {value}", pad=3, color=INK)
         for row, what in enumerate(rows):
             ax = axes[row][column]
-            if what == "mechanism" and result.mechanism is not None:
-                states = joints.joint_states(assembly, result)
-                draw_mechanism(ax, assembly, np.asarray(result.mechanism, dtype=float), states)
-            elif what != "mechanism" and result.forces is not None:
-                draw_forces(ax, assembly, np.asarray(result.forces, dtype=float), thrust=what == "thrust")
+            field = result.mechanism if what == "mechanism" else result.forces
+            if field is None:
+                continue
+            ax.set_title(_panel_title(case, result, what), pad=3, color=INK)
+            length_scale(ax, assembly, units)
+            if what == "mechanism":
+                draw_mechanism(ax, assembly, np.asarray(field, dtype=float), joints.joint_states(assembly, result))
+            else:
+                draw_forces(ax, assembly, np.asarray(field, dtype=float), thrust=what == "thrust", units=units)
     return page
+
+
+def _panel_title(case: Case, result: Result, what: str) -> str:
+    """The method, its value, and what is drawn."""
+    if what == "thrust":
+        found = shapes.thrusts(case.assembly, np.asarray(result.forces, dtype=float), flow.STYLE.smallest)
+        what = "line of thrust" if flow.has_line_of_thrust(case.assembly, found) else "flow of forces"
+    return f"{result.method}, {value_in_words(result)}: {what}"
 
 
 def draw_blocks(ax: Axes, assembly: Assembly, polygons: list[FloatArray], moving: np.ndarray | None = None) -> None:
@@ -270,38 +297,6 @@ def draw_mechanism(
         if state in (joints.ROCK, joints.BOTH):
             hinges = shapes.hinges(assembly, mechanism, ends, chosen)
             ax.plot(hinges[:, 0], hinges[:, 1], "o", color=BLUE, markersize=2.8)
-
-
-def draw_forces(ax: Axes, assembly: Assembly, forces: FloatArray, *, thrust: bool) -> None:
-    """Contact forces (m, 3): resultants at their centres of pressure, or thrust lines through the blocks.
-
-    The width of a line is proportional to the force; a force at the limit of friction is circled.
-    """
-    for still, hatch in ((False, None), (True, "/////")):
-        polygons = [p for p, fixed in zip(assembly.polygons, assembly.fixed, strict=True) if bool(fixed) is still]
-        ax.add_collection(PolyCollection(polygons, facecolor="none", edgecolor=GREY, linewidth=0.4, hatch=hatch))
-    found = shapes.thrusts(assembly, forces, smallest=2e-3)
-    if not len(found.size):
-        return
-    half = 0.36 * assembly.length_scale * found.force / found.size[:, None]
-    widths = 0.3 + 3.2 * found.size / found.size.max()
-    shear = abs(forces[found.interface, 2])
-    limit = assembly.friction[found.interface] * forces[found.interface, :2].sum(axis=1)
-    full = (limit > 0.0) & (shear >= 0.999 * limit)
-    if thrust:
-        lines = []
-        places = shapes.junctions(assembly, found)
-        for k, p in enumerate(found.interface):
-            a, b = assembly.block_a[p], assembly.block_b[p]
-            start = found.point[k] - half[k] if assembly.fixed[a] else places[a]
-            end = found.point[k] + half[k] if assembly.fixed[b] else places[b]
-            lines.append(np.array([start, found.point[k], end]))
-        ax.add_collection(LineCollection(lines, colors=BLUE, linewidths=widths, capstyle="round", joinstyle="round"))
-        return
-    bars = np.stack([found.point - half, found.point + half], axis=1)
-    colours = [RUST if at_limit else BLUE for at_limit in full]
-    ax.add_collection(LineCollection(list(bars), colors=colours, linewidths=widths))
-    ax.plot(found.point[full, 0], found.point[full, 1], "o", mfc="none", mec=RUST, mew=0.6, markersize=4.0)
 
 
 def _labels(ax: Axes, assembly: Assembly) -> None:

@@ -21,7 +21,8 @@ from harness.model.assembly import FloatArray
 from harness.model.inspection import Inspection, Mark
 from harness.model.units import DIMENSIONLESS
 from reports import shapes
-from reports.figures import BLUE, GREY, INK, PAGE, RUST, checked, draw_joints, draw_loads, metadata, style
+from reports.figures import PAGE, checked, draw_joints, draw_loads, metadata, style
+from reports.force_figure import BLUE, GREY, INK, RUST
 
 
 @dataclass(frozen=True)

@@ -7,7 +7,8 @@ from matplotlib.figure import Figure
 from harness.model.comparison import ComparisonRun
 from harness.model.result import Result
 from reports import words
-from reports.figures import COLUMN, GREY, style
+from reports.figures import COLUMN, style
+from reports.force_figure import GREY
 from reports.marks import mark_of
 
 TALLEST = 9.2

@@ -12,6 +12,7 @@ from harness.model.method import Finding, Status
 from harness.model.result import Result, Verdict
 from reports import drawing, numbers, paper, shapes, words
 from reports.agreement import agreement
+from reports.facts import value_in_words
 from reports.joints import joints_in_words, motion
 from reports.reasons import SAME_MOTION, least_known, mechanism_in_words
 from reports.tables import anchor_of
@@ -129,15 +130,6 @@ def _broken_theory(run: ComparisonRun) -> list[str]:
     if not broken:
         return []
     return [f"Theory is violated on {', '.join(broken)}: at least one method is wrong there."]
-
-
-def value_in_words(result: Result) -> str:
-    """The value as the method vouches for it: a number, or its bracket where it knows no more than that."""
-    if result.finding is not Finding.COLLAPSES or result.multiplier is None:
-        return words.FINDING[result.finding]
-    if result.flow == "approximate" and result.bracket is not None:
-        return numbers.interval(result.bracket)
-    return numbers.multiplier(result.multiplier)
 
 
 def _mains(item: CaseResults) -> list[Result]:

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 
-import numpy as np
 from markupsafe import Markup
 
 from harness.model.case import Case
@@ -13,6 +12,7 @@ from harness.model.result import Result
 from reports import numbers, shapes
 from reports.agreement import Agreement
 from reports.drawing import Frame, mechanisms_svg, stroke_factor
+from reports.facts import facts
 from reports.joints import joints_in_words, motion, open_with_force
 from reports.opening import figure_of, is_calm
 from reports.reasons import reasons
@@ -124,7 +124,7 @@ def case_section(
         view_box=frame.view_box,
         stroke=stroke_factor(item.case.assembly),
         loads_drawn=_loads_drawn(item.case),
-        facts=_facts(item.case),
+        facts=facts(item.case),
         warnings=(*item.case.warnings, *filter(None, [item.split_on_dead_load])),
         rows=rows,
         panels=panels,
@@ -179,30 +179,3 @@ def _forces_are(result: Result) -> str:
     if result.forces_multiplier is not None and at != numbers.multiplier(result.multiplier):
         return f"contact forces at {at}"
     return "contact forces at collapse"
-
-
-def _facts(case: Case) -> list[tuple[str, str]]:
-    assembly, units = case.assembly, case.wall.units
-    frictions = sorted({round(float(mu), 9) for mu in assembly.friction})
-    friction = (
-        ", ".join(numbers.given(mu, 4) for mu in frictions)
-        if len(frictions) <= 4
-        else f"{numbers.given(frictions[0], 4)} to {numbers.given(frictions[-1], 4)}"
-    )
-    weight = float(assembly.weight[assembly.free].sum())
-    live = np.abs(assembly.live[assembly.free, :2]).sum(axis=0)
-    ways = [name for name, size in zip(("horizontal", "vertical"), live, strict=True) if size > 0.0]
-    extent = Frame(assembly).extent
-    facts = [
-        ("Blocks", f"{assembly.n_free} free, {int(assembly.fixed.sum())} fixed"),
-        ("Interfaces", str(assembly.n_interfaces)),
-        ("Friction tan φ", friction),
-        ("Size", f"{numbers.given(extent.width, 4)} × {numbers.given(extent.height, 4)} {units.length}"),
-        ("Weight of free blocks", f"{numbers.given(weight, 4)} {units.force}"),
-        ("Live load", " and ".join(ways) if ways else "none: the question is whether it stands"),
-        ("Units", case.wall.units_sentence),
-    ]
-    if case.wall.loads.gravity_per_weight != (0.0, -1.0):
-        x, y = case.wall.loads.gravity_per_weight
-        facts.append(("Gravity", f"({numbers.given(x, 4)}, {numbers.given(y, 4)}) times the weight"))
-    return facts

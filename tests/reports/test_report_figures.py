@@ -5,15 +5,19 @@ from __future__ import annotations
 from pathlib import Path
 
 import matplotlib as mpl
+import numpy as np
 import pytest
+import shapely
 from PIL import Image
 
 from harness.model.errors import InputError
 from harness.model.method import Status
 from harness.model.result import Result
-from reports import figures
+from reports import figures, flow, shapes
 from reports.animate import FRAMES, animate
 from tests.reports import samples
+from tests.walls import case as wall_case
+from tests.walls import running_bond, stack
 
 CASE = samples.bond(title=samples.SCRIPT, prefix="$x^")
 MAGIC = {"pdf": b"%PDF", "svg": b"<?xml", "png": b"\x89PNG"}
@@ -86,3 +90,39 @@ def test_without_a_display_the_window_is_refused_with_the_way_out(monkeypatch: p
     monkeypatch.delenv("DISPLAY", raising=False)
     with pytest.raises(InputError, match=r"no window.*-o wall\.svg"):
         figures.show_window(figures.wall_figure(CASE.built), "wall")
+
+
+@pytest.mark.parametrize("kind", ["mechanism", "forces", "thrust"])
+def test_figure_says_what_wall_friction_method_and_scale_it_shows(kind: str, tmp_path: Path):
+    with mpl.rc_context():
+        page = figures.results_figure(CASE, results(), kind)
+    told = [text.get_text() for text in page.findobj(mpl.text.Text)]
+    assert any("tan φ = " in text for text in told)
+    assert any(text.startswith("fe, 0.5") for text in told)
+    assert any(text.endswith(" m") for text in told), "no scale of lengths"
+    assert any(text.endswith(" kN") for text in told) is (kind != "mechanism")
+
+
+def test_line_of_thrust_is_called_so_only_where_there_is_one():
+    titles = {}
+    for name, pattern in (("column", stack(3)), ("bond", running_bond(3, 2))):
+        case = wall_case(pattern)
+        forces = [(1.0, 1.0, 0.1)] * case.assembly.n_interfaces
+        result = samples.solved(case, "fe", 0.5).model_copy(update={"forces": forces})
+        titles[name] = figures.results_figure(case, [result], "thrust").axes[0].get_title()
+    assert titles["column"].endswith("line of thrust")
+    assert titles["bond"].endswith("flow of forces")
+
+
+def test_no_arrow_of_a_force_enters_a_support():
+    for pattern in (
+        stack(3),
+        running_bond(4, 2),
+        {"type": "ring", "inner_radius": 1.0, "outer_radius": 1.2, "count": 9},
+    ):
+        wall = wall_case(pattern).assembly
+        found = shapes.thrusts(wall, np.tile([0.2, 1.0, 0.6], (wall.n_interfaces, 1)))
+        ends = flow.drawn_ends(wall, found)
+        supports = [shapely.Polygon(wall.polygons[k]).buffer(-1e-6) for k in np.flatnonzero(wall.fixed)]
+        assert not any(shapely.LineString(arrow).intersects(held) for arrow in ends for held in supports)
+        np.testing.assert_allclose(np.linalg.norm(ends[:, 1] - ends[:, 0], axis=1), 0.72 * wall.length_scale)
