@@ -64,11 +64,12 @@ def assembly_of(wall: dict[str, Any], name: str = "wall") -> Assembly:
 
 
 def slack_of(method: Method) -> float:
-    """Relative error a multiplier may have: 0.5 % for methods that measure between two loads, rounding for the others.
+    """Relative error a multiplier may have: the stated one for methods that measure, rounding for the others.
 
     A calculating method with a bracket conforms if that holds the value within the method's tolerance.
     """
-    return 5e-3 if traits_of(method).brackets else 1e-8
+    traits = traits_of(method)
+    return traits.accuracy if traits.brackets else 1e-8
 
 
 def _closed_form(form: ClosedForm) -> Check:

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 
+import numpy as np
+
 from harness.model.case import Reference, ReferenceType
 from harness.model.comparison import CaseResults, Gate
 from harness.model.method import Finding, Status
@@ -132,6 +134,7 @@ def theory_gates(results: CaseResults) -> list[Gate]:
         if least is not None and result is not least and not result.traits.brackets:
             statement = "the least collapse state known lies below every other collapse state"
             below(f"{least.method}-below-{method}", statement, least, result)
+    gates += [gate for gate in (_moves_no_lower(results, usable, usable[name]) for name in sorted(usable)) if gate]
     no_equilibrium = bounding or least
     if no_equilibrium is not None and no_equilibrium.finding is Finding.FALLS:
         for method, result in usable.items():
@@ -146,3 +149,48 @@ def theory_gates(results: CaseResults) -> list[Gate]:
                 )
             )
     return gates
+
+
+def _moves_no_lower(results: CaseResults, usable: dict[str, Result], moved: Result) -> Gate | None:
+    """The gate of a method that measures at which load rigid blocks on even faces move, where theory knows the least.
+
+    Every block order and history then comes to rest below it. A wall that falls under its dead load moves at zero.
+    """
+    if not moved.traits.moves_no_lower:
+        return None
+    known, why = _unique(results, usable)
+    value = 0.0 if moved.finding is Finding.FALLS else moved.details.get("lowest_moving")
+    if known is None or known.multiplier is None or not isinstance(value, float | int):
+        return None
+    slack = moved.traits.accuracy * abs(known.multiplier) + BOUND_TOLERANCE
+    return Gate(
+        name=f"{moved.method}-moves-no-lower",
+        statement=f"no wall moves below the least multiplier, and {why}",
+        passed=value >= known.multiplier - slack,
+        sentence=f"{moved.method} moved at {value:.9g}, {known.method} {known.multiplier:.9g}",
+    )
+
+
+def _unique(results: CaseResults, usable: dict[str, Result]) -> tuple[Result | None, str]:
+    """The state below which no wall of this case moves, and why; None where theory does not know one."""
+    collapses = [result for result in usable.values() if result.finding is Finding.COLLAPSES]
+    proved = next((result for result in collapses if result.details.get("proved_least")), None)
+    if proved is not None:
+        return proved, f"that of {proved.method} is proved"
+    least = next((result for result in collapses if result.traits.seeks_least and result.method == result.family), None)
+    bounding = next((result for result in collapses if result.traits.bounds_above), None)
+    if least is None or bounding is None or least.multiplier is None or bounding.multiplier is None:
+        return None, ""
+    equal = abs(bounding.multiplier - least.multiplier) <= BOUND_TOLERANCE * max(1.0, abs(bounding.multiplier))
+    if not equal or _slips(results, least) or _slips(results, bounding):
+        return None, ""
+    return least, "where nothing slides the associated maximum is the only one"
+
+
+def _slips(results: CaseResults, result: Result) -> bool:
+    """Whether a joint slides in the mechanism of a result, or it has none to show that none does."""
+    if result.mechanism is None or results.case.assembly is None:
+        return True
+    wall, motion = results.case.assembly, np.asarray(result.mechanism, dtype=float)
+    rates = (wall.kinematic_matrix @ motion[wall.free].ravel()).reshape(-1, 3)
+    return bool(np.abs(rates[:, 2]).max(initial=0.0) > BOUND_TOLERANCE * np.abs(rates).max(initial=0.0))

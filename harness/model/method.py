@@ -96,10 +96,13 @@ class Traits(BaseModel):
     Attributes:
         caption: what its multiplier is, in a few words for the head of a column; empty: nothing is said.
         brackets: its multiplier is measured and lies between the ends of its bracket, a load held and one that moved;
-            shown as the bracket, and held against exact values to 0.5 %.
+            shown as the bracket, and held against exact values to `accuracy`.
+        accuracy: stated relative accuracy of a multiplier that is measured between two loads.
         seeks_least: it looks for the least collapse state, so that a lower accepted value is a better one.
         bounds_above: no wall bears more than its multiplier, whatever the flow: the associated maximum.
         any_self_stress: it lets joints carry any self-stress that statics and friction allow; others start without.
+        moves_no_lower: it measures when rigid blocks on even faces move (`details["lowest_moving"]`): where theory
+            knows the least multiplier, moving below it is an error.
         colour: of its curves, as "#rrggbb"; empty: the drawing chooses.
         marker: of its points, by the name matplotlib gives it; empty: the drawing chooses.
         line: "solid", "dashed", "dotted" or "dashdot".
@@ -108,9 +111,11 @@ class Traits(BaseModel):
     model_config = ConfigDict(frozen=True, extra="forbid")
     caption: str = ""
     brackets: bool = False
+    accuracy: float = Field(default=5e-3, gt=0.0, lt=1.0)
     seeks_least: bool = False
     bounds_above: bool = False
     any_self_stress: bool = False
+    moves_no_lower: bool = False
     colour: str = Field(default="", pattern="^(#[0-9a-f]{6})?$")
     marker: str = ""
     line: Literal["solid", "dashed", "dotted", "dashdot"] = "solid"

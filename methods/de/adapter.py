@@ -27,6 +27,7 @@ class DampedHolds:
     traits: ClassVar[Traits] = Traits(
         caption="between held and moving",
         brackets=True,
+        moves_no_lower=True,
         colour="#2f6b3a",
         marker="d",
     )
@@ -54,6 +55,7 @@ class MujocoHolds:
     traits: ClassVar[Traits] = Traits(
         caption="between held and moving, in MuJoCo",
         brackets=True,
+        moves_no_lower=True,
         colour="#2f6b3a",
         marker="<",
         line="dashed",
@@ -92,6 +94,7 @@ class ReleasedCollapse:
     traits: ClassVar[Traits] = Traits(
         caption="as de, then released and followed",
         brackets=True,
+        moves_no_lower=True,
         colour="#2f6b3a",
         marker=">",
         line="dotted",

@@ -117,6 +117,7 @@ def describe(assembly: Assembly, brackets: list[Bracket]) -> dict[str, Any]:
             for b in brackets
         ],
         "spread": spread,
+        "lowest_moving": min((b.moving for b in brackets if b.moving is not None), default=None),
         "undecided": sum(len(b.undecided) for b in brackets),
         "reporting_order": best.order if (best := reporting(brackets)) else None,
         "contact_updates": sum(b.steps for b in brackets) * assembly.n_interfaces,

@@ -2,14 +2,20 @@
 
 from __future__ import annotations
 
+import json
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 import pytest
 
+from harness.model.build import build
 from harness.model.method import Finding, Status
+from harness.model.reading import parse_wall
 from tests.de.answers import run, unbalanced, unyielding
 from tests.walls import assembly, running_bond, stack
+
+DATA = Path(__file__).parents[1] / "data" / "walls"
 
 # The bracket is narrowed to 5e-4 of the multiplier: its middle may be 2.5e-4 away, and the load steps add nothing.
 EXACT = 5e-4
@@ -57,6 +63,21 @@ def test_wall_of_21_bricks_slides_or_turns_with_unloaded_head_joints(friction):
     assert answer.mechanism.shape == (22, 3)
     assert np.sum(answer.mechanism * wall.live) > 0.0
     assert np.all(answer.mechanism[wall.fixed] == 0.0)
+
+
+def drawn(name):
+    return build(parse_wall(json.loads((DATA / f"{name}.json").read_text(encoding="utf-8")), name)).assembly
+
+
+# Only joints open, so that the associated maximum (linear programmes of two solvers) is the one multiplier. Forces pass
+# through so long a chain in many relaxation times of the damping: both were called moving, or not told, on their way.
+@pytest.mark.parametrize(("name", "exact"), [("segment-81", 0.3962006), ("thin-arch-101", 0.0534658)])
+def test_arches_that_settle_slowly_are_followed_to_rest(name, exact):
+    answer = run(drawn(name), orders=1)
+    assert answer.status is Status.OK
+    assert answer.multiplier == pytest.approx(exact, rel=EXACT)
+    assert answer.bracket[0] <= exact <= answer.bracket[1]
+    assert {order["proof"] for order in answer.details["orders"]} == {"virtual work"}
 
 
 def two_friction_block():

@@ -20,7 +20,7 @@ from harness.engine.regression import violations
 from harness.engine.store import Store, open_store
 from harness.engine.verdict import compare, theory_gates
 from harness.model.case import Reference
-from harness.model.comparison import CaseResults
+from harness.model.comparison import CaseResults, ComparisonRun
 from harness.model.errors import InputError
 from harness.model.method import Finding, Status, Traits
 from harness.model.result import Judgement, Result, Verdict
@@ -128,6 +128,31 @@ def test_theory_gates_hold_and_break():
 def test_no_method_may_hold_a_wall_that_has_no_equilibrium():
     falls = result("la-associated", None, finding=Finding.FALLS)
     assert gates(falls, result("de", None, finding=Finding.STANDS)) == {"de-falls-without-equilibrium": False}
+
+
+def test_no_wall_moves_below_a_least_multiplier_that_is_proved_or_the_only_one():
+    def moving(value: float, name: str = "de") -> Result:
+        details = {"lowest_moving": value}
+        return result(name, value, bracket=(value, value), details=details).model_copy(
+            update={"traits": Traits(brackets=True, moves_no_lower=name != "de-soft")}
+        )
+
+    proved = result("la", 0.5, details={"proved_least": True})
+    assert gates(proved, moving(0.498))["de-moves-no-lower"]
+    assert gates(proved, moving(0.497))["de-moves-no-lower"] is False
+    assert gates(proved, moving(0.497), moving(0.501, "de-mujoco"))["de-mujoco-moves-no-lower"]
+    assert "de-soft-moves-no-lower" not in gates(proved, moving(0.497, "de-soft"))
+    assert "de-moves-no-lower" not in gates(result("la", 0.5), moving(0.4))
+    falls = moving(0.0).model_copy(update={"finding": Finding.FALLS, "multiplier": None})
+    assert gates(proved, falls)["de-moves-no-lower"] is False
+    # A block that turns about its corner, and one that slides, at the maximum of associated flow.
+    turns, slides = [[0.0] * 3, [0.1, 0.15, -1.0]], [[0.0] * 3, [1.0, 0.0, 0.0]]
+    for mechanism, gated in ((turns, True), (slides, False)):
+        both = [result(name, 0.5, mechanism=mechanism) for name in ("la", "la-associated")]
+        assert ("de-moves-no-lower" in gates(*both, moving(0.4))) == gated
+    answers = [proved, moving(0.4)]
+    item = CaseResults(case(stack(1)), answers, theory_gates(CaseResults(case(stack(1)), answers)))
+    assert any("de-moves-no-lower" in line for line in violations(ComparisonRun("one", "", "", [item])))
 
 
 def dummy_run(does: str, **limits: float) -> Run:
