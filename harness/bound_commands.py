@@ -2,42 +2,46 @@
 
 from __future__ import annotations
 
-import json
 import sys
 from pathlib import Path
+from typing import Any
 
 import click
 
+from harness.certificates import read_certificate, write_certificate
 from harness.model.errors import InputError
-from harness.model.reading import read_json, read_wall
+from harness.model.reading import read_wall
 from harness.options import catching, json_flag, print_json, say
+from methods.bound.exact_wall import CertificateError
 from methods.bound.same_wall import require_same_wall
-from methods.bound.verify import CertificateError, verify
+from methods.bound.verify import verify
 
 
 @click.command()
 @click.argument("wall", type=click.Path(path_type=Path))
 @click.option("-o", "--output", type=click.Path(path_type=Path), required=True, help="The certificate to write.")
 @click.option("--nodes", type=click.IntRange(min=1), default=1500, show_default=True, help="Of the tree at most.")
+@click.option("--seconds", type=click.FloatRange(min=0.0), default=120.0, show_default=True, help="For the windows.")
 @catching
-def bound(wall: Path, output: Path, nodes: int) -> None:
-    """Write a certificate in fractions that no collapse state of WALL lies below the one found.
+def bound(wall: Path, output: Path, nodes: int, seconds: float) -> None:
+    """Write a certificate in fractions of the multiplier below which WALL has no collapse state.
 
-    Small walls, columns and rings have one. Exit code 1: none was found, and nothing is written.
+    Columns, rings and small walls have one of a tree, bonded walls one of windows. An output whose name ends in .gz is
+    compressed. Exit code 1: none was found, and nothing is written.
     """
-    from methods.la.certify import certificate
+    from methods.la.bound_adapter import find_certificate
 
     built = read_wall(wall)
     for sentence in built.warnings:
         say(f"drystone: {sentence}", err=True)
     if not built.assembly.has_live_load:
         raise InputError("the wall has no live load", 'Give "loads": {"live": ...}', str(wall))
-    document = certificate(built.assembly, nodes)
+    document = find_certificate(built.assembly, nodes, seconds)
     if document is None:
-        say("No certificate was found: the tree did not end, or the wall's numbers are not short fractions.", err=True)
+        say("No certificate: nothing was proved in time, or the wall's numbers are not short fractions.", err=True)
         sys.exit(1)
-    output.write_text(json.dumps(document, indent=1), encoding="utf-8")
-    say(_sentence(*(str(document[name]) for name in ("bound", "multiplier"))))
+    write_certificate(output, document)
+    say(_sentence(document))
 
 
 @click.command(name="verify-bound")
@@ -50,7 +54,7 @@ def verify_bound(certificate: Path, wall: Path | None, as_json: bool) -> None:
 
     With --wall, a certificate of another wall is refused too.
     """
-    document = read_json(certificate)
+    document = read_certificate(certificate)
     try:
         if wall is not None:
             require_same_wall(document, read_wall(wall).assembly)
@@ -64,10 +68,12 @@ def verify_bound(certificate: Path, wall: Path | None, as_json: bool) -> None:
     if as_json:
         print_json({"holds": True, "bound": str(lower), "multiplier": str(upper), "value": float(upper)})
     else:
-        say(_sentence(str(lower), str(upper)))
+        say(_sentence(document))
         if wall is not None:
             say(f"It is of the wall in {wall}.")
 
 
-def _sentence(lower: str, upper: str) -> str:
-    return f"There is a collapse state at {upper}, and none below {lower}: proved in fractions."
+def _sentence(document: dict[str, Any]) -> str:
+    none = "none from zero to below" if "windows" in document else "none below"
+    state, bound = document["multiplier"], document["bound"]
+    return f"There is a collapse state at {state}, and {none} {bound}: proved in fractions."

@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import gzip
+import json
+import zlib
 from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
@@ -10,12 +13,15 @@ from harness.engine.plan import Limits, Run
 from harness.model.case import Case
 from harness.model.errors import InputError
 from harness.model.method import Finding
-from harness.model.reading import read_json
+from harness.model.reading import LARGEST_FILE, json_of, read_bytes, read_json
 from harness.model.result import Result, Verdict
+from methods.bound.exact_wall import CertificateError
 from methods.bound.same_wall import require_same_wall
-from methods.bound.verify import CertificateError, verify
+from methods.bound.verify import verify
 
 CERTIFICATE = "certificate.json"
+PACKED = ".gz"
+"""Ending of the name of a certificate that is compressed, as those of windows are."""
 METHOD = "la"
 ROUNDING = 1e-9
 """Relative part by which the multiplier of `la`, in floats, may lie below what is proved in fractions."""
@@ -23,8 +29,37 @@ ROUNDING = 1e-9
 
 def certificate_of(case: Case) -> Path | None:
     """The certificate beside the wall of a case, if there is one."""
-    path = Path(case.origin).parent / CERTIFICATE
-    return path if path.is_file() and (path.parent / "case.toml").is_file() else None
+    folder = Path(case.origin).parent
+    if not (folder / "case.toml").is_file():
+        return None
+    return next((path for path in (folder / CERTIFICATE, folder / (CERTIFICATE + PACKED)) if path.is_file()), None)
+
+
+def read_certificate(path: Path) -> Any:
+    """The content of a certificate, compressed or not.
+
+    Raises:
+        InputError: unreadable, not JSON, or larger than files may be, unpacked too.
+    """
+    if path.suffix != PACKED:
+        return read_json(path)
+    packed, unpacker = read_bytes(path), zlib.decompressobj(wbits=zlib.MAX_WBITS | 16)
+    try:
+        content = unpacker.decompress(packed, LARGEST_FILE)
+        text = content.decode()
+    except (zlib.error, UnicodeDecodeError) as error:
+        raise InputError(f"it cannot be unpacked ({error})", "Give a gzip file", source=str(path)) from None
+    if not unpacker.eof:
+        raise InputError("it is cut short or unpacks to too much", "Give the whole file", source=str(path))
+    return json_of(text, str(path))
+
+
+def write_certificate(path: Path, document: dict[str, Any]) -> None:
+    """Write a certificate, compressed if its name says so, the same bytes for the same document."""
+    if path.suffix == PACKED:
+        path.write_bytes(gzip.compress(json.dumps(document, separators=(",", ":")).encode(), mtime=0))
+    else:
+        path.write_text(json.dumps(document, indent=None if "windows" in document else 1), encoding="utf-8")
 
 
 def certificate_runs(cases: Sequence[Case], limits: Limits) -> list[Run]:
@@ -43,7 +78,7 @@ def certificate_line(run: Run, result: Result) -> dict[str, Any]:
     assert path is not None
     lower: float | None = None
     try:
-        document = read_json(path)
+        document = read_certificate(path)
         require_same_wall(document, run.case.assembly)
         proved = verify(document)
         lower = float(proved[0])
@@ -61,7 +96,7 @@ def certificate_line(run: Run, result: Result) -> dict[str, Any]:
         "expected": lower,
         "tolerance": 0.0 if lower is None else ROUNDING * abs(lower),
         "type": "exact",
-        "source": CERTIFICATE,
+        "source": path.name,
         "requirement": "No collapse state lies below the bound that the certificate proves in fractions.",
         "verdict": str(verdict),
         "sentence": sentence,

@@ -17,6 +17,22 @@ from methods.bound.slack_bounds import SlackProgramme
 from methods.bound.tuning import STEPS, WINDOWS
 
 
+@dataclass(frozen=True, eq=False)
+class WindowProof:
+    """What proves the bound of one window, in floats.
+
+    Attributes:
+        relaxation: of the window.
+        size, multiplier: multipliers of its products that bound the size of mechanisms, and the multiplier.
+        bound: the multiplier below which they leave no collapse state of the window.
+    """
+
+    relaxation: Relaxation
+    size: FloatArray
+    multiplier: FloatArray
+    bound: float
+
+
 @dataclass
 class Bracket:
     """What is known of the least multiplier.
@@ -25,12 +41,14 @@ class Bracket:
         lower: no collapse state has a smaller multiplier, to rounding; upper: multiplier of a collapse state.
         windows: lower ends of the windows, in order.
         iterations: of the splitting.
+        proofs: of the windows, in order.
     """
 
     lower: float
     upper: float
     windows: list[float] = field(default_factory=list)
     iterations: int = 0
+    proofs: list[WindowProof] = field(default_factory=list)
 
     @property
     def closed(self) -> bool:
@@ -38,7 +56,13 @@ class Bracket:
         return self.lower >= self.upper * (1.0 - WINDOWS.closed)
 
 
-def bracket(equations: Equations, upper: float, seconds: float, lower: float = 0.0) -> Bracket:
+Certify = Callable[[WindowProof, float], float]
+"""What exact arithmetic leaves of the bound of a window, and how much of it is needed."""
+
+
+def bracket(
+    equations: Equations, upper: float, seconds: float, lower: float = 0.0, certify: Certify | None = None
+) -> Bracket:
     """The bracket that this much CPU time gives.
 
     Args:
@@ -46,8 +70,9 @@ def bracket(equations: Equations, upper: float, seconds: float, lower: float = 0
         upper: scaled multiplier of a collapse state, above zero.
         seconds: of CPU time; a window whose slacks are being bounded is finished.
         lower: a bound that is known.
+        certify: asked after every window; the next begins at what it leaves of the bound.
     """
-    search = _Search(equations, Bracket(lower, upper), time.process_time() + seconds)
+    search = _Search(equations, Bracket(lower, upper), time.process_time() + seconds, certify)
     while not search.found.closed and time.process_time() < search.until:
         if not search.window():
             break
@@ -57,13 +82,14 @@ def bracket(equations: Equations, upper: float, seconds: float, lower: float = 0
 class _Search:
     """The windows of one bracket, with what each hands to the next."""
 
-    def __init__(self, equations: Equations, found: Bracket, until: float) -> None:
-        self.equations, self.found, self.until = equations, found, until
+    def __init__(self, equations: Equations, found: Bracket, until: float, certify: Certify | None) -> None:
+        self.equations, self.found, self.until, self._certify = equations, found, until, certify
         self._began = time.process_time()
         self._slacks = SlackProgramme(equations)
         self._runs: dict[str, Splitting] = {}
         self._relaxation: Relaxation | None = None
         self._size = np.inf
+        self._size_products: FloatArray | None = None
 
     def window(self) -> bool:
         """Bound the multipliers of one window, or go on with the last one; whether another may gain more."""
@@ -78,6 +104,9 @@ class _Search:
         if not np.isfinite(self._size):
             return True
         stalled = self._bound_multiplier()
+        if self._certify is not None and found.lower > before:
+            needed = found.lower - WINDOWS.below * (found.upper - found.lower)
+            found.lower = min(found.lower, max(before, self._certify(found.proofs[-1], needed)))
         return found.lower - before > 1e-3 * (found.upper - before) or not (stalled and last)
 
     def _is_last(self, relaxation: Relaxation) -> bool:
@@ -87,10 +116,11 @@ class _Search:
         """Build the relaxation of the present bracket; False if no forces within yield exist in it."""
         found, old = self.found, self._relaxation
         high = found.upper * (1.0 + WINDOWS.above)
-        bounds = self._slacks.bounds(found.lower, high)
+        low = found.lower
+        bounds = self._slacks.bounds(low, high)
         if bounds is None:
             return False
-        new = Relaxation(self.equations, found.lower, high, bounds)
+        new = Relaxation(self.equations, low, high, bounds)
         costs: dict[str, FloatArray] = {"size": new.size_cost(), "multiplier": new.multiplier_cost()}
         for name, cost in costs.items():
             run = Splitting(new, cost, STEPS[name].first, STEPS[name].least)
@@ -99,7 +129,7 @@ class _Search:
                 run.iterate = carried_over(new, old, self._runs[name].iterate, run.step)
             self._runs[name] = run
         self._relaxation, self._size = new, np.inf
-        found.windows.append(found.lower)
+        found.windows.append(low)
         return True
 
     def _bound_size(self) -> None:
@@ -109,7 +139,9 @@ class _Search:
         def stop(bound: DualBound | None, primal: float) -> bool:
             if bound is None:
                 return False
-            self._size = min(self._size, bound.greatest_size())
+            size = bound.greatest_size()
+            if size < self._size:
+                self._size, self._size_products = size, bound.products
             return self._size < 1.5 * max(abs(bound.value), 1e-9)
 
         self._run("size", max(5.0, 0.25 * spent), stop)
@@ -124,8 +156,11 @@ class _Search:
             nonlocal agreeing
             if bound is None:
                 return False
-            found.lower = min(max(found.lower, relaxation.low + bound.of(self._size)), found.upper)
-            if found.closed or (not last and found.lower > start + WINDOWS.gain * (found.upper - start)):
+            before, gap = found.lower, found.upper - found.lower
+            self._keep(relaxation, bound)
+            gained = found.lower > start + WINDOWS.gain * (found.upper - start)
+            fast = found.lower > before + WINDOWS.gain * gap
+            if found.lower >= found.upper * (1.0 - WINDOWS.finished) or (gained and not fast and not last):
                 return True
             close = 0.05 * (found.upper - found.lower)
             ends = (relaxation.low + primal - found.lower, primal - bound.value)
@@ -134,6 +169,16 @@ class _Search:
 
         self._run("multiplier", np.inf, stop)
         return agreeing >= 5
+
+    def _keep(self, relaxation: Relaxation, bound: DualBound) -> None:
+        """Raise the bound to what the dual of this window proves, and keep the dual."""
+        found, lower = self.found, relaxation.low + bound.of(self._size)
+        if lower <= found.lower or self._size_products is None:
+            return
+        if found.proofs and found.proofs[-1].relaxation is relaxation:
+            found.proofs.pop()
+        found.proofs.append(WindowProof(relaxation, self._size_products, bound.products, lower))
+        found.lower = min(lower, found.upper)
 
     def _run(self, name: str, seconds: float, stop: Callable[[DualBound | None, float], bool]) -> None:
         run, before = self._runs[name], self._runs[name].iterations

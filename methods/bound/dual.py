@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 
@@ -13,11 +13,16 @@ from methods.bound.tuning import ROUNDING
 
 @dataclass(frozen=True)
 class DualBound:
-    """cost >= value - constant - per_size * G for every collapse state of the window, G the size of its mechanism."""
+    """cost >= value - constant - per_size * G for every collapse state of the window, G the size of its mechanism.
+
+    Attributes:
+        products: multipliers of the unscaled products, as `Relaxation` orders them.
+    """
 
     value: float
     constant: float
     per_size: float
+    products: FloatArray = field(repr=False)
 
     def of(self, size: float) -> float:
         """The least cost of collapse states whose mechanism is of this size or smaller."""
@@ -47,7 +52,7 @@ def dual_bound(relaxation: Relaxation, iterate: FloatArray, step: float, cost: F
     limit = np.where(paid > 0.0, relaxation.row_limit[:, None], 0.0)
     price = (limit * paid).sum(axis=0)
     per_size = max(float(price[:f].max(initial=0.0)), float(price[-1])) + _paid_for_signed_slips(relaxation, true)
-    return DualBound(value, float(price[f]), per_size)
+    return DualBound(value, float(price[f]), per_size, np.where(relaxation.unused, 0.0, true))
 
 
 def _paid_for_signed_slips(relaxation: Relaxation, true: FloatArray) -> float:

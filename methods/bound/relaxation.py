@@ -36,8 +36,9 @@ class Relaxation:
         self.equations, self.low, self.high, self.bounds = equations, low, high, bounds
         m = equations.n_interfaces
         still = bounds.least > ROUNDING.margin
-        self.normal = bounds.normal(equations.friction)
+        self.normal = bounds.normal_least
         loaded = (self.normal > ROUNDING.margin) | still.reshape(-1, 4)[:, 2:].any(axis=1)
+        self.loaded: IntArray = np.flatnonzero(loaded)
         self.unloadable: IntArray = np.flatnonzero(~loaded)
         may = ~still.reshape(-1, 4)
         may[self.unloadable, 2:] = False

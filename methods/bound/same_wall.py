@@ -8,8 +8,8 @@ from typing import Any
 import numpy as np
 
 from harness.model.assembly import Assembly, FloatArray
+from methods.bound.exact_wall import CertificateError
 from methods.bound.tuning import ROUNDING
-from methods.bound.verify import CertificateError
 
 
 def require_same_wall(document: Any, assembly: Assembly) -> None:

@@ -15,20 +15,23 @@ from methods.numerics.linear_programme import INFINITY, Programme
 
 @dataclass(frozen=True, eq=False)
 class SlackBounds:
-    """Bounds of the slacks within a window.
+    """Bounds of slacks and normal forces within a window, in mean block weights, widened by `Rounding.margin`.
 
     Attributes:
-        least, greatest: (4m,) slacks in mean block weights, widened by `Rounding.margin`; zero and inf where not known.
+        least: (4m,) least slacks; zero where not known.
+        normal_least, normal_greatest: (m,) normal forces of interfaces; zero and inf where not known.
+        greatest: (4m,) greatest slacks, from the greatest normal forces.
+        still_velocities, least_velocities, greatest_velocities: (4m, 3n), (m, 3n), (m, 3n) virtual velocities that
+            prove the bounds, not widened.
     """
 
     least: FloatArray
+    normal_least: FloatArray
+    normal_greatest: FloatArray
     greatest: FloatArray
-
-    def normal(self, friction: FloatArray) -> FloatArray:
-        """(m,) least normal force of each interface, by its ends or by its friction."""
-        ends, slip = self.least.reshape(-1, 4)[:, :2].sum(axis=1), self.least.reshape(-1, 4)[:, 2:].sum(axis=1)
-        by_friction = np.divide(slip, 2.0 * friction, out=np.zeros_like(slip), where=friction > 0.0)
-        return np.asarray(np.maximum(ends, by_friction))
+    still_velocities: FloatArray
+    least_velocities: FloatArray
+    greatest_velocities: FloatArray
 
 
 class SlackProgramme:
@@ -36,7 +39,7 @@ class SlackProgramme:
 
     def __init__(self, equations: Equations) -> None:
         m, n = equations.n_interfaces, len(equations.dead)
-        self._m = m
+        self._m, self._n, self._friction = m, n, equations.friction
         statics = sp.hstack([equations.kinematic.T, sp.csc_matrix((n, 4 * m)), sp.csc_matrix(equations.live[:, None])])
         yields = sp.hstack([sp.csc_matrix(equations.slack), -sp.eye(4 * m), sp.csc_matrix((4 * m, 1))])
         right = np.append(-equations.dead, np.zeros(4 * m))
@@ -46,19 +49,47 @@ class SlackProgramme:
             sp.csc_matrix(sp.vstack([statics, yields])), np.zeros(7 * m + 1), (lower, upper), (right, right)
         )
 
+    def window(self, low: float, high: float) -> None:
+        """Keep multipliers within a window from now on."""
+        self._programme.set_columns(7 * self._m, np.array([low]), np.array([high]))
+
+    def least(self, slacks: FloatArray) -> tuple[str, float, FloatArray]:
+        """(status, least weighted sum of slacks (4m,), virtual velocities (3n,) that prove it)."""
+        self._programme.set_costs(3 * self._m, slacks)
+        status, value, dual = self._programme.run()
+        return status, float(slacks @ value[3 * self._m : 7 * self._m]), dual[: self._n]
+
     def bounds(self, low: float, high: float) -> SlackBounds | None:
         """Bounds of all slacks for multipliers from `low` to `high`; None if no forces within yield exist there."""
         m = self._m
-        self._programme.set_columns(7 * m, np.array([low]), np.array([high]))
-        least, greatest = np.zeros(4 * m), np.full(4 * m, np.inf)
-        for k in range(4 * m):
-            for sign, values in ((1.0, least), (-1.0, greatest)):
-                cost = np.zeros(4 * m)
-                cost[k] = sign
-                self._programme.set_costs(3 * m, cost)
-                status, value, _ = self._programme.run()
-                if status == "infeasible":
-                    return None
-                if status == "optimal":
-                    values[k] = max(value[3 * m + k] - sign * ROUNDING.margin, 0.0)
-        return SlackBounds(least, greatest)
+        self.window(low, high)
+        slacks = np.eye(4 * m)
+        normals = slacks.reshape(m, 4, 4 * m)[:, :2].sum(axis=1)
+        found = [self._all(weights) for weights in (slacks, normals, -normals)]
+        if any(values is None for values in found):
+            return None
+        (least, still), (normal_least, lower), (normal_greatest, upper) = (part for part in found if part is not None)
+        by_normal = np.maximum(-normal_greatest, 0.0) + ROUNDING.margin
+        by_slip = np.zeros(m)
+        np.multiply(2.0 * self._friction, by_normal, out=by_slip, where=self._friction > 0.0)
+        greatest = np.column_stack([by_normal, by_normal, by_slip, by_slip])
+        return SlackBounds(
+            np.maximum(least - ROUNDING.margin, 0.0),
+            np.maximum(normal_least - ROUNDING.margin, 0.0),
+            by_normal,
+            greatest.ravel(),
+            still,
+            lower,
+            upper,
+        )
+
+    def _all(self, weights: FloatArray) -> tuple[FloatArray, FloatArray] | None:
+        """Least values (k,) of weighted sums of slacks (k, 4m), -inf where not known, with the velocities (k, 3n)."""
+        values, velocities = np.full(len(weights), -np.inf), np.zeros((len(weights), self._n))
+        for k, slacks in enumerate(weights):
+            status, value, dual = self.least(slacks)
+            if status == "infeasible":
+                return None
+            if status == "optimal":
+                values[k], velocities[k] = value, dual
+        return values, velocities

@@ -11,15 +11,21 @@ class Windows:
 
     Attributes:
         closed: relative distance of bound and state at which the bracket is closed.
+        proved: relative distance of a certified bound at which the state is called the minimum: as near as trees come.
         narrow: relative width of a window below which a narrower one costs more than it gains.
-        gain: part of the bracket that one window must gain before the next is built.
+        gain: part of the bracket that one window must gain before the next is built, and one check to go on with it.
         above: relative distance of the window's upper end above the state, so that rounding does not cut it off.
+        below: part of the bracket that a certificate may lose to rounding before it takes more digits.
+        finished: relative distance at which a window ends: less than `closed`, because a certificate loses some.
     """
 
     closed: float = 1e-6
+    proved: float = 2.001e-6
     narrow: float = 4e-3
     gain: float = 0.3
     above: float = 1e-9
+    below: float = 1e-2
+    finished: float = 5e-7
 
 
 @dataclass(frozen=True)
@@ -64,6 +70,7 @@ class Rounding:
             tolerances.
         wall: difference of a number in a certificate from that of the wall, relative to the largest of its kind: short
             fractions lie within 1e-13 of the float they were read from, and loads are once divided by a unit besides.
+        below: relative distance below a fraction at which a float is not above it, whatever the conversion rounds.
     """
 
     settled: float = 1e-24
@@ -71,7 +78,29 @@ class Rounding:
     no_row: float = 1e-9
     margin: float = 1e-6
     wall: float = 1e-11
+    below: float = 1e-15
 
 
+@dataclass(frozen=True)
+class Precision:
+    """Binary places of the numbers in the certificate of a window.
+
+    Attributes:
+        numbers: of multipliers and least forces; velocities: of virtual velocities; weights: of the size of mechanisms;
+        motions: of the velocities that strains give; size: of multipliers of products that bound the size.
+        multipliers: of those that bound the multiplier, the first that suffice.
+        refinements: of what the multipliers of products leave, before they are rounded.
+    """
+
+    numbers: int = 44
+    velocities: int = 40
+    weights: int = 20
+    motions: int = 30
+    size: int = 36
+    multipliers: tuple[int, ...] = (28, 36, 44, 52)
+    refinements: int = 2
+
+
+PRECISION = Precision()
 WINDOWS, RESTARTS, ROUNDING = Windows(), Restarts(), Rounding()
 STEPS = {"size": Steps(1.0, 1e-2, 1e-2), "multiplier": Steps(1e3, 100.0, 300.0)}

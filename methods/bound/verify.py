@@ -15,74 +15,14 @@ from fractions import Fraction
 from pathlib import Path
 from typing import Any
 
-Vector = list[Fraction]
-
-
-class CertificateError(ValueError):
-    """The certificate does not show what it says."""
-
-
-def _fractions(values: Any, count: int) -> Vector:
-    if not isinstance(values, list) or len(values) != count:
-        raise CertificateError(f"{count} numbers are needed")
-    return [Fraction(str(value)) for value in values]
+from methods.bound.exact_wall import CertificateError, ExactWall, Vector, dot, fractions_of
+from methods.bound.verify_window import window_bound
 
 
 def digest(document: Any) -> str:
     """SHA-256 of all that a certificate holds but the digest itself: it shows accidents, the fractions show errors."""
     content = {name: value for name, value in document.items() if name != "digest"}
     return hashlib.sha256(json.dumps(content, sort_keys=True).encode()).hexdigest()
-
-
-def _dot(a: Vector, b: Vector) -> Fraction:
-    return sum((x * y for x, y in zip(a, b, strict=True) if x and y), Fraction(0))
-
-
-class _Wall:
-    """Strain rows (3m of 3n), loads (3n) and friction (m) from blocks and interfaces given in fractions.
-
-    Normals keep the length of their interface: forces are then per length, the same for normal and shear.
-    """
-
-    def __init__(self, document: Any) -> None:
-        blocks, interfaces = document["blocks"], document["interfaces"]
-        n = len(blocks)
-        centroid = [_fractions(block["centroid"], 2) for block in blocks]
-        self.dead = [x for block in blocks for x in _fractions(block["dead"], 3)]
-        self.live = [x for block in blocks for x in _fractions(block["live"], 3)]
-        self.friction = [Fraction(str(item["friction"])) for item in interfaces]
-        if any(mu < 0 for mu in self.friction):
-            raise CertificateError("friction is zero or more")
-        self.rows: list[Vector] = []
-        for item in interfaces:
-            x1, y1, x2, y2 = _fractions(item["ends"], 4)
-            sign = Fraction(str(item["side"]))
-            if (x1, y1) == (x2, y2) or abs(sign) != 1:
-                raise CertificateError("an interface has two ends and a side of 1 or -1")
-            tangent = (x2 - x1, y2 - y1)
-            normal = (-sign * tangent[1], sign * tangent[0])
-            for x, y, along in ((x1, y1, normal), (x2, y2, normal), ((x1 + x2) / 2, (y1 + y2) / 2, tangent)):
-                row = [Fraction(0)] * (3 * n)
-                for block, sense in ((item["a"], -1), (item["b"], 1)):
-                    if block is None:
-                        continue
-                    if not 0 <= block < n:
-                        raise CertificateError("an interface names a block that is not there")
-                    dx, dy = x - centroid[block][0], y - centroid[block][1]
-                    turning = dx * along[1] - dy * along[0]
-                    for k, value in enumerate((along[0], along[1], turning)):
-                        row[3 * block + k] += sense * value
-                self.rows.append(row)
-
-    def resultant(self, forces: Vector) -> Vector:
-        """C' r of forces (3m,)."""
-        total = [Fraction(0)] * len(self.dead)
-        for row, force in zip(self.rows, forces, strict=True):
-            if force:
-                for k, value in enumerate(row):
-                    if value:
-                        total[k] += value * force
-        return total
 
 
 def verify(document: Any) -> tuple[Fraction, Fraction]:
@@ -94,13 +34,17 @@ def verify(document: Any) -> tuple[Fraction, Fraction]:
     try:
         if document["digest"] != digest(document):
             raise CertificateError("its digest is not that of its content")
-        wall = _Wall(document)
+        wall = ExactWall(document)
         bound, upper = Fraction(str(document["bound"])), Fraction(str(document["multiplier"]))
         _check_state(wall, upper, document["state"])
-        leaves = [_Leaf(wall, leaf) for leaf in document["leaves"]]
+        if "windows" in document:
+            _check_windows(wall, bound, document["windows"])
+            leaves = []
+        else:
+            leaves = [_Leaf(wall, leaf) for leaf in document["leaves"]]
+            _check_cover([(leaf.tight, leaf.still) for leaf in leaves])
     except (KeyError, TypeError, ValueError, ZeroDivisionError, AttributeError) as error:
         raise CertificateError(str(error)) from error
-    _check_cover([(leaf.tight, leaf.still) for leaf in leaves])
     for leaf in leaves:
         leaf.check(wall, bound)
     if bound > upper:
@@ -108,17 +52,29 @@ def verify(document: Any) -> tuple[Fraction, Fraction]:
     return bound, upper
 
 
-def _check_state(wall: _Wall, multiplier: Fraction, state: Any) -> None:
-    forces = _fractions(state["forces"], len(wall.rows))
-    velocities = _fractions(state["velocities"], len(wall.dead))
+def _check_windows(wall: ExactWall, bound: Fraction, windows: Any) -> None:
+    """Whether the windows, one above the other from zero, leave no collapse state below the bound."""
+    proved = Fraction(0)
+    for document in windows:
+        low, _, above = window_bound(wall, document)
+        if low > proved:
+            raise CertificateError(f"a window begins at {float(low):.9g}, where {float(proved):.9g} is proved")
+        proved = max(proved, above)
+    if proved < bound:
+        raise CertificateError(f"the windows prove {float(proved):.9g} only")
+
+
+def _check_state(wall: ExactWall, multiplier: Fraction, state: Any) -> None:
+    forces = fractions_of(state["forces"], len(wall.rows))
+    velocities = fractions_of(state["velocities"], len(wall.dead))
     loads = [d + multiplier * f for d, f in zip(wall.dead, wall.live, strict=True)]
     if any(a + b for a, b in zip(wall.resultant(forces), loads, strict=True)):
         raise CertificateError("the collapse state is not in equilibrium")
-    if _dot(wall.live, velocities) <= 0:
+    if dot(wall.live, velocities) <= 0:
         raise CertificateError("the live load does no work in the collapse state")
     for p, mu in enumerate(wall.friction):
         n1, n2, s = forces[3 * p : 3 * p + 3]
-        open1, open2, slip = (_dot(row, velocities) for row in wall.rows[3 * p : 3 * p + 3])
+        open1, open2, slip = (dot(row, velocities) for row in wall.rows[3 * p : 3 * p + 3])
         strength = mu * (n1 + n2)
         if min(n1, n2, strength - abs(s), open1, open2) < 0 or n1 * open1 or n2 * open2:
             raise CertificateError("the collapse state violates yield or passes through a joint")
@@ -142,31 +98,31 @@ def _check_cover(leaves: list[tuple[frozenset[int], frozenset[int]]]) -> None:
 
 
 class _Leaf:
-    def __init__(self, wall: _Wall, document: Any) -> None:
+    def __init__(self, wall: ExactWall, document: Any) -> None:
         self.tight, self.still = frozenset(document["tight"]), frozenset(document["still"])
         if not all(type(k) is int and 0 <= k < 4 * len(wall.friction) for k in self.tight | self.still):
             raise CertificateError("a leaf names a contact that is not there")
         self.velocities = self.forces = None
         if "velocities" in document:
-            self.velocities = _fractions(document["velocities"], len(wall.dead))
+            self.velocities = fractions_of(document["velocities"], len(wall.dead))
         else:
-            self.forces = _fractions(document["forces"], len(wall.rows))
-            self.dead, self.live = _fractions(document["parts"], 2)
+            self.forces = fractions_of(document["forces"], len(wall.rows))
+            self.dead, self.live = fractions_of(document["parts"], 2)
 
-    def check(self, wall: _Wall, bound: Fraction) -> None:
+    def check(self, wall: ExactWall, bound: Fraction) -> None:
         if self.velocities is not None:
             self._check_velocities(wall, bound, self.velocities)
         elif self.forces is not None:
             self._check_forces(wall, bound, self.forces)
 
-    def _check_velocities(self, wall: _Wall, bound: Fraction, velocities: Vector) -> None:
+    def _check_velocities(self, wall: ExactWall, bound: Fraction, velocities: Vector) -> None:
         """Virtual work: (lambda - bound) live.u >= -(dead + bound live).u for all forces of the leaf."""
-        live = _dot(wall.live, velocities)
-        rest = -_dot(wall.dead, velocities) - bound * live
+        live = dot(wall.live, velocities)
+        rest = -dot(wall.dead, velocities) - bound * live
         if live < 0 or rest < 0 or live + rest <= 0:
             raise CertificateError("the velocities of a leaf exclude nothing")
         for p, mu in enumerate(wall.friction):
-            open1, open2, slip = (_dot(row, velocities) for row in wall.rows[3 * p : 3 * p + 3])
+            open1, open2, slip = (dot(row, velocities) for row in wall.rows[3 * p : 3 * p + 3])
             above, below = [], []
             for k, opening in ((4 * p, open1), (4 * p + 1, open2)):
                 if k not in self.tight:
@@ -178,7 +134,7 @@ class _Leaf:
             if above and below and max(above) > min(below):
                 raise CertificateError("a leaf's velocities gain work from forces within yield")
 
-    def _check_forces(self, wall: _Wall, bound: Fraction, forces: Vector) -> None:
+    def _check_forces(self, wall: ExactWall, bound: Fraction, forces: Vector) -> None:
         """Forces without work lost on any mechanism of the leaf, under dead + bound live and more live load."""
         if self.dead < 0 or self.live < 0 or self.dead + self.live <= 0:
             raise CertificateError("the forces of a leaf exclude nothing")

@@ -2,21 +2,25 @@
 
 from __future__ import annotations
 
+import json
 from dataclasses import replace
+from fractions import Fraction
 from typing import Any, ClassVar
 
 from harness.model.assembly import Assembly
 from harness.model.method import Answer, Finding, Settings, Status, Traits
-from methods.bound.bracket import Bracket, bracket
-from methods.bound.equations import Equations
+from methods.bound.bracket import Bracket
+from methods.bound.exact_wall import CertificateError
 from methods.bound.same_wall import require_same_wall
-from methods.bound.verify import CertificateError, verify
+from methods.bound.tuning import WINDOWS
+from methods.bound.verify import verify
 from methods.la.certify import certificate
 from methods.la.family import LimitAnalysisFamily
 from methods.la.least import SAME, least_known
 from methods.la.newton_matrix import NewtonMatrix
-from methods.la.problem import Problem
-from methods.la.settings import BoundSettings
+from methods.la.problem import Problem, make_problem
+from methods.la.settings import BoundSettings, SearchSettings
+from methods.la.window_certificate import certified_bracket
 from methods.numerics.statics import analysed
 from methods.springs.warm_up import load_kernels
 
@@ -65,9 +69,12 @@ class BoundedLimitAnalysis(LimitAnalysisFamily):
             return certified(known, certificate(assembly, seconds=settings.seconds))
         if multiplier <= 0.0 or problem.n_interfaces > settings.most_interfaces:
             return known
-        lower = max(float(known.details["lower_bound"]), 0.0) / problem.unit_multiplier
-        found = bracket(equations_of(problem), multiplier / problem.unit_multiplier, settings.seconds, lower)
-        return bounded(problem, known, found)
+        assert known.mechanism is not None
+        found, document = certified_bracket(problem, multiplier, known.mechanism, settings.seconds)
+        answer = certified(bounded(problem, known, found), document)
+        if document is not None and len(json.dumps(document)) > settings.largest_certificate:
+            return replace(answer, details={k: v for k, v in answer.details.items() if k != "certificate"})
+        return answer
 
 
 def certified(known: Answer, document: dict[str, Any] | None) -> Answer:
@@ -83,6 +90,13 @@ def certified(known: Answer, document: dict[str, Any] | None) -> Answer:
     if document is None or known.multiplier is None:
         return known
     lower, upper = verify(document)
+    if lower < upper * (1 - Fraction(WINDOWS.proved)):
+        return replace(
+            known,
+            sentence=f"The least collapse multiplier known is {known.multiplier:.7g}; there is none from zero to below "
+            f"{float(lower):.7g}, proved in fractions.",
+            details=known.details | {"certificate": document, "certified_bound": float(lower)},
+        )
     if abs(float(upper) - known.multiplier) > SAME * max(abs(known.multiplier), SAME):
         return known
     exact = str(upper) if len(str(upper)) <= SHORT else f"{float(upper):.9g}"
@@ -92,6 +106,25 @@ def certified(known: Answer, document: dict[str, Any] | None) -> Answer:
     )
     details = known.details | {"certificate": document, "certified_bound": float(lower)}
     return replace(known, sentence=sentence, details=details)
+
+
+def find_certificate(assembly: Assembly, nodes: int, seconds: float) -> dict[str, Any] | None:
+    """The certificate of the tree where that ends, else of windows; None where neither proves anything.
+
+    Args:
+        assembly: a wall of one component, which stands under its dead load.
+        nodes: of the tree at most.
+        seconds: of CPU time for the windows.
+    """
+    document = certificate(assembly, nodes)
+    if document is not None or not assembly.has_live_load:
+        return document
+    problem = make_problem(assembly)
+    known = least_known(problem, NewtonMatrix(problem), SearchSettings(), BoundedLimitAnalysis.tolerance)
+    if known.finding is not Finding.COLLAPSES or known.mechanism is None or not (known.multiplier or 0.0) > 0.0:
+        return None
+    assert known.multiplier is not None
+    return certified_bracket(problem, known.multiplier, known.mechanism, seconds)[1]
 
 
 def _of_this_wall(answer: Answer, assembly: Assembly) -> Answer:
@@ -108,14 +141,9 @@ def _of_this_wall(answer: Answer, assembly: Assembly) -> Answer:
     return answer
 
 
-def equations_of(problem: Problem) -> Equations:
-    """The equations of a problem as the bound takes them."""
-    return Equations(problem.kinematic, problem.dead, problem.live, problem.friction)
-
-
 def bounded(problem: Problem, known: Answer, found: Bracket) -> Answer:
     """The answer of `la` with the bracket, which holds to rounding and is therefore not called a proof."""
-    lower = found.lower * problem.unit_multiplier
+    lower = max(found.lower * problem.unit_multiplier, float(known.details["lower_bound"]))
     details = known.details | {
         "lower_bound": lower,
         "bound_windows": [value * problem.unit_multiplier for value in found.windows],

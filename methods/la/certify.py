@@ -15,13 +15,13 @@ import numpy as np
 import scipy.sparse as sp
 
 from harness.model.assembly import Assembly, BoolArray, FloatArray
-from methods.bound.verify import CertificateError, digest, verify
+from methods.bound.exact_wall import CertificateError
+from methods.bound.verify import digest, verify
 from methods.la.newton_matrix import NewtonMatrix
 from methods.la.problem import make_problem
 from methods.la.proof import prove
 from methods.la.rational import NotShortError, Row, short_fraction, solve_sparse
 from methods.la.search import Search
-from methods.la.state import CollapseState
 from methods.numerics.linear_programme import INFINITY, Programme
 from methods.numerics.vertex import BASIC
 
@@ -49,9 +49,9 @@ def certificate(assembly: Assembly, nodes: int = 1500, seconds: float = math.inf
     if not proof.complete:
         return None
     try:
-        document = _wall_document(assembly, problem.unit_force)
-        wall = _Fractions(document)
-        upper, state = _state(wall, proof.state)
+        document = wall_document(assembly, problem.unit_force)
+        wall = Fractions(document)
+        upper, state = exact_state(wall, proof.state.moving.ravel())
         bound = upper * (1 - BELOW)
         leaves = []
         for tight, still in proof.leaves:
@@ -66,7 +66,12 @@ def certificate(assembly: Assembly, nodes: int = 1500, seconds: float = math.inf
     return document
 
 
-def _wall_document(assembly: Assembly, unit: float) -> dict[str, Any]:
+def wall_document(assembly: Assembly, unit: float) -> dict[str, Any]:
+    """The part of a certificate that says which wall it is of, with loads in this unit of force.
+
+    Raises:
+        NotShortError: a number of the wall is not a short fraction.
+    """
     place = {int(block): k for k, block in enumerate(assembly.free)}
 
     def text(values: FloatArray) -> list[str]:
@@ -97,7 +102,7 @@ def _wall_document(assembly: Assembly, unit: float) -> dict[str, Any]:
     return {"format": "drystone-bound/1", "wall": assembly.name, "blocks": blocks, "interfaces": interfaces}
 
 
-class _Fractions:
+class Fractions:
     """Strain rows as sparse fractions, for unit normals times the length of the interface."""
 
     def __init__(self, document: dict[str, Any]) -> None:
@@ -129,9 +134,13 @@ POSITIVE: Limits = (ZERO, None)
 NEGATIVE: Limits = (None, ZERO)
 
 
-def _state(wall: _Fractions, state: CollapseState) -> tuple[Fraction, dict[str, Any]]:
-    """Multiplier, forces and velocities of a collapse state, solved for on the contacts that move."""
-    m, moving = len(wall.friction), state.moving.ravel()
+def exact_state(wall: Fractions, moving: BoolArray) -> tuple[Fraction, dict[str, Any]]:
+    """Multiplier, forces and velocities of the collapse state that moves in these contacts (4m,).
+
+    Raises:
+        ArithmeticError: there is none in fractions.
+    """
+    m = len(wall.friction)
     rows: list[tuple[Row, Limits]] = [
         (row, (-dead, -dead)) for row, dead in zip(_balance(wall, {3 * m: wall.live}), wall.dead, strict=True)
     ]
@@ -150,7 +159,7 @@ def _state(wall: _Fractions, state: CollapseState) -> tuple[Fraction, dict[str, 
     return forces[3 * m], {"forces": _text(forces[: 3 * m]), "velocities": _text(velocities)}
 
 
-def _leaf(wall: _Fractions, bound: Fraction, tight: BoolArray, still: BoolArray) -> dict[str, Any]:
+def _leaf(wall: Fractions, bound: Fraction, tight: BoolArray, still: BoolArray) -> dict[str, Any]:
     """A leaf with the velocities that exclude its forces, or the forces that exclude its mechanisms."""
     contacts: dict[str, Any] = {"tight": np.flatnonzero(tight).tolist(), "still": np.flatnonzero(still).tolist()}
     try:
@@ -160,7 +169,7 @@ def _leaf(wall: _Fractions, bound: Fraction, tight: BoolArray, still: BoolArray)
         return contacts | {"forces": _text(forces[:-2]), "parts": _text(forces[-2:])}
 
 
-def _velocities(wall: _Fractions, bound: Fraction, tight: BoolArray) -> list[Fraction]:
+def _velocities(wall: Fractions, bound: Fraction, tight: BoolArray) -> list[Fraction]:
     n = len(wall.dead)
     live = _sparse(wall.live)
     rest = _sparse([-d - bound * f for d, f in zip(wall.dead, wall.live, strict=True)])
@@ -174,7 +183,7 @@ def _velocities(wall: _Fractions, bound: Fraction, tight: BoolArray) -> list[Fra
     return _vertex(rows, n + len(wall.friction), {k: -value for k, value in rest.items()})[:n]
 
 
-def _forces(wall: _Fractions, bound: Fraction, still: BoolArray) -> list[Fraction]:
+def _forces(wall: Fractions, bound: Fraction, still: BoolArray) -> list[Fraction]:
     m = len(wall.friction)
     dead = [d + bound * f for d, f in zip(wall.dead, wall.live, strict=True)]
     rows = [(row, EQUAL) for row in _balance(wall, {3 * m: dead, 3 * m + 1: wall.live})]
@@ -186,7 +195,7 @@ def _forces(wall: _Fractions, bound: Fraction, still: BoolArray) -> list[Fractio
     return _vertex(rows, 3 * m + 2, {3 * m: -ONE})
 
 
-def _balance(wall: _Fractions, loads: dict[int, list[Fraction]]) -> list[Row]:
+def _balance(wall: Fractions, loads: dict[int, list[Fraction]]) -> list[Row]:
     """Rows of C' r plus further columns of loads."""
     rows: list[Row] = [{} for _ in wall.dead]
     for k, strain in enumerate(wall.rows):

@@ -60,12 +60,15 @@ class BoundSettings(Settings):
         seed, effort: of the search of `la` that comes first.
         seconds: of CPU time for the bound, which is the best one reached by then.
         most_interfaces: walls with more have no bound, because the matrices of products are dense.
+        largest_certificate: characters of a certificate above which the answer holds its bound only, because results
+            are kept and copied; `drystone bound` writes it whatever its size.
     """
 
     seed: int = Field(default=0, ge=0)
     effort: Literal["quick", "normal", "deep"] = "normal"
     seconds: float = Field(default=120.0, gt=0.0)
     most_interfaces: int = Field(default=120, ge=0)
+    largest_certificate: int = Field(default=500_000, ge=0)
 
     def search(self) -> SearchSettings:
         """The settings of the search."""

@@ -13,11 +13,12 @@ from harness.model.assembly import Assembly
 from methods.bound.bracket import bracket
 from methods.bound.relaxation import Relaxation
 from methods.bound.slack_bounds import SlackProgramme
-from methods.la.bound_adapter import BoundedLimitAnalysis, equations_of
+from methods.la.bound_adapter import BoundedLimitAnalysis
 from methods.la.newton_matrix import NewtonMatrix
 from methods.la.problem import make_problem
 from methods.la.search import Search
 from methods.la.settings import BoundSettings
+from methods.la.window_certificate import equations_of
 from tests.la.bodies import column, running_bond
 from tests.la.test_enumeration import least_by_enumeration
 from tests.walls import assembly
@@ -47,6 +48,8 @@ def test_the_bracket_of_a_bonded_wall_closes(courses: int, bricks: int, least: f
     assert answer.multiplier == pytest.approx(least, rel=1e-9)
     assert answer.details["lower_bound"] == pytest.approx(least, rel=1e-6)  # CLOSED
     assert answer.details["lower_bound"] <= least * (1.0 + 1e-9)
+    assert answer.details["certified_bound"] == pytest.approx(least, rel=1e-6)
+    assert answer.sentence.startswith("The minimum collapse multiplier is")
 
 
 def test_a_bound_cut_short_is_smaller_but_holds() -> None:

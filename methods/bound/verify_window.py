@@ -1,0 +1,165 @@
+"""Check in integers of one window of a certificate: no collapse state lies between its lower end and what it proves.
+
+A window holds dual multipliers in binary fractions. The bilinear identity between them and the cost is evaluated
+exactly; what is left of it, since the multipliers are rounded, is paid with bounds of the forces and of the mechanism
+that the window proves too. Only the standard library is used. docs/theory-bound.md holds the proofs.
+"""
+
+from __future__ import annotations
+
+import math
+from fractions import Fraction
+from typing import Any
+
+from methods.bound.exact_wall import ZERO, CertificateError, ExactWall, Form, paired, whole, whole_numbers
+from methods.bound.window_limits import Columns, Forces, Motions
+
+
+def window_bound(wall: ExactWall, document: Any) -> tuple[Fraction, Fraction, Fraction]:
+    """(low, high, bound): no collapse state of the wall has a multiplier from `low` to below `bound` <= `high`.
+
+    Raises:
+        CertificateError: the window proves nothing of the kind.
+    """
+    low, high = Fraction(document["low"]), Fraction(document["high"])
+    if not low < high:
+        raise CertificateError("a window has no width")
+    forces = Forces(wall, low, high, document["forces"])
+    columns = Columns(wall, forces, document)
+    motions = Motions(columns, document["motions"])
+    size = _Products(columns, motions, document["size"], True)
+    if size.price >= 1:
+        raise CertificateError("a window does not bound its mechanisms")
+    greatest = max(ZERO, (size.lost - size.value) / (1 - size.price))
+    gain = _Products(columns, motions, document["multiplier"], False)
+    return low, high, min(high, low + gain.value - gain.lost - gain.price * greatest)
+
+
+class _Products:
+    """What the multipliers of products prove: cost >= value - lost - price * size of the mechanism.
+
+    Attributes:
+        value, lost, price: numbers of the inequality.
+    """
+
+    def __init__(self, columns: Columns, motions: Motions, document: Any, of_size: bool) -> None:
+        self.columns, self.wall, self.forces = columns, columns.wall, columns.forces
+        m = self.wall.n_interfaces
+        self.unit = 2 ** whole(document["exponent"], 0, 400)
+        names = [*columns.rates, "work", "lift"]
+        multipliers = dict(paired(names, [whole_numbers(c, 4 * m + 3) for c in document["columns"]]))
+        signed = [whole_numbers(three, 3) for three in document["signed"]]
+        still = [whole_numbers(form, 3 * m + 2) for form in document["still"]]
+        balance = [whole_numbers(row, columns.n) for row in document["balance"]]
+        self.value = Fraction(multipliers["work"][4 * m], self.unit)
+        self._pay(multipliers, signed)
+        left = self._left(multipliers, signed, still, of_size)
+        self.price += self._paid_for_rounding(left, balance, motions)
+
+    def _rows(self) -> list[Form]:
+        """The static inequalities as forms of the forces, the multiplier and one."""
+        m, low, high = self.wall.n_interfaces, self.forces.low, self.forces.high
+        one = Fraction(1)
+        rows: list[Form] = []
+        for p, mu in enumerate(self.wall.friction):
+            a, b, s = 3 * p, 3 * p + 1, 3 * p + 2
+            rows += [{a: one}, {b: one}, {a: mu, b: mu, s: one}, {a: mu, b: mu, s: -one}]
+        load, unit = 3 * m, 3 * m + 1
+        return [*rows, {unit: one}, {load: one, unit: -low}, {load: -one, unit: high}]
+
+    def _pay(self, multipliers: dict[Any, list[int]], signed: list[list[int]]) -> None:
+        """Lost and price for negative multipliers: each product is at most the greatest slack times the column."""
+        m, width = self.wall.n_interfaces, self.forces.high - self.forces.low
+        limit = []
+        for mu, normal in zip(self.wall.friction, self.forces.normal, strict=True):
+            limit += [normal, normal, 2 * mu * normal, 2 * mu * normal]
+        limit += [Fraction(1), width, width]
+        loss: dict[Any, Fraction] = {}
+        for name, column in multipliers.items():
+            free = name if isinstance(name, int) else 4 * m if name == "work" else -1
+            parts = (-v * limit[j] for j, v in enumerate(column) if v < 0 and j != free)
+            loss[name] = sum(parts, ZERO) / self.unit
+        worst = ZERO
+        for p, (first, second, shear) in paired(self.columns.signed, signed):
+            mu = self.wall.friction[p]
+            turned = mu * shear
+            violated = max(0, turned - first, turned - second, turned + first, turned + second)
+            if violated and not mu:
+                raise CertificateError("a slip without friction is paid by none")
+            worst = max(worst, Fraction(violated) / mu if mu else ZERO)
+        columns = self.columns
+        self.lost = loss["work"]
+        lift = (loss["lift"] + worst / self.unit) / columns.lift_weight
+        self.price = max([lift, *(loss[k] / columns.weights[k] for k in columns.rates)])
+
+    def _left(
+        self, multipliers: dict[Any, list[int]], signed: list[list[int]], still: list[list[int]], of_size: bool
+    ) -> tuple[list[list[int]], int]:
+        """Cost minus all products, by velocity, as integers over the denominator that comes with them."""
+        columns, wall, m = self.columns, self.wall, self.wall.n_interfaces
+        rows, row_unit = _integers(self._rows())
+        slips = [dict(wall.sparse[3 * p + 2]) for p in columns.signed]
+        forms = [*columns.rates.values(), columns.work, columns.lift, *slips, *columns.still]
+        kinematic, unit = _integers(forms)
+        statics = [self._combined(column, rows) for column in multipliers.values()]
+        for k, value in self._cost(of_size).items():
+            place = list(multipliers).index(k)
+            scaled = value * self.unit
+            if scaled.denominator != 1:
+                raise CertificateError("the exponent is too small for the weights")
+            row = rows[4 * m] if of_size else rows[4 * m + 1]
+            for i, entry in row.items():
+                statics[place][i] -= int(scaled) * entry
+        for p, three in paired(columns.signed, signed):
+            own = [0] * (3 * m + 2)
+            own[3 * p : 3 * p + 3] = [row_unit * v for v in three]
+            statics.append(own)
+        statics += [[row_unit * v for v in form] for form in still]
+        left = [[0] * (3 * m + 2) for _ in range(columns.width)]
+        for form, static in paired(kinematic, statics):
+            for d, value in form.items():
+                left[d] = [a - value * b for a, b in zip(left[d], static, strict=True)]
+        return left, row_unit * unit
+
+    def _cost(self, of_size: bool) -> dict[Any, Fraction]:
+        if not of_size:
+            return {"work": Fraction(1)}
+        columns = self.columns
+        return {k: -weight for k, weight in columns.weights.items()} | {"lift": -columns.lift_weight}
+
+    def _combined(self, column: list[int], rows: list[dict[int, int]]) -> list[int]:
+        total = [0] * (3 * self.wall.n_interfaces + 2)
+        for value, row in zip(column, rows, strict=True):
+            if value:
+                for i, entry in row.items():
+                    total[i] += value * entry
+        return total
+
+    def _paid_for_rounding(
+        self, left: tuple[list[list[int]], int], balance: list[list[int]], motions: Motions
+    ) -> Fraction:
+        """Greatest value of what is left, after multiples of the equilibrium equations, for mechanisms of size one."""
+        wall, m = self.wall, self.wall.n_interfaces
+        loads = [dict(enumerate(wall.live)), dict(enumerate(wall.dead))]
+        rows, unit = _integers([*(dict(wall.sparse[k]) for k in range(3 * m)), *loads])
+        sizes = []
+        for mu, normal in zip(wall.friction, self.forces.normal, strict=True):
+            sizes += [normal, normal, mu * normal]
+        sizes += [max(abs(self.forces.low), abs(self.forces.high)), Fraction(1)]
+        grain = 2**20
+        whole_sizes = [math.ceil(size * grain) for size in sizes]
+        matrix, left_unit = left
+        price: Fraction = ZERO
+        for static, velocities, limit in zip(matrix, balance, motions.limits, strict=True):
+            rest = 0
+            for value, row, size in zip(static, rows, whole_sizes, strict=True):
+                equilibrium = sum(entry * velocities[d] for d, entry in row.items())
+                rest += abs(value * unit - equilibrium * left_unit) * size
+            price += rest * limit
+        return price / Fraction(self.unit * left_unit * unit * grain)
+
+
+def _integers(forms: list[Form]) -> tuple[list[dict[int, int]], int]:
+    """Forms times their common denominator, and that denominator."""
+    unit = math.lcm(*(value.denominator for form in forms for value in form.values()))
+    return [{k: int(value * unit) for k, value in form.items() if value} for form in forms], unit

@@ -1,0 +1,340 @@
+"""The document of one window that `verify_window` checks: dual multipliers of the relaxation as binary fractions."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from fractions import Fraction
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+import scipy.linalg
+
+from harness.model.assembly import FloatArray, IntArray
+from methods.bound.bracket import WindowProof
+from methods.bound.equations import Equations
+from methods.bound.exact_wall import CertificateError, ExactWall
+from methods.bound.relaxation import Relaxation
+from methods.bound.slack_bounds import SlackProgramme
+from methods.bound.tuning import PRECISION, ROUNDING
+from methods.bound.verify_window import window_bound
+
+
+@dataclass(frozen=True, eq=False)
+class Scales:
+    """From the scaled wall of the search to the wall of a certificate, whose forces are per length of the interface.
+
+    Attributes:
+        length: (m,) lengths of interfaces; velocity: (3n,) velocities per scaled one; multiplier: per scaled one;
+        blocks: number of free blocks, the live work of scaled mechanisms; it is one in a certificate.
+    """
+
+    length: FloatArray
+    velocity: FloatArray
+    multiplier: float
+    blocks: float
+
+
+class Certifier:
+    """The documents of windows as a bracket goes up, asked after each.
+
+    Args:
+        wall: of the certificate.
+        scales: from the search to it.
+        equations: of the search.
+
+    Attributes:
+        documents: of the windows that raise the bound, in order; bound: what they prove.
+    """
+
+    def __init__(self, wall: ExactWall, scales: Scales, equations: Equations) -> None:
+        self.wall, self.scales = wall, scales
+        self.documents: list[dict[str, Any]] = []
+        self.bound = Fraction(0)
+        self._programme = SlackProgramme(equations)
+        self._last: Relaxation | None = None
+
+    def __call__(self, proof: WindowProof, needed: float) -> float:
+        """The scaled multiplier below which the documents leave no collapse state, this window among them.
+
+        Args:
+            proof: of the window.
+            needed: scaled multiplier that is enough.
+        """
+        exact = Fraction(needed) * Fraction(self.scales.multiplier)
+        try:
+            document, bound = WindowDocument(self.wall, self.scales, proof, self._programme).document(exact)
+        except CertificateError:
+            return float(self.bound) / self.scales.multiplier
+        if bound > self.bound:
+            if proof.relaxation is self._last:
+                self.documents.pop()
+            self.documents.append(document)
+            self._last, self.bound = proof.relaxation, bound
+        return float(self.bound) / self.scales.multiplier * (1.0 - ROUNDING.below)
+
+
+class WindowDocument:
+    """A window in the numbers of a certificate.
+
+    Args:
+        wall: of the certificate.
+        scales: from the search to it.
+        proof: of the window, in floats.
+        programme: of the slacks of the search.
+    """
+
+    def __init__(self, wall: ExactWall, scales: Scales, proof: WindowProof, programme: SlackProgramme) -> None:
+        self.wall, self.scales, self.proof, self.programme = wall, scales, proof, programme
+        self.relaxation = proof.relaxation
+        m = wall.n_interfaces
+        self.strains = np.array([[float(v) for v in row] for row in wall.rows]).reshape(3 * m, -1)
+        self.friction = np.array([float(mu) for mu in wall.friction])
+        self.dead = np.array([float(v) for v in wall.dead])
+        self.live = np.array([float(v) for v in wall.live])
+        self.low = _below(self.relaxation.low * scales.multiplier)
+        self.high = -_below(-self.relaxation.high * scales.multiplier)
+        programme.window(self.relaxation.low, self.relaxation.high)
+
+    def document(self, needed: Fraction) -> tuple[dict[str, Any], Fraction]:
+        """The shortest document that proves what is needed, else the best, and what it proves.
+
+        Raises:
+            CertificateError: none proves anything.
+        """
+        best: tuple[dict[str, Any], Fraction] | None = None
+        for exponent in PRECISION.multipliers:
+            document = self.parts | {
+                "size": self._products(self.proof.size, PRECISION.size, True),
+                "multiplier": self._products(self.proof.multiplier, exponent, False),
+            }
+            bound = window_bound(self.wall, document)[2]
+            if best is None or bound > best[1]:
+                best = document, bound
+            if bound >= needed:
+                break
+        assert best is not None
+        return best
+
+    @cached_property
+    def still(self) -> IntArray:
+        """Contacts without a rate."""
+        return np.flatnonzero(self.relaxation.bounds.least > ROUNDING.margin)
+
+    @cached_property
+    def least(self) -> dict[int, Fraction]:
+        """Least normal forces of the interfaces that are loaded."""
+        normal = self.relaxation.normal / self.scales.length
+        return {int(p): max(Fraction(0), _below(normal[p])) for p in self.relaxation.loaded}
+
+    @cached_property
+    def parts(self) -> dict[str, Any]:
+        """All but the multipliers of products."""
+        bounds, scales, m = self.relaxation.bounds, self.scales, self.wall.n_interfaces
+        by_interface = 1.0 / scales.length[:, None]
+        weights = np.round(scales.blocks / (scales.multiplier * scales.length) * 2.0**PRECISION.weights)
+        total = self.programme.least(np.repeat(-1.0 / scales.length, 4) * np.tile([1.0, 1.0, 0.0, 0.0], m))
+        if total[0] != "optimal":
+            raise CertificateError("the normal forces of a window are not bounded")
+        return {
+            "low": str(self.low),
+            "high": str(self.high),
+            "forces": {
+                "exponent": PRECISION.velocities,
+                "total": self._velocities(total[2]),
+                "greatest": self._velocities(by_interface * bounds.greatest_velocities),
+            },
+            "weight_exponent": PRECISION.weights,
+            "weights": [int(w) for w in weights],
+            "lift_weight": round(2**PRECISION.weights / scales.multiplier),
+            "still": self.still.tolist(),
+            "still_velocities": self._velocities(
+                np.repeat(by_interface, 4, axis=0)[self.still] * bounds.still_velocities[self.still]
+            ),
+            "loaded": list(self.least),
+            "least": [str(value) for value in self.least.values()],
+            "least_velocities": self._velocities((by_interface * bounds.least_velocities)[list(self.least)]),
+            "motions": self._motions(),
+        }
+
+    def _velocities(self, velocities: FloatArray) -> list[Any]:
+        return _whole(-velocities * self.scales.velocity, PRECISION.velocities)
+
+    def _motions(self) -> dict[str, Any]:
+        """Strains that give the velocities: bounded ones, then slips of courses."""
+        m, n = self.wall.n_interfaces, len(self.dead)
+        signed = 3 * self.relaxation.unloadable + 2
+        bounded = np.setdiff1d(np.arange(3 * m), signed)
+        _, triangle, order = scipy.linalg.qr(self.strains[bounded].T, pivoting=True, mode="economic")
+        diagonal = abs(np.diag(triangle))
+        rank = int((diagonal > ROUNDING.no_row * diagonal[0]).sum())
+        chosen, courses = bounded[order[:rank]], []
+        if rank < n:
+            courses = self._courses(scipy.linalg.null_space(self.strains[bounded], rcond=ROUNDING.no_row))
+            chosen = np.append(chosen, [3 * course["joints"][0] + 2 for course in courses]).astype(int)
+        inverse = np.linalg.inv(self.strains[chosen])
+        exponent = PRECISION.motions
+        return {
+            "exponent": exponent,
+            "strains": chosen.tolist(),
+            "inverse": _whole(inverse, exponent),
+            "courses": courses,
+        }
+
+    def _courses(self, motions: FloatArray) -> list[dict[str, Any]]:
+        """Interfaces that slide alike in motions (3n, e) that open nothing: one course a motion, or an error."""
+        unloadable, m = self.relaxation.unloadable, self.wall.n_interfaces
+        slips = self.strains[3 * unloadable + 2] @ motions
+        groups: list[tuple[FloatArray, list[int]]] = []
+        for p, slip in zip(unloadable.tolist(), slips, strict=True):
+            if np.linalg.norm(slip) < ROUNDING.no_row:
+                continue
+            alike = (g for g in groups if min(abs(g[0] - slip).max(), abs(g[0] + slip).max()) < ROUNDING.margin)
+            same = next(alike, None)
+            if same is None:
+                groups.append((slip, [p]))
+            else:
+                same[1].append(p)
+        courses, chosen = [], np.zeros((0, motions.shape[1]))
+        for slip, joints in sorted(groups, key=lambda group: -len(group[1])):
+            if np.linalg.matrix_rank(np.vstack([chosen, slip]), tol=ROUNDING.margin) <= len(chosen):
+                continue
+            weights = np.zeros((m, 4))
+            weights[joints, :2] = 1.0 / self.scales.length[joints, None]
+            status, least, velocities = self.programme.least(weights.ravel())
+            if status == "optimal" and least > ROUNDING.margin:
+                chosen = np.vstack([chosen, slip])
+                courses.append({"joints": joints, "velocities": self._velocities(velocities)})
+        if len(courses) < motions.shape[1]:
+            raise CertificateError("a slip of interfaces that may be unloaded is not bounded")
+        return courses
+
+    @cached_property
+    def _static(self) -> FloatArray:
+        """(4m + 3, 3m + 2) static inequalities over forces, multiplier and one."""
+        m = self.wall.n_interfaces
+        rows = np.zeros((4 * m + 3, 3 * m + 2))
+        for p, mu in enumerate(self.friction):
+            rows[4 * p, 3 * p] = rows[4 * p + 1, 3 * p + 1] = 1.0
+            rows[4 * p + 2 : 4 * p + 4, 3 * p : 3 * p + 2] = mu
+            rows[4 * p + 2 : 4 * p + 4, 3 * p + 2] = 1.0, -1.0
+        rows[4 * m :, 3 * m :] = [[0.0, 1.0], [1.0, -float(self.low)], [-1.0, float(self.high)]]
+        return rows
+
+    @cached_property
+    def _kinematic(self) -> tuple[FloatArray, FloatArray, FloatArray]:
+        """Rates, work and lift, signed slips, and still strains, over velocities and backward slips."""
+        relaxation, m, n = self.relaxation, self.wall.n_interfaces, len(self.dead)
+        free = relaxation.free
+        both = [p for p in relaxation.loaded.tolist() if {4 * p + 2, 4 * p + 3} <= set(free.tolist())]
+        place = {p: n + k for k, p in enumerate(both)}
+        width = n + len(both)
+        strains = np.hstack([self.strains, np.zeros((3 * m, len(both)))])
+        rates = np.zeros((len(free) + 2, width))
+        lift = np.append(float(self.high) * self.live + self.dead, np.zeros(len(both)))
+        for k, contact in enumerate(free.tolist()):
+            p, kind = divmod(contact, 4)
+            rates[k] = (strains[3 * p], strains[3 * p + 1], strains[3 * p + 2], -strains[3 * p + 2])[kind]
+            if p in place and kind >= 2:
+                rates[k] = strains[3 * p + 2] if kind == 2 else 0.0
+                rates[k, place[p]] = 1.0
+            if kind >= 2:
+                lift -= self.friction[p] * float(self.least[p]) * rates[k]
+        rates[-2, :n], rates[-1] = self.live, lift
+        held = set(self.still.tolist())
+        still = []
+        for p in range(m):
+            still += [3 * p + k for k in (0, 1) if 4 * p + k in held]
+            still += [3 * p + 2] if {4 * p + 2, 4 * p + 3} <= held else []
+        return rates, strains[3 * relaxation.unloadable + 2], strains[still]
+
+    def _products(self, products: FloatArray, exponent: int, of_size: bool) -> dict[str, Any]:
+        """Multipliers of products, rounded, with the multiples of equations that leave next to nothing of the rest."""
+        relaxation, scales, m = self.relaxation, self.scales, self.wall.n_interfaces
+        multipliers = self._unscaled(products, of_size)
+        rates, signed, still = self._kinematic
+        own = self._signed(products, of_size)
+        static = self._static
+        equations = np.vstack([self.strains, self.live, self.dead])
+        basis = scipy.linalg.orth(equations)
+        still_inverse = np.linalg.pinv(still) if len(still) else np.zeros((rates.shape[1], 0))
+        cost = np.zeros((4 * m + 3, rates.shape[0]))
+        if of_size:
+            weights = np.round(scales.blocks / (scales.multiplier * scales.length) * 2.0**PRECISION.weights)
+            cost[4 * m, :-2] = -weights[relaxation.free // 4] / 2.0**PRECISION.weights
+            cost[4 * m, -1] = -round(2**PRECISION.weights / scales.multiplier) / 2.0**PRECISION.weights
+        else:
+            cost[4 * m + 1, -2] = 1.0
+        unit = 2.0**exponent
+
+        def rest_of(values: FloatArray, slips: FloatArray) -> FloatArray:
+            rest = static.T @ (cost - values) @ rates
+            for k, p in enumerate(relaxation.unloadable.tolist()):
+                rest[3 * p : 3 * p + 3] -= np.outer(slips[k], signed[k])
+            return rest
+
+        for _ in range(PRECISION.refinements):
+            rest = rest_of(multipliers, own)
+            rest -= basis @ (basis.T @ rest)
+            own = own + self._own_change(rest, basis, np.vstack([rates, still]), signed)
+            rest = rest_of(multipliers, own)
+            rest -= basis @ (basis.T @ rest)
+            rest -= rest @ still_inverse @ still
+            multipliers = multipliers + np.linalg.pinv(static.T) @ rest @ np.linalg.pinv(rates)
+        multipliers, own = np.round(multipliers * unit) / unit, np.round(own * unit) / unit
+        rest = rest_of(multipliers, own)
+        fixed = np.round((rest - basis @ (basis.T @ rest)) @ still_inverse * unit) / unit
+        rest = rest - fixed @ still
+        balance = np.linalg.lstsq(equations, rest, rcond=None)[0]
+        return {
+            "exponent": exponent,
+            "columns": _whole(multipliers.T, exponent),
+            "signed": _whole(own, exponent),
+            "still": _whole(fixed.T, exponent),
+            "balance": _whole(balance.T, exponent),
+        }
+
+    def _own_change(self, rest: FloatArray, basis: FloatArray, others: FloatArray, signed: FloatArray) -> FloatArray:
+        """(q, 3) change of the signed slips' multipliers that takes what no other column can from the rest."""
+        alone = scipy.linalg.null_space(others, rcond=ROUNDING.no_row)
+        slips, q = signed @ alone, self.relaxation.unloadable
+        if not alone.shape[1]:
+            return np.zeros((len(q), 3))
+        places = (3 * q[:, None] + np.arange(3)).ravel()
+        complement = np.eye(len(basis))[:, places] - basis @ basis[places].T
+        image = np.einsum("ik,ke->iek", complement, np.repeat(slips, 3, axis=0)).reshape(-1, len(places))
+        return np.asarray(np.linalg.lstsq(image, (rest @ alone).ravel(), rcond=None)[0].reshape(-1, 3))
+
+    def _unscaled(self, products: FloatArray, of_size: bool) -> FloatArray:
+        """(4m + 3, f + 2) multipliers of products of the certificate's quantities."""
+        scales, relaxation, m = self.scales, self.relaxation, self.wall.n_interfaces
+        row = np.concatenate([np.repeat(scales.length, 4), [1.0, 1.0 / scales.multiplier, 1.0 / scales.multiplier]])
+        rate = scales.blocks / (scales.multiplier * scales.length[relaxation.free // 4])
+        column = np.concatenate([rate, [1.0, 1.0 / scales.multiplier]])
+        used = products[: 4 * m + 3, : len(column)] * row[:, None] * column
+        return np.asarray(used if of_size else scales.multiplier * used)
+
+    def _signed(self, products: FloatArray, of_size: bool) -> FloatArray:
+        """(q, 3) multipliers of n1, n2 and s times the slip of interfaces that may be unloaded."""
+        relaxation, m, q = self.relaxation, self.wall.n_interfaces, self.relaxation.unloadable
+        column, local = relaxation.lift_column + 1 + np.arange(len(q)), 4 * m + 3 + np.arange(len(q))
+        plus, minus = products[4 * q + 2, column], products[4 * q + 3, column]
+        first, second = products[local, column], products[local + len(q), column]
+        mu = self.friction[q]
+        forms = np.column_stack(
+            [mu * (plus + minus + first - second), mu * (plus + minus - first + second), plus - minus - first - second]
+        )
+        return np.asarray(forms * (self.scales.blocks / (self.scales.multiplier if of_size else 1.0)))
+
+
+def _below(value: float) -> Fraction:
+    """A binary fraction next to a float, below it or equal."""
+    unit = 2**PRECISION.numbers
+    return Fraction(int(np.floor(value * unit)), unit)
+
+
+def _whole(values: FloatArray, exponent: int) -> list[Any]:
+    """Whole numbers over 2^exponent, as nested lists."""
+    if values.ndim > 1:
+        return [_whole(row, exponent) for row in values]
+    return [round(v) for v in np.ldexp(values, exponent).tolist()]

@@ -1,0 +1,161 @@
+"""Certificates of the relaxation's windows prove what they say in integers, and nothing that is false."""
+
+from __future__ import annotations
+
+import copy
+import json
+import re
+from fractions import Fraction
+from functools import cache
+from pathlib import Path
+from typing import Any
+
+import pytest
+from click.testing import CliRunner
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from harness.cli import main as drystone
+from harness.model.assembly import Assembly
+from methods.bound.exact_wall import CertificateError
+from methods.bound.same_wall import require_same_wall
+from methods.bound.verify import digest, verify
+from methods.la.bound_adapter import BoundedLimitAnalysis
+from methods.la.newton_matrix import NewtonMatrix
+from methods.la.problem import make_problem
+from methods.la.search import Search
+from methods.la.settings import BoundSettings
+from methods.la.window_certificate import certified_bracket
+from tests.la.bodies import running_bond
+from tests.walls import wall_data
+
+LEAST = Fraction(13, 20)
+"""Least multiplier of 2 courses of 2 bricks .4 x .2 on friction 13/20: the top course slides."""
+
+
+def certificate_of(wall: Assembly, seconds: float = 30.0) -> dict[str, Any]:
+    problem = make_problem(wall)
+    state = Search(problem, NewtonMatrix(problem)).interior()
+    assert state is not None
+    multiplier = state.multiplier * problem.unit_multiplier
+    document = certified_bracket(problem, multiplier, problem.to_mechanism(state.velocities), seconds)[1]
+    assert document is not None
+    return document
+
+
+@cache
+def of_bond() -> dict[str, Any]:
+    return certificate_of(running_bond(2, 2, 0.2, 0.65))
+
+
+def refused_or_true(document: dict[str, Any]) -> bool:
+    """Whether a document, its digest made anew, is refused; what it proves otherwise must be true."""
+    try:
+        lower, upper = verify(document | {"digest": digest(document)})
+    except CertificateError:
+        return True
+    assert lower <= LEAST <= upper
+    return False
+
+
+def test_a_bonded_wall_is_proved_to_a_millionth() -> None:
+    wall = running_bond(2, 2, 0.2, 0.65)
+    require_same_wall(of_bond(), wall)
+    lower, upper = verify(of_bond())
+    assert upper == LEAST
+    assert 0 < upper - lower <= Fraction(1, 10**6) * upper
+
+
+@settings(max_examples=40, deadline=None, derandomize=True)
+@given(st.data())
+def test_one_digit_changed_anywhere_is_refused(data: st.DataObject) -> None:
+    text = json.dumps(of_bond())
+    where = data.draw(st.sampled_from([match.start() for match in re.finditer(r"[0-9]", text)]))
+    digit = data.draw(st.sampled_from([d for d in "0123456789" if d != text[where]]))
+    try:
+        changed = json.loads(text[:where] + digit + text[where + 1 :])
+    except json.JSONDecodeError:
+        return
+    with pytest.raises(CertificateError):
+        verify(changed)
+
+
+@settings(max_examples=40, deadline=None, derandomize=True)
+@given(st.data())
+def test_one_digit_changed_proves_nothing_false_even_with_the_digest_made_anew(data: st.DataObject) -> None:
+    """Changed in its last places a multiplier is only a slightly worse proof; nothing above the least is proved."""
+    text = json.dumps({key: of_bond()[key] for key in ("windows", "bound", "multiplier", "state")})
+    where = data.draw(st.sampled_from([match.start() for match in re.finditer(r"[0-9]", text)]))
+    digit = data.draw(st.sampled_from([d for d in "0123456789" if d != text[where]]))
+    try:
+        changed = json.loads(text[:where] + digit + text[where + 1 :])
+    except json.JSONDecodeError:
+        return
+    refused_or_true(of_bond() | changed)
+
+
+@pytest.mark.parametrize("friction", ["7/10", "16/25"])
+def test_the_windows_of_one_wall_prove_nothing_of_another(friction: str) -> None:
+    document = copy.deepcopy(of_bond())
+    for item in document["interfaces"]:
+        item["friction"] = friction
+    with pytest.raises(CertificateError):
+        verify(document | {"digest": digest(document)})
+
+
+def test_a_bound_above_that_of_the_windows_is_refused() -> None:
+    document = of_bond() | {"bound": str(LEAST)}
+    with pytest.raises(CertificateError, match="windows prove"):
+        verify(document | {"digest": digest(document)})
+
+
+def test_windows_that_leave_a_gap_are_refused() -> None:
+    assert of_bond()["windows"][0]["low"] == "0"
+    for gone in range(len(of_bond()["windows"])):
+        document = of_bond() | {"windows": [w for k, w in enumerate(of_bond()["windows"]) if k != gone]}
+        with pytest.raises(CertificateError):
+            verify(document | {"digest": digest(document)})
+
+
+CHANGES: dict[str, Any] = {
+    "a still contact too many": lambda w: (w["still"].append(0), w["still_velocities"].append([0] * 15)),
+    "more normal force": lambda w: w["least"].__setitem__(0, str(Fraction(w["least"][0]) + Fraction(1, 1000))),
+    "no bound of a force": lambda w: w["forces"]["total"].__setitem__(0, 0),
+    "forces bounded by less": lambda w: w["forces"].__setitem__("exponent", w["forces"]["exponent"] + 1),
+    "velocities of other strains": lambda w: w["motions"]["strains"].reverse(),
+    "a higher value": lambda w: w["multiplier"]["columns"][-2].__setitem__(40, 2**60),
+    "no equilibrium": lambda w: w["multiplier"]["balance"][0].__setitem__(0, 2**60),
+    "negative weights": lambda w: w["weights"].__setitem__(0, -1),
+}
+
+
+@pytest.mark.parametrize("name", CHANGES)
+def test_a_window_that_claims_more_is_refused(name: str) -> None:
+    document = copy.deepcopy(of_bond())
+    for window in document["windows"]:
+        if name != "more normal force" or window["least"]:
+            CHANGES[name](window)
+    assert refused_or_true(document)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(
+    ("courses", "bricks", "least"), [(3, 2, Fraction(7, 11)), (4, 2, Fraction(3, 5)), (3, 3, Fraction(7, 11))]
+)
+def test_larger_bonds_are_proved(courses: int, bricks: int, least: Fraction) -> None:
+    answer = BoundedLimitAnalysis().solve(running_bond(courses, bricks, 0.2, 0.65), BoundSettings(seconds=120.0))
+    assert answer.multiplier == pytest.approx(float(least), rel=1e-9)
+    assert float(least) * (1 - 1e-6) <= answer.details["certified_bound"] <= least
+    assert answer.sentence.startswith(f"The minimum collapse multiplier is {least}")
+
+
+def test_the_commands_write_and_read_a_compressed_certificate(tmp_path: Path) -> None:
+    pattern = {"type": "running_bond", "block_length": 0.4, "block_height": 0.2, "count": 2, "bricks": 2}
+    wall, file = tmp_path / "wall.json", tmp_path / "certificate.json.gz"
+    wall.write_text(json.dumps(wall_data(pattern | {"start": "half"}, 0.65)))
+    run = CliRunner()
+    assert run.invoke(drystone, ["bound", str(wall), "-o", str(file), "--nodes", "1"]).exit_code == 0
+    answer = run.invoke(drystone, ["verify-bound", str(file), "--wall", str(wall), "--json"])
+    assert json.loads(answer.output)["multiplier"] == "13/20"
+    file.write_bytes(file.read_bytes()[:-9])
+    assert run.invoke(drystone, ["verify-bound", str(file)]).exit_code == 2
