@@ -209,10 +209,10 @@ class _Kept(BaseModel):
 def recall(store: Store) -> ComparisonRun | None:
     """The comparison made last, rebuilt from the store without running anything; None if there is none.
 
-    Results are judged again; a run that is no longer in the store is left out.
+    Results are judged again.
 
     Raises:
-        InputError: the store or what it keeps is damaged.
+        InputError: the store or what it keeps is damaged, or a run of the comparison is not in it any more.
     """
     from harness.engine.plan import Limits
 
@@ -228,7 +228,7 @@ def recall(store: Store) -> ComparisonRun | None:
     for item in kept.runs:
         found = store.get(item.key)
         if found is None:
-            continue
+            raise store.missing(f"the result of {item.method} on {item.case}")
         if item.case not in cases:
             raise InputError(f'the last comparison in it has no wall "{item.case}"', source=str(store.path))
         run = Run(cases[item.case], item.method, item.settings, Limits(), tuple(item.references))

@@ -2,10 +2,8 @@
 
 from __future__ import annotations
 
-import errno
 import hashlib
 import json
-import os
 import shutil
 import sqlite3
 import stat
@@ -19,6 +17,7 @@ from typing import Any
 
 from pydantic import ValidationError
 
+from harness.engine.store_faults import OTHER_FILE, WAIT_SECONDS, cause
 from harness.model.errors import InputError
 from harness.model.reading import LARGEST_FILE, json_of
 from harness.model.result import Result
@@ -61,11 +60,8 @@ FIELDS = ("forces", "mechanism", "states", "path", "details")
 """Parts of a result that are kept compressed beside it; they are most of its size."""
 ENVIRONMENT = ("versions", "machine")
 """Parts of a result that many runs share, kept once."""
-WAIT_SECONDS = 60.0
-"""How long another program that writes the store is waited for."""
 SOME_KEYS = 500
 """Up to so many results are looked for one by one; above, the whole table is read."""
-OTHER_FILE = "Name another file with --store"
 
 
 def run_key(wall: str, method: str, settings: dict[str, Any], limits: dict[str, float], code: str) -> str:
@@ -170,7 +166,7 @@ class Store:
         try:
             yield
         except sqlite3.Error as error:
-            problem, remedy = _cause(error, self.path)
+            problem, remedy = cause(error, self.path)
             raise InputError(problem, remedy, source=str(self.path)) from None
         except UnicodeDecodeError:  # of a name in the schema, or of an error that quotes one
             raise InputError("it is damaged (a name in it is no text)", OTHER_FILE, source=str(self.path)) from None
@@ -207,6 +203,15 @@ class Store:
             return Result.model_validate(whole, strict=False), float(tolerance)
         except (ValidationError, ValueError, TypeError, zlib.error) as error:
             raise self._damaged(element, error) from None
+
+    def missing(self, element: str) -> InputError:
+        """The fault of a result that ought to be here: an index of the file is damaged, or the run was taken out."""
+        with self._told():
+            verdict = str(self._open.execute("PRAGMA integrity_check(1)").fetchone()[0])
+        if verdict != "ok":
+            problem, remedy = cause(sqlite3.DatabaseError(f"malformed: {verdict}"), self.path)
+            return InputError(problem, remedy, element, str(self.path))
+        return InputError("it is not in it any more", "Run the comparison again", element, str(self.path))
 
     def put(self, key: str, result: Result, tolerance: float) -> None:
         """Store a result, in place of any under the same key.
@@ -359,42 +364,6 @@ def _prepare(connection: sqlite3.Connection) -> None:
             version = connection.execute("PRAGMA user_version").fetchone()[0]
             for statement in (*(_FROM_VERSION_1 if version == 1 else ()), *_SCHEMA):
                 connection.execute(statement)
-
-
-def _cause(error: sqlite3.Error, path: Path) -> tuple[str, str]:
-    """What went wrong and what to do, from the words of the database and a look at the file."""
-    words = str(error)
-    if "unable to open" in words or "disk I/O error" in words or "readonly" in words:
-        reason = _of_the_system(path)
-        if reason == errno.EMFILE:
-            return "no more files can be opened by this process", "Raise the limit (ulimit -n)"
-        if reason:
-            return f"it cannot be opened for writing ({os.strerror(reason)})", OTHER_FILE
-    if "disk is full" in words or "disk I/O error" in words:
-        return f"the disk is full ({words})", "Free room and run again: finished runs are kept"
-    if "readonly" in words:
-        return "it cannot be written: its disk or folder is read-only", OTHER_FILE
-    if "locked" in words:
-        return f"another program has been writing it for {WAIT_SECONDS:.0f} s", f"Wait for it, or: {OTHER_FILE}"
-    if "not a database" in words:
-        return f"it is not a result store ({words})", OTHER_FILE
-    if "malformed" in words or isinstance(error, sqlite3.DataError | sqlite3.IntegrityError):
-        return f"it is damaged ({words})", f"`sqlite3 FILE .recover` saves what is whole. {OTHER_FILE}"
-    return f"it cannot be used ({words})", OTHER_FILE
-
-
-def _of_the_system(path: Path) -> int:
-    """The error number the operating system gives for opening the store and files beside it; 0 if it opens them."""
-    opened: list[int] = []
-    try:
-        opened += [os.open(os.devnull, os.O_RDONLY) for _ in range(4)]  # a store has a log and an index beside it
-        opened.append(os.open(path if path.exists() else path.parent, os.O_RDWR if path.is_file() else os.O_RDONLY))
-    except OSError as error:
-        return error.errno or 0
-    finally:
-        for number in opened:
-            os.close(number)
-    return 0
 
 
 @contextmanager

@@ -8,6 +8,7 @@ import shutil
 import sqlite3
 import subprocess
 import sys
+from contextlib import closing
 from pathlib import Path
 from typing import Any
 
@@ -215,3 +216,20 @@ def test_two_programs_may_make_one_store_at_once(tmp_path: Path):
         connection = sqlite3.connect(tmp_path / f"s{number}.sqlite")
         assert connection.execute("SELECT count(*) FROM comparison").fetchone() == (3,)
         connection.close()
+
+
+def test_a_run_that_is_not_there_any_more_is_told(store: Path):
+    with closing(sqlite3.connect(store)) as connection, connection:
+        connection.execute("DELETE FROM run WHERE rowid = 1")
+    told_in_one_sentence(report(store), "the result of", "not in it any more")
+
+
+def test_an_index_that_has_lost_a_run_is_told_as_damage(store: Path):
+    with closing(sqlite3.connect(store)) as connection, connection:
+        connection.execute("CREATE INDEX spare ON run (case_id)")
+        connection.execute("PRAGMA writable_schema = ON")
+        connection.execute(
+            "UPDATE sqlite_master SET rootpage = (SELECT rootpage FROM sqlite_master WHERE name = 'spare') "
+            "WHERE name = 'sqlite_autoindex_run_1'"
+        )
+    told_in_one_sentence(report(store), "damaged")
