@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import os
 import shlex
 import sys
 from pathlib import Path
@@ -37,6 +38,7 @@ from harness.options import (
     store_option,
     warn,
 )
+from harness.printing import PrintError, print_pdf
 
 
 @click.command()
@@ -239,10 +241,18 @@ def _write_report(compared: ComparisonRun, path: Path, *, drawn: bool = False) -
 @click.command()
 @report_option
 @click.option("--figures", is_flag=True, help="Also draw each case as a PDF in the folder beside the report.")
+@click.option("--appendix", metavar="WALL", help="Run WALL and write an engineer's appendix on it, as HTML and PDF.")
 @store_option
 @catching
-def report(report: Path, figures: bool, store: Path) -> None:
-    """Build the report of the last comparison again, from the store, without running anything."""
+def report(report: Path, figures: bool, appendix: str | None, store: Path) -> None:
+    """Build the report of the last comparison again, from the store, without running anything.
+
+    With --appendix, write two to four sheets on one wall beside the report: result, assumptions, loads, drawing,
+    reactions, mechanism, forces. What the store does not have is run.
+    """
+    if appendix is not None:
+        _appendix(appendix, report.parent, store)
+        return
     if not store.exists():
         raise InputError("there is no such store", "Run `drystone compare` first", source=str(store))
     with open_store(store, read_only=True) as opened:
@@ -251,3 +261,25 @@ def report(report: Path, figures: bool, store: Path) -> None:
         raise InputError("no comparison is in the store", "Run `drystone compare` first", source=str(store))
     _write_report(compared, report, drawn=figures)
     say(f"Report: {report}")
+
+
+def _appendix(wall: str, folder: Path, store: Path) -> None:
+    """Run the methods on one wall and write its appendix; the PDF where a browser is installed."""
+    from reports.appendix import write_appendix
+
+    chosen = find_cases([wall], None, ())
+    warn(chosen[0])
+    runs = [planned for case in chosen for planned in plan_case(case, None, Limits())]
+    announce(planned.method for planned in runs)
+    with open_store(store) as opened, terminal.progress(len(runs), quiet=False) as told:
+        results = comparing.execute(runs, opened, os.cpu_count() or 1, told=told)
+    compared = comparing.comparison_run(chosen[0].id, _command_line(), chosen, runs, results)
+    page = folder / f"{chosen[0].id}-appendix.html"
+    write_appendix(compared, page)
+    say(f"Appendix: {page}")
+    try:
+        print_pdf(page, page.with_suffix(".pdf"))
+    except PrintError as error:
+        say(f"drystone: {error}", err=True)
+    else:
+        say(f"Appendix: {page.with_suffix('.pdf')}")
