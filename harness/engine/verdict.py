@@ -92,6 +92,12 @@ def overall(comparisons: Iterable[Comparison]) -> Verdict:
     return max((comparison.verdict for comparison in comparisons), key=order.index, default=Verdict.NO_REFERENCE)
 
 
+def _is_the_least_known(result: Result) -> bool:
+    """Whether a result is of a family's main method that seeks the least state, and ended its search."""
+    seeks = result.traits.seeks_least and result.method == result.family
+    return seeks and not result.details.get("stopped_by_limit", False)
+
+
 def theory_gates(results: CaseResults) -> list[Gate]:
     """The statements of limit analysis that tie the methods' answers on one case together.
 
@@ -120,7 +126,7 @@ def theory_gates(results: CaseResults) -> list[Gate]:
         )
 
     bounding = next((usable[name] for name in sorted(usable) if usable[name].traits.bounds_above), None)
-    least = next((item for item in usable.values() if item.traits.seeks_least and item.method == item.family), None)
+    least = next((item for item in usable.values() if _is_the_least_known(item)), None)
     for method in sorted(usable):
         result = usable[method]
         if result.traits.bounds_above:

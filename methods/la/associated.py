@@ -24,12 +24,27 @@ from methods.la.state import CollapseState, moving_contacts, polished, residuals
 from methods.numerics.failures import NumericalFailure
 from methods.numerics.optional import optional
 
-SIMPLEX_INTERFACES = 400
-"""Interfaces above which the own interior point comes first: quicker, where its end is clear enough to be polished."""
-GAP = 1e-12
-"""Complementarity y.g relative to the live work at which the path ends."""
-EXACT = 1e-11
-"""Residual of a polished end, and slack or rate of a contact that has both, up to which no vertex is asked for."""
+
+@dataclass(frozen=True)
+class EndOfPath:
+    """When the own interior point is used for the programme, and what is made of its end.
+
+    Attributes:
+        above: interfaces above which it comes before the simplex method: on walls of more it is the quicker.
+        gap: complementarity y.g relative to the live work at which the path ends; the multiplier is known to that.
+        exact: residual of a state that is accepted, ten times the gap; and slack or rate of a contact that has both,
+            up to which contacts are told apart.
+        biases: ratios g / y above which a slack counts as zero, tried in turn. At one both are at the size of the gap;
+            a greater one leaves the forces more freedom where a mechanism is slow.
+    """
+
+    above: int = 400
+    gap: float = 1e-12
+    exact: float = 1e-11
+    biases: tuple[float, ...] = (1.0, 1e3, 1e6)
+
+
+END = EndOfPath()
 
 
 @dataclass(frozen=True)
@@ -65,7 +80,7 @@ def solve_associated(problem: Problem, newton: NewtonMatrix, solver: str = "auto
         solver: "highs" (simplex), "interior" (own interior point, and a vertex where its end is not clear) or "auto"
             (by size).
     """
-    if solver == "interior" or (solver == "auto" and problem.n_interfaces > SIMPLEX_INTERFACES):
+    if solver == "interior" or (solver == "auto" and problem.n_interfaces > END.above):
         result = _by_interior_point(problem, newton)
         if result is not None:
             return result
@@ -107,31 +122,53 @@ def duality_gap(problem: Problem, state: CollapseState) -> float:
 
 
 def _by_interior_point(problem: Problem, newton: NewtonMatrix) -> AssociatedResult | None:
-    """The end of the central path made exact, or None where it is not clear which contacts press and which move."""
+    """The end of the central path made exact, or None where neither it nor its own motion proves the multiplier.
+
+    Where it is not clear which contacts press and which move, exact forces beside the motion of the path do: both are
+    feasible to rounding, so that the difference of their multipliers bounds the error of either (weak duality).
+    """
     try:
-        result = follow_path(problem, newton, start_point(problem), PathSettings(1.0, gap=GAP, residual=1e-3))
+        result = follow_path(problem, newton, start_point(problem), PathSettings(1.0, gap=END.gap, residual=1e-3))
     except NumericalFailure:
         return None
     if not result.gap < 1e-4 or result.statics > 0.1:
         return None
-    for bias in (1.0, 1e3, 1e6):
+    in_pairs: CollapseState | None = None
+    for bias in END.biases:
         state = _from_path(problem, newton, result.point, bias)
-        if state is not None and _unclear(problem, state) <= EXACT:
-            return AssociatedResult("optimal", state, duality_gap(problem, state), result.iterations)
-    return None
+        if state is None:
+            continue
+        clear = _at_rest_elsewhere(problem, newton, state)
+        if clear is not None and _unclear(problem, clear) <= END.exact:
+            return AssociatedResult("optimal", clear, duality_gap(problem, clear), result.iterations)
+        in_pairs = in_pairs or state
+    if in_pairs is None or max(residuals(problem, in_pairs).values()) > END.exact:
+        return None
+    return AssociatedResult("optimal", in_pairs, duality_gap(problem, in_pairs), result.iterations)
 
 
 def _from_path(problem: Problem, newton: NewtonMatrix, point: Point, bias: float) -> CollapseState | None:
-    """The end of an associated path with forces and mechanism exact: slacks with g > bias y vanish, else rates do."""
+    """The end of an associated path with exact forces, whose slacks with g > bias y vanish, and the motion it has."""
     tight = point.rates > bias * point.slack
+    work = float(problem.live @ point.velocities)
+    if not work > 0.0:
+        return None
     try:
         forces, multiplier = exact_forces(
             problem, newton, problem.forces_of_slacks(point.slack), point.multiplier, tight, floor=1e-14
         )
-        velocities = exact_mechanism(problem, newton, point.velocities, tight, associated=True)
     except NumericalFailure:
         return None
+    velocities = point.velocities * (problem.live_work / work)
     return CollapseState(forces, multiplier, velocities, tight, associated=True)
+
+
+def _at_rest_elsewhere(problem: Problem, newton: NewtonMatrix, state: CollapseState) -> CollapseState | None:
+    """The state with exactly no rates but in its moving contacts; None if there is no such mechanism."""
+    try:
+        return replace(state, velocities=exact_mechanism(problem, newton, state.velocities, state.moving, True))
+    except NumericalFailure:
+        return None
 
 
 def _unclear(problem: Problem, state: CollapseState) -> float:

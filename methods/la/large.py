@@ -219,22 +219,29 @@ class LargeSearch:
             self.seconds.append(time.process_time())
 
 
+def central_search(found: LargeSearch, problem: Problem, newton: NewtonMatrix, seed: int) -> None:
+    """Add the state at the end of Newton's path of the wall with smoother unloaded joints: the soonest, if there is."""
+    guide = smoothed(problem, SMOOTH[0]) if problem.n_interfaces <= MOST_INTERFACES else None
+    if guide is not None:
+        found.add(*_path_state(problem, guide, newton, seed))
+
+
 def large_search(
     found: LargeSearch, problem: Problem, newton: NewtonMatrix, seed: int, velocities: FloatArray | None
 ) -> None:
     """Add exact collapse states of a large wall to those found, which are kept where the time ends the search.
 
-    First at the end of Newton's path of the wall with smoother unloaded joints, then along paths by arc length in the
-    part that an associated mechanism with velocities (3n,), if one is known, moves. Where no forces fit those
+    First at the ends of further paths as in `central_search`, then along paths by arc length in the part that an
+    associated mechanism with velocities (3n,), if one is known, moves. Where no forces fit those
     mechanisms, from the wall itself with lagged friction bounds, and from its own path.
     """
     whole = problem.n_interfaces <= MOST_INTERFACES
-    for factor in SMOOTH if whole else ():
+    for factor in SMOOTH[1:] if whole else ():
+        if found.states and problem.n_interfaces > FEW_INTERFACES:
+            break
         guide = smoothed(problem, factor)
         if guide is not None:
             found.add(*_path_state(problem, guide, newton, seed))
-        if found.states and problem.n_interfaces > FEW_INTERFACES:
-            break
     if velocities is not None:
         _search_part(found, problem, newton, seed, velocities)
     if whole and not found.states:

@@ -11,16 +11,16 @@ from typing import Any
 import numpy as np
 
 from harness.model.errors import first_few
-from harness.model.method import Answer, OutOfTime
+from harness.model.method import Answer, OutOfTime, Status
 from methods.la.answers import LOCALLY, NO_MOTION, NO_STATE, collapse_answer, not_converged, unbounded_answer
-from methods.la.associated import AssociatedResult, solve_associated
+from methods.la.associated import AssociatedResult
 from methods.la.continuation import POOL, climb, descend_from, smooth_joints
 from methods.la.exact import exact_mechanism
 from methods.la.extremes import ForceProgramme, Units, units_of
-from methods.la.large import LargeSearch, lagged_state, large_search
+from methods.la.large import MOST_INTERFACES, LargeSearch, central_search, lagged_state, large_search
 from methods.la.mechanisms import mechanism_states
 from methods.la.newton_matrix import NewtonMatrix
-from methods.la.prestressed import LIGHT_UP_TO, gravity_of, last_states, light_states
+from methods.la.prestressed import LIGHT_UP_TO, first_state, gravity_of, last_states, light_states
 from methods.la.problem import Problem
 from methods.la.proof import Proof, prove
 from methods.la.rational import confirm
@@ -108,7 +108,9 @@ def least_known(problem: Problem, newton: NewtonMatrix, settings: SearchSettings
             return _large(search, found, settings, tolerance)
         return _searched(search, settings, tolerance)
     except OutOfTime:
-        states = [state for state in search.known.values() if state is not None] + found.states
+        states = search.lower + found.states
+        if not states and search.associated.state is not None:
+            return _stopped_before_the_first(problem, search.associated.state, tolerance)
         if not states:
             raise
         return _stopped(problem, newton, states, search.tally.newton_steps + found.steps, tolerance)
@@ -117,13 +119,7 @@ def least_known(problem: Problem, newton: NewtonMatrix, settings: SearchSettings
 def _stopped(
     problem: Problem, newton: NewtonMatrix, states: list[CollapseState], steps: int, tolerance: float
 ) -> Answer:
-    """The answer with the least of the states that were known when the time was over."""
-    best = polished(problem, newton, least_of(problem, states))
-    least = problem.to_multiplier(best.multiplier)
-    sentence = (
-        f"The least collapse multiplier known so far is {least:.7g}: the search was stopped by the time limit, with "
-        "starts, descents and paths left to try. It is not proved to be the least."
-    )
+    """The answer with the least of the states that were known when the time was over and are exact."""
     details = {
         "stopped_by_limit": True,
         "starts": len(states),
@@ -132,7 +128,31 @@ def _stopped(
         "lower_bound": 0.0,
         "proved_least": False,
     }
-    return collapse_answer(problem, best, sentence, tolerance, steps, details)
+    for state in sorted(states, key=lambda state: state.multiplier):
+        exact = max(residuals(problem, state).values()) <= tolerance
+        best = state if exact else polished(problem, newton, state)
+        sentence = (
+            f"The least collapse multiplier known so far is {problem.to_multiplier(best.multiplier):.7g}: the search "
+            "was stopped by the time limit, with starts, descents and paths left to try. It is not proved to be the "
+            "least."
+        )
+        answer = collapse_answer(problem, best, sentence, tolerance, steps, details)
+        if answer.status is Status.OK:
+            break
+    return answer
+
+
+def _stopped_before_the_first(problem: Problem, associated: CollapseState, tolerance: float) -> Answer:
+    """The answer with the associated collapse state, where the time was over before any other was known."""
+    greatest = problem.to_multiplier(associated.multiplier)
+    sentence = (
+        f"No collapse state without dilatancy is known yet: the search was stopped by the time limit. None lies above "
+        f"{greatest:.7g}, at which the wall collapses under associated flow."
+    )
+    details = {"stopped_by_limit": True, "associated": greatest, "lower_bound": 0.0, "proved_least": False}
+    return collapse_answer(
+        problem, associated, sentence, tolerance, 0, details, (0.0, greatest), "nothing is known but the upper bound"
+    )
 
 
 def _searched(search: Search, settings: SearchSettings, tolerance: float) -> Answer:
@@ -145,7 +165,7 @@ def _searched(search: Search, settings: SearchSettings, tolerance: float) -> Ans
     rungs = (smooth_joints(search, factor) for factor in SMOOTH)
     carried = [state for rung in rungs if rung is not None for state in search.adopt(rung, POOL)]
     climbed = descend_from(carried, search, effort, plan.descents)
-    associated = solve_associated(problem, newton)
+    associated = search.solve_associated()
     found = [search.descend(state, effort) for state in _starting_states(search, first, associated, plan.starts)]
     below = climb(search, plan.ladder, effort, plan.descents)
     if below is not None:
@@ -245,21 +265,27 @@ def _large(search: Search, found: LargeSearch, settings: SearchSettings, toleran
     """The answer of the search on larger walls, which descends from nothing."""
     problem, newton = search.problem, search.newton
     began = time.process_time()
-    associated = solve_associated(problem, newton)
+    associated = search.solve_associated()
     velocities = None if associated.state is None else associated.state.velocities
+    unbounded = associated.outcome == "unbounded"
+    central_search(found, problem, newton, settings.seed)
+    soon = problem.n_interfaces <= MOST_INTERFACES and not unbounded
+    if soon and not found.states:
+        found.add(first_state(search, LARGE_KINKS), 0, found.gap)
     large_search(found, problem, newton, settings.seed, velocities)
     details: dict[str, Any] = {"unknowns": 7 * problem.n_interfaces + problem.n_velocities + 1}
-    unbounded = associated.outcome == "unbounded"
     falling: list[str] = []
     for state in found.states:
-        search.record(state.multiplier)
+        search.record(state)
     if problem.n_interfaces <= LIGHT_UP_TO:
         gravity = gravity_of(problem)
         falling = gravity.falling
         light = light_states(search, gravity, 1 if unbounded else LARGE_KINKS, associated.greatest)
         for state in chain(light, mechanism_states(search, 0)):
             found.add(state, 0, found.gap)
-    if not found.states and not unbounded:
+    if not (found.states or unbounded or soon):
+        found.add(first_state(search, LARGE_KINKS), 0, found.gap)
+    if not (found.states or unbounded):
         for state in last_states(search, associated.greatest, LARGE_KINKS):
             found.add(state, 0, found.gap)
     found.steps += search.tally.newton_steps
@@ -303,7 +329,7 @@ def _starting_states(
         state, steps, _ = lagged_state(search.problem, search.newton, ((100, 0.6),))
         search.tally.newton_steps += steps
         if state is not None:
-            search.record(state.multiplier)
+            search.record(state)
         states.append(state)
     states += [search.interior(spread=2.0) for _ in range(starts)]
     return [state for state in states if state is not None]

@@ -151,7 +151,7 @@ def _light_starts(search: Search, gravity: Gravity, greatest: float) -> Iterator
 
 
 def last_states(search: Search, greatest: float, kinks: int) -> Iterator[CollapseState]:
-    """Collapse states of a large wall to which nothing else led: from safe forces, central ones, and gravity's.
+    """Collapse states of a large wall to which nothing else led: from central forces, and gravity's.
 
     Args:
         search: of the wall, which stands under its dead load.
@@ -161,8 +161,12 @@ def last_states(search: Search, greatest: float, kinks: int) -> Iterator[Collaps
     yield from (state for _, state in _ends(search, _last_starts(search, greatest), kinks))
 
 
+def first_state(search: Search, kinks: int) -> CollapseState | None:
+    """The collapse state that safe forces of a large wall lead to, where its central path led to none."""
+    return next((state for _, state in _ends(search, iter([partial(_from_safe_forces, search)]), kinks)), None)
+
+
 def _last_starts(search: Search, greatest: float) -> Iterator[Start]:
-    yield partial(_from_safe_forces, search)
     yield partial(_from_central_forces, search, RATIOS[0])
     if search.problem.n_interfaces > LIGHT_UP_TO:
         yield from _committed(search, greatest)
@@ -183,7 +187,7 @@ def _ends(search: Search, starts: Iterator[Start], kinks: int) -> Iterator[tuple
             beginning = start()
             state = None if beginning is None else _collapse_state(search, beginning)
         if state is not None:
-            search.record(state.multiplier)
+            search.record(state)
             yield k, state
 
 

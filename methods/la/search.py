@@ -15,6 +15,7 @@ from functools import cached_property
 import numpy as np
 
 from harness.model.assembly import BoolArray, FloatArray
+from methods.la.associated import AssociatedResult, solve_associated
 from methods.la.interior_point import PathResult, PathSettings, follow_path, start_point
 from methods.la.newton_matrix import NewtonMatrix
 from methods.la.newton_step import Point
@@ -56,8 +57,9 @@ class Tally:
 class Search:
     """Everything that a wall's search shares: programmes, known mechanisms, counters.
 
-    `history` holds every lower multiplier (scaled) with the CPU time of the process at which it was found [s], `ends`
-    those at which descents ended.
+    `lower` holds each state that was lower than all before, `history` its multiplier (scaled) with the CPU time of the
+    process at which it was found [s], `ends`
+    those at which descents ended, `associated` the programme of statics alone, once it is solved.
     """
 
     def __init__(self, problem: Problem, newton: NewtonMatrix, seed: int = 0, parent: Search | None = None) -> None:
@@ -67,8 +69,10 @@ class Search:
         self.generator: np.random.Generator = np.random.default_rng(seed) if parent is None else parent.generator
         self.known: dict[bytes, CollapseState | None] = {}
         self.tally: Tally = Tally() if parent is None else parent.tally
+        self.lower: list[CollapseState] = []
         self.history: list[tuple[float, float]] = []
         self.ends: list[float] = []
+        self.associated = AssociatedResult("unknown")
 
     @cached_property
     def central_forces(self) -> FloatArray | None:
@@ -104,19 +108,26 @@ class Search:
             if isinstance(solution, str):
                 self.known[key] = None
             else:
-                self.known[key] = CollapseState(solution.forces, solution.multiplier, velocities, moving)
-                self.record(solution.multiplier)
+                state = CollapseState(solution.forces, solution.multiplier, velocities, moving)
+                self.known[key] = state
+                self.record(state)
         return self.known[key]
+
+    def solve_associated(self) -> AssociatedResult:
+        """The greatest multiplier of statics alone, which is kept: no collapse state is above it."""
+        self.associated = solve_associated(self.problem, self.newton)
+        return self.associated
 
     @property
     def least(self) -> float:
         """The least multiplier (scaled) of a collapse state so far; infinite before the first."""
         return self.history[-1][1] if self.history else np.inf
 
-    def record(self, multiplier: float) -> None:
-        """Note a multiplier (scaled) that a collapse state has, if none known is lower."""
-        if multiplier < self.least - LOWER:
-            self.history.append((time.process_time(), multiplier))
+    def record(self, state: CollapseState) -> None:
+        """Note a collapse state if none known is lower."""
+        if state.multiplier < self.least - LOWER:
+            self.history.append((time.process_time(), state.multiplier))
+            self.lower.append(state)
 
     def nearest_mechanism(self, forces: FloatArray, rates: FloatArray | None = None) -> CollapseState | None:
         """The collapse state of the extreme mechanism that does least work y.g on the slacks of given forces."""

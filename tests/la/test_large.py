@@ -11,7 +11,7 @@ from scipy.linalg import block_diag
 from harness.model.method import Finding
 from methods.la.adapter import AssociatedLimitAnalysis, LimitAnalysis
 from methods.la.arc import RESIDUAL, ArcPath
-from methods.la.associated import solve_associated
+from methods.la.associated import END, solve_associated
 from methods.la.exact import close_tight
 from methods.la.feasible_pair import FEASIBLE, feasible_pair
 from methods.la.interior_point import PathSettings, follow_path, start_point
@@ -99,7 +99,7 @@ def test_path_to_a_tiny_gap_stays_in_equilibrium() -> None:
 
 def test_vertical_force_on_one_block_of_a_large_wall_is_unbounded(monkeypatch: pytest.MonkeyPatch) -> None:
     """The interior point meets no end there; forces that bear the live load alone tell."""
-    monkeypatch.setattr("methods.la.associated.SIMPLEX_INTERFACES", 100)
+    monkeypatch.setattr("methods.la.associated.END", replace(END, above=100))
     monkeypatch.setattr("methods.la.least.SIMPLEX_SEARCH", 100)
     wall = running_bond(10, 8, 0.2, 0.65)
     live = np.zeros_like(wall.live)
