@@ -17,6 +17,7 @@ from harness.model.assembly import Assembly, FloatArray, polygon_area
 from harness.model.case import Case
 from harness.model.comparison import CaseResults, ComparisonRun
 from harness.model.result import Result
+from harness.model.rings import rings_of
 from reports import joints, numbers, shapes
 
 SIZE = 4000
@@ -64,8 +65,12 @@ def stroke_factor(assembly: Assembly) -> float:
 
 
 def path_of(frame: Frame, polygon: FloatArray) -> str:
-    """A polygon as SVG path data, relative after the first vertex."""
-    points = [frame.place(vertex) for vertex in polygon]
+    """A polygon as SVG path data, relative after the first vertex; holes are rings that run the other way round."""
+    return "".join(_ring(frame, ring) for ring in rings_of(polygon))
+
+
+def _ring(frame: Frame, ring: FloatArray) -> str:
+    points = [frame.place(vertex) for vertex in ring]
     text = f"M{points[0][0]} {points[0][1]}"
     for (x0, y0), (x1, y1) in itertools.pairwise(points):
         if (x0, y0) != (x1, y1):

@@ -13,7 +13,7 @@ from typing import Any
 import matplotlib as mpl
 import numpy as np
 from matplotlib.axes import Axes
-from matplotlib.collections import LineCollection, PolyCollection
+from matplotlib.collections import LineCollection
 from matplotlib.figure import Figure
 
 from harness.model.assembly import Assembly, FloatArray
@@ -24,7 +24,7 @@ from harness.model.result import Result
 from reports import flow, joints, shapes
 from reports.drawing import LABELLED_BLOCKS, block_labels
 from reports.facts import friction_text, value_in_words
-from reports.force_figure import BLUE, GREY, INK, PLUM, RUST, draw_forces, length_scale
+from reports.force_figure import BLUE, GREY, INK, PLUM, RUST, draw_forces, length_scale, stones
 
 COLUMN, PAGE = 88 / 25.4, 180 / 25.4
 """Width of one and of two columns [inch]."""
@@ -250,11 +250,11 @@ def _panel_title(case: Case, result: Result, what: str) -> str:
 def draw_blocks(ax: Axes, assembly: Assembly, polygons: list[FloatArray], moving: np.ndarray | None = None) -> None:
     """Blocks at given places: fixed ones hatched, moving ones shaded."""
     fixed = [polygon for polygon, still in zip(polygons, assembly.fixed, strict=True) if still]
-    ax.add_collection(PolyCollection(fixed, facecolor="white", edgecolor=INK, linewidth=0.5, hatch="/////"))
+    ax.add_collection(stones(fixed, facecolor="white", edgecolor=INK, linewidth=0.5, hatch="/////"))
     moves = np.zeros(assembly.n_blocks, dtype=bool) if moving is None else moving
     free = [(polygon, bool(moves[k])) for k, polygon in enumerate(polygons) if not assembly.fixed[k]]
     colours = ["#dfe8f1" if move else "white" for _, move in free]
-    ax.add_collection(PolyCollection([p for p, _ in free], facecolor=colours, edgecolor=INK, linewidth=0.5))
+    ax.add_collection(stones([p for p, _ in free], facecolor=colours, edgecolor=INK, linewidth=0.5))
 
 
 def draw_joints(ax: Axes, assembly: Assembly) -> None:
@@ -280,7 +280,7 @@ def draw_mechanism(
     """
     scale = shapes.amplitude(assembly, mechanism) if scale is None else scale
     ax.add_collection(
-        PolyCollection(list(assembly.polygons), facecolor="none", edgecolor=GREY, linewidth=0.3, linestyle=(0, (3, 3)))
+        stones(list(assembly.polygons), facecolor="none", edgecolor=GREY, linewidth=0.3, linestyle=(0, (3, 3)))
     )
     draw_blocks(ax, assembly, shapes.displaced(assembly, mechanism, scale), shapes.moving(assembly, mechanism))
     if states is None:

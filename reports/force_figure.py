@@ -2,17 +2,29 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+from typing import Any
+
 import numpy as np
 from matplotlib.axes import Axes
-from matplotlib.collections import LineCollection, PolyCollection
+from matplotlib.collections import LineCollection, PathCollection, PolyCollection
+from matplotlib.path import Path as Line
 
 from harness.model.assembly import Assembly, FloatArray
+from harness.model.rings import rings_of
 from harness.model.wall import Units
 from reports import flow, numbers, shapes
 
 INK, GREY, BLUE, RUST, PLUM = "#14202b", "#8a96a1", "#17508c", "#a63c06", "#6d2077"
 THIN, WIDE = 0.3, 3.2
 """Width of the line of a force [pt]: of none, and what the largest adds to it."""
+
+
+def stones(polygons: Sequence[FloatArray], **looks: Any) -> PathCollection:
+    """Polygons, those with holes too, as one collection of paths."""
+    rings = [[np.vstack([ring, ring[:1]]) for ring in rings_of(polygon)] for polygon in polygons]
+    paths = [Line.make_compound_path(*(Line(ring, closed=True) for ring in part)) for part in rings]
+    return PathCollection(paths, **looks)
 
 
 def draw_forces(ax: Axes, assembly: Assembly, forces: FloatArray, *, thrust: bool, units: Units | None = None) -> None:
@@ -30,7 +42,7 @@ def draw_forces(ax: Axes, assembly: Assembly, forces: FloatArray, *, thrust: boo
     """
     for still, hatch in ((False, None), (True, "/////")):
         polygons = [p for p, fixed in zip(assembly.polygons, assembly.fixed, strict=True) if bool(fixed) is still]
-        ax.add_collection(PolyCollection(polygons, facecolor="none", edgecolor=GREY, linewidth=0.4, hatch=hatch))
+        ax.add_collection(stones(polygons, facecolor="none", edgecolor=GREY, linewidth=0.4, hatch=hatch))
     found = shapes.thrusts(assembly, forces, smallest=flow.STYLE.smallest)
     if not len(found.size):
         return

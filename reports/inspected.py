@@ -14,15 +14,15 @@ from pathlib import Path
 import numpy as np
 import shapely
 from matplotlib.axes import Axes
-from matplotlib.collections import PolyCollection
 from matplotlib.figure import Figure
 
 from harness.model.assembly import FloatArray
 from harness.model.inspection import Inspection, Mark
+from harness.model.rings import rings_of
 from harness.model.units import DIMENSIONLESS
 from reports import shapes
 from reports.figures import PAGE, checked, draw_joints, draw_loads, metadata, style
-from reports.force_figure import BLUE, GREY, INK, RUST
+from reports.force_figure import BLUE, GREY, INK, RUST, stones
 
 
 @dataclass(frozen=True)
@@ -48,6 +48,8 @@ class Sheet:
     line: int = 150
 
 
+STONE = "#f3f0e9"
+"""Colour of stones, so that holes are told from them."""
 TINT = {"fault": RUST, "doubt": "#b07a00"}
 """Colour of a kind of mark."""
 
@@ -113,10 +115,10 @@ def _blocks(ax: Axes, looked: Inspection) -> None:
     concerned = {name: mark.kind for mark in reversed(looked.marks) for name in mark.blocks}
     for still in (True, False):
         mine = [k for k, fixed in enumerate(looked.fixed.tolist()) if fixed is still]
-        colours = ["#f6ded2" if concerned.get(looked.names[k]) == "fault" else "white" for k in mine]
+        colours = ["#f6ded2" if concerned.get(looked.names[k]) == "fault" else STONE for k in mine]
         edges = [TINT.get(concerned.get(looked.names[k], ""), INK) for k in mine]
         ax.add_collection(
-            PolyCollection(
+            stones(
                 [looked.outlines[k] for k in mine],
                 facecolor=colours,
                 edgecolor=edges,
@@ -145,7 +147,8 @@ def _ids(ax: Axes, looked: Inspection, point: float, sheet: Sheet, *, dimensions
 
 def _inside(outline: FloatArray) -> tuple[float, float]:
     """A point for the letters of a block: the middle of its extent, or another one where that is outside."""
-    shape = shapely.Polygon(outline).buffer(0)
+    outer, *holes = rings_of(outline)
+    shape = shapely.Polygon(outer, holes).buffer(0)
     x, y = (outline.min(axis=0) + 0.5 * np.ptp(outline, axis=0)).tolist()
     if shape.is_empty or shape.contains(shapely.Point(x, y)):
         return x, y

@@ -4,13 +4,15 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 import shapely
 
 from harness.model.assembly import FloatArray
 from harness.model.errors import InputError
+
+Ring = Iterable[Sequence[float]]
 
 LINES, CROSSES = "lines that close", "it crosses itself"
 """Words of an account that a reader looks for."""
@@ -36,6 +38,7 @@ class Outline:
         name: given by the drawing; empty if there is none.
         material: given by the drawing; empty if there is none.
         fixed: whether the drawing says that it is a support.
+        holes: (j, 2) vertices of each hole within it, the first not repeated [length of the drawing].
     """
 
     polygon: FloatArray
@@ -43,6 +46,12 @@ class Outline:
     name: str = ""
     material: str = ""
     fixed: bool = False
+    holes: tuple[FloatArray, ...] = ()
+
+    @property
+    def shape(self) -> shapely.Polygon:
+        """The stone it encloses."""
+        return shapely.Polygon(self.polygon, self.holes)
 
 
 @dataclass
@@ -63,9 +72,9 @@ class Drawing:
     left_out: Counter[str] = field(default_factory=Counter)
     notes: list[str] = field(default_factory=list)
 
-    def add(self, kind: str, points: Iterable[Sequence[float]], **more: object) -> None:
+    def add(self, kind: str, points: Ring, holes: Iterable[Ring] = (), **more: object) -> None:
         """Add an outline, or note why it is none (fewer than three vertices, no area, crosses itself)."""
-        polygon = without_repeats(np.array([tuple(point)[:2] for point in points], float).reshape(-1, 2))
+        polygon = _cleaned(points)
         layer = str(more.get("layer", ""))
         where = f' on layer "{layer}"' if layer else ""
         if len(polygon) < 3:
@@ -80,11 +89,40 @@ class Drawing:
                 self.left_out[f"{kind}{where}: {CROSSES} near {shapely.is_valid_reason(shape)}"] += 1
                 return
             self.notes.append(f"{kind}{where} mended: {CROSSES} by a spike near {shapely.is_valid_reason(shape)}")
+            more["holes"] = self._holes_in(whole, holes, kind + where)
             self.outlines.append(Outline(np.asarray(whole.exterior.coords)[:-1], **more))  # type: ignore[arg-type]
             self.read[f"{kind}{where}"] += 1
         else:
+            more["holes"] = self._holes_in(shape, holes, kind + where)
             self.outlines.append(Outline(polygon, **more))  # type: ignore[arg-type]
             self.read[f"{kind}{where}"] += 1
+
+    def _holes_in(self, stone: shapely.Polygon, holes: Iterable[Ring], what: str) -> tuple[FloatArray, ...]:
+        """Holes of a stone; one that is no polygon within it, or touches it or another along a length, is told."""
+        kept: list[FloatArray] = []
+        for hole in map(_cleaned, holes):
+            inside = len(hole) > 2 and stone.covers(shapely.Polygon(hole).buffer(0))
+            if inside and shapely.Polygon(stone.exterior, [*kept, hole]).is_valid:
+                kept.append(hole)
+            else:
+                self.left_out[f"hole of {what}: it is no polygon within the outline, and is filled"] += 1
+        return tuple(kept)
+
+    def cut_out(self, layers: Iterable[str]) -> None:
+        """Take the outlines on layers of holes as holes of the stones that they lie in; note those that lie in none."""
+        wanted = set(layers)
+        cuts = [outline for outline in self.outlines if outline.layer in wanted]
+        self.outlines = [outline for outline in self.outlines if outline.layer not in wanted]
+        for cut in cuts:
+            around = [k for k, outline in enumerate(self.outlines) if outline.shape.covers(cut.shape)]
+            if not around:
+                x, y = cut.polygon.mean(axis=0)
+                self.left_out[f'hole on layer "{cut.layer}" that lies in no stone, near ({x:g}, {y:g})'] += 1
+                continue
+            least = min(around, key=lambda k: self.outlines[k].shape.area)
+            stone = self.outlines[least]
+            holes = self._holes_in(shapely.Polygon(stone.polygon), [*stone.holes, cut.polygon], "a stone")
+            self.outlines[least] = replace(stone, holes=holes)
 
     def add_lines(self, lines: Sequence[tuple[FloatArray, str]], kind: str = LINES) -> None:
         """Add the areas that lines (k, 2) of one layer close, and note what ends in the open.
@@ -95,7 +133,8 @@ class Drawing:
             mine = shapely.MultiLineString([line for line, its in lines if its == layer and len(line) > 1])
             faces, _, dangles, _ = shapely.polygonize_full([shapely.union_all([mine])])
             for face in shapely.get_parts(faces):
-                self.add(kind, np.asarray(face.exterior.coords)[:-1], layer=layer)
+                within = [np.asarray(ring.coords)[:-1] for ring in face.interiors]
+                self.add(kind, np.asarray(face.exterior.coords)[:-1], within, layer=layer)
             loose = shapely.get_num_geometries(dangles)
             if loose:
                 x, y = shapely.get_coordinates(dangles)[0]
@@ -105,7 +144,7 @@ class Drawing:
         """Keep outlines that are drawn twice once, and note them."""
         if len(self.outlines) < 2:
             return
-        shapes = np.array([shapely.Polygon(outline.polygon) for outline in self.outlines])
+        shapes = np.array([outline.shape for outline in self.outlines])
         i, j = shapely.STRtree(shapes).query(shapes, predicate="intersects")
         i, j = i[i < j], j[i < j]
         common, area = shapely.area(shapely.intersection(shapes[i], shapes[j])), shapely.area(shapes)
@@ -129,6 +168,27 @@ class Drawing:
                 source=source,
             )
         return self
+
+
+def _cleaned(points: Ring) -> FloatArray:
+    return without_repeats(np.array([tuple(point)[:2] for point in points], float).reshape(-1, 2))
+
+
+def nested(rings: Sequence[FloatArray]) -> list[tuple[FloatArray, list[FloatArray]]]:
+    """Closed lines (k, 2) of one entity as outlines, each with the lines just within it as its holes.
+
+    What lies within a hole is an outline again, as in the even-odd rule of drawings.
+    """
+    shapes = np.array([shapely.Polygon(ring).buffer(0) for ring in rings])
+    around: list[set[int]] = [set() for _ in rings]
+    if len(rings) > 1:
+        for inner, outer in shapely.STRtree(shapes).query(shapes, predicate="within").T.tolist():
+            around[inner] |= {outer} - {inner}
+    return [
+        (ring, [rings[k] for k in range(len(rings)) if i in around[k] and len(around[k]) == len(around[i]) + 1])
+        for i, ring in enumerate(rings)
+        if len(around[i]) % 2 == 0
+    ]
 
 
 def without_repeats(polygon: FloatArray) -> FloatArray:

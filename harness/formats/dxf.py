@@ -12,7 +12,7 @@ import numpy as np
 from ezdxf import path as paths
 from ezdxf.lldxf.const import DXFError
 
-from harness.formats.drawing import Drawing
+from harness.formats.drawing import Drawing, nested
 from harness.model.assembly import FloatArray
 from harness.model.errors import InputError
 from harness.model.reading import read_bytes
@@ -79,11 +79,8 @@ def _entities(holder: Any, drawing: Drawing, depth: int = 0, parent: str = "0") 
 def _read(entity: Any, layer: str, accuracy: float, drawing: Drawing, lines: list[tuple[FloatArray, str]]) -> None:
     kind = entity.dxftype()
     if kind in ("HATCH", "MPOLYGON"):
-        for number, path in enumerate(paths.from_hatch(entity)):
-            if number == 0:
-                drawing.add(kind, _points(path, accuracy), layer=layer)
-            else:
-                drawing.left_out[f'{kind} on layer "{layer}": holes and islands of hatches are not stones'] += 1
+        for outer, holes in nested([_points(path, accuracy) for path in paths.from_hatch(entity)]):
+            drawing.add(kind, outer, holes, layer=layer)
         return
     if kind not in CLOSED | OPEN:
         drawing.left_out[f'{kind} on layer "{layer}": no outline'] += 1

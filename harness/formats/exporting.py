@@ -16,6 +16,7 @@ from harness.model.assembly import Assembly, FloatArray
 from harness.model.build import Built
 from harness.model.errors import InputError, did_you_mean
 from harness.model.result import Result, vertex_velocities
+from harness.model.rings import rings_of
 
 STATES = {"stick": 0, "slip": 1, "rock": 2, "open": 3}
 """Numbers of the states of joints in fields."""
@@ -120,8 +121,15 @@ def write_dxf(built: Built, result: Result | None, path: Path) -> None:
         document.layers.add(name, color=colour)
     space = document.modelspace()
     for polygon, fixed in zip(assembly.polygons, assembly.fixed, strict=True):
-        layer = "SUPPORTS" if fixed else "BLOCKS"
-        space.add_lwpolyline(polygon.tolist(), close=True, dxfattribs={"layer": layer})
+        layer = {"layer": "SUPPORTS" if fixed else "BLOCKS"}
+        outer, *holes = (ring.tolist() for ring in rings_of(polygon))
+        if not holes:
+            space.add_lwpolyline(outer, close=True, dxfattribs=layer)
+            continue
+        hatch = space.add_hatch(dxfattribs=layer)  # a polyline within another would be a stone within it
+        hatch.paths.add_polyline_path(outer, is_closed=True, flags=1)
+        for hole in holes:
+            hatch.paths.add_polyline_path(hole, is_closed=True, flags=0)
     for start, end in zip(assembly.face1, assembly.face2, strict=True):
         space.add_line(start.tolist(), end.tolist(), dxfattribs={"layer": "JOINTS"})
     if result is not None and result.mechanism is not None:
@@ -154,8 +162,12 @@ def write_svg(built: Built, result: Result | None, path: Path) -> None:
             f'stroke-width="{line:.3g}" stroke-linejoin="round">'
         )
         parts += [
-            '<polygon points="' + " ".join(f"{x:.17g},{0.0 - y:.17g}" for x, y in polygon.tolist()) + '"/>'
-            for polygon in polygons
+            '<path d="'
+            + " ".join(
+                "M" + " ".join(f"{x:.17g},{0.0 - y:.17g}" for x, y in ring.tolist()) + "z" for ring in rings_of(p)
+            )
+            + '"/>'
+            for p in polygons
         ]
         parts.append("</g>")
     path.write_text("\n".join([*parts, "</svg>"]) + "\n", encoding="utf-8")
@@ -174,8 +186,8 @@ def write_geojson(built: Built, result: Result | None, path: Path) -> None:
         }
         if result is not None and result.mechanism is not None:
             properties["mechanism"] = list(result.mechanism[number])
-        ring = [*polygon.tolist(), polygon[0].tolist()]
-        features.append(_feature({"type": "Polygon", "coordinates": [ring]}, properties))
+        rings = [[*ring.tolist(), ring[0].tolist()] for ring in rings_of(polygon)]
+        features.append(_feature({"type": "Polygon", "coordinates": rings}, properties))
     for number in range(assembly.n_interfaces):
         ends = [assembly.face1[number].tolist(), assembly.face2[number].tolist()]
         joint: dict[str, Any] = {
@@ -196,15 +208,18 @@ def _feature(geometry: dict[str, Any], properties: dict[str, Any]) -> dict[str, 
 
 
 def write_csv(built: Built, result: Result | None, path: Path) -> None:
-    """A row a vertex: block, x, y, material, fixed, and with a mechanism vx and vy."""
+    """A row a vertex: block, ring (0 the outline, then its holes), x, y, material, fixed, and vx, vy of a mechanism."""
     assembly = built.assembly
     file = io.StringIO()
     writer = csv.writer(file, lineterminator="\n")
-    writer.writerow(["block", "x", "y", "material", "fixed", "vx", "vy"])
-    rows = zip(assembly.block_ids, assembly.polygons, _velocities(assembly, result), built.wall.blocks, strict=True)
-    for name, polygon, velocity, block in rows:
-        for point, speed in zip(polygon.tolist(), velocity.tolist(), strict=True):
-            writer.writerow([name, *point, block.material, int(block.fixed), *speed])
+    writer.writerow(["block", "ring", "x", "y", "material", "fixed", "vx", "vy"])
+    speeds = np.zeros((assembly.n_blocks, 3)) if result is None or result.mechanism is None else result.mechanism
+    rows = zip(assembly.block_ids, assembly.polygons, assembly.centroid, speeds, built.wall.blocks, strict=True)
+    for name, polygon, centroid, speed, block in rows:
+        for number, ring in enumerate(rings_of(polygon)):
+            velocity = vertex_velocities(ring, centroid, np.asarray(speed, float))
+            for point, v in zip(ring.tolist(), velocity.tolist(), strict=True):
+                writer.writerow([name, number, *point, block.material, int(block.fixed), *v])
     path.write_text(file.getvalue(), encoding="utf-8")
 
 

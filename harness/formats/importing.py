@@ -58,7 +58,7 @@ wide, and its stones 75 to 500 mm high."""
 class Layer(Strict):
     """What the stones of a layer are."""
 
-    use: Literal["stone", "support", "ignore"] = "stone"
+    use: Literal["stone", "support", "hole", "ignore"] = "stone"
     material: str = "stone"
     groups: list[Name] = Field(default_factory=list)
     unit_weight: NonNegative | None = Field(None, description="[kN/m3]")
@@ -143,6 +143,7 @@ def import_drawing(path: Path, mapping: Mapping | None = None) -> Imported:
         )
     doubts += [f"left out {count} x {what}" for what, count in drawing.left_out.items() if CROSSES in what]
     _known_layers(chosen, drawing, path)
+    drawing.cut_out(name for name, layer in chosen.layers.items() if layer.use == "hole")
     kept = [item for item in drawing.outlines if _layer(chosen, item).use != "ignore"]
     if len(kept) < len(drawing.outlines):
         drawing.left_out["outline on a layer to be ignored"] += len(drawing.outlines) - len(kept)
@@ -262,6 +263,8 @@ def _block(outline: Outline, name: str, layer: Layer, still: bool) -> dict[str, 
         "material": outline.material or layer.material,
         "groups": groups,
     }
+    if outline.holes:
+        block["holes"] = [[tuple(point) for point in hole.tolist()] for hole in outline.holes]
     if layer.unit_weight is not None:
         block["unit_weight"] = layer.unit_weight
     if still:
@@ -288,7 +291,7 @@ def _names(outlines: list[Outline]) -> list[str]:
 
 def _size(outlines: list[Outline]) -> float:
     """Typical size of a stone: the median of the square roots of their areas."""
-    return float(np.median([math.sqrt(shapely.Polygon(item.polygon).area) for item in outlines]))
+    return float(np.median([math.sqrt(item.shape.area) for item in outlines]))
 
 
 def _tolerance(outlines: list[Outline], mapping: Mapping) -> tuple[float | None, list[str]]:
@@ -312,7 +315,7 @@ def _tolerance(outlines: list[Outline], mapping: Mapping) -> tuple[float | None,
 
 def _apart(outlines: list[Outline], tolerance: float | None, unit: str) -> list[str]:
     """A sentence on stones near to each other that are further apart than a joint may be."""
-    shapes = np.array([shapely.Polygon(item.polygon) for item in outlines])
+    shapes = np.array([item.shape for item in outlines])
     size = _size(outlines)
     least = 1e-6 * size if tolerance is None else tolerance
     i, j = shapely.STRtree(shapes).query(shapes, predicate="dwithin", distance=NEAR * size)

@@ -55,7 +55,8 @@ def read_msh(path: Path, _accuracy: float) -> Drawing:
         whole = shapely.union_all(cells)
         for part in shapely.get_parts(whole):
             name = str(entity) if entity > 0 else ""
-            drawing.add("surface", np.asarray(part.exterior.coords), name=name, layer=groups.get(group, ""))
+            holes = [np.asarray(ring.coords) for ring in part.interiors]
+            drawing.add("surface", np.asarray(part.exterior.coords), holes, name=name, layer=groups.get(group, ""))
     return drawing
 
 
@@ -73,13 +74,8 @@ def read_geo(path: Path, _accuracy: float) -> Drawing:
     loops = found["Curve Loop"] | found["Line Loop"]
     layers = {surface: name for name, members in found["Physical Surface"].items() for surface in members}
     for surface, members in found["Plane Surface"].items():
-        points: list[tuple[float, float]] = []
         try:
-            for curve in loops[members[0]]:
-                ends = lines[curve.lstrip("-+ ")]
-                start = ends[-1] if curve.startswith("-") else ends[0]
-                x, y = found["Point"][start][:2]
-                points.append((float(x), float(y)))
+            outer, *holes = (_loop(loops[member], lines, found["Point"]) for member in members)
         except (KeyError, ValueError, IndexError) as error:
             raise InputError(
                 f"what it is made of cannot be read ({error})",
@@ -87,7 +83,15 @@ def read_geo(path: Path, _accuracy: float) -> Drawing:
                 f"Plane Surface({surface})",
                 str(path),
             ) from None
-        drawing.add("Plane Surface", points, name=surface, layer=layers.get(surface, ""))
-        if len(members) > 1:
-            drawing.notes.append(f"holes of Plane Surface({surface}) are filled: a block has one outline")
+        drawing.add("Plane Surface", outer, holes, name=surface, layer=layers.get(surface, ""))
     return drawing
+
+
+def _loop(curves: list[str], lines: dict[str, list[str]], points: dict[str, list[str]]) -> list[tuple[float, float]]:
+    """Vertices of a loop of straight lines; a line with a minus is run from its end."""
+    vertices = []
+    for curve in curves:
+        ends = lines[curve.lstrip("-+ ")]
+        x, y = points[ends[-1] if curve.startswith("-") else ends[0]][:2]
+        vertices.append((float(x), float(y)))
+    return vertices

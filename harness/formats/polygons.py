@@ -93,7 +93,8 @@ def read_shapefile(path: Path, _accuracy: float) -> Drawing:
 def read_csv(path: Path, _accuracy: float) -> Drawing:
     """Polygons of a CSV file: columns block, x, y with a row a vertex, or a column wkt with a row a polygon.
 
-    Columns layer, material and fixed are read where there are any.
+    Columns layer, material and fixed are read where there are any; a column ring tells the outline of a block from its
+    holes, the outline first.
 
     Raises:
         InputError: other columns, or a number that is none.
@@ -124,16 +125,22 @@ def read_csv(path: Path, _accuracy: float) -> Drawing:
     for row in rows:
         stones.setdefault(str(row[name]), []).append(row)
     for stone, vertices in stones.items():
+        rings: dict[str, list[tuple[float, float]]] = {}
         try:
-            points = [(float(row["x"]), float(row["y"])) for row in vertices]
+            for row in vertices:
+                rings.setdefault(row.get("ring") or "0", []).append((float(row["x"]), float(row["y"])))
         except (TypeError, ValueError) as error:
             raise InputError(f"{error}", "Give numbers with a point", stone, str(path)) from None
-        _add(drawing, shapely.Polygon(points) if len(points) > 2 else shapely.LineString(points), vertices[0])
+        outer, *holes = rings.values()
+        if any(len(ring) < 3 for ring in (outer, *holes)):
+            drawing.left_out["stone of fewer than three vertices in a ring"] += 1
+        else:
+            _add(drawing, shapely.Polygon(outer, holes), vertices[0])
     return drawing
 
 
 def _add(drawing: Drawing, shape: Any, properties: dict[str, Any]) -> None:
-    """Add the outer rings of a geometry with what its properties say."""
+    """Add the polygons of a geometry with what its properties say."""
     said = {str(name).lower(): value for name, value in properties.items() if value not in (None, "")}
     more = {
         "name": str(next((said[item] for item in NAMES if item in said), "")),
@@ -145,6 +152,5 @@ def _add(drawing: Drawing, shape: Any, properties: dict[str, Any]) -> None:
         if part.geom_type != "Polygon":
             drawing.left_out[f"{part.geom_type}: no area"] += 1
             continue
-        if len(part.interiors):
-            drawing.notes.append(f"holes of {more['name'] or 'a polygon'} are filled: a block has one outline")
-        drawing.add("polygon", np.asarray(part.exterior.coords), **more)
+        holes = [np.asarray(ring.coords) for ring in part.interiors]
+        drawing.add("polygon", np.asarray(part.exterior.coords), holes, **more)

@@ -12,7 +12,7 @@ from xml.etree.ElementTree import ParseError
 import numpy as np
 import svgelements as svg
 
-from harness.formats.drawing import Drawing
+from harness.formats.drawing import Drawing, nested
 from harness.model.assembly import FloatArray
 from harness.model.errors import InputError
 from harness.model.reading import read_text
@@ -69,12 +69,10 @@ def _walk(
             label = element.values.get(LABEL) or element.values.get("attributes", {}).get(LABEL)
             _walk(element, str(label or layer or element.id or ""), accuracy, drawing, lines)
         elif isinstance(element, svg.Shape):
-            for part in svg.Path(element).as_subpaths():
-                points, closed = _points(svg.Path(part), accuracy)
-                if closed:
-                    drawing.add(type(element).__name__, points, layer=layer, name=str(element.id or ""))
-                elif len(points) > 1:
-                    lines.append((points, layer))
+            parts = [_points(svg.Path(part), accuracy) for part in svg.Path(element).as_subpaths()]
+            for outer, holes in nested([points for points, closed in parts if closed and len(points) > 2]):
+                drawing.add(type(element).__name__, outer, holes, layer=layer, name=str(element.id or ""))
+            lines += [(points, layer) for points, closed in parts if not closed and len(points) > 1]
         else:
             drawing.left_out[f"{type(element).__name__}: no outline"] += 1
 

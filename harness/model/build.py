@@ -16,6 +16,7 @@ from harness.model.interfaces import check_held, faces_of, find_joints, normals_
 from harness.model.names import faults_of_wall
 from harness.model.pattern import blocks_of, count_of
 from harness.model.plausibility import contact_warnings, force_warnings, interface_warnings, near_misses
+from harness.model.rings import hole_faults, ringed
 from harness.model.slips import slip_warnings, thickness_of
 from harness.model.wall import (
     MOST_BLOCKS,
@@ -164,14 +165,20 @@ def written_out(wall: Wall) -> list[Block]:
 
 
 def polygons_of(blocks: Sequence[Block]) -> list[FloatArray]:
-    """The outlines (k, 2) of blocks, counter-clockwise [length].
+    """The outlines (k, 2) of blocks, counter-clockwise [length]; one with holes goes along a cut to each and back.
 
     Raises:
         InputError: some are no polygons; all of them are told.
     """
     polygons = [np.array(block.polygon, dtype=float) for block in blocks]
-    raise_faults(geometry.polygon_faults(polygons, [f'block "{block.id}"' for block in blocks]))
-    return [geometry.counter_clockwise(polygon) for polygon in polygons]
+    holes = {k: [np.array(hole, dtype=float) for hole in block.holes] for k, block in enumerate(blocks) if block.holes}
+    elements = [f'block "{block.id}"' for block in blocks]
+    raise_faults(geometry.polygon_faults(polygons, elements))
+    raise_faults([fault for k, within in holes.items() for fault in hole_faults(polygons[k], within, elements[k])])
+    return [
+        ringed(polygon, holes[k]) if k in holes else geometry.counter_clockwise(polygon)
+        for k, polygon in enumerate(polygons)
+    ]
 
 
 def support_faults(fixed: BoolArray) -> list[InputError]:
@@ -200,6 +207,7 @@ def weight_of(block: Block, wall: Wall) -> float:
             spot=Spot((block.id,)),
         )
     area = polygon_area(np.array(block.polygon, dtype=float))
+    area -= sum(polygon_area(np.array(hole, dtype=float)) for hole in block.holes)
     per_area = float(unit_weight) * area * thickness_of(block, wall)
     return per_area if wall.units.unit_weight is None else per_area * wall.units.unit_weight_factor
 

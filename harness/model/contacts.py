@@ -18,6 +18,7 @@ import shapely
 from harness.model.assembly import BoolArray, FloatArray, IntArray
 from harness.model.errors import InputError, Spot, first_few
 from harness.model.geometry import following, shapes_of
+from harness.model.rings import rings_of
 
 TIMES = 10.0
 """The same in greatest gaps: a drawing with joints of 2 mm and one of 15 has lost that one."""
@@ -103,17 +104,14 @@ class Edges:
 
 
 def edges_of(polygons: Sequence[FloatArray]) -> Edges:
-    """The edges of polygons (k, 2), counter-clockwise each."""
-    sizes = np.array([len(polygon) for polygon in polygons])
-    owner = np.repeat(np.arange(len(polygons)), sizes)
+    """The edges of polygons (k, 2), counter-clockwise each, those round holes clockwise."""
+    parts = [rings_of(polygon) for polygon in polygons]
+    rings = [ring for part in parts for ring in part]
+    sizes = np.array([len(ring) for ring in rings])
+    owner = np.repeat(np.repeat(np.arange(len(parts)), [len(part) for part in parts]), sizes)
     before = np.arange(len(owner)) - 1
     before[np.cumsum(sizes) - sizes] += sizes
-    return Edges(
-        owner,
-        np.concatenate(list(polygons)),
-        np.concatenate([following(polygon) for polygon in polygons]),
-        before,
-    )
+    return Edges(owner, np.concatenate(rings), np.concatenate([following(ring) for ring in rings]), before)
 
 
 def find_contacts(polygons: Sequence[FloatArray], fixed: BoolArray, limits: JointLimits) -> Contacts:

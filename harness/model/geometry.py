@@ -10,6 +10,7 @@ from shapely.validation import explain_validity
 
 from harness.model.assembly import BoolArray, FloatArray, IntArray, signed_area
 from harness.model.errors import InputError, Spot, raise_faults
+from harness.model.rings import rings_of
 
 NEAR = 0.02
 """Gap or overlap, in typical block sizes, that may be the accuracy of a drawing: 5 mm between bricks of 250 mm."""
@@ -45,7 +46,7 @@ def polygon_faults(polygons: Sequence[FloatArray], elements: Sequence[str]) -> l
     onward = np.concatenate([following(polygon) for polygon in polygons])
     doubled = np.logical_or.reduceat((vertices == onward).all(axis=1), first)
     extent = (np.maximum.reduceat(vertices, first) - np.minimum.reduceat(vertices, first)).max(axis=1)
-    shapes = shapes_of(polygons)
+    shapes = shapely.polygons(_closed(polygons))  # as they are: an outline that touches itself is no hole
     faulty = doubled | ~shapely.is_valid(shapes) | (shapely.area(shapes) <= 1e-12 * extent**2)
     return [_fault_of(shapes[k], elements[k], doubled=bool(doubled[k])) for k in np.flatnonzero(faulty).tolist()]
 
@@ -78,14 +79,20 @@ def distances(polygons: Sequence[FloatArray], which: IntArray, points: FloatArra
 
 
 def shapes_of(polygons: Sequence[FloatArray]) -> np.ndarray:
-    """The polygons (n,) as shapely geometries."""
-    closed = np.array([len(polygon) for polygon in polygons]) + 1
-    ring = np.repeat(np.arange(len(polygons)), closed)
-    vertex = np.arange(len(ring)) - ring
+    """The polygons (n,), those with holes too, as shapely geometries."""
+    parts = [rings_of(polygon) for polygon in polygons]
+    rings = _closed([ring for part in parts for ring in part])
+    return np.asarray(shapely.polygons(rings, indices=np.repeat(np.arange(len(parts)), [len(part) for part in parts])))
+
+
+def _closed(rings: Sequence[FloatArray]) -> np.ndarray:
+    """Lines (n,) of shapely round polygons (k, 2)."""
+    closed = np.array([len(ring) for ring in rings]) + 1
+    owner = np.repeat(np.arange(len(rings)), closed)
+    vertex = np.arange(len(owner)) - owner
     last = np.cumsum(closed) - 1
     vertex[last] = vertex[last] - closed + 1
-    rings = shapely.linearrings(np.concatenate(list(polygons))[vertex], indices=ring)
-    return np.asarray(shapely.polygons(rings))
+    return np.asarray(shapely.linearrings(np.concatenate(list(rings))[vertex], indices=owner))
 
 
 def overlaps(

@@ -60,7 +60,8 @@ class Inspection:
     """A wall looked over.
 
     Attributes:
-        wall: as it was read; names, outlines (k, 2) as drawn [length], fixed: of its blocks.
+        wall: as it was read.
+        names, outlines (k, 2), fixed: of its blocks; an outline that is no polygon is as drawn [length].
         marks: faults first, in the order in which they are found.
         built: the wall, where nothing keeps it from being built.
     """
@@ -110,7 +111,7 @@ def inspect(wall: Wall, name: str = "wall", before: Sequence[InputError] = ()) -
     marks += [Mark("doubt", "", text) for text in warnings if NEAR_MISS not in text]
     middle = {block.id: np.mean(np.array(block.polygon), axis=0) for block in apart}
     names = tuple(block.id for block in apart)
-    outlines = tuple(np.array(block.polygon, dtype=float) for block in blocks)
+    outlines = tuple(polygons.get(k, np.array(block.polygon, dtype=float)) for k, block in enumerate(blocks))
     return Inspection(wall, names, outlines, fixed, tuple(_placed(mark, middle) for mark in _once(marks)), built)
 
 

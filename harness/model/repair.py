@@ -18,6 +18,7 @@ from harness.model import geometry
 from harness.model.assembly import FloatArray, IntArray
 from harness.model.build import blocks_of_wall, polygons_of
 from harness.model.errors import InputError
+from harness.model.rings import rings_of
 from harness.model.wall import Block, Wall
 
 ROUNDING = 1e-9
@@ -85,7 +86,8 @@ def repair(wall: Wall, snap: float) -> Repaired:
     outlines, splits = [], []
     for number, block in enumerate(blocks):
         outline = _split(np.flatnonzero(owner == number), after, onto)
-        outlines.append(block.model_copy(update={"polygon": [tuple(point) for point in outline]}))
+        outer, *holes = [[(x, y) for x, y in ring.tolist()] for ring in rings_of(np.array(outline))]
+        outlines.append(block.model_copy(update={"polygon": outer, "holes": holes}))
         added = len(outline) - int((owner == number).sum())
         if added:
             splits.append((block.id, added))

@@ -87,10 +87,13 @@ class Units(Strict):
 
 
 class Block(Strict):
-    """A rigid block. Its weight is given, or unit_weight x area x thickness."""
+    """A rigid block, with holes or without. Its weight is given, or unit_weight x area x thickness."""
 
     id: Name
     polygon: Annotated[list[Point], Field(min_length=3, description="vertices in order round the block, either way")]
+    holes: list[Annotated[list[Point], Field(min_length=3)]] = Field(
+        default_factory=list, description="polygons within it that are not stone, as of a frame"
+    )
     weight: NonNegative | None = Field(None, description="weight [force]; else unit_weight x area x thickness")
     unit_weight: NonNegative | None = Field(None, description="[force/length^3]; else the wall's")
     thickness: Positive | None = Field(None, description="out of plane [length]; else the wall's")

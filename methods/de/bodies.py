@@ -12,10 +12,12 @@ from typing import Any
 
 import numpy as np
 import pymunk
+import shapely
 from pymunk import batch
 from pymunk.autogeometry import convex_decomposition
 
 from harness.model.assembly import Assembly, FloatArray, polygon_area
+from harness.model.rings import rings_of
 from methods.de.space import polygon_gyration
 
 TIME_STEP = 2e-3
@@ -163,7 +165,11 @@ class BlockSpace:
 
 
 def convex_parts(corners: FloatArray) -> list[list[tuple[float, float]]]:
-    """A polygon (k, 2), counter-clockwise, as convex ones: itself if it is convex."""
+    """A polygon (k, 2), counter-clockwise, as convex ones: itself if it is convex, triangles if it has holes."""
+    outer, *holes = rings_of(corners)
+    if holes:
+        parts = shapely.get_parts(shapely.constrained_delaunay_triangles(shapely.Polygon(outer, holes)))
+        return [[(float(x), float(y)) for x, y in part.exterior.coords[:-1]] for part in parts]
     edge = np.roll(corners, -1, axis=0) - corners
     onward = np.roll(edge, -1, axis=0)
     if np.all(edge[:, 0] * onward[:, 1] - edge[:, 1] * onward[:, 0] >= -1e-12):

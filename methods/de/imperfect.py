@@ -8,6 +8,7 @@ from pydantic import Field
 
 from harness.model.assembly import Assembly
 from harness.model.method import Answer, Finding, Settings, Status, Traits
+from harness.model.rings import rings_of
 from methods.de.defects import Faces
 from methods.de.uneven import load_uneven
 
@@ -57,6 +58,8 @@ class UnevenBlocks:
         """The bracket [stood, fell] of one imperfect wall; gaps close under the load as they do."""
         if not assembly.has_live_load:
             return Answer(Status.REFUSED, Finding.NONE, "Uneven walls are loaded until they fall: give a live load.")
+        if any(len(rings_of(polygon)) > 1 for polygon in assembly.polygons):
+            return Answer(Status.REFUSED, Finding.NONE, "Corners of blocks with holes are not cut: ask de.")
         found = load_uneven(
             assembly, settings.size, settings.faces, settings.seed, settings.greatest, accuracy=settings.accuracy
         )

@@ -12,18 +12,21 @@ import numpy as np
 import pytest
 import scipy.io
 import scipy.sparse as sp
+import shapefile
 import shapely
 from click.testing import CliRunner
-from shapely.geometry import shape
+from shapely.geometry import mapping, shape
 
 from cases.start import STARTS, facade, flemish, laid
 from harness.cli import main
 from harness.formats.exporting import WRITERS, write_npz
-from harness.formats.importing import Mapping, import_drawing
+from harness.formats.importing import Layer, Mapping, import_drawing
 from harness.model.build import build
 from harness.model.errors import InputError
+from harness.model.geometry import shapes_of
 from harness.model.method import load_method
 from harness.model.result import Result, result_of
+from harness.model.wall import Wall
 
 WALL = flemish(length=1.0, height=0.45)
 SAID = Mapping(units="m", friction=0.6, unit_weight=20.0, thickness=0.25, live=(1.0, 0.0))
@@ -56,6 +59,75 @@ def test_a_wall_written_and_imported_again_is_the_same_wall(suffix: str, tmp_pat
     method = load_method("la-associated")
     values = [method.solve(item.assembly, method.Settings()).multiplier for item in (built, again)]
     assert values[0] == pytest.approx(values[1], rel=1e-9)  # accuracy of the linear programme
+
+
+def framed() -> Wall:
+    """A stone frame of two openings with a block in one of them, in metres."""
+    ground = {"id": "ground", "polygon": [[-1, -0.5], [4, -0.5], [4, 0], [-1, 0]], "fixed": True}
+    holes = [[[0.25, 0.25], [1.25, 0.25], [1.25, 1.5], [0.25, 1.5]], [[1.75, 0.25], [2.75, 0.25], [2.25, 1.5]]]
+    frame = {"id": "frame", "polygon": [[0, 0], [3, 0], [3, 2], [0, 2]], "holes": holes}
+    inner = {"id": "inner", "polygon": [[0.5, 0.25], [0.75, 0.25], [0.75, 1.0], [0.5, 1.0]]}
+    return Wall.model_validate(WALL.document() | {"title": "frame", "blocks": [ground, frame, inner]})
+
+
+@pytest.mark.parametrize("suffix", [".dxf", ".svg", ".geojson", ".csv", ".wkt", ".shp"])
+def test_a_frame_written_and_imported_again_keeps_its_holes(suffix: str, tmp_path: Path) -> None:
+    built, path = build(framed()), tmp_path / f"wall{suffix}"
+    shapes = shapes_of(built.assembly.polygons)
+    if suffix == ".wkt":
+        path.write_text("\n".join(item.wkt for item in shapes))
+    elif suffix == ".shp":
+        with shapefile.Writer(str(path)) as writer:
+            writer.field("fixed", "C")
+            for item, fixed in zip(shapes, built.assembly.fixed, strict=True):
+                writer.shape(mapping(shapely.orient_polygons(item, exterior_cw=True)))
+                writer.record(str(bool(fixed)))
+    else:
+        WRITERS[suffix](built, None, path)
+    imported = import_drawing(path, SAID)
+    again = build(imported.wall)
+    order = [int(np.flatnonzero(shapely.equals(shapes_of(again.assembly.polygons), item))[0]) for item in shapes]
+    assert again.assembly.weight[order] == pytest.approx(built.assembly.weight)
+    assert again.assembly.n_interfaces == 2
+
+
+def test_gmsh_surfaces_keep_their_holes(tmp_path: Path) -> None:
+    square = [(0, 0), (3, 0), (3, 3), (0, 3), (1, 1), (2, 1), (2, 2), (1, 2), (0, -1), (3, -1)]
+    geo = [f"Point({k}) = {{{x}, {y}, 0, 1}};" for k, (x, y) in enumerate(square)]
+    geo += [
+        f"Line({4 * ring + k}) = {{{4 * ring + k}, {4 * ring + (k + 1) % 4}}};" for ring in (0, 1) for k in range(4)
+    ]
+    geo += ["Line(8) = {0, 8};", "Line(9) = {8, 9};", "Line(10) = {9, 1};"]
+    geo += ["Line Loop(0) = {0, 1, 2, 3};", "Line Loop(1) = {4, 5, 6, 7};", "Line Loop(2) = {8, 9, 10, -0};"]
+    geo += ["Plane Surface(0) = {0, 1};", "Plane Surface(1) = {2};"]
+    (tmp_path / "w.geo").write_text("\n".join(geo))
+    around = [[0, 1, 5, 4], [1, 2, 6, 5], [2, 3, 7, 6], [3, 0, 4, 7], [8, 9, 1, 0]]  # four cells round the hole
+    data = [np.array([1, 1, 1, 1, 2])]
+    points = np.hstack([np.array(square, float), np.zeros((len(square), 1))])
+    fields = {"gmsh:physical": data, "gmsh:geometrical": data}
+    mesh = meshio.Mesh(points, [("quad", np.array(around))], cell_data=fields)
+    meshio.write(tmp_path / "w.msh", mesh, file_format="gmsh22", binary=False)
+    for suffix in (".geo", ".msh"):
+        weights = build(import_drawing(tmp_path / f"w{suffix}", SAID).wall).assembly.weight
+        assert sorted(weights) == pytest.approx([15.0, 40.0]), suffix  # 5 kN/m2 over 3 x 1 and 3 x 3 - 1 x 1
+
+
+def test_outlines_on_a_layer_of_holes_are_cut_out_of_the_stones_around_them(tmp_path: Path) -> None:
+    document = ezdxf.new("R2010")  # type: ignore[attr-defined]
+    space = document.modelspace()
+    for layer, x, y, width, height in [
+        ("STONES", 0, -1, 4, 1),
+        ("STONES", 0, 0, 3, 3),
+        ("OPENINGS", 1, 1, 1, 1),
+        ("OPENINGS", 9, 9, 1, 1),
+    ]:
+        corners = [(x, y), (x + width, y), (x + width, y + height), (x, y + height)]
+        space.add_lwpolyline(corners, close=True, dxfattribs={"layer": layer})
+    document.saveas(tmp_path / "w.dxf")
+    said = SAID.model_copy(update={"layers": {"OPENINGS": Layer(use="hole")}})
+    imported = import_drawing(tmp_path / "w.dxf", said)
+    assert build(imported.wall).assembly.weight[1] == pytest.approx(20.0 * 0.25 * 8.0)
+    assert any("lies in no stone, near (9.5, 9.5)" in sentence for sentence in imported.account)
 
 
 def test_paraview_s_file_holds_velocities_forces_and_states(answer: Result, tmp_path: Path) -> None:
@@ -123,8 +195,6 @@ def test_matrices_are_in_equilibrium_with_the_answer(suffix: str, answer: Result
 
 
 def test_wkt_shapefile_and_gmsh_give_the_polygons(tmp_path: Path) -> None:
-    import shapefile
-
     polygons = list(build(WALL).assembly.polygons)
     (tmp_path / "w.wkt").write_text("\n".join(shapely.Polygon(p).wkt for p in polygons))
     with shapefile.Writer(str(tmp_path / "w.shp")) as writer:

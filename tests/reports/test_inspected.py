@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 from click.testing import CliRunner
-from matplotlib.collections import PolyCollection
+from matplotlib.collections import PathCollection
 
 from cases.start import stack
 from harness.cli import main
@@ -22,7 +22,7 @@ def test_faulty_wall_is_drawn_with_every_block_and_every_mark_at_its_place():
     assert wall is not None
     looked = inspect(wall, "wall", before)
     (ax,) = inspected_figure(looked).axes
-    drawn = [path.vertices for item in ax.collections if isinstance(item, PolyCollection) for path in item.get_paths()]
+    drawn = [path.vertices for item in ax.collections if isinstance(item, PathCollection) for path in item.get_paths()]
     assert len(drawn) == len(wall.blocks)
     words = {text.get_text() for text in ax.texts}
     assert {"ground", "deeper", "on crossed", "twice (2)"} <= words  # ids as messages use them
