@@ -76,4 +76,6 @@ def verify_bound(certificate: Path, wall: Path | None, as_json: bool) -> None:
 def _sentence(document: dict[str, Any]) -> str:
     none = "none from zero to below" if "windows" in document else "none below"
     state, bound = document["multiplier"], document["bound"]
+    if "state" not in document:
+        return f"There is {none} {bound}: proved in fractions; to rounding there is a collapse state at {state}."
     return f"There is a collapse state at {state}, and {none} {bound}: proved in fractions."

@@ -24,12 +24,13 @@ class WindowProof:
     Attributes:
         relaxation: of the window.
         size, multiplier: multipliers of its products that bound the size of mechanisms, and the multiplier.
-        bound: the multiplier below which they leave no collapse state of the window.
+        greatest: size of mechanisms that they leave; bound: multiplier below which they leave no collapse state.
     """
 
     relaxation: Relaxation
     size: FloatArray
     multiplier: FloatArray
+    greatest: float
     bound: float
 
 
@@ -177,7 +178,7 @@ class _Search:
             return
         if found.proofs and found.proofs[-1].relaxation is relaxation:
             found.proofs.pop()
-        found.proofs.append(WindowProof(relaxation, self._size_products, bound.products, lower))
+        found.proofs.append(WindowProof(relaxation, self._size_products, bound.products, self._size, lower))
         found.lower = min(lower, found.upper)
 
     def _run(self, name: str, seconds: float, stop: Callable[[DualBound | None, float], bool]) -> None:

@@ -87,7 +87,8 @@ class Precision:
 
     Attributes:
         numbers: of multipliers and least forces; velocities: of virtual velocities; weights: of the size of mechanisms;
-        motions: of the velocities that strains give; size: of multipliers of products that bound the size.
+        motions: of the velocities that strains give; size: of multipliers of products that bound the size,
+        the first with which it is at most `enough_size` times that of the search.
         multipliers: of those that bound the multiplier, the first that suffice.
         refinements: of what the multipliers of products leave, before they are rounded.
     """
@@ -96,8 +97,9 @@ class Precision:
     velocities: int = 40
     weights: int = 20
     motions: int = 30
-    size: int = 36
-    multipliers: tuple[int, ...] = (28, 36, 44, 52)
+    size: tuple[int, ...] = (20, 24, 28, 36)
+    enough_size: float = 1.1
+    multipliers: tuple[int, ...] = (26, 30, 34, 38, 42, 46, 52)
     refinements: int = 2
 
 

@@ -21,18 +21,45 @@ def window_bound(wall: ExactWall, document: Any) -> tuple[Fraction, Fraction, Fr
     Raises:
         CertificateError: the window proves nothing of the kind.
     """
-    low, high = Fraction(document["low"]), Fraction(document["high"])
-    if not low < high:
-        raise CertificateError("a window has no width")
-    forces = Forces(wall, low, high, document["forces"])
-    columns = Columns(wall, forces, document)
-    motions = Motions(columns, document["motions"])
-    size = _Products(columns, motions, document["size"], True)
-    if size.price >= 1:
-        raise CertificateError("a window does not bound its mechanisms")
-    greatest = max(ZERO, (size.lost - size.value) / (1 - size.price))
-    gain = _Products(columns, motions, document["multiplier"], False)
-    return low, high, min(high, low + gain.value - gain.lost - gain.price * greatest)
+    limits = WindowLimits(wall, document)
+    greatest = limits.greatest_size(document["size"])
+    return limits.low, limits.high, limits.bound(document["multiplier"], greatest)
+
+
+class WindowLimits:
+    """What a window says of forces and mechanisms, checked, and what multipliers of products then prove.
+
+    Attributes:
+        low, high: ends of the window.
+    """
+
+    def __init__(self, wall: ExactWall, document: Any) -> None:
+        self.low, self.high = Fraction(document["low"]), Fraction(document["high"])
+        if not self.low < self.high:
+            raise CertificateError("a window has no width")
+        self._columns = Columns(wall, Forces(wall, self.low, self.high, document["forces"]), document)
+        self._motions = Motions(self._columns, document["motions"])
+
+    def greatest_size(self, document: Any) -> Fraction:
+        """The size that no mechanism exceeds, by these multipliers of products.
+
+        Raises:
+            CertificateError: they bound none.
+        """
+        size = _Products(self._columns, self._motions, document, True)
+        if size.price >= 1:
+            raise CertificateError("a window does not bound its mechanisms")
+        return max(ZERO, (size.lost - size.value) / (1 - size.price))
+
+    def bound(self, document: Any, greatest: Fraction) -> Fraction:
+        """The multiplier below which there is none in the window, by these multipliers of products.
+
+        Args:
+            document: the multipliers of products.
+            greatest: size that no mechanism exceeds.
+        """
+        gain = _Products(self._columns, self._motions, document, False)
+        return min(self.high, self.low + gain.value - gain.lost - gain.price * greatest)
 
 
 class _Products:
@@ -41,6 +68,10 @@ class _Products:
     Attributes:
         value, lost, price: numbers of the inequality.
     """
+
+    value: Fraction
+    lost: Fraction
+    price: Fraction
 
     def __init__(self, columns: Columns, motions: Motions, document: Any, of_size: bool) -> None:
         self.columns, self.wall, self.forces = columns, columns.wall, columns.forces

@@ -17,7 +17,7 @@ from methods.bound.exact_wall import CertificateError, ExactWall
 from methods.bound.relaxation import Relaxation
 from methods.bound.slack_bounds import SlackProgramme
 from methods.bound.tuning import PRECISION, ROUNDING
-from methods.bound.verify_window import window_bound
+from methods.bound.verify_window import WindowLimits
 
 
 @dataclass(frozen=True, eq=False)
@@ -102,19 +102,33 @@ class WindowDocument:
         Raises:
             CertificateError: none proves anything.
         """
+        limits = WindowLimits(self.wall, self.parts)
+        size, greatest = self._shortest_size(limits)
         best: tuple[dict[str, Any], Fraction] | None = None
         for exponent in PRECISION.multipliers:
-            document = self.parts | {
-                "size": self._products(self.proof.size, PRECISION.size, True),
-                "multiplier": self._products(self.proof.multiplier, exponent, False),
-            }
-            bound = window_bound(self.wall, document)[2]
+            products = self._products(self.proof.multiplier, exponent, False)
+            bound = limits.bound(products, greatest)
             if best is None or bound > best[1]:
-                best = document, bound
+                best = self.parts | {"size": size, "multiplier": products}, bound
             if bound >= needed:
                 break
         assert best is not None
         return best
+
+    def _shortest_size(self, limits: WindowLimits) -> tuple[dict[str, Any], Fraction]:
+        """The shortest multipliers that bound the size of mechanisms as the search does, else the longest."""
+        enough = PRECISION.enough_size * self.proof.greatest
+        for exponent in PRECISION.size:
+            products = self._products(self.proof.size, exponent, True)
+            try:
+                greatest = limits.greatest_size(products)
+            except CertificateError:
+                if exponent == PRECISION.size[-1]:
+                    raise
+                continue
+            if greatest <= enough:
+                break
+        return products, greatest
 
     @cached_property
     def still(self) -> IntArray:

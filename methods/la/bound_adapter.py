@@ -100,9 +100,10 @@ def certified(known: Answer, document: dict[str, Any] | None) -> Answer:
     if abs(float(upper) - known.multiplier) > SAME * max(abs(known.multiplier), SAME):
         return known
     exact = str(upper) if len(str(upper)) <= SHORT else f"{float(upper):.9g}"
+    state = "" if "state" in document else " (its forces to rounding)"
     sentence = (
         f"The minimum collapse multiplier is {exact} to two millionths, proved in fractions: "
-        f"there is a collapse state there, and none below {float(lower):.9g}."
+        f"there is a collapse state there{state}, and none below {float(lower):.9g}."
     )
     details = known.details | {"certificate": document, "certified_bound": float(lower)}
     return replace(known, sentence=sentence, details=details)

@@ -67,15 +67,11 @@ def certificate(assembly: Assembly, nodes: int = 1500, seconds: float = math.inf
 
 
 def wall_document(assembly: Assembly, unit: float) -> dict[str, Any]:
-    """The part of a certificate that says which wall it is of, with loads in this unit of force.
-
-    Raises:
-        NotShortError: a number of the wall is not a short fraction.
-    """
+    """The part of a certificate that says which wall it is of, with loads in this unit of force."""
     place = {int(block): k for k, block in enumerate(assembly.free)}
 
     def text(values: FloatArray) -> list[str]:
-        return [str(short_fraction(value)) for value in values.tolist()]
+        return [str(exact(value)) for value in values.tolist()]
 
     blocks = [
         {
@@ -96,10 +92,18 @@ def wall_document(assembly: Assembly, unit: float) -> dict[str, Any]:
                 "b": place.get(int(assembly.block_b[p])),
                 "ends": text(np.concatenate([assembly.end1[p], assembly.end2[p]])),
                 "side": side,
-                "friction": str(short_fraction(float(assembly.friction[p]))),
+                "friction": str(exact(float(assembly.friction[p]))),
             }
         )
     return {"format": "drystone-bound/1", "wall": assembly.name, "blocks": blocks, "interfaces": interfaces}
+
+
+def exact(value: float) -> Fraction:
+    """The short fraction that a float was written as, or the binary fraction that it is."""
+    try:
+        return short_fraction(value)
+    except NotShortError:
+        return Fraction(value)
 
 
 class Fractions:

@@ -10,12 +10,11 @@ import numpy as np
 from harness.model.assembly import FloatArray
 from methods.bound.bracket import Bracket, bracket
 from methods.bound.equations import Equations
-from methods.bound.exact_wall import ExactWall
-from methods.bound.verify import digest
+from methods.bound.exact_wall import CertificateError, ExactWall
+from methods.bound.verify import check_state, digest
 from methods.bound.window_document import Certifier, Scales
 from methods.la.certify import Fractions, exact_state, wall_document
 from methods.la.problem import Problem
-from methods.la.rational import NotShortError
 from methods.la.state import moving_contacts
 
 
@@ -27,7 +26,9 @@ def equations_of(problem: Problem) -> Equations:
 def certified_bracket(
     problem: Problem, multiplier: float, mechanism: FloatArray, seconds: float
 ) -> tuple[Bracket, dict[str, Any] | None]:
-    """The scaled bracket below a collapse state, and its certificate; None where the wall has none in fractions.
+    """The scaled bracket below a collapse state, and its certificate; None where nothing is proved.
+
+    The certificate holds the state where that exists in fractions.
 
     Args:
         problem: a wall of one component, which stands under its dead load.
@@ -36,19 +37,21 @@ def certified_bracket(
         seconds: of CPU time.
     """
     equations, upper = equations_of(problem), multiplier / problem.unit_multiplier
-    try:
-        document = wall_document(problem.assembly, problem.unit_force)
-        rates = problem.rates_of_velocities(problem.from_mechanism(mechanism), False)
-        exact, state = exact_state(Fractions(document), moving_contacts(rates).ravel())
-    except (NotShortError, ArithmeticError):
-        return bracket(equations, upper, seconds), None
-    certifier = Certifier(ExactWall(document), scales_of(problem), equations)
+    document = wall_document(problem.assembly, problem.unit_force)
+    wall = ExactWall(document)
+    certifier = Certifier(wall, scales_of(problem), equations)
     found = bracket(equations, upper, seconds, certify=certifier)
     if not certifier.documents:
         return found, None
+    exact = Fraction(multiplier)
+    try:
+        rates = problem.rates_of_velocities(problem.from_mechanism(mechanism), False)
+        exact, document["state"] = exact_state(Fractions(document), moving_contacts(rates).ravel())
+        check_state(wall, exact, document["state"])
+    except (ArithmeticError, CertificateError):
+        document.pop("state", None)
     bound = min(certifier.bound, exact)
-    document |= {"multiplier": str(exact), "bound": _short(bound, exact), "state": state}
-    document["windows"] = certifier.documents
+    document |= {"multiplier": str(exact), "bound": _short(bound, exact), "windows": certifier.documents}
     document["digest"] = digest(document)
     return found, document
 

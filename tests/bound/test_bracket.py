@@ -44,7 +44,8 @@ def test_the_bound_passes_no_mechanism_of_all(blocks: list[tuple[float, float]],
     [(2, 2, 0.65), pytest.param(3, 2, 7 / 11, marks=pytest.mark.slow), pytest.param(4, 2, 0.6, marks=pytest.mark.slow)],
 )
 def test_the_bracket_of_a_bonded_wall_closes(courses: int, bricks: int, least: float) -> None:
-    answer = BoundedLimitAnalysis().solve(running_bond(courses, bricks, 0.2, 0.65), BoundSettings(seconds=60.0))
+    settings = BoundSettings(seconds=60.0, effort="quick")
+    answer = BoundedLimitAnalysis().solve(running_bond(courses, bricks, 0.2, 0.65), settings)
     assert answer.multiplier == pytest.approx(least, rel=1e-9)
     assert answer.details["lower_bound"] == pytest.approx(least, rel=1e-6)  # CLOSED
     assert answer.details["lower_bound"] <= least * (1.0 + 1e-9)
