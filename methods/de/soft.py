@@ -29,8 +29,6 @@ ROUND = 2e-4
 """Radius of corners where none is given, in length scales."""
 AWAY = 300.0
 """Multiple of what the blocks had moved at the last rest from which it is asked whether the wall falls."""
-RELAXATIONS = 20
-"""Relaxation times of its own for which a wall is followed on its way to rest, and most multiple of a hold's length."""
 LOOK = 500
 """Time steps from one look at a hold to the next."""
 LOW = 7
@@ -59,6 +57,13 @@ class SoftSettings(Settings):
             earlier, where `methods.de.motion` shows it.
         hold_steps: most time steps under one load on a wall of up to 7 courses; higher walls get more, with the square
             of the courses, and all ten times as many under the dead load alone.
+        relaxations: a wall on its way to rest is followed for so many of its own relaxation times, at most for so many
+            times the length of a hold.
+        lean: share of the multiplier that joints may take by giving, half the stated accuracy: beyond it the answer
+            says that they are soft. Where no stiffness is given the wall is then loaded once more, with joints so much
+            stiffer and corners so much sharper, if they are not set either, that they take half of it.
+        stiffest: most factor on the stiffness for that; from 100 on, rounding of the places leaves forces out of
+            balance.
     """
 
     stiffness: float | None = Field(default=None, gt=0.0)
@@ -71,6 +76,9 @@ class SoftSettings(Settings):
     held_residual: float = Field(default=1e-6, gt=0.0, lt=1.0)
     reach: float = Field(default=REACH, gt=0.0)
     hold_steps: int = Field(default=100_000, ge=LOOK)
+    relaxations: int = Field(default=20, ge=1)
+    lean: float = Field(default=2.5e-3, gt=0.0)
+    stiffest: float = Field(default=30.0, ge=1.0)
 
 
 @dataclass(eq=False)
@@ -136,7 +144,7 @@ class Holds:
         load = wall.assembly.dead + wall.multiplier * wall.assembly.live
         away = AWAY * float(np.abs(before[:, :2]).max()) if np.any(before[:, :2]) else np.inf
         watch, places, start = Watch(settings.held_residual, settings.held_residual), before, wall.steps
-        affordable = RELAXATIONS * looks
+        affordable = settings.relaxations * looks
         while True:
             residual = wall.advance(LOOK)
             moved, places = wall.places - places, wall.places.copy()
@@ -146,7 +154,7 @@ class Holds:
                 state = State.HELD if residual < settings.held_residual else State.UNDECIDED
                 return Hold(state, residual, wall.steps - start, places - before)
             decay = watch.decay if looks <= count < affordable else 0.0
-            over = count >= looks and not count * decay < RELAXATIONS * (decay > 0.0)
+            over = count >= looks and not count * decay < settings.relaxations * (decay > 0.0)
             motion = by_travel(wall.assembly, load, places - before, settings.reach)
             far = float(np.abs((places - before)[:, :2]).max(initial=0.0)) > away
             if motion is None and (over or watch.doubled or far):
@@ -178,14 +186,24 @@ class DeformableJoints:
         """The bracket [rested, fell] as the live load grows from rest to rest."""
         if assembly.n_free == 0:
             return Answer(Status.OK, Finding.STANDS, "every block is fixed: nothing can move")
-        mean, unit = assembly.force_scale / assembly.n_free, assembly.load_unit
+        mean = assembly.force_scale / assembly.n_free
         stiffness = settings.stiffness or STIFF * mean / assembly.length_scale**2
-        rounding = settings.rounding or ROUND * assembly.length_scale
+        answer = self._with_joints(assembly, settings, stiffness, ROUND * assembly.length_scale)
+        factor = _too_soft(answer, settings)
+        if settings.stiffness is None and factor > 1.0:
+            again = self._with_joints(assembly, settings, factor * stiffness, ROUND / factor * assembly.length_scale)
+            again.iterations += answer.iterations
+            answer = again if again.status is Status.OK or answer.status is not Status.OK else answer
+        return with_proof(assembly, _saying_soft(answer, settings))
+
+    def _with_joints(self, assembly: Assembly, settings: SoftSettings, stiffness: float, round_by: float) -> Answer:
+        """The answer with joints of one stiffness [force/length^2], corners rounded by so much where nothing is set."""
+        rounding = settings.rounding or round_by
         wall = SoftWall(assembly, stiffness, settings.shear_ratio, rounding)
         holds = Holds(wall, settings)
         joints = _described(wall, stiffness, settings.shear_ratio)
         try:
-            answer = self._at_zero(assembly, holds, joints) or self._loaded(holds, joints, unit)
+            answer = self._at_zero(assembly, holds, joints) or self._loaded(holds, joints, assembly.load_unit)
         except OutOfTime:
             wall.restore(holds.rest)
             answer = Answer(Status.NOT_CONVERGED, Finding.NONE, f"the time is over{holds.so_far()}, with {joints}")
@@ -194,7 +212,7 @@ class DeformableJoints:
         if answer.finding in (Finding.COLLAPSES, Finding.FALLS):
             answer.mechanism = holds.motion
         answer.details |= _told(holds, stiffness)
-        return with_proof(assembly, answer)
+        return answer
 
     def _loaded(self, holds: Holds, joints: str, unit: float) -> Answer:
         """The answer for a wall that stands its dead load, in multiples of the multiplier that equals it."""
@@ -283,8 +301,43 @@ def _told(holds: Holds, stiffness: float) -> dict[str, Any]:
         "undecided": len(holds.undecided),
         "undecided_at": holds.undecided,
         "proof": None if holds.proof is None else str(holds.proof),
+        "lean": _lean(holds),
         **wall.state().as_details(),
     }
+
+
+def _lean(holds: Holds) -> float | None:
+    """Share of its multiplier that the wall would bear more had its joints not given; None without a fall above zero.
+
+    The contact forces of the last rest, put where the joints were drawn, leave the blocks out of balance; the power of
+    that on the motion of the fall, over the power of the live load, is the multiplier that leaning and rolling took.
+    """
+    wall, at = holds.wall, (holds.path["multiplier"] or [0.0])[-1]
+    if holds.motion is None or not at > 0.0:
+        return None
+    drawn, moved = wall.assembly, holds.motion[wall.assembly.free].ravel()
+    load = (drawn.dead + at * drawn.live)[drawn.free].ravel()
+    power = float(drawn.live[drawn.free].ravel() @ moved)
+    left = float((load + drawn.kinematic_matrix.T @ wall.contact_forces().ravel()) @ moved)
+    return -left / (at * power) if power > 0.0 else None
+
+
+def _too_soft(answer: Answer, settings: SoftSettings) -> float:
+    """Factor on the stiffness with which the joints take half of what they may; 1 where they take no more already."""
+    if answer.finding is Finding.FALLS:
+        return settings.stiffest
+    share = abs(answer.details["lean"] or 0.0)
+    return min(settings.stiffest, 2.0 * share / settings.lean) if share > settings.lean else 1.0
+
+
+def _saying_soft(answer: Answer, settings: SoftSettings) -> Answer:
+    """The answer, saying so where its joints took more of the multiplier than they may."""
+    share = answer.details["lean"]
+    soft = share is not None and abs(share) > settings.lean
+    answer.details["soft_joints"] = soft
+    if soft and answer.finding is Finding.COLLAPSES:
+        answer.sentence += f"; its joints are soft: rigid ones would bear about {100.0 * share:+.2g} %"
+    return answer
 
 
 def _live_displacement(wall: SoftWall) -> float:

@@ -54,6 +54,20 @@ def test_softer_joints_make_a_wall_weaker_and_stiff_ones_come_to_the_plateau_of_
     assert found[0] < 0.9 * found[-1]
 
 
+def test_joints_are_made_stiff_enough_for_an_arch_that_leaning_would_bring_down():
+    # Nothing slides, so that the associated maximum 0.0566761 (linear programme) is the multiplier of rigid joints.
+    wall = assembly({"type": "ring", "inner_radius": 1.0, "outer_radius": 1.13, "count": 21, "angles": [180, 0]}, 0.8)
+    answer = soft(wall)
+    assert answer.multiplier == pytest.approx(0.0566761, rel=5e-3)
+    assert not answer.details["soft_joints"]
+    # Softer ones that are given say by how much the wall leans itself down, to a tenth of that.
+    given = soft(wall, stiffness=3e5 * wall.force_scale / wall.n_free / wall.length_scale**2)
+    assert given.details["soft_joints"]
+    assert "its joints are soft" in given.sentence
+    assert given.multiplier * (1.0 + given.details["lean"]) == pytest.approx(0.0566761, rel=3e-3)
+    assert given.multiplier < 0.99 * 0.0566761
+
+
 def test_the_state_at_rest_is_judged_where_the_blocks_have_moved_to():
     wall = assembly(running_bond(6, 3), 0.65)
     unit = wall.force_scale / wall.n_free / wall.length_scale**2
