@@ -18,6 +18,7 @@ COMMANDS = {
     "study": ("sweep_commands", "study", "List the studies that come with Drystone, or print one."),
     "sweep": ("sweep_commands", "sweep_", "Make every run of a study: many walls, many settings."),
     "store": ("sweep_commands", "store_", "Merge result stores."),
+    "learn": ("learn_commands", "learn", "Make a page for teaching: a block with sliders, a wall over friction."),
     "report": ("run_commands", "report", "Build the report of the last comparison again."),
     "check": ("check_commands", "check", "Hold the methods to their gated references."),
     "diff": ("diff_commands", "diff", "Compare the answers of two stores or baselines."),
