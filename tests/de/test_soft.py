@@ -88,11 +88,14 @@ def test_the_state_at_rest_is_judged_where_the_blocks_have_moved_to():
 def test_a_small_multiplier_has_a_narrow_bracket():
     # b = 0.01, h = 0.5, corners of r = 2e-4 sqrt(b h):
     # (b - 2 r) / h less the lean W / (K b), with K = k b / 2 and k = 1e6 W / (b h).
-    answer = soft(assembly(stack(1, 0.01, 0.5), 0.9))
+    wall = assembly(stack(1, 0.01, 0.5), 0.9)
+    answer = soft(wall, stiffness=1e6 * wall.force_scale / wall.n_free / wall.length_scale**2)
     radius, lean = 2e-4 * np.sqrt(0.01 * 0.5), 2.0 * 0.5 / (1e6 * 0.01)
     assert answer.status is Status.OK
     assert answer.bracket[1] - answer.bracket[0] <= 2e-3 * 0.02
     assert answer.multiplier == pytest.approx((0.01 - 2.0 * radius) / 0.5 - lean, rel=2e-3)
+    # Joints that nobody set are made stiff enough for b / h.
+    assert soft(wall).multiplier == pytest.approx(0.02, rel=2.5e-3)
 
 
 def test_the_end_says_what_was_not_found():
