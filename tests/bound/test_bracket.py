@@ -19,8 +19,8 @@ from methods.la.problem import make_problem
 from methods.la.search import Search
 from methods.la.settings import BoundSettings
 from methods.la.window_certificate import equations_of
+from tests.enumeration import least_by_enumeration
 from tests.la.bodies import column, running_bond
-from tests.la.test_enumeration import least_by_enumeration
 from tests.walls import assembly
 
 

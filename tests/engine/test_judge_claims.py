@@ -2,15 +2,12 @@
 
 from __future__ import annotations
 
-import os
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
-from hypothesis import given, settings, target
-from hypothesis import strategies as st
 
 from harness.engine.judge import judge
 from harness.model.assembly import Assembly
@@ -159,58 +156,6 @@ def test_an_independent_block_changes_no_residual(weight: float, speed: float):
     alone = said(two_blocks(20.0), sliding_state(two_blocks(20.0), 0.4999))
     for name in ("equilibrium", "interpenetration", "dilatancy", "virtual_work"):
         assert wrong.residuals[name] == pytest.approx(alone.residuals[name], rel=1e-9, abs=1e-15), name
-
-
-NUMBERS = st.floats(-2.0, 2.0, allow_nan=False)
-
-
-MUTANTS = int(os.environ.get("DRYSTONE_MUTANTS", "150"))
-"""States that are spoiled; docs/reliability.md tells of 20,000."""
-
-
-@settings(max_examples=MUTANTS, deadline=None, derandomize=True)
-@given(st.data())
-def test_no_spoiled_state_is_accepted_at_an_impossible_multiplier(bonded: tuple[Assembly, Answer], data: st.DataObject):
-    """Possible are multipliers from the least known to the associated maximum, by a programme of its own each."""
-    wall, answer = bonded
-    assert answer.forces is not None
-    assert answer.mechanism is not None
-    assert answer.multiplier is not None
-    forces, mechanism, multiplier = answer.forces.copy(), answer.mechanism.copy(), answer.multiplier
-    at = answer.forces_multiplier
-    for kind in data.draw(st.lists(st.sampled_from(KINDS), min_size=1, max_size=4)):
-        row = data.draw(st.integers(0, wall.n_interfaces - 1))
-        block = data.draw(st.integers(0, wall.n_blocks - 1))
-        match kind:
-            case "multiplier":
-                multiplier *= 1.0 + data.draw(st.sampled_from([1e-7, 1e-3, -1e-3, 1.0]))
-            case "both":
-                at = multiplier = data.draw(NUMBERS)
-            case "forces":
-                forces[row] *= 1.0 + data.draw(NUMBERS)
-            case "all forces":
-                forces *= data.draw(NUMBERS)
-            case "scale":
-                mechanism *= 10.0 ** data.draw(st.integers(-200, 200))
-            case "block":
-                mechanism[block] += np.array([data.draw(NUMBERS) for _ in range(3)])
-            case "ground":
-                mechanism[wall.fixed] = data.draw(NUMBERS)
-            case "translation":
-                mechanism[:, :2] += np.array([data.draw(NUMBERS), data.draw(NUMBERS)])
-    flow = data.draw(st.sampled_from(["non-associated", "associated"]))
-    spoiled = replace(
-        answer, multiplier=multiplier, forces=forces, mechanism=mechanism, forces_multiplier=at, flow=flow
-    )
-    judgement = said(wall, spoiled)
-    target(-max((abs(value) for name, value in judgement.residuals.items() if name != "live_work"), default=9.0))
-    if judgement.accepted:
-        greatest = state_of(wall, "la-associated").multiplier
-        assert greatest is not None
-        assert answer.multiplier - 1e-8 <= multiplier <= greatest + 1e-8
-
-
-KINDS = ["multiplier", "both", "forces", "all forces", "scale", "block", "ground", "translation"]
 
 
 def test_block_that_flies_hides_no_penetration_of_its_neighbours():

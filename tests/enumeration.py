@@ -1,0 +1,74 @@
+"""The least multiplier of tiny walls by going through every state of every contact.
+
+Written from the definitions alone: the matrices come from the harness, the programmes go to scipy, and nothing is
+shared with a method or with the judge.
+"""
+
+from __future__ import annotations
+
+import itertools
+
+import numpy as np
+from scipy.optimize import linprog
+
+from harness.model.assembly import Assembly
+
+ENDS = ((False, False), (True, False), (False, True), (True, True))
+"""Which of the two ends of an interface are open."""
+SLIPS = (0, 1, -1)
+STATES = tuple(itertools.product(ENDS, SLIPS))
+"""All states of an interface: a closed end may carry compression, an open one carries none."""
+
+
+def least_by_enumeration(wall: Assembly) -> float:
+    """The least multiplier of all combinations of states for which a mechanism and forces exist."""
+    values = (_multiplier(wall, states) for states in itertools.product(STATES, repeat=wall.n_interfaces))
+    return min((value for value in values if value is not None), default=np.inf)
+
+
+def _multiplier(wall: Assembly, states: tuple[tuple[tuple[bool, bool], int], ...]) -> float | None:
+    return _least_multiplier(wall, states) if _moves(wall, states) else None
+
+
+def _moves(wall: Assembly, states: tuple[tuple[tuple[bool, bool], int], ...]) -> bool:
+    """Whether a mechanism with live work moves in these states: closed ends stay closed, open ends may open."""
+    rows = wall.kinematic_matrix.toarray()
+    closed, signed = [], []
+    for p, (ends, slip) in enumerate(states):
+        for row, free in ((3 * p, ends[0]), (3 * p + 1, ends[1])):
+            (signed if free else closed).append(rows[row])
+        (signed if slip else closed).append((slip or 1) * rows[3 * p + 2])
+    live = wall.free_loads()[1]
+    none = np.zeros((0, rows.shape[1]))
+    answer = linprog(
+        np.zeros(rows.shape[1]),
+        A_ub=-np.array(signed) if signed else none,
+        b_ub=np.zeros(len(signed)),
+        A_eq=np.vstack([*closed, live]),
+        b_eq=np.append(np.zeros(len(closed)), 1.0),
+        bounds=(None, None),
+    )
+    return bool(answer.status == 0)
+
+
+def _least_multiplier(wall: Assembly, states: tuple[tuple[tuple[bool, bool], int], ...]) -> float | None:
+    """The least multiplier of forces without compression at open ends, at the friction limit against each slip."""
+    dead, live = wall.free_loads()
+    m = wall.n_interfaces
+    cone, limit, bounds = [], [], []
+    for p, (ends, slip) in enumerate(states):
+        bounds += [(0.0, 0.0 if free else None) for free in ends] + [(None, None)]
+        for sense in (1, -1):
+            row = np.zeros(3 * m + 1)
+            row[3 * p : 3 * p + 2] = -wall.friction[p]
+            row[3 * p + 2] = -sense
+            (limit if slip == sense else cone).append(row)
+    answer = linprog(
+        np.append(np.zeros(3 * m), 1.0),
+        A_ub=np.array(cone),
+        b_ub=np.zeros(len(cone)),
+        A_eq=np.vstack([np.column_stack([wall.kinematic_matrix.toarray().T, live]), *limit]),
+        b_eq=np.append(-dead, np.zeros(len(limit))),
+        bounds=[*bounds, (0.0, None)],
+    )
+    return float(answer.fun) if answer.status == 0 else None
