@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import sys
 from collections import Counter
 from collections.abc import Iterator
@@ -80,12 +81,20 @@ def _value(result: Result) -> str:
         return str(result.finding)
     if result.traits.brackets and result.bracket is not None:
         return f"[{_number(result.bracket[0], 5)}, {_number(result.bracket[1], 5)}]"
-    return "-" if result.multiplier is None else _number(result.multiplier, 7)
+    return "-" if result.multiplier is None else _number(result.multiplier, 7, result.judge.decimals)
 
 
-def _number(value: float, decimals: int) -> str:
-    """A multiplier with so many decimals; by powers of ten where those would show nothing or pretend too much."""
+def _number(value: float, decimals: int, known: int | None = None) -> str:
+    """A multiplier with so many decimals; by powers of ten where those would show nothing or pretend too much.
+
+    Args:
+        value: the multiplier.
+        decimals: as many at most.
+        known: as many are within its error; None: nothing is known of it.
+    """
     usual = value == 0.0 or 1e-3 <= abs(value) < 1e6
+    if known is not None:
+        decimals = max(0, min(decimals, known if usual else known + math.floor(math.log10(abs(value)))))
     return f"{value:.{decimals}f}" if usual else f"{value:.{decimals}e}"
 
 

@@ -41,9 +41,13 @@ def power(value: float, digits: int = 1) -> str:
     return f"{sign}{head}10{str(int(exponent)).translate(_SUPERSCRIPT)}"
 
 
-def multiplier(value: float | None) -> str:
-    """A multiplier with five significant digits, or a dash."""
-    return NOTHING if value is None else plain(value)
+def multiplier(value: float | None, known: int | None = None) -> str:
+    """A multiplier with five significant digits, or those of its `known` decimals where these are fewer, or a dash."""
+    if value is None:
+        return NOTHING
+    if known is None or value == 0.0 or not math.isfinite(value):
+        return plain(value)
+    return plain(value, max(1, min(5, known + 1 + math.floor(math.log10(abs(value))))))
 
 
 def interval(pair: tuple[float, float] | list[float] | None) -> str:

@@ -126,7 +126,9 @@ def _multiplier_cell(result: Result) -> Cell:
         return Cell(words.FINDING[result.finding])
     if result.flow == "approximate" and result.bracket is not None:
         return Cell(numbers.interval(result.bracket), numbers.every_digit(result.bracket), result.multiplier)
-    return Cell(numbers.multiplier(result.multiplier), repr(result.multiplier), result.multiplier)
+    return Cell(
+        numbers.multiplier(result.multiplier, result.judge.decimals), repr(result.multiplier), result.multiplier
+    )
 
 
 def run_row(case_number: int, result_number: int, item: CaseResults) -> RunRow:

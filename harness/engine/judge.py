@@ -93,6 +93,7 @@ def _judge_collapse(
     said = _decide(residuals, tolerance, f"The collapse state ({result.flow} flow)")
     if said.accepted:
         error = size * sum(residuals[name] for name in ("complementarity", "virtual_work", "multiplier"))
+        said.multiplier_error = float(error)
         said.sentence += f" By virtual work the multiplier of this mechanism is known to within {error:.1g}."
     return said
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from enum import StrEnum
 from typing import Any
 
@@ -29,6 +30,8 @@ class Judgement(BaseModel):
         tolerance: the largest residual that was acceptable.
         accepted: whether every residual is within the tolerance; None where there was nothing to judge.
         sentence: what was judged, and what failed if anything did.
+        multiplier_error: how far, by virtual work, the multiplier of the mechanism can be from the reported one; None
+            where that was not shown.
     """
 
     model_config = ConfigDict(extra="forbid")
@@ -36,6 +39,12 @@ class Judgement(BaseModel):
     tolerance: float = 0.0
     accepted: bool | None = None
     sentence: str = ""
+    multiplier_error: float | None = None
+
+    @property
+    def decimals(self) -> int | None:
+        """Decimals of the multiplier of which the last stands for more than twice its error; None: no bound on it."""
+        return None if not self.multiplier_error else math.floor(-math.log10(2.0 * self.multiplier_error))
 
     @property
     def outcome(self) -> str:

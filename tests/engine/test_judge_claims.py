@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -17,8 +18,9 @@ from harness.model.method import Answer, Finding, Status, load_method
 from harness.model.reading import read_json, read_wall
 from harness.model.result import Result, result_of
 from harness.model.wall import Wall
-from harness.terminal import foreign_answer
-from tests.walls import PUSH, assembly, running_bond, stack
+from harness.terminal import foreign_answer, print_result
+from reports import numbers
+from tests.walls import PUSH, assembly, case, running_bond, stack
 
 DATA = Path(__file__).parent.parent / "data" / "judge"
 
@@ -203,3 +205,19 @@ def test_answer_of_a_run_is_judged_from_its_file_as_in_the_run(loads: dict[str, 
     again = foreign_answer(result.model_dump(mode="json"), wall, "a file")
     assert result.finding in (Finding.FALLS, Finding.UNBOUNDED)
     assert said(wall, again, 1e-8).outcome == "accepted"
+
+
+def test_multiplier_is_printed_with_the_digits_that_its_error_allows(capsys: pytest.CaptureFixture[str]):
+    wall = two_blocks(1.0)
+    answer = sliding_state(wall, 0.5)
+    judgement = said(wall, answer)
+    assert judgement.multiplier_error is not None
+    assert judgement.multiplier_error < 1e-12
+    rough = as_result(wall, replace(answer, multiplier=0.5 + 3e-5, forces_multiplier=0.5))
+    rough = rough.model_copy(update={"judge": judge(wall, rough, 1e-3)})
+    assert rough.judge.accepted
+    assert rough.judge.multiplier_error == pytest.approx(3e-5, rel=0.1)
+    assert rough.judge.decimals == 4
+    assert numbers.multiplier(rough.multiplier, rough.judge.decimals) == "0.5000"
+    print_result(rough, case(stack(1), 0.5))
+    assert re.search(r"finding +0\.5000 *\n", capsys.readouterr().out)
