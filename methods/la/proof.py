@@ -75,12 +75,12 @@ def prove(search: Search, known: CollapseState, most: int) -> Proof:
         held[node.contact] = True
         tree.add(node.tight | held, node.still, node.bound, node.least_work)
         tree.add(node.tight, node.still | held, node.bound)
-    if not tree.certified():
-        return Proof(tree.known, 0.0, tree.nodes)
-    bounds = [tree.undecided, _below(tree.known.multiplier), *(node.bound for node in tree.open[:1])]
     search.tally.programmes += 2 * tree.nodes
+    bound = min([tree.undecided, _below(tree.known.multiplier), *(node.bound for node in tree.open[:1])])
+    if bound <= 0.0 or not tree.certified():  # a bound of zero needs no certificate
+        return Proof(tree.known, 0.0, tree.nodes)
     leaves = tree.closed + [(node.tight, node.still) for node in tree.open]
-    return Proof(tree.known, min(bounds), tree.nodes, tuple(leaves))
+    return Proof(tree.known, bound, tree.nodes, tuple(leaves))
 
 
 def _below(multiplier: float) -> float:
