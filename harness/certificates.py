@@ -1,4 +1,4 @@
-"""Certificates that stand beside cases, held to the case and to what `la` finds."""
+"""Certificates that stand beside cases, held to the case and to the least state that is found."""
 
 from __future__ import annotations
 
@@ -12,6 +12,7 @@ from typing import Any
 from harness.engine.plan import Limits, Run
 from harness.model.case import Case
 from harness.model.errors import InputError
+from harness.model.library import library
 from harness.model.method import Finding
 from harness.model.reading import LARGEST_FILE, json_of, read_bytes, read_json
 from harness.model.result import Result, Verdict
@@ -22,9 +23,8 @@ from methods.bound.verify import verify
 CERTIFICATE = "certificate.json"
 PACKED = ".gz"
 """Ending of the name of a certificate that is compressed, as those of windows are."""
-METHOD = "la"
 ROUNDING = 1e-9
-"""Relative part by which the multiplier of `la`, in floats, may lie below what is proved in fractions."""
+"""Relative part by which the multiplier found, in floats, may lie below what is proved in fractions."""
 
 
 def certificate_of(case: Case) -> Path | None:
@@ -64,11 +64,11 @@ def write_certificate(path: Path, document: dict[str, Any]) -> None:
 
 def certificate_runs(cases: Sequence[Case], limits: Limits) -> list[Run]:
     """The runs whose multipliers the certificates of the cases are held to."""
-    return [Run(case, METHOD, {}, limits) for case in cases if certificate_of(case) is not None]
+    return [Run(case, library().methods.one, {}, limits) for case in cases if certificate_of(case) is not None]
 
 
 def certificate_line(run: Run, result: Result) -> dict[str, Any]:
-    """A row as of a gated reference: the certificate proves its bound, of this wall, and `la` finds nothing below.
+    """A row as of a gated reference: the certificate proves its bound, of this wall, and nothing is found below.
 
     Args:
         run: one of `certificate_runs`.

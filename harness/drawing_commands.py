@@ -14,6 +14,7 @@ from harness.engine.sensitivity import Plateau, over_tolerance, suggested
 from harness.model.build import build
 from harness.model.errors import InputError, raise_faults
 from harness.model.inspection import Inspection, inspect
+from harness.model.library import library
 from harness.model.method import load_method
 from harness.model.reading import parse_wall, read_document, wall_json
 from harness.model.repair import repair as mend
@@ -23,7 +24,9 @@ from harness.options import INPUT_ERROR, cases_option, catching, json_flag, prin
 
 @click.command()
 @click.argument("wall", type=click.Path(path_type=Path))
-@click.option("--method", default="la-associated", show_default=True, help="That is asked once a set of joints.")
+@click.option(
+    "--method", default=library().methods.quick, show_default=True, help="That is asked once a set of joints."
+)
 @json_flag
 @catching
 def validate(wall: Path, method: str, as_json: bool) -> None:

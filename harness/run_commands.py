@@ -14,7 +14,6 @@ import click
 from harness import terminal
 from harness.engine import compare as comparing
 from harness.engine import regression
-from harness.engine.imperfection import imperfection_runs, imperfection_study
 from harness.engine.isolate import announce
 from harness.engine.plan import Limits, Run, check_methods, find_cases, plan_case
 from harness.engine.store import open_store
@@ -22,6 +21,7 @@ from harness.junit import tests_of_comparison, write_junit
 from harness.model.case import Case
 from harness.model.comparison import ComparisonRun
 from harness.model.errors import InputError, did_you_mean
+from harness.model.library import library
 from harness.model.method import Status, load_method
 from harness.options import (
     cases_option,
@@ -39,6 +39,7 @@ from harness.options import (
     warn,
 )
 from harness.printing import PrintError, print_pdf
+from harness.studying import curve_of_shipped
 
 
 @click.command()
@@ -120,14 +121,14 @@ def method_settings(pairs: tuple[str, ...]) -> dict[str, dict[str, Any]]:
 @click.argument("cases", nargs=-1)
 @click.option("--suite", help='A suite of cases, or "all".  [default: small]')
 @click.option(
-    "--methods", help="Names of methods, separated by commas.  [default: fe,la,la-associated,de and those gated]"
+    "--methods",
+    help=f"Names of methods, separated by commas.  [default: {','.join(library().methods.compare)} and those gated]",
 )
 @click.option(
-    "--imperfection",
-    "seeds",
-    type=click.IntRange(1, 100),
-    metavar="SEEDS",
-    help="Also load the paper's wall of uneven blocks, so many of them for each size of defect.",
+    "--study",
+    "studied",
+    metavar="NAME[:SEEDS]",
+    help="Also make a study that comes with Drystone, of so many seeds, and draw its curve in the report.",
 )
 @click.option(
     "--set", "settings", multiple=True, metavar="METHOD.NAME=VALUE", help="A setting of a method; may be repeated."
@@ -147,7 +148,7 @@ def compare(
     cases: tuple[str, ...],
     suite: str | None,
     methods: str | None,
-    seeds: int | None,
+    studied: str | None,
     settings: tuple[str, ...],
     no_report: bool,
     seconds: float,
@@ -174,7 +175,7 @@ def compare(
     asked = method_settings(settings)
     written = None if no_report else report
     announce(planned.method for case in chosen for planned in plan_case(case, names, limits))
-    study = None if seeds is None else _imperfection(limits, seeds, jobs, store, fresh, quiet=as_json)
+    study = None if studied is None else curve_of_shipped(studied, jobs, store, fresh=fresh, quiet=as_json)
     compared = _compare(
         title, chosen, names, limits, jobs, written, store, fresh, quiet=as_json, study=study, settings=asked
     )
@@ -213,14 +214,6 @@ def _compare(
     if report is not None:
         _write_report(compared, report)
     return compared
-
-
-def _imperfection(limits: Limits, seeds: int, jobs: int, store: Path, fresh: bool, *, quiet: bool) -> dict[str, Any]:
-    """The study of the paper's wall made of uneven blocks: so many walls a size."""
-    (case,) = find_cases(["wall-21"], None, ())
-    runs = imperfection_runs(case, limits, seeds=range(seeds))
-    with open_store(store) as opened, terminal.progress(len(runs), quiet=quiet) as told:
-        return imperfection_study(runs, comparing.execute(runs, opened, jobs, fresh=fresh, told=told))
 
 
 def _command_line() -> str:

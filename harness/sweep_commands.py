@@ -4,10 +4,7 @@ from __future__ import annotations
 
 import shlex
 import sys
-import time
 from collections import Counter
-from collections.abc import Callable, Iterator
-from contextlib import closing, contextmanager
 from datetime import UTC, datetime
 from pathlib import Path
 from typing import Any
@@ -16,13 +13,13 @@ import click
 
 from harness.engine.executors import Executor, LocalExecutor
 from harness.engine.plan import Limits
-from harness.engine.store import Store, open_store
+from harness.engine.store import open_store
 from harness.engine.sweep.expand import SweepRun, expand, sources_of
 from harness.engine.sweep.quick import quick_study
-from harness.engine.sweep.running import Row, sweep
+from harness.engine.sweep.running import Row
 from harness.engine.sweep.study import Study, read_study
-from harness.model.case import shipped_cases
 from harness.model.errors import InputError
+from harness.model.library import library
 from harness.options import (
     STORE,
     cases_option,
@@ -37,23 +34,24 @@ from harness.options import (
     store_option,
 )
 from harness.run_commands import method_settings
+from harness.studying import duration, made, shipped_studies
 
 OUT = Path("out")
-LINE_SECONDS = 10.0
-"""How often progress is told where there is no terminal."""
-
-
-def shipped_studies() -> dict[str, Path]:
-    """The studies that come with Drystone, by name."""
-    return {path.stem: path for path in sorted((shipped_cases() / "studies").glob("*.toml"))}
 
 
 @click.command(name="sweep")
 @click.argument("what", metavar="STUDY")
 @click.option("--vary", multiple=True, metavar="NAME=VALUES", help="FROM:TO:COUNT or A,B,C; may be repeated.")
-@click.option("--imperfection", metavar="FROM:TO[:COUNT]", help="Size of defects over the block height (de-uneven).")
+@click.option(
+    "--imperfection",
+    metavar="FROM:TO[:COUNT]",
+    help=f"Size of defects over the block height ({library().settings['imperfection']}).",
+)
 @click.option("--seeds", type=click.IntRange(1), help="So many seeds of the defects.")
-@click.option("--methods", help="Names of methods, separated by commas.  [default: fe,la,de, or the study's]")
+@click.option(
+    "--methods",
+    help=f"Names of methods, separated by commas.  [default: {','.join(library().methods.sweep)}, or the study's]",
+)
 @click.option("--set", "settings", multiple=True, metavar="METHOD.NAME=VALUE", help="A setting; may be repeated.")
 @click.option("--at", "multipliers", type=float, multiple=True, help="Tell the probability of failure at a multiplier.")
 @click.option("--dry-run", is_flag=True, help="Tell how many runs there are and what they may take; run nothing.")
@@ -83,7 +81,7 @@ def sweep_(what: str, dry_run: bool, scheduler: str | None, jobs: int, store: Pa
         _tell_plan(asked, runs, store, jobs, rest["as_json"])
         return
     with open_store(store) as opened:
-        rows = _made(runs, opened, _executor(scheduler, jobs), fresh, quiet=rest["as_json"])
+        rows = made(runs, opened, _executor(scheduler, jobs), fresh=fresh, quiet=rest["as_json"])
     _leave(asked, rows, rest["output"] or OUT / asked.name, rest)
 
 
@@ -118,15 +116,6 @@ def _executor(scheduler: str | None, jobs: int) -> Executor:
     from harness.engine.cluster import ClusterExecutor
 
     return ClusterExecutor(scheduler)
-
-
-def _made(runs: list[SweepRun], store: Store, executor: Executor, fresh: bool, *, quiet: bool) -> list[Row]:
-    rows = []
-    with progress(len(runs), quiet=quiet) as told, closing(sweep(runs, store, executor, fresh=fresh)) as ended:
-        for _, row, stored in ended:
-            rows.append(row)
-            told(stored)
-    return rows
 
 
 def _leave(asked: Study, rows: list[Row], folder: Path, rest: dict[str, Any]) -> None:
@@ -203,53 +192,7 @@ def _tell_plan(asked: Study, runs: list[SweepRun], store: Path, jobs: int, as_js
             "no run of it is in the store to tell its cost")  # fmt: skip
         say(f"  {method}: {count:,} runs, {left[method]:,} to make; {cost}")
     if not unknown:
-        say(f"About {_duration(seconds)} with {jobs} at a time, walls alike.")
-
-
-def _duration(seconds: float) -> str:
-    if seconds < 90.0:
-        return f"{seconds:.0f} s"
-    return f"{seconds / 60.0:.0f} min" if seconds < 5400.0 else f"{seconds / 3600.0:.1f} h"
-
-
-@contextmanager
-def progress(total: int, *, quiet: bool) -> Iterator[Callable[[bool], None]]:
-    """Something to call after each run: a bar with rate and time left, or a line now and then."""
-    from rich.console import Console
-    from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeRemainingColumn
-
-    begun = last = time.monotonic()
-    counts = Counter[str]()
-
-    def words() -> str:
-        spent = max(time.monotonic() - begun, 1e-9)
-        rate = counts["made"] / spent
-        left = (total - counts["made"] - counts["stored"]) / rate if rate > 0.0 else float("nan")
-        return f"{counts['stored']:,} from the store, {rate:.3g} runs a second" + (
-            f", {_duration(left)} left" if left == left else "")  # fmt: skip
-
-    console = Console(stderr=True)
-    if quiet or not console.is_terminal:
-
-        def tell(stored: bool) -> None:
-            nonlocal last
-            counts["stored" if stored else "made"] += 1
-            if not quiet and time.monotonic() - last > LINE_SECONDS:
-                last = time.monotonic()
-                done = counts["stored"] + counts["made"]
-                print(f"{done:,} of {total:,} runs, {words()}", file=sys.stderr, flush=True)
-
-        yield tell
-        return
-    columns = TextColumn("{task.description}"), BarColumn(), MofNCompleteColumn(), TimeRemainingColumn()
-    with Progress(*columns, console=console, transient=True) as bar:
-        task = bar.add_task("", total=total)
-
-        def advance(stored: bool) -> None:
-            counts["stored" if stored else "made"] += 1
-            bar.update(task, advance=1, description=words())
-
-        yield advance
+        say(f"About {duration(seconds)} with {jobs} at a time, walls alike.")
 
 
 @click.command(name="study")

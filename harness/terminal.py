@@ -174,19 +174,6 @@ def _all_well(gated: int, gates: int) -> str:
     return f"{known}; {theory}; the judge rejects no answer."
 
 
-def print_agreement(compared: ComparisonRun, within: float = 0.01) -> None:
-    """One line a wall: what the three families find, and whether they lie within one per cent of each other."""
-    agreeing = 0
-    for case in compared.cases:
-        values = {name: result.multiplier for name in ("fe", "la", "de") if (result := case.of(name)) is not None}
-        known = [value for value in values.values() if value is not None]
-        together = len(known) == 3 and max(known) <= (1.0 + within) * min(known)
-        agreeing += together
-        shown = "  ".join(f"{name} {'-' if value is None else f'{value:.5f}'}" for name, value in values.items())
-        print(f"{visible(case.case.id):32s} {shown}  {'agree' if together else 'part'}")
-    print(f"FE, LA and DE lie within {within:.0%} of each other on {agreeing} of {len(compared.cases)} walls.")
-
-
 def comparison_json(compared: ComparisonRun, report: Path | None) -> dict[str, Any]:
     """A comparison as JSON values."""
     broken = violations(compared)

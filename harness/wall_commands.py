@@ -15,6 +15,7 @@ from harness.engine.plan import Limits, Run, check_methods, find_cases
 from harness.engine.store import open_store
 from harness.model.case import Case, case_folders, read_case, shipped_cases
 from harness.model.errors import InputError
+from harness.model.library import library
 from harness.model.method import Finding, Status, load_method, method_names
 from harness.model.reading import read_json, read_wall, wall_json
 from harness.model.result import Result, result_of
@@ -120,7 +121,9 @@ def schema() -> None:
 
 @click.command()
 @click.argument("case")
-@click.option("--method", "methods", multiple=True, default=("la",), show_default=True, help="May be repeated.")
+@click.option(
+    "--method", "methods", multiple=True, default=(library().methods.one,), show_default=True, help="May be repeated."
+)
 @click.option(
     "--kind", type=click.Choice(["mechanism", "forces", "thrust", "comparison"]), default="mechanism", show_default=True
 )
@@ -149,7 +152,7 @@ def figure(
 
 @click.command()
 @click.argument("case")
-@click.option("--method", default="la", show_default=True)
+@click.option("--method", default=library().methods.one, show_default=True)
 @click.option("-o", "--output", type=click.Path(path_type=Path), help="A .gif, .png or .webp.  [default: CASE.gif]")
 @store_option
 @cases_option

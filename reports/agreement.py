@@ -88,10 +88,10 @@ def agreements(item: CaseResults) -> list[Agreement]:
     """All pairs of the families' main methods and the associated maximum that found a collapse."""
     usable = [
         result
-        for result in sorted(item.results, key=lambda result: words.order(result.method, result.family))
+        for result in sorted(item.results, key=words.order)
         if result.status is Status.OK
         and result.finding is Finding.COLLAPSES
-        and (result.method == result.family or result.method == "la-associated")
+        and (result.is_main or result is item.associated)
     ]
     if len(usable) < 2:
         return []

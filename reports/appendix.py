@@ -46,7 +46,7 @@ LIMITS = SheetLimits()
 ASSUMPTIONS = (
     "The wall is plane; blocks are rigid and do not crush.",
     "Joints are dry: they bear no tension, and shear up to friction times compression (Coulomb), at each contact.",
-    "Sliding is without dilatancy, except in la-associated, which is an upper bound and no design value.",
+    "Sliding is without dilatancy, except in the associated maximum, which is an upper bound and no design value.",
     "Displacements before collapse are small: equilibrium is that of the wall as drawn.",
     "Dead loads act first and stay; the live load grows by one multiplier, slowly.",
 )
@@ -131,7 +131,7 @@ def _drawn(item: CaseResults) -> bool:
 
 
 def _in_order(item: CaseResults) -> list[Result]:
-    return sorted(item.results, key=lambda result: words.order(result.method, result.family))
+    return sorted(item.results, key=words.order)
 
 
 def _shown(item: CaseResults) -> Result | None:

@@ -21,7 +21,7 @@ from reports.curves import curves
 from reports.drawing import case_data, fields_drawn, force_unit, result_data, wall_svg
 from reports.environment import environment
 from reports.export import export
-from reports.limits import KNOWN_LIMITS
+from reports.limits import known_limits
 from reports.opening import in_order, opening
 from reports.sections import CaseSection, case_section
 from reports.studies import studies
@@ -83,7 +83,7 @@ def render(run: ComparisonRun, *, data_folder: str) -> str:
         errata=[(number, item.case) for number, item in enumerate(run.cases) if item.case.file.errata],
         sections=_sections(run, rows, fields),
         studies=studies(run),
-        limits=KNOWN_LIMITS,
+        limits=known_limits(run),
         provenance=_provenance(run),
         origins=_origins(rows),
         data_folder=data_folder,

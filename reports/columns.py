@@ -22,7 +22,7 @@ def _text(name: str, meaning: str) -> ResultColumn:
 RESULTS: tuple[ResultColumn, ...] = (
     _text("case", "id of the wall"),
     _text("method", "name of the method"),
-    _text("family", "fe, la, de or a third party's word"),
+    _text("family", "kind of method, by which the report groups"),
     _text("status", "how the run ended"),
     _text("finding", "what the answer says about the wall"),
     _text("sentence", "the answer in a sentence"),

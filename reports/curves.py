@@ -21,7 +21,7 @@ LENGTHS = ("live_displacement", "displacement")
 def curves(item: CaseResults) -> list[tuple[str, Markup]]:
     """Captions and charts of a case, as far as its results recorded a path."""
     found: list[tuple[str, Markup]] = []
-    ordered = sorted(item.results, key=lambda result: words.order(result.method, result.family))
+    ordered = sorted(item.results, key=words.order)
     for result in ordered:
         if "time" in result.path:
             found.extend(_release(item, result))
@@ -46,7 +46,7 @@ def curves(item: CaseResults) -> list[tuple[str, Markup]]:
 
 def _load_displacement(item: CaseResults, result: Result, moved: list[float], loads: list[float]) -> tuple[str, Markup]:
     levels = []
-    associated = item.of("la-associated")
+    associated = item.associated
     if associated is not None and associated.multiplier is not None:
         levels.append((f"associated maximum {numbers.multiplier(associated.multiplier)}", associated.multiplier))
     for name in ("peak", "plateau"):
@@ -221,7 +221,7 @@ def _history(results: list[Result]) -> tuple[str, Markup] | None:
     levels = [
         (f"associated maximum {numbers.multiplier(result.multiplier)}", result.multiplier)
         for result in results
-        if result.method == "la-associated" and result.multiplier is not None
+        if result.traits.bounds_above and result.multiplier is not None
     ]
     chart = charts.Chart(
         title="Least known multiplier over search time",

@@ -83,8 +83,8 @@ def comparison_figure(item: CaseResults) -> bytes | None:
     """A PDF of the families' main results side by side, or None where there is nothing to draw or too much."""
     usable = [
         result
-        for result in sorted(item.results, key=lambda result: words.order(result.method, result.family))
-        if (result.method == result.family or result.method == "la-associated") and result.mechanism is not None
+        for result in sorted(item.results, key=words.order)
+        if (result.is_main or result is item.associated) and result.mechanism is not None
     ]
     if not usable or shapes.problem(item.case) or item.case.assembly.n_blocks > FIGURE_BLOCKS:
         return None

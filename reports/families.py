@@ -52,7 +52,7 @@ def solved(result: Result) -> bool:
 
 def methods_of(run: ComparisonRun) -> list[str]:
     """Names of all methods of a comparison, in the paper's order."""
-    found = {result.method: words.order(result.method, result.family) for item in run.cases for result in item.results}
+    found = {result.method: words.order(result) for item in run.cases for result in item.results}
     return sorted(found, key=lambda method: found[method])
 
 
@@ -141,12 +141,12 @@ def _study(drawn: list[tuple[Members, list[charts.Series]]], parameter: Paramete
 
 
 def _changes(members: Members) -> str:
-    """Between which values the set of slipping, rocking and open interfaces changes, of LA or else of FE."""
+    """Between which values the set of slipping, rocking and open interfaces changes, of the least state or another."""
     seen: list[tuple[float, str]] = []
     for value, item in members:
-        result = item.of("la") or item.of("fe")
-        if result is not None and result.states and solved(result):
-            seen.append((value, "".join(words.STATE_LETTER.get(state, "k") for state in result.states)))
+        states = [r for r in item.mains if r.states and solved(r) and not r.traits.brackets]
+        for result in sorted(states, key=lambda r: not r.traits.seeks_least)[:1]:
+            seen.append((value, "".join(words.STATE_LETTER.get(state, "k") for state in result.states or ())))
     changes = [
         f"{numbers.given(a[0], 3)} and {numbers.given(b[0], 3)}" for a, b in itertools.pairwise(seen) if a[1] != b[1]
     ]

@@ -1,4 +1,4 @@
-"""Walls of one kind over proportion and friction: where FE, LA and DE agree within 1 %, where they part, and why."""
+"""Walls of one kind over proportion and friction: where the families agree within 1 %, where they part, and why."""
 
 from __future__ import annotations
 
@@ -10,28 +10,27 @@ import numpy as np
 from markupsafe import Markup
 
 from harness.model.comparison import CaseResults, ComparisonRun
-from harness.model.result import Result
-from reports import numbers, shapes
+from harness.model.method import Traits
+from reports import numbers, shapes, words
 from reports.environment import environment
 from reports.families import Study, friction_of, proportion_of, same_but_both, solved
 
 WITHIN = 0.01
 """The paper found its three methods to agree within about 1 % on the wall (Baggio & Trovalusci 1995)."""
 
-MAIN = ("fe", "la", "de")
 CAUSES = (
-    (-1, "la", "its search found a lower collapse state than the one that the history of loading leads FE and DE to."),
-    (1, "la", "its search missed a collapse state that another method reached; the least known is then that one's."),
+    (-1, "seeks_least", "its search found a lower collapse state than the one that a history of loading leads to."),
+    (1, "seeks_least", "its search missed a collapse state that another method reached; the least known is that one."),
     (
         1,
-        "de",
-        "its contacts slip and settle into thrust through the head joints, which FE's unloaded ones do not carry.",
+        "brackets",
+        "its contacts slip and settle into thrust through the head joints, which unloaded ones do not carry.",
     ),
-    (-1, "de", "it moved under a load that the other two carry."),
-    (1, "fe", "its history leads past collapse states that the other two found."),
-    (-1, "fe", "its history leads to a collapse that the other two did not find."),
+    (-1, "brackets", "it moved under a load that the others carry."),
+    (1, "elastic", "its history leads past collapse states that the others found."),
+    (-1, "elastic", "its history leads to a collapse that the others did not find."),
 )
-"""What is known of a method that stands apart from the other two: above them (1) or below (-1)."""
+"""What is known of a method of some trait that stands apart from the others: above them (1) or below (-1)."""
 
 HEAD_JOINT = 0.5
 """An interface whose normal has a horizontal part above this (60 degrees from the vertical or more) is a head joint."""
@@ -44,8 +43,10 @@ class Cell:
     Attributes:
         number: of its case in the report.
         proportion, friction: of the wall.
-        values: multipliers of FE, LA and DE; None where a run was not solved.
+        values: multipliers by main method; None where a run was not solved.
+        traits: of these methods.
         associated: the associated maximum, or None.
+        above: the method that found it.
         head_thrust: by method, the sum of the normal forces in head joints over the weight of the free blocks.
     """
 
@@ -53,18 +54,20 @@ class Cell:
     proportion: float
     friction: float
     values: dict[str, float | None]
+    traits: dict[str, Traits]
     associated: float | None
+    above: str | None
     head_thrust: dict[str, float]
 
     @property
     def spread(self) -> float | None:
-        """Largest multiplier over the least, less one; None if one of the three is missing or they are all zero."""
+        """Largest multiplier over the least, less one; None if one is missing or they are all zero."""
         known = [value for value in self.values.values() if value is not None]
-        return max(known) / min(known) - 1.0 if len(known) == len(MAIN) and min(known) > 0.0 else None
+        return max(known) / min(known) - 1.0 if len(known) == len(self.values) > 1 and min(known) > 0.0 else None
 
     @property
     def agree(self) -> bool:
-        """Whether all three answered and lie within 1 %."""
+        """Whether all answered and lie within 1 %."""
         return self.spread is not None and self.spread <= WITHIN
 
     @property
@@ -80,17 +83,22 @@ class Cell:
 
     @property
     def odd_one_out(self) -> tuple[str, float]:
-        """The method furthest from the middle one of the three, and how far it lies from it."""
+        """The method furthest from the middle one, and how far it lies from it."""
         known = {name: value for name, value in self.values.items() if value is not None}
         middle = float(np.median(list(known.values())))
         name = max(known, key=lambda name: abs(known[name] - middle))
         return name, known[name] / middle - 1.0
 
+    def by(self, trait: str) -> tuple[str, float] | None:
+        """The first method of a trait that answered, and its multiplier."""
+        found = ((name, value) for name, value in self.values.items() if value is not None)
+        return next((pair for pair in found if getattr(self.traits[pair[0]], trait)), None)
+
     @property
     def least(self) -> str:
         """The least known collapse multiplier, for the table."""
-        value = self.values["la"]
-        return "" if value is None else f"LA {numbers.multiplier(value)}"
+        found = self.by("seeks_least")
+        return "" if found is None else f"{found[0].upper()} {numbers.multiplier(found[1])}"
 
     @property
     def hover(self) -> str:
@@ -125,31 +133,36 @@ def _cell(number: int, item: CaseResults) -> Cell | None:
     proportion, friction = proportion_of(assembly), friction_of(assembly)
     if proportion is None or friction is None:
         return None
-    results = {name: item.of(name) for name in (*MAIN, "la-associated")}
-    values = {name: _value(result) for name, result in results.items()}
+    mains, above = item.mains, item.associated
     weight = float(assembly.weight[assembly.free].sum())
     head = np.abs(assembly.normal[:, 0]) > HEAD_JOINT
     thrust = {
-        name: float(np.asarray(result.forces, float)[head, :2].sum()) / weight
-        for name, result in results.items()
-        if result is not None and result.forces is not None and solved(result) and weight > 0.0
+        result.method: float(np.asarray(result.forces, float)[head, :2].sum()) / weight
+        for result in (*mains, *([above] if above is not None else []))
+        if result.forces is not None and solved(result) and weight > 0.0
     }
-    return Cell(number, proportion, friction, {name: values[name] for name in MAIN}, values["la-associated"], thrust)
-
-
-def _value(result: Result | None) -> float | None:
-    return result.multiplier if result is not None and solved(result) else None
+    return Cell(
+        number=number,
+        proportion=proportion,
+        friction=friction,
+        values={result.method: result.multiplier if solved(result) else None for result in mains},
+        traits={result.method: result.traits for result in mains},
+        associated=above.multiplier if above is not None and solved(above) else None,
+        above=None if above is None else above.method,
+        head_thrust=thrust,
+    )
 
 
 def _study(title: str, cells: list[Cell]) -> Study:
     proportions = sorted({cell.proportion for cell in cells})
     frictions = sorted({cell.friction for cell in cells})
     at = {(cell.proportion, cell.friction): cell for cell in cells}
+    who = words.all_of(dict.fromkeys(name for cell in cells for name in cell.values))
     table = (
         environment()
         .get_template("_grid.html.j2")
         .render(
-            caption=f"Agreement of FE, LA and DE over proportion and friction, {title} and its kin",
+            caption=f"Agreement of {who} over proportion and friction, {title} and its kin",
             frictions=[numbers.given(friction, 3) for friction in frictions],
             rows=[
                 (numbers.given(proportion, 3), [at.get((proportion, friction)) for friction in frictions])
@@ -158,12 +171,12 @@ def _study(title: str, cells: list[Cell]) -> Study:
         )
     )
     return Study(
-        f"Where FE, LA and DE agree: {title} and its kin",
+        f"Where {who} agree: {title} and its kin",
         " ".join(sentence for sentence in (_where(cells), *_why(cells)) if sentence),
-        "A row is a proportion of the brick (width over height), a column a friction. “agree” means that the three "
+        "A row is a proportion of the brick (width over height), a column a friction. “agree” means that all "
         "multipliers lie within 1 %; otherwise the cell names the one furthest from the middle one, and how far. "
-        "Every value is behind the link. LA's least known collapse state is exact and judged, so a lower value of LA "
-        "is no error: it is a collapse that the other two, which follow one history of loading, do not reach.",
+        "Every value is behind the link. The least known collapse state is exact and judged, so a lower value there "
+        "is no error: it is a collapse that methods which follow one history of loading do not reach.",
         table=Markup(table),
     )
 
@@ -171,8 +184,8 @@ def _study(title: str, cells: list[Cell]) -> Study:
 def _where(cells: list[Cell]) -> str:
     agree = [cell for cell in cells if cell.agree]
     if len(agree) == len(cells):
-        return f"The three agree within 1 % on all {len(cells)} walls."
-    first = f"The three agree within 1 % on {len(agree)} of {len(cells)} walls."
+        return f"They agree within 1 % on all {len(cells)} walls."
+    first = f"They agree within 1 % on {len(agree)} of {len(cells)} walls."
     bounds = []
     for proportion in sorted({cell.proportion for cell in cells}):
         parted = [cell.friction for cell in cells if cell.proportion == proportion and not cell.agree]
@@ -186,11 +199,13 @@ def _why(cells: list[Cell]) -> Iterable[str]:
     parted = [cell for cell in cells if cell.spread is not None and not cell.agree]
     if not parted:
         return
-    for sign, name, cause in CAUSES:
-        count = sum(cell.odd_one_out[0] == name and sign * cell.odd_one_out[1] > 0.0 for cell in parted)
-        if count:
-            where = f"{count} of the {len(parted)}" if len(parted) > 1 else "the one wall"
-            yield f"In {where} where they part, {name.upper()} is {'high' if sign > 0 else 'low'}: {cause}"
+    for sign, trait, cause in CAUSES:
+        odd = [cell.odd_one_out for cell in parted if getattr(cell.traits[cell.odd_one_out[0]], trait)]
+        names = [name for name, apart in odd if sign * apart > 0.0]
+        if names:
+            where = f"{len(names)} of the {len(parted)}" if len(parted) > 1 else "the one wall"
+            who = words.all_of(dict.fromkeys(names))
+            yield f"In {where} where they part, {who} is {'high' if sign > 0 else 'low'}: {cause}"
     yield from _falling(cells)
     yield from _self_stress(parted)
 
@@ -200,7 +215,7 @@ def _falling(cells: list[Cell]) -> Iterable[str]:
     found = []
     for proportion in sorted({cell.proportion for cell in cells}):
         line = sorted((cell for cell in cells if cell.proportion == proportion), key=lambda cell: cell.friction)
-        known = [(cell.friction, value) for cell in line if (value := cell.values["la"]) is not None]
+        known = [(cell.friction, pair[1]) for cell in line if (pair := cell.by("seeks_least")) is not None]
         if not known:
             continue
         peak = max(known, key=lambda pair: pair[1])
@@ -218,22 +233,24 @@ def _falling(cells: list[Cell]) -> Iterable[str]:
 def _self_stress(parted: list[Cell]) -> Iterable[str]:
     """The associated maximum far above, carried by thrust through head joints that loading does not build up."""
     above = [
-        cell.associated / fe - 1.0
+        (cell.associated / elastic[1] - 1.0, elastic[0])
         for cell in parted
-        if cell.associated is not None and (fe := cell.values["fe"]) is not None and fe > 0.0
+        if cell.associated is not None and (elastic := cell.by("elastic")) is not None and elastic[1] > 0.0
     ]
     if not above:
         return
-    sentence = f"The associated maximum lies up to {100.0 * max(above):.0f} % above FE there"
+    most, springs = max(above)
+    sentence = f"The associated maximum lies up to {100.0 * most:.0f} % above {springs.upper()} there"
+    names = dict.fromkeys(name for cell in parted for name in cell.head_thrust)
     medians = {
         name: float(np.median([cell.head_thrust[name] for cell in parted if name in cell.head_thrust]))
-        for name in ("la-associated", "fe", "la", "de")
-        if any(name in cell.head_thrust for cell in parted)
+        for name in names
     }
-    if len(medians) == 4:
+    bound = next((cell.above for cell in parted if cell.above in medians), None)
+    others = [f"{name.upper()}'s with {value:.2g}" for name, value in medians.items() if name != bound]
+    if bound is not None and others:
         sentence += (
-            f": its forces press on the head joints with {medians['la-associated']:.2g} of the wall's weight in the "
-            f"median, FE's with {medians['fe']:.2g}, the least known state's with {medians['la']:.2g} and the state "
-            f"that DE held with {medians['de']:.2g}; loading from the dead load does not build up such self-stress"
+            f": its forces press on the head joints with {medians[bound]:.2g} of the wall's weight in the median, "
+            f"{', '.join(others)}; loading from the dead load does not build up such self-stress"
         )
     yield sentence + "."

@@ -1,54 +1,81 @@
-"""What each method is known not to do, in prose, for the report."""
+"""What methods are known not to do, in prose, for the report: told of those whose traits they go with."""
 
 from __future__ import annotations
 
-KNOWN_LIMITS: list[tuple[str, list[str]]] = [
+from harness.model.comparison import ComparisonRun
+from harness.model.method import Traits
+from reports import words
+
+LIMITS: tuple[tuple[str, str, tuple[str, ...]], ...] = (
     (
         "All methods",
-        [
+        "",
+        (
             "Blocks are rigid and infinitely strong, joints have no tensile strength, and friction is Coulomb's with "
             "one coefficient. Crushing, wear and cohesion are outside of the model.",
             "Displacements are small: a multiplier belongs to the wall as drawn. Second-order effects that lower it "
             "as the wall leans are seen only where a method says that it follows them.",
             "The wall is plane. Forces across its thickness, and what happens at its ends out of plane, are left out.",
-        ],
+        ),
     ),
     (
-        "Finite elements with gap springs (fe)",
-        [
+        "Joints of springs",
+        "elastic",
+        (
             "The plateau is a collapse state, but which one depends on the history of friction; the spread over "
             "histories is reported and is the uncertainty of the number.",
             "Springs are numerical: the plateau does not depend on their stiffness at a fixed ratio of tangential to "
             "normal stiffness, and on regular walls little on the ratio; on irregular ones with rough joints it may "
             "move by a third. Deformable joints tend to reach states above the least one.",
             "Cost grows faster than the number of blocks. Large walls are followed under one friction history only.",
-        ],
+        ),
     ),
     (
-        "Limit analysis (la and its kin)",
-        [
+        "The search for the least collapse state",
+        "seeks_least",
+        (
             "With friction the problem has many local minima. What is reported is the least collapse state known: a "
             "true collapse state, checked as such, which a longer search may undercut. It is called "
             "the least there is only where a proved lower bound meets it: branch and bound comes to "
             "that end on single blocks, columns, rings of up to 30 joints and most walls of up to six blocks.",
-            "The associated maximum is a bound from above for every method; it lets blocks rise as they slide and "
-            "may rest on self-stress that a real wall need not have.",
-            "The paper's own programme (la-paper) stops at local optima and becomes unreliable beyond about 50 "
-            "blocks, as the paper says of it.",
-            "A sequence of programmes with the friction of the last step (la-tresca) stalls above the least value.",
-        ],
+        ),
     ),
     (
-        "Distinct elements (de)",
-        [
+        "The associated maximum",
+        "bounds_above",
+        (
+            "The associated maximum is a bound from above for every method; it lets blocks rise as they slide and "
+            "may rest on self-stress that a real wall need not have.",
+        ),
+    ),
+    (
+        "Measured between two loads",
+        "brackets",
+        (
             "The answer is a bracket between a load that was held and a load that moved, and a spread over the orders "
             "in which blocks were entered. The number printed as multiplier is the middle and not exact.",
             "Rigid contacts leave contact forces undetermined where several solutions exist; the engine takes one of "
             "them. On the single block with two frictions that alone spans the whole range of limit analysis.",
             "Damping removes inertia: what is found is quasi-static. Walls of many courses need many steps, and holds "
             "that could not be told are counted as undecided, never as held.",
-            "Joints that give, round corners and blocks that lean (de-soft) lower the multiplier; how much depends on "
-            "a stiffness that drawings do not tell. Its sentence names stiffness and rounding.",
-        ],
+            "Joints that give, round corners and blocks that lean lower the multiplier where they are modelled; how "
+            "much depends on a stiffness that drawings do not tell. The sentence of such an answer names both.",
+        ),
     ),
-]
+)
+"""A heading, the trait of the methods it is about (empty: all), and what is known of them."""
+
+
+def known_limits(run: ComparisonRun) -> list[tuple[str, tuple[str, ...]]]:
+    """Headings with the methods of this comparison they are about, and their sentences."""
+    ordered = sorted((result for item in run.cases for result in item.results), key=words.order)
+    traits: dict[str, Traits] = {}
+    for result in ordered:
+        if result.traits != Traits():  # a run without an answer of its method tells none
+            traits.setdefault(result.method, result.traits)
+    found = []
+    for heading, trait, sentences in LIMITS:
+        names = [name for name, said in traits.items() if trait and getattr(said, trait)]
+        if names or not trait:
+            found.append((f"{heading}: {', '.join(names)}" if names else heading, sentences))
+    return found

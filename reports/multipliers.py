@@ -19,7 +19,7 @@ def multipliers_figure(run: ComparisonRun) -> Figure:
     """One row a wall, one point a method; a bracket is a bar. What is not accepted by the judge is hollow."""
     ordered = sorted(
         _one_each(run),
-        key=lambda result: words.order(result.method, result.family),
+        key=words.order,
     )
     with style():
         page = Figure(figsize=(COLUMN, min(TALLEST, 0.9 + 0.32 * len(run.cases))), layout="constrained")

@@ -67,7 +67,7 @@ def opening(run: ComparisonRun) -> Opening:
     if one:
         found.extend(wall_findings(item) for item in items)
     else:
-        told = [item for item in items if item.case.id in (paper.BLOCK, paper.WALL)]
+        told = [item for item in items if item.case.id in paper.printed().cases]
         found.extend(wall_findings(item, short=True) for item in told)
         found.extend(_suite(items))
     focus = _focus(items, one)
@@ -94,7 +94,7 @@ def is_calm(item: CaseResults) -> bool:
 def _rank(item: CaseResults) -> int:
     if shapes.problem(item.case) or not item.case.file.references:
         return 0  # nothing is known of it beforehand: a wall of the user's own
-    if item.case.id in (paper.BLOCK, paper.WALL):
+    if item.case.id in paper.printed().cases:
         return 1
     wrong = any(gate.passed is False for gate in item.gates) or any(_wrong(result) for result in item.results)
     return 2 if wrong or (_spread(item) or 0.0) > CLOSE else 3
@@ -134,22 +134,7 @@ def _broken_theory(run: ComparisonRun) -> list[str]:
 
 def _mains(item: CaseResults) -> list[Result]:
     """The main method of every family that gave an answer, in the paper's order."""
-    found = [r for r in item.results if r.method == r.family and r.status is Status.OK]
-    return sorted(found, key=lambda result: words.order(result.method, result.family))
-
-
-def _associated(item: CaseResults) -> Result | None:
-    return next(
-        (
-            result
-            for result in item.results
-            if result.flow == "associated"
-            and result.status is Status.OK
-            and result.finding is Finding.COLLAPSES
-            and result.judge.accepted is not False
-        ),
-        None,
-    )
+    return [result for result in item.mains if result.status is Status.OK]
 
 
 def _certified_bound(item: CaseResults, least: Result) -> float | None:
@@ -185,7 +170,7 @@ def wall_findings(item: CaseResults, *, short: bool = False) -> str:
         how = mechanism_in_words(assembly, mechanism, item.case.wall.units.length)
         more = f"; {joints_in_words(joints)}" if joints is not None and joints_in_words(joints) else ""
         sentences.append(f"{how[0].upper()}{how[1:]}{more}.")
-    associated = _associated(item)
+    associated = item.associated
     if associated is not None and _above(associated, least):
         sentences.append(f"The associated maximum {numbers.multiplier(associated.multiplier)} is not safe.")
     return " ".join(filter(None, sentences))
@@ -237,7 +222,7 @@ def _agreement(item: CaseResults) -> str:
 
 def which_number(item: CaseResults) -> str:
     """Which multiplier to use for what, with the case's own numbers."""
-    least, associated = least_known(item), _associated(item)
+    least, associated = least_known(item), item.associated
     if least is None:
         return ""
     value = numbers.multiplier(least.multiplier)
@@ -262,7 +247,7 @@ def which_number(item: CaseResults) -> str:
             f"a lower one is not excluded{proof}."
         )
     sentences = [first]
-    springs = [r for r in _mains(item) if r.family == "fe" and r is not least and r.multiplier is not None]
+    springs = [r for r in _mains(item) if r.traits.elastic and r is not least and r.multiplier is not None]
     if springs and springs[0].finding is Finding.COLLAPSES:
         sentences.append(
             f"Elastic joints without self-stress would give {_or_the_same(springs[0], least)} ({springs[0].method})."
@@ -304,7 +289,8 @@ def _focus(items: list[CaseResults], one: bool) -> CaseResults | None:
     if not drawn:
         return None
     return next(
-        (item for item in drawn if one or item.case.id == paper.WALL), max(drawn, key=lambda item: _spread(item) or 0.0)
+        (item for item in drawn if one or item.case.id == paper.printed().wall.case),
+        max(drawn, key=lambda item: _spread(item) or 0.0),
     )
 
 

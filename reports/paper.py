@@ -2,18 +2,74 @@
 
 from __future__ import annotations
 
+import tomllib
 from dataclasses import dataclass
+from functools import cache
 
+from harness.model.case import shipped_cases
 from harness.model.comparison import CaseResults, ComparisonRun
 from harness.model.method import Status
+from harness.model.reading import read_text, validate
 from harness.model.result import Result
+from harness.model.wall import Strict
 from reports import numbers
 from reports.tables import Cell, anchor_of
 
-BLOCK, WALL = "single-block", "wall-21"
-PAPER_MINUTES = {"fe": 20.0, "la": 15.0, "de": 360.0}
-PAPER_WORK = {"fe": "low", "la": "medium", "de": "high"}
-EXPERIMENT = -0.20
+LARGEST_FILE = 2**16
+"""Bytes of paper.toml at most; it comes with Drystone."""
+
+
+class PrintedRow(Strict):
+    """One multiplier of the block as the paper prints it, and in closed form."""
+
+    method: str
+    what: str
+    printed: str
+    closed_form: str
+    exact: float | None = None
+
+
+class PrintedBlock(Strict):
+    """What the paper says of its block: the case, and a row a method."""
+
+    case: str
+    rows: list[PrintedRow]
+
+
+class PrintedCost(Strict):
+    """CPU minutes of a method on the paper's wall, and the work it asks of the user."""
+
+    method: str
+    minutes: float
+    work: str
+
+
+class PrintedWall(Strict):
+    """What the paper says of its wall; ratios are taken to the first row."""
+
+    case: str
+    experiment: float
+    study: str
+    rows: list[PrintedCost]
+
+
+class Printed(Strict):
+    """The content of `cases/paper.toml`."""
+
+    block: PrintedBlock
+    wall: PrintedWall
+
+    @property
+    def cases(self) -> tuple[str, str]:
+        """Ids of the paper's two walls."""
+        return self.block.case, self.wall.case
+
+
+@cache
+def printed() -> Printed:
+    """What the paper prints, read once."""
+    path = shipped_cases() / "paper.toml"
+    return validate(Printed, tomllib.loads(read_text(path, LARGEST_FILE)), str(path))
 
 
 @dataclass(frozen=True)
@@ -48,6 +104,8 @@ class Paper:
 
     block: list[BlockRow]
     cost: list[CostRow]
+    names: str
+    ratio_paper: str
     ratio_ours: str
     experiment: str
     imperfection: str
@@ -65,19 +123,23 @@ def _result(item: CaseResults, method: str) -> tuple[int, Result] | None:
 
 def paper_comparison(run: ComparisonRun) -> Paper | None:
     """The paper's two tables beside ours, or None if neither of its cases was run."""
-    block, wall = _find(run, BLOCK), _find(run, WALL)
+    said = printed()
+    block, wall = _find(run, said.block.case), _find(run, said.wall.case)
     if block is None and wall is None:
         return None
     cost = [] if wall is None else _cost(*wall)
     times = {row.method: row.cpu.sort for row in cost if row.cpu.sort}
+    names = [row.method for row in said.wall.rows]
+    base = said.wall.rows[0]
     ratio = ""
-    if len(times) == 3 and times["fe"]:
-        ratio = " : ".join(
-            numbers.plain((times[method] or 0.0) / times["fe"] * 20.0, 2) for method in ("fe", "la", "de")
-        )
+    if len(times) == len(names):
+        per_second = base.minutes / (times[base.method] or 1.0)
+        ratio = " : ".join(numbers.plain((times[name] or 0.0) * per_second, 2) for name in names)
     return Paper(
         block=[] if block is None else _block(*block),
         cost=cost,
+        names=" : ".join(name.upper() for name in names),
+        ratio_paper=" : ".join(numbers.given(row.minutes, 3) for row in said.wall.rows),
         ratio_ours=ratio,
         experiment="" if wall is None else _experiment(wall[1]),
         imperfection=_imperfection(run),
@@ -88,18 +150,14 @@ def paper_comparison(run: ComparisonRun) -> Paper | None:
 
 def _block(number: int, item: CaseResults) -> list[BlockRow]:
     rows = []
-    for method, what, printed, form, exact in (
-        ("fe", "Finite elements", "0.476", "0.5/1.05", 0.5 / 1.05),
-        ("la", "Limit analysis, least", "0.4", "0.4", 0.4),
-        ("la-associated", "Limit analysis, greatest", "0.545", "0.6/1.1", 0.6 / 1.1),
-        ("de", "Distinct elements", "not given", "in [0.4, 0.6/1.1]", None),
-    ):
-        found = _result(item, method)
+    for row in printed().block.rows:
+        what, known, form, exact = row.what, row.printed, row.closed_form, row.exact
+        found = _result(item, row.method)
         if found is None:
-            rows.append(BlockRow(what, printed, form, Cell("not run"), "", ""))
+            rows.append(BlockRow(what, known, form, Cell("not run"), "", ""))
             continue
         result = found[1]
-        if method == "de" and result.bracket is not None:
+        if result.traits.brackets and result.bracket is not None:
             cell = Cell(numbers.interval(result.bracket), numbers.every_digit(result.bracket))
         elif result.multiplier is None:
             cell = Cell(str(result.status))
@@ -109,13 +167,15 @@ def _block(number: int, item: CaseResults) -> list[BlockRow]:
         if exact is not None and result.multiplier is not None:
             gap = abs(result.multiplier - exact)
             difference = "0" if gap == 0.0 else numbers.power(gap)
-        rows.append(BlockRow(what, printed, form, cell, anchor_of(number, found[0]), difference))
+        rows.append(BlockRow(what, known, form, cell, anchor_of(number, found[0]), difference))
     return rows
 
 
 def _cost(number: int, item: CaseResults) -> list[CostRow]:
-    found = {method: _result(item, method) for method in PAPER_MINUTES}
-    base = found["fe"][1].cpu_seconds if found["fe"] is not None and found["fe"][1].status is Status.OK else None
+    paper = {row.method: row for row in printed().wall.rows}
+    found = {method: _result(item, method) for method in paper}
+    first = next(iter(paper))
+    base = next((cpu for name, entry in found.items() if name == first and (cpu := _cpu(entry)) is not None), None)
     rows = []
     for method, entry in found.items():
         if entry is None:
@@ -129,15 +189,15 @@ def _cost(number: int, item: CaseResults) -> list[CostRow]:
                 for name in reference.settings
             }
         )
-        cpu = result.cpu_seconds if result.status is Status.OK else None
+        cpu = _cpu(entry)
         rows.append(
             CostRow(
                 method=method,
-                paper_ratio=numbers.plain(PAPER_MINUTES[method], 3),
-                ratio=numbers.NOTHING if not cpu or not base else numbers.plain(20.0 * cpu / base, 3),
+                paper_ratio=numbers.plain(paper[method].minutes, 3),
+                ratio=numbers.NOTHING if not cpu or not base else numbers.plain(paper[first].minutes * cpu / base, 3),
                 cpu=Cell(numbers.seconds(cpu), "" if cpu is None else f"{cpu!r} s", cpu),
                 anchor=anchor_of(number, entry[0]),
-                paper_work=PAPER_WORK[method],
+                paper_work=paper[method].work,
                 settings=len(result.settings),
                 changed=", ".join(asked) or "none",
             )
@@ -145,19 +205,25 @@ def _cost(number: int, item: CaseResults) -> list[CostRow]:
     return rows
 
 
+def _cpu(entry: tuple[int, Result] | None) -> float | None:
+    return entry[1].cpu_seconds if entry is not None and entry[1].status is Status.OK else None
+
+
 def _imperfection(run: ComparisonRun) -> str:
     """What the study of uneven blocks found, if the comparison brought it."""
     studies = run.provenance.get("studies", [])
-    return next((str(study["sentence"]) for study in studies if "unevenness" in str(study.get("title", ""))), "")
+    return next((str(study["sentence"]) for study in studies if study.get("name") == printed().wall.study), "")
 
 
 def _experiment(item: CaseResults) -> str:
+    said = printed().wall
     values = [
-        (method.upper(), entry[1].multiplier)
-        for method in PAPER_MINUTES
-        if (entry := _result(item, method)) is not None and entry[1].multiplier is not None
+        (row.method.upper(), entry[1].multiplier)
+        for row in said.rows
+        if (entry := _result(item, row.method)) is not None and entry[1].multiplier is not None
     ]
     if not values:
         return ""
-    lowered = ", ".join(f"{numbers.plain((1.0 + EXPERIMENT) * (value or 0.0), 3)} ({name})" for name, value in values)
-    return f"A wall that fails 20 % earlier than ours would fail at {lowered}."
+    left = 1.0 + said.experiment
+    lowered = ", ".join(f"{numbers.plain(left * (value or 0.0), 3)} ({name})" for name, value in values)
+    return f"A wall that fails {-100.0 * said.experiment:.0f} % earlier than ours would fail at {lowered}."

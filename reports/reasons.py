@@ -96,7 +96,9 @@ def least_known(item: CaseResults) -> Result | None:
     # Equal to rounding: prefer the one that is proved, then the family's main method.
     best = min((result.multiplier or 0.0 for result in states), default=0.0)
     near = [r for r in states if (r.multiplier or 0.0) <= best + 1e-9 * max(abs(best), 1e-300)]
-    return min(near, key=lambda r: (not r.details.get("proved_least"), r.family != "la", r.method), default=None)
+    return min(
+        near, key=lambda r: (not r.details.get("proved_least"), not r.traits.seeks_least, r.method), default=None
+    )
 
 
 def _reason(assembly: Assembly, least: Result, other: Result, measure: FloatArray) -> str:

@@ -105,7 +105,8 @@ def profile(run: ComparisonRun, methods: list[str]) -> dict[str, list[float]]:
 
 def performance_profile(run: ComparisonRun) -> Study | None:
     """Share of all cases solved within a multiple of the fastest method's time."""
-    methods = [method for method in methods_of(run) if not method.startswith("la-associated")]
+    bounds = {r.method for item in run.cases for r in item.results if r.traits.bounds_above}
+    methods = [method for method in methods_of(run) if method not in bounds]
     if len(run.cases) < 2 or len(methods) < 2:
         return None
     ratios = profile(run, methods)

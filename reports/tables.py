@@ -10,7 +10,8 @@ from typing import Any
 
 from harness.model.case import Case, Reference
 from harness.model.comparison import CaseResults, ComparisonRun
-from harness.model.method import Finding, Status
+from harness.model.library import library
+from harness.model.method import Status
 from harness.model.result import Comparison, Result, Verdict
 from reports import numbers, words
 
@@ -200,9 +201,7 @@ def run_rows(run: ComparisonRun) -> list[list[RunRow]]:
     return [
         [
             run_row(case_number, number, item)
-            for number in sorted(
-                range(len(item.results)), key=lambda n: words.order(item.results[n].method, item.results[n].family)
-            )
+            for number in sorted(range(len(item.results)), key=lambda n: words.order(item.results[n]))
         ]
         for case_number, item in enumerate(run.cases)
     ]
@@ -219,11 +218,7 @@ class Column:
 
 def columns(run: ComparisonRun) -> list[Column]:
     """The methods of a comparison, in the paper's order."""
-    found = {
-        (result.method, result.family): words.order(result.method, result.family)
-        for item in run.cases
-        for result in item.results
-    }
+    found = {(result.method, result.family): words.order(result) for item in run.cases for result in item.results}
     captions = {
         result.method: result.traits.caption
         for item in run.cases
@@ -231,7 +226,7 @@ def columns(run: ComparisonRun) -> list[Column]:
         if result.traits.caption  # a run without an answer of its method tells none
     }
     return [
-        Column(method, words.family_of(method, family), captions.get(method, ""))
+        Column(method, library().family_title(family, method), captions.get(method, ""))
         for method, family in sorted(found, key=lambda pair: found[pair])
     ]
 
@@ -360,32 +355,8 @@ def findings(run: ComparisonRun) -> str:
     if gates:
         passed = sum(bool(gate.passed) for gate in gates)
         sentences.append(f"Of {numbers.count(len(gates), 'statement')} of theory that could be tested, {passed} hold.")
-    sentences.extend(_spread_sentence(run.cases))
     return " ".join(sentences)
 
 
 def _are(number: int) -> str:
     return "is" if number == 1 else "are"
-
-
-def _spread_sentence(cases: Iterable[CaseResults]) -> list[str]:
-    spreads = []
-    for item in cases:
-        values = [
-            result.multiplier
-            for method in ("fe", "la", "de")
-            if (result := item.of(method)) is not None
-            and result.multiplier is not None
-            and result.status is Status.OK
-            and result.finding is Finding.COLLAPSES
-        ]
-        if len(values) == 3 and min(values) > 0.0:
-            spreads.append(((max(values) - min(values)) / min(values), item.case.id))
-    if not spreads:
-        return []
-    close = sum(spread <= 0.01 for spread, _ in spreads)
-    widest = max(spreads)
-    return [
-        f"FE, LA and DE lie within 1 % of each other on {close} of the {numbers.count(len(spreads), 'case')} "
-        f"all three of them solved; they are furthest apart on {widest[1]} ({100.0 * widest[0]:.1f} %)."
-    ]

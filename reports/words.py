@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
+
 from harness.model.case import ReferenceType
+from harness.model.library import library
 from harness.model.method import Finding, Status
-from harness.model.result import Verdict
+from harness.model.result import Result, Verdict
 
 VERDICT: dict[Verdict, tuple[str, str]] = {
     Verdict.AGREES: ("✓", "agrees"),
@@ -29,8 +32,6 @@ FINDING: dict[Finding, str] = {
     Finding.UNBOUNDED: "no collapse: unbounded",
     Finding.NONE: "nothing found",
 }
-
-FAMILY: dict[str, str] = {"fe": "Finite elements", "la": "Limit analysis", "de": "Distinct elements"}
 
 STATE_LETTER: dict[str, str] = {"stick": "k", "slip": "s", "rock": "r", "open": "o"}
 
@@ -58,12 +59,12 @@ PURPOSE: dict[str, tuple[str, tuple[ReferenceType, ...], str]] = {
 }
 
 
-def family_of(method: str, family: str) -> str:
-    """The family's name for a heading, whatever word a third party's method uses."""
-    return FAMILY.get(family, family or method)
+def order(result: Result) -> tuple[int, bool, str]:
+    """Sort key of results: families in the library's order, a family's main method first."""
+    return library().order(result.method, result.family)
 
 
-def order(method: str, family: str) -> tuple[int, int, str]:
-    """Sort key of methods: the paper's order FE, LA, DE, a family's main method first."""
-    families = ["fe", "la", "de"]
-    return (families.index(family) if family in families else len(families), 0 if method == family else 1, method)
+def all_of(names: Iterable[str]) -> str:
+    """Names of methods in capitals, as "FE, LA and DE"."""
+    said = [name.upper() for name in names]
+    return said[0] if len(said) == 1 else f"{', '.join(said[:-1])} and {said[-1]}"

@@ -8,9 +8,10 @@ from pathlib import Path
 import psutil
 import pytest
 
-from harness.engine.plan import DEFAULT_METHODS, Limits
+from harness.engine.plan import Limits
 from harness.engine.store import open_store
 from harness.model.build import build
+from harness.model.library import library
 from tests.soak import FLAT, Record, leftovers, random_wall, soak_wall
 
 
@@ -28,7 +29,7 @@ def test_a_minute_of_walls_leaves_no_failure_no_zombie_and_flat_memory(tmp_path:
     record, begun = Record(first_seed=0), time.monotonic()
     with open_store(tmp_path / "soak.sqlite") as store:
         while time.monotonic() - begun < 60.0:
-            soak_wall(record, record.walls, list(DEFAULT_METHODS), Limits(20.0), store)
+            soak_wall(record, record.walls, list(library().methods.compare), Limits(20.0), store)
     assert record.failures == []
     assert leftovers() == []
     assert record.walls > 5

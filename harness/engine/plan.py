@@ -15,11 +15,9 @@ from harness.engine.store import run_key
 from harness.engine.worker import Task
 from harness.model.case import Case, Reference, case_folders, case_of_wall, id_of, read_case, shipped_cases
 from harness.model.errors import InputError, did_you_mean
+from harness.model.library import library
 from harness.model.method import method_names
 from harness.model.reading import DRAWINGS, wall_json
-
-DEFAULT_METHODS = ("fe", "la", "la-associated", "de")
-"""What a comparison runs besides the methods a gated reference of the case asks for."""
 
 
 @dataclass(frozen=True)
@@ -83,7 +81,7 @@ def plan_case(
     references = [item for item in case.file.references if tier == "full" or item.tier == "quick"]
     if methods is None:
         asked = {method for item in references if item.gate for method in item.applies_to}
-        base = case.file.methods if case.file.methods is not None else DEFAULT_METHODS
+        base = case.file.methods if case.file.methods is not None else library().methods.compare
         check_methods(base, f'methods of case "{case.id}"')
         installed = method_names()
         methods = [*base, *sorted(name for name in asked if name not in base and name in installed)]

@@ -8,6 +8,7 @@ from typing import Any
 from pydantic import BaseModel, ConfigDict
 
 from harness.model.case import Case
+from harness.model.library import library
 from harness.model.method import Finding, Status
 from harness.model.result import Result
 
@@ -40,6 +41,24 @@ class CaseResults:
     def of(self, method: str) -> Result | None:
         """The result of a method, or None."""
         return next((result for result in self.results if result.method == method), None)
+
+    @property
+    def mains(self) -> list[Result]:
+        """The result of every family's main method, in the order of families."""
+        return sorted((r for r in self.results if r.is_main), key=lambda r: library().order(r.method, r.family))
+
+    @property
+    def associated(self) -> Result | None:
+        """The collapse state that bounds every other from above, unless the judge rejects it; or None."""
+        found = (
+            result
+            for result in self.results
+            if result.traits.bounds_above
+            and result.status is Status.OK
+            and result.finding is Finding.COLLAPSES
+            and result.judge.accepted is not False
+        )
+        return next(found, None)
 
     @property
     def split_on_dead_load(self) -> str:

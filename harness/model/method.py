@@ -100,6 +100,7 @@ class Traits(BaseModel):
         accuracy: stated relative accuracy of a multiplier that is measured between two loads.
         seeks_least: it looks for the least collapse state, so that a lower accepted value is a better one.
         bounds_above: no wall bears more than its multiplier, whatever the flow: the associated maximum.
+        elastic: its joints are springs, loaded from the dead load on.
         any_self_stress: it lets joints carry any self-stress that statics and friction allow; others start without.
         moves_no_lower: it measures when rigid blocks on even faces move (`details["lowest_moving"]`): where theory
             knows the least multiplier, moving below it is an error.
@@ -114,6 +115,7 @@ class Traits(BaseModel):
     accuracy: float = Field(default=5e-3, gt=0.0, lt=1.0)
     seeks_least: bool = False
     bounds_above: bool = False
+    elastic: bool = False
     any_self_stress: bool = False
     moves_no_lower: bool = False
     colour: str = Field(default="", pattern="^(#[0-9a-f]{6})?$")

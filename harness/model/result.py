@@ -108,6 +108,11 @@ class Result(BaseModel):
     mechanism: list[tuple[float, float, float]] | None = None
     states: list[str] | None = None
 
+    @property
+    def is_main(self) -> bool:
+        """Whether its method is the main one of its family, which bears the family's name."""
+        return self.method == self.family
+
     def summary(self) -> dict[str, Any]:
         """The result as JSON values, without fields per block or interface and without the path."""
         return self.model_dump(mode="json", exclude={"forces", "mechanism", "states", "path"})

@@ -55,6 +55,7 @@ class GapSprings:
     tolerance: ClassVar[float] = 1e-8
     traits: ClassVar[Traits] = Traits(
         caption="plateau of the traced path",
+        elastic=True,
         colour="#1f4e79",
         marker="o",
     )
@@ -142,6 +143,7 @@ class IncrementalNewton:
     tolerance: ClassVar[float] = 1e-8
     traits: ClassVar[Traits] = Traits(
         caption="plateau, where it arrives",
+        elastic=True,
         colour="#1f4e79",
         marker="x",
         line="dashed",
@@ -185,6 +187,7 @@ class ConvexSteps:
     tolerance: ClassVar[float] = 1e-3
     traits: ClassVar[Traits] = Traits(
         caption="plateau, by convex steps",
+        elastic=True,
         colour="#1f4e79",
         marker="+",
         line="dotted",

@@ -29,7 +29,7 @@ from harness.engine.sweep.study import Study, read_study
 from harness.model.build import build
 from harness.model.errors import InputError
 from harness.model.reading import parse_wall, validate
-from harness.sweep_commands import shipped_studies
+from harness.studying import shipped_studies
 from tests.engine.test_command_line import drystone
 from tests.walls import running_bond, stack, wall_data
 

@@ -26,7 +26,7 @@ FAMILY = {
     "fe-qp": "fe",
 } | {"fe-newton": "fe"}
 TRAITS = {
-    "fe": Traits(caption="plateau of the traced path"),
+    "fe": Traits(caption="plateau of the traced path", elastic=True),
     "la": Traits(caption="least known collapse state", seeks_least=True, any_self_stress=True),
     "la-associated": Traits(caption="associated maximum", bounds_above=True, any_self_stress=True),
     "de": Traits(caption="between held and moving", brackets=True),

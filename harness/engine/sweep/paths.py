@@ -9,16 +9,16 @@ from collections.abc import Callable, Mapping
 from typing import Any
 
 from harness.model.errors import InputError
+from harness.model.library import library
 
 STEP = re.compile(r"([A-Za-z_][A-Za-z0-9_]*)|\[(\d+)\]")
 SETTING = "settings."
-SETTINGS = {"imperfection": "settings.de-uneven.size", "seed": "settings.de-uneven.seed"}
-"""Short names of settings: the size of defects as a part of the block height, and their seed."""
 
 
 def setting_of(name: str) -> tuple[str, str] | None:
     """The method and its setting that a name means, or None if it is a quantity of the wall."""
-    full = SETTINGS.get(name, name)
+    short = library().settings.get(name)
+    full = name if short is None else SETTING + short
     if not full.startswith(SETTING):
         return None
     method, dot, setting = full.removeprefix(SETTING).rpartition(".")

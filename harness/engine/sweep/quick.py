@@ -9,12 +9,12 @@ from pathlib import Path
 from typing import Any
 
 from harness.engine.plan import Limits
+from harness.engine.sweep.paths import setting_of
 from harness.engine.sweep.study import Range, Study
 from harness.model.errors import InputError
+from harness.model.library import library
 from harness.model.reading import validate
 
-METHODS = ("fe", "la", "de")
-IMPERFECT = "de-uneven"
 SIZES = 6
 """Sizes of defects in a range that does not say how many."""
 
@@ -34,7 +34,7 @@ def quick_study(
 
     Args:
         what: a case or a wall file.
-        methods: names, or None for `METHODS`; with imperfections for `de-uneven` alone.
+        methods: names, or None for those of the library; with imperfections for the one whose setting they are.
         settings: of methods.
         limits: of each run.
         multipliers: at which the probability of failure is asked.
@@ -61,13 +61,19 @@ def quick_study(
         "name": f"{stem}-{'-'.join(re.sub('[^a-z0-9]+', '-', name.lower()).strip('-') for name in axes)}",
         "title": f"{Path(what).stem} over {', '.join(axes)}",
         "cases": [what],
-        "methods": list(methods or ([IMPERFECT] if uneven else METHODS)),
+        "methods": list(methods or (_whose("imperfection") if uneven else library().methods.sweep)),
         "vary": axes,
         "settings": settings,
         "multipliers": multipliers,
         "limits": {"seconds": limits.seconds, "memory": limits.memory_bytes // 2**20},
     }
     return validate(Study, data, "sweep")
+
+
+def _whose(name: str) -> list[str]:
+    """The method that a short name of a setting belongs to."""
+    found = setting_of(name)
+    return [] if found is None else [found[0]]
 
 
 def axis_of(words: str, element: str, count: int | None) -> Any:

@@ -98,6 +98,18 @@ class StudyLimits(Strict):
     memory: Annotated[int, Field(ge=16, description="[MiB]")] = 4096
 
 
+class Curve(Strict):
+    """How a study is drawn in the report of a comparison."""
+
+    across: Annotated[str, Field(min_length=1, description="quantity on the axis; means are over all others")]
+    apart: str = Field("", description="quantity each of whose values has a line of its own; methods otherwise")
+    labels: dict[str, str] = Field(default_factory=dict, description="names of these lines, by value")
+    relative: bool = Field(False, description="percent of change from the first value, instead of multipliers")
+    level: float | None = Field(None, description="is looked for along each line")
+    x_label: str = ""
+    read: str = Field("", description="how to read it")
+
+
 class Study(Strict):
     """The content of a study file, TOML.
 
@@ -119,6 +131,7 @@ class Study(Strict):
     settings: dict[str, dict[str, Any]] = Field(default_factory=dict, description="of methods, where not the defaults")
     limits: StudyLimits = Field(default_factory=StudyLimits)
     multipliers: list[float] = Field(default_factory=list, description="at which the probability of failure is asked")
+    curve: Curve | None = Field(None, description="how `drystone compare --study` draws it")
 
     @model_validator(mode="after")
     def _one_source(self) -> Study:

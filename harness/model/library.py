@@ -1,0 +1,49 @@
+"""Words of the case library as a whole (`cases/library.toml`): methods asked by default, families and their titles."""
+
+from __future__ import annotations
+
+import tomllib
+from functools import cache
+from typing import Annotated
+
+from pydantic import Field
+
+from harness.model.case import shipped_cases
+from harness.model.reading import read_text, validate
+from harness.model.wall import Strict
+
+LARGEST_FILE = 2**16
+"""Bytes of library.toml at most; it comes with Drystone."""
+
+
+class DefaultMethods(Strict):
+    """Names of the methods that are asked where nobody names any."""
+
+    compare: Annotated[tuple[str, ...], Field(min_length=1, description="of a comparison, besides those gated")]
+    sweep: Annotated[tuple[str, ...], Field(min_length=1, description="of a study")]
+    one: str = Field(description="where one answer is wanted")
+    quick: str = Field(description="where many walls are asked about at once")
+
+
+class Library(Strict):
+    """The content of `library.toml`."""
+
+    families: dict[str, str] = Field(description="titles of families, in the order of tables")
+    methods: DefaultMethods
+    settings: dict[str, str] = Field(description="METHOD.NAME of settings that studies call by a short name")
+
+    def family_title(self, family: str, method: str) -> str:
+        """The family's name for a heading, whatever word a third party's method uses."""
+        return self.families.get(family, family or method)
+
+    def order(self, method: str, family: str) -> tuple[int, bool, str]:
+        """Sort key of methods: families in the order of the file, a family's main method first."""
+        known = list(self.families)
+        return (known.index(family) if family in known else len(known), method != family, method)
+
+
+@cache
+def library() -> Library:
+    """The library's own words, read once."""
+    path = shipped_cases() / "library.toml"
+    return validate(Library, tomllib.loads(read_text(path, LARGEST_FILE)), str(path))
