@@ -11,8 +11,9 @@ import click
 from harness import terminal
 from harness.engine import compare as comparing
 from harness.engine.isolate import announce
-from harness.engine.plan import DEFAULT_METHODS, Limits, find_cases, plan_case
+from harness.engine.plan import Limits, find_cases, plan_case
 from harness.engine.store import open_store
+from harness.model.library import library
 from harness.options import catching, jobs_option, say, store_option
 
 WALLS = ("wall-21-friction-030", "wall-21-friction-050", "wall-21", "wall-21-friction-075", "wall-21-friction-100")
@@ -32,7 +33,7 @@ def learn(output: Path, jobs: int, store: Path) -> None:
     from reports.learn import write_learn
 
     chosen = find_cases(("single-block", *WALLS), None, ())
-    runs = [planned for case in chosen for planned in plan_case(case, list(DEFAULT_METHODS), Limits())]
+    runs = [planned for case in chosen for planned in plan_case(case, list(library().methods.compare), Limits())]
     announce(planned.method for planned in runs)
     with open_store(store) as opened, terminal.progress(len(runs), quiet=False) as told:
         results = comparing.execute(runs, opened, jobs, told=told)

@@ -19,7 +19,7 @@ from reports.environment import environment
 from reports.facts import friction_text, value_in_words
 from reports.joints import joints_in_words, motion
 from reports.marks import mark_of
-from reports.paper import BLOCK
+from reports.paper import printed
 
 
 @dataclass(frozen=True)
@@ -103,9 +103,10 @@ def write_learn(run: ComparisonRun, path: Path) -> None:
 
 def render(run: ComparisonRun) -> str:
     """The page as text."""
-    block = next(item for item in run.cases if item.case.id == BLOCK)
+    name = printed().block.case
+    block = next(item for item in run.cases if item.case.id == name)
     walls = sorted(
-        (item for item in run.cases if item.case.id != BLOCK), key=lambda item: float(item.case.assembly.friction[0])
+        (item for item in run.cases if item.case.id != name), key=lambda item: float(item.case.assembly.friction[0])
     )
     script = files("reports").joinpath("static/learn.js").read_text(encoding="utf-8")
     return (
@@ -131,7 +132,7 @@ def render(run: ComparisonRun) -> str:
 
 
 def _in_order(item: CaseResults) -> list[Result]:
-    return sorted(item.results, key=lambda result: words.order(result.method, result.family))
+    return sorted(item.results, key=words.order)
 
 
 def _panels(item: CaseResults) -> list[Panel]:
