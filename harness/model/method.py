@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+import signal
 from dataclasses import dataclass, field
 from enum import StrEnum
 from functools import cache
@@ -20,6 +22,14 @@ class OutOfTime(Exception):
     A method that catches it can still say how far it came, with status `not_converged`; the engine waits for that
     answer until the limit. A method that lets it pass is listed as `timeout`.
     """
+
+
+def seconds_left() -> float:
+    """Seconds until `OutOfTime` is raised in this process, for libraries that hear of it only when they return [s].
+
+    Infinite where no limit was set.
+    """
+    return signal.getitimer(signal.ITIMER_REAL)[0] or math.inf
 
 
 class Status(StrEnum):

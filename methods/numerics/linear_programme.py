@@ -9,6 +9,7 @@ import numpy as np
 import scipy.sparse as sp
 
 from harness.model.assembly import FloatArray, IntArray
+from harness.model.method import OutOfTime, seconds_left
 from methods.numerics.vertex import StandardForm, Vertex
 
 INFINITY = highspy.kHighsInf
@@ -68,14 +69,16 @@ class Programme:
         self.highs.changeColsCost(len(index), index, cost)
 
     def run(self) -> tuple[str, FloatArray, FloatArray]:
-        """("optimal" | "infeasible" | "unbounded" | "unknown", column values, row duals)."""
-        self.highs.run()
-        status = self.highs.getModelStatus()
+        """("optimal" | "infeasible" | "unbounded" | "unknown", column values, row duals).
+
+        Raises:
+            OutOfTime: the time given is over; the library would hear of it only at its end.
+        """
+        status = self._run()
         if status == highspy.HighsModelStatus.kUnboundedOrInfeasible:
             self.highs.setOptionValue("presolve", "off")
-            self.highs.run()
+            status = self._run()
             self.highs.setOptionValue("presolve", "choose")
-            status = self.highs.getModelStatus()
         names = {
             highspy.HighsModelStatus.kOptimal: "optimal",
             highspy.HighsModelStatus.kInfeasible: "infeasible",
@@ -83,10 +86,17 @@ class Programme:
         }
         if status not in names:
             self.highs.clearSolver()
-            self.highs.run()
-            status = self.highs.getModelStatus()
+            status = self._run()
         solution = self.highs.getSolution()
         return names.get(status, "unknown"), np.array(solution.col_value), np.array(solution.row_dual)
+
+    def _run(self) -> Any:
+        self.highs.setOptionValue("time_limit", self.highs.getRunTime() + seconds_left())
+        self.highs.run()
+        status = self.highs.getModelStatus()
+        if status == highspy.HighsModelStatus.kTimeLimit:
+            raise OutOfTime
+        return status
 
     def iterations(self) -> int:
         """Iterations of the last run."""
