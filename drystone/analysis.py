@@ -15,7 +15,7 @@ from harness.engine.compare import judged
 from harness.engine.judge import judge as judge_result
 from harness.engine.plan import Limits, Run, check_methods
 from harness.engine.provenance import machine, versions
-from harness.model.method import Answer, Method, load_method, method_names, traits_of
+from harness.model.method import Answer, Method, check_takes, load_method, method_names, traits_of
 from harness.model.reading import validate
 from harness.model.result import Judgement, result_of
 from harness.model.result import Result as Record
@@ -112,6 +112,7 @@ def analyse(wall: Wall, method: str | Method = "la", **settings: Any) -> Result:
         loaded = method
     name = loaded.name
     chosen = validate(loaded.Settings, settings, "settings")
+    check_takes(loaded, wall.assembly)
     started, clock, work = datetime.now(UTC), time.perf_counter(), time.process_time()
     answer = loaded.solve(wall.assembly, chosen)
     cost = {"cpu_seconds": time.process_time() - work, "wall_seconds": time.perf_counter() - clock}

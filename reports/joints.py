@@ -42,7 +42,7 @@ def _motion(assembly: Assembly, result: Result) -> Motion:
     opening, slip = relative_velocities(assembly, velocities)
     still = STILL_MEASURED if result.flow == "approximate" else STILL
     associated = result.flow == "associated"
-    lifted = assembly.friction * abs(slip) if associated else np.zeros(len(slip))
+    lifted = (assembly.friction if associated else assembly.law.dilatancy) * abs(slip)
     ends = np.asarray(opening - lifted[:, None] > still)
     slides = np.asarray(abs(slip) > still)
     parts = ends[:, 0] & ends[:, 1]

@@ -29,7 +29,7 @@ import numpy as np
 from harness.engine.residuals import collapse_residuals, displaced_residuals, force_residuals, moving_parts, power
 from harness.model.assembly import Assembly, FloatArray
 from harness.model.displaced import DisplacedState
-from harness.model.method import Finding, Method, Status, traits_of
+from harness.model.method import Finding, Method, Status, check_takes, traits_of
 from harness.model.result import Judgement, Result, relative_velocities, result_of
 
 
@@ -62,6 +62,7 @@ def judge(assembly: Assembly, result: Result, tolerance: float) -> Judgement:
 
 def answered(method: Method, assembly: Assembly, **settings: Any) -> tuple[Result, Judgement]:
     """What a method answers in this process, and what the judge says of it."""
+    check_takes(method, assembly)
     answer = method.solve(assembly, method.Settings.model_validate(settings))
     result = result_of(
         answer, assembly, case=assembly.name, method=method.name, family=method.family, traits=traits_of(method)

@@ -174,7 +174,7 @@ def collapse_residuals(
         forces: (m, 3) contact forces (n1, n2, s) [force].
         multiplier: of the live load.
         mechanism: (n, 3) block velocities at any scale.
-        flow: "non-associated" or "associated".
+        flow: "non-associated" (of the dilatancy that the wall gives its joints) or "associated" (of their friction).
     """
     supports, parts = moving_parts(assembly, mechanism)
     sums = acting(assembly, forces, multiplier)
@@ -198,8 +198,9 @@ def _mechanism_residuals(
     if 0.0 < live_work < largest:
         mechanism, live_work = mechanism * (largest / live_work), largest
     opening, slip = relative_velocities(assembly, mechanism)
-    if flow == "associated":
-        opening = opening - (assembly.friction * abs(slip))[:, None]
+    dilatancy = assembly.friction if flow == "associated" else assembly.dilatancy
+    lift = np.zeros(len(slip)) if dilatancy is None else dilatancy * abs(slip)
+    opening = opening - lift[:, None]
     normal, shear = forces[:, :2], forces[:, 2]
     strength = assembly.friction * normal.sum(axis=1)
     forward, backward = np.maximum(slip, 0.0), np.maximum(-slip, 0.0)
@@ -207,8 +208,8 @@ def _mechanism_residuals(
     idle_work = float(
         abs(normal * opening).sum() + abs(slack_forward * forward).sum() + abs(slack_backward * backward).sum()
     )
-    # Virtual work: contact forces do work r.q on the mechanism; friction dissipates, openings do not.
-    dissipation = 0.0 if flow == "associated" else float((strength * abs(slip)).sum())
+    # Virtual work: contact forces do work r.q on the mechanism; friction dissipates what lifting does not give back.
+    dissipation = float((strength * abs(slip) - normal.sum(axis=1) * lift).sum())
     residuals = {
         "interpenetration": max(0.0, float((-opening).max(initial=0.0))),
         "dilatancy": float(np.minimum(abs(normal) / scale[:, None], np.maximum(opening, 0.0)).max(initial=0.0)),

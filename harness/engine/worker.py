@@ -30,7 +30,7 @@ import scipy.sparse.linalg  # noqa: F401  (preloaded for the methods)
 
 from harness.model.assembly import Assembly
 from harness.model.errors import InputError
-from harness.model.method import Answer, Finding, Method, OutOfTime, Status, load_method, traits_of
+from harness.model.method import Answer, Finding, Method, OutOfTime, Status, check_takes, load_method, traits_of
 from harness.model.reading import validate
 
 LAST_WORDS = (0.05, 5.0)
@@ -112,6 +112,7 @@ def _record(task: Task, method: Method | None, failure: Answer | None) -> dict[s
         else:
             chosen = validate(method.Settings, task.settings, "settings")
             settings = chosen.model_dump(mode="json")
+            check_takes(method, task.assembly)
             started, before = time.perf_counter(), _cpu_seconds()
             with _warned_of_the_limit(task.seconds, started):
                 answer = method.solve(task.assembly, chosen)

@@ -23,6 +23,8 @@ import numpy as np
 import scipy.sparse as sp
 from numpy.typing import NDArray
 
+from harness.model.joint_law import JointLaw
+
 FloatArray = NDArray[np.float64]
 IntArray = NDArray[np.int64]
 BoolArray = NDArray[np.bool_]
@@ -46,6 +48,7 @@ class Assembly:
         friction: (m,) friction coefficients mu = tan(phi), zero or more.
         joint: (m,) names of the joints ("bed", "head" or as given).
         dead, live: (n, 3) generalised loads (fx, fy, moment about the centroid); zero on fixed blocks.
+        dilatancy: (m,) coefficients by which a slip lifts the ends, from zero to the friction; None: zero everywhere.
     """
 
     name: str
@@ -65,6 +68,17 @@ class Assembly:
     joint: tuple[str, ...]
     dead: FloatArray
     live: FloatArray
+    dilatancy: FloatArray | None = None
+
+    @cached_property
+    def law(self) -> JointLaw:
+        """The law of its joints."""
+        return JointLaw(self.friction, np.zeros(self.n_interfaces) if self.dilatancy is None else self.dilatancy)
+
+    @property
+    def dilates(self) -> bool:
+        """Whether any joint has a dilatancy."""
+        return self.dilatancy is not None and bool(np.any(self.dilatancy != 0.0))
 
     @property
     def n_blocks(self) -> int:

@@ -13,6 +13,7 @@ from harness.model import geometry
 from harness.model.assembly import Assembly, BoolArray, FloatArray, polygon_area
 from harness.model.errors import InputError, Spot, of_each, raise_faults
 from harness.model.interfaces import check_held, faces_of, find_joints, normals_of
+from harness.model.joint_law import JointLaw
 from harness.model.names import faults_of_wall
 from harness.model.pattern import blocks_of, count_of
 from harness.model.plausibility import contact_warnings, force_warnings, interface_warnings, near_misses
@@ -23,6 +24,7 @@ from harness.model.wall import (
     Block,
     BodyForce,
     Friction,
+    FrictionRule,
     Inset,
     Interface,
     Load,
@@ -79,9 +81,7 @@ def build(wall: Wall, name: str = "wall") -> Built:
         interface.joint or _inclination(start, end)
         for interface, start, end in zip(interfaces, face1, face2, strict=True)
     )
-    friction = np.array(
-        [_friction(wall, interface, joint, blocks, index) for interface, joint in zip(interfaces, joints, strict=True)]
-    )
+    friction, dilatancy = _law(wall, interfaces, joints, blocks, index)
     end1, end2 = _set_in(interfaces, wall.contact_inset, face1, face2)
     assembly = Assembly(
         name=name,
@@ -101,6 +101,7 @@ def build(wall: Wall, name: str = "wall") -> Built:
         joint=joints,
         dead=_dead_load(wall.loads, blocks, index, weight, centroids, fixed),
         live=_load(wall.loads.live or Load(), blocks, index, weight, centroids, fixed),
+        dilatancy=dilatancy if dilatancy.any() else None,
     )
     if wall.loads.live is not None and not assembly.has_live_load:
         raise InputError(
@@ -118,7 +119,7 @@ def build(wall: Wall, name: str = "wall") -> Built:
     ]
     if trusted < len(interfaces):
         warnings += interface_warnings(assembly, size, trusted)
-    explicit = partial(_explicit, wall, blocks, weight, interfaces, joints, friction)
+    explicit = partial(_explicit, wall, blocks, weight, interfaces, joints, assembly.law)
     return Built(assembly, tuple(warnings), explicit)
 
 
@@ -217,25 +218,37 @@ def _inclination(start: FloatArray, end: FloatArray) -> str:
     return "bed" if dx >= dy else "head"
 
 
-def _friction(wall: Wall, interface: Interface, joint: str, blocks: list[Block], index: dict[str, int]) -> float:
+def _law(
+    wall: Wall, interfaces: list[Interface], joints: tuple[str, ...], blocks: list[Block], index: dict[str, int]
+) -> tuple[FloatArray, FloatArray]:
+    """Friction and dilatancy (m,) of the interfaces."""
+    pairs = [_pair(wall, interface, joint, blocks, index) for interface, joint in zip(interfaces, joints, strict=True)]
+    friction, dilatancy = np.array(pairs, dtype=float).reshape(-1, 2).T
+    return friction, dilatancy
+
+
+def _pair(
+    wall: Wall, interface: Interface, joint: str, blocks: list[Block], index: dict[str, int]
+) -> tuple[float, float]:
+    """Friction and dilatancy of an interface, both from the most particular of what is given."""
     if interface.friction is not None or interface.friction_angle is not None:
-        return coefficient_of(interface.friction, interface.friction_angle)
+        return coefficient_of(interface.friction, interface.friction_angle), interface.dilatancy or 0.0
     if not isinstance(wall.friction, Friction):
-        return float(coefficient_of(wall.friction, wall.friction_angle))
+        return float(coefficient_of(wall.friction, wall.friction_angle)), 0.0
     pair = set(interface.between)
     materials = sorted(blocks[index[block_id]].material for block_id in interface.between)
-    by_kind: dict[str, float] = {}
+    by_kind: dict[str, FrictionRule] = {}
     for rule in wall.friction.rules:
         if rule.between is not None and set(rule.between) == pair:
-            by_kind["between"] = rule.coefficient
+            by_kind["between"] = rule
         elif rule.joint is not None and rule.joint == joint:
-            by_kind["joint"] = rule.coefficient
+            by_kind["joint"] = rule
         elif rule.materials is not None and sorted(rule.materials) == materials:
-            by_kind["materials"] = rule.coefficient
+            by_kind["materials"] = rule
     for kind in ("between", "joint", "materials"):
         if kind in by_kind:
-            return by_kind[kind]
-    return float(wall.friction.coefficient)
+            return by_kind[kind].coefficient, by_kind[kind].dilatancy or 0.0
+    return float(wall.friction.coefficient), wall.friction.dilatancy or 0.0
 
 
 def _set_in(
@@ -321,7 +334,7 @@ def _explicit(
     weight: FloatArray,
     interfaces: list[Interface],
     joints: tuple[str, ...],
-    friction: FloatArray,
+    law: JointLaw,
 ) -> Wall:
     return wall.model_copy(
         update={
@@ -331,8 +344,15 @@ def _explicit(
                 for block, w in zip(blocks, weight, strict=True)
             ],
             "interfaces": [
-                interface.model_copy(update={"joint": joint, "friction": float(mu), "friction_angle": None})
-                for interface, joint, mu in zip(interfaces, joints, friction, strict=True)
+                interface.model_copy(
+                    update={
+                        "joint": joint,
+                        "friction": float(mu),
+                        "friction_angle": None,
+                        "dilatancy": float(psi) or None,
+                    }
+                )
+                for interface, joint, mu, psi in zip(interfaces, joints, law.friction, law.dilatancy, strict=True)
             ],
         }
     )

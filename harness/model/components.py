@@ -79,6 +79,7 @@ def _component(assembly: Assembly, moving: BoolArray) -> Component:
     by_interface = ("end1", "end2", "face1", "face2", "normal", "friction")
     part = replace(
         assembly,
+        dilatancy=None if assembly.dilatancy is None else assembly.dilatancy[interfaces],
         block_ids=tuple(assembly.block_ids[i] for i in blocks),
         polygons=tuple(assembly.polygons[i] for i in blocks),
         block_a=place[assembly.block_a[interfaces]],

@@ -10,6 +10,7 @@ from functools import cache
 from importlib.metadata import EntryPoint, entry_points
 from typing import Any, ClassVar, Literal, Protocol
 
+import numpy as np
 from pydantic import BaseModel, ConfigDict, Field
 
 from harness.model.assembly import Assembly, FloatArray
@@ -112,6 +113,7 @@ class Traits(BaseModel):
         bounds_above: no wall bears more than its multiplier, whatever the flow: the associated maximum.
         elastic: its joints are springs, loaded from the dead load on.
         any_self_stress: it lets joints carry any self-stress that statics and friction allow; others start without.
+        any_dilatancy: it follows the dilatancy that a wall gives its joints; other methods refuse such a wall.
         moves_no_lower: it measures when rigid blocks on even faces move (`details["lowest_moving"]`): where theory
             knows the least multiplier, moving below it is an error.
         colour: of its curves, as "#rrggbb"; empty: the drawing chooses.
@@ -127,6 +129,7 @@ class Traits(BaseModel):
     bounds_above: bool = False
     elastic: bool = False
     any_self_stress: bool = False
+    any_dilatancy: bool = False
     moves_no_lower: bool = False
     colour: str = Field(default="", pattern="^(#[0-9a-f]{6})?$")
     marker: str = ""
@@ -165,6 +168,22 @@ def traits_of(method: Method | None) -> Traits:
     """What a method says of its numbers; nothing where it does not, or where there is no method."""
     traits: Traits = getattr(method, "traits", Traits())
     return traits
+
+
+def check_takes(method: Method, assembly: Assembly) -> None:
+    """Refuse a wall whose joints lift as they slide for a method that lets none lift.
+
+    Raises:
+        InputError: that is so.
+    """
+    if assembly.dilates and not traits_of(method).any_dilatancy:
+        joint = int(np.argmax(assembly.law.dilatancy))
+        names = " and ".join(assembly.block_ids[side[joint]] for side in (assembly.block_a, assembly.block_b))
+        raise InputError(
+            f"{method.name} lets no joint lift as it slides; that between {names} has the dilatancy "
+            f"{assembly.law.dilatancy[joint]:g}",
+            "Take la or la-associated, or leave the dilatancy out",
+        )
 
 
 GROUP = "drystone.methods"

@@ -107,11 +107,19 @@ def coefficient_of(value: float | None, angle: float | None) -> float:
     return value if value is not None else math.tan(math.radians(angle or 0.0))
 
 
+def _check_dilatancy(dilatancy: float | None, friction: float) -> None:
+    if dilatancy is not None and dilatancy > friction:
+        raise ValueError(f"the dilatancy {dilatancy:g} is above the friction {friction:g}: give one from 0 to that")
+
+
 class FrictionRule(Strict):
     """Friction of some interfaces: those between two materials, of a named joint, or between two blocks."""
 
     value: Coefficient | None = Field(None, description="coefficient of friction, tan(phi)")
     friction_angle: Angle | None = Field(None, description="phi [degrees], instead of `value`")
+    dilatancy: Coefficient | None = Field(
+        None, description="by which a slip lifts, from 0 (absent) to the friction: associated flow"
+    )
     materials: tuple[str, str] | None = None
     joint: str | None = Field(None, description='"bed", "head", or a name given in `interfaces`')
     between: tuple[str, str] | None = Field(None, description="ids of the two blocks")
@@ -122,6 +130,7 @@ class FrictionRule(Strict):
             raise ValueError("a friction rule names exactly one of materials, joint, between")
         if (self.value is None) == (self.friction_angle is None):
             raise ValueError("a friction rule gives either value or friction_angle")
+        _check_dilatancy(self.dilatancy, self.coefficient)
         return self
 
     @property
@@ -135,12 +144,16 @@ class Friction(Strict):
 
     default: Coefficient | None = Field(None, description="coefficient of friction, tan(phi)")
     friction_angle: Angle | None = Field(None, description="phi [degrees], instead of `default`")
+    dilatancy: Coefficient | None = Field(
+        None, description="by which a slip lifts, where no rule holds, from 0 (absent) to the friction: associated flow"
+    )
     rules: list[FrictionRule] = Field(default_factory=list)
 
     @model_validator(mode="after")
     def _one_default(self) -> Friction:
         if (self.default is None) == (self.friction_angle is None):
             raise ValueError("friction by rules gives either default or friction_angle")
+        _check_dilatancy(self.dilatancy, self.coefficient)
         return self
 
     @property
@@ -170,6 +183,9 @@ class Interface(Strict):
     end: Point = Field(alias="to")
     friction: Coefficient | None = None
     friction_angle: Angle | None = Field(None, description="phi [degrees], instead of `friction`")
+    dilatancy: Coefficient | None = Field(
+        None, description="by which a slip lifts, from 0 (absent) to the friction: associated flow"
+    )
     joint: str | None = Field(None, description='a name for friction rules; "bed" or "head" by inclination if absent')
     inset: Inset | None = None
 
@@ -177,6 +193,10 @@ class Interface(Strict):
     def _one_friction(self) -> Interface:
         if self.friction is not None and self.friction_angle is not None:
             raise ValueError("an interface gives either friction or friction_angle")
+        if self.friction is not None or self.friction_angle is not None:
+            _check_dilatancy(self.dilatancy, coefficient_of(self.friction, self.friction_angle))
+        elif self.dilatancy is not None:
+            raise ValueError("an interface gives dilatancy beside a friction of its own")
         return self
 
 

@@ -37,6 +37,7 @@ class LimitAnalysis(LimitAnalysisFamily):
         caption="least known collapse state",
         seeks_least=True,
         any_self_stress=True,
+        any_dilatancy=True,
         colour="#a8431e",
         marker="s",
     )

@@ -75,7 +75,7 @@ def exact_forces(
         slack = problem.slacks(current)
         least = floor * max(float(slack.max(initial=0.0)), 1e-9)
         weight = np.where(tight, RIGID, 1.0 / np.maximum(slack, least) ** 2)
-        compliance = Compliance(problem.friction, weight, 1.0)
+        compliance = Compliance(problem.friction, weight, problem.friction)
         factor = newton.factorise(compliance.matrices, 1e-13)
         by_live = factor.solve(problem.live)
         stiffness = float(problem.live @ by_live)
@@ -107,9 +107,8 @@ def exact_mechanism(
     """
     still = np.column_stack([~moving[:, 0], ~moving[:, 1], ~(moving[:, 2] | moving[:, 3])]).astype(float)
     transform = np.tile(np.eye(3), (problem.n_interfaces, 1, 1))
-    if associated:
-        sense = np.where(moving[:, 2], 1.0, np.where(moving[:, 3], -1.0, 0.0)) * problem.friction
-        transform[:, 0, 2] = transform[:, 1, 2] = -sense
+    sense = np.where(moving[:, 2], 1.0, np.where(moving[:, 3], -1.0, 0.0)) * problem.law(associated).dilatancy
+    transform[:, 0, 2] = transform[:, 1, 2] = -sense
     stiff = np.einsum("pki,pk,pkj->pij", transform, still, transform)
     factor = newton.factorise(stiff * PENALTY, 0.0, shift=1.0)
     least = np.inf

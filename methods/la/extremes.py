@@ -61,9 +61,14 @@ class ForceProgramme:
         loads = problem.live[:, None] if also is None else np.column_stack([also, problem.live])
         self._loads = loads.shape[1]
         equilibrium = sp.hstack([problem.statics @ sp.diags(self._columns), sp.csr_matrix(loads)])
-        limits = sp.hstack([shear_limits(problem.friction), sp.csr_matrix((2 * m, self._loads))])
-        self._matrix = sp.csc_matrix(sp.vstack([sp.diags(self._rows) @ equilibrium, limits]))
+        self._equilibrium = sp.diags(self._rows) @ equilibrium
+        self._matrix = self._with_limits(problem.friction)
         self._dead = self._rows * problem.dead
+
+    def _with_limits(self, slope: FloatArray) -> sp.csc_matrix:
+        """The matrix of equilibrium and of shear within `slope` (m,) times compression."""
+        limits = sp.hstack([shear_limits(slope), sp.csr_matrix((2 * self.problem.n_interfaces, self._loads))])
+        return sp.csc_matrix(sp.vstack([self._equilibrium, limits]))
 
     def extreme(self, greatest: bool, tight: BoolArray | None = None, solver: str = "auto") -> ExtremeSolution | str:
         """The greatest or, from zero on, the least multiplier of statics; or how the programme ended without one.
@@ -91,19 +96,28 @@ class ForceProgramme:
         )
 
     def least_dead_work(self, still: BoolArray) -> float | str:
-        """The least -dead.u of mechanisms without dilatancy, with unit live work, at rest in contacts `still` (m, 4).
+        """The least -dead.u of mechanisms with unit live work, at rest in contacts `still` (m, 4).
+
+        Their slips lift by the joints' own dilatancy.
 
         It is the greatest multiplier of forces that do no negative work on any of them: compression where a gap may
-        open, no shear where it may slip either way, any force where it is at rest.
+        open, no shear where it may slip either way, any force where it is at rest. Where a slip lifts, shear up to
+        what the compression does as it is lifted.
         """
         m = self.problem.n_interfaces
         lower = np.where(still[:, :2], -INFINITY, 0.0)
         forward, backward = ~still[:, 2], ~still[:, 3]
         least = np.where(forward, 0.0, -INFINITY)
         most = np.where(backward, 0.0, INFINITY)
+        limits = np.full(2 * m, -INFINITY)
+        matrix = self._matrix
+        if self.problem.dilates:
+            least, most = np.full((2, m), INFINITY) * np.array([[-1.0], [1.0]])
+            limits = np.where(~still[:, 2:].ravel(), 0.0, -INFINITY)
+            matrix = self._with_limits(self.problem.law(False).dilatancy)
         column = (np.column_stack([lower, least]).ravel(), np.column_stack([np.full((m, 2), INFINITY), most]).ravel())
-        free = (np.full(2 * m, -INFINITY), np.full(2 * m, INFINITY))
-        solved = self._solved(column, free, -COST * self.problem.live_work, -INFINITY, "simplex")
+        within = (limits, np.full(2 * m, INFINITY))
+        solved = self._solved(column, within, -COST * self.problem.live_work, -INFINITY, "simplex", matrix)
         return solved if isinstance(solved, str) else float(solved[0].value[-1])
 
     def _solved(
@@ -113,10 +127,11 @@ class ForceProgramme:
         cost: float,
         least: float,
         solver: str,
+        matrix: sp.csc_matrix | None = None,
     ) -> tuple[Vertex, int] | str:
         m, n = self.problem.n_interfaces, self.problem.n_velocities
         programme = Programme(
-            self._matrix,
+            self._matrix if matrix is None else matrix,
             np.append(np.zeros(3 * m + self._loads - 1), cost),
             (
                 np.concatenate([column[0], np.zeros(self._loads - 1), [least]]),

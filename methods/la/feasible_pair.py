@@ -53,8 +53,7 @@ def feasible_pair(problem: Problem, newton: NewtonMatrix, gap: float) -> tuple[P
 def kinematic_programme(problem: Problem, cost: FloatArray) -> Problem:
     """The programme min c.g, C u = E g, fL.u = const for costs c (m, 4), as a problem of associated flow.
 
-    It is the dual of max lambda s.t. C' r + lambda fL = 0, E' r + c >= 0: the same wall without dead load and friction
-    and with cohesion c.
+    It is the dual of max lambda s.t. C' r + lambda fL = 0, E' r + c >= 0: the same wall without dead load, with
+    the dilatancy in place of the friction and with cohesion c.
     """
-    nothing = np.zeros_like
-    return replace(problem, dead=nothing(problem.dead), friction=nothing(problem.friction), cohesion=cost)
+    return replace(problem, dead=np.zeros_like(problem.dead), friction=problem.law(False).dilatancy, cohesion=cost)

@@ -16,15 +16,16 @@ class Compliance:
     Args:
         friction: (m,) friction coefficients mu.
         weight: (m, 4) weights w > 0 of the slacks; 1e40 holds a slack where it is.
-        dilatancy: part of mu by which a slip opens: 1 associated flow, 0 sliding without dilatancy.
+        lift: (m,) coefficients by which a slip lifts: mu for associated flow, 0 for sliding without dilatancy.
     """
 
-    def __init__(self, friction: FloatArray, weight: FloatArray, dilatancy: float) -> None:
-        self.friction, self.dilatancy = friction, dilatancy
+    def __init__(self, friction: FloatArray, weight: FloatArray, lift: FloatArray) -> None:
+        self.friction = friction
         self.total = weight[:, 2] + weight[:, 3]
         self.share = weight[:, 2:] / self.total[:, None]
-        self.skew = (self.share[:, 0] - self.share[:, 1]) * friction
-        leftover = dilatancy * friction**2 * 4.0 * weight[:, 2] * self.share[:, 1]
+        tilt = self.share[:, 0] - self.share[:, 1]
+        self.skew, self.rise = tilt * friction, tilt * lift
+        leftover = lift * friction * 4.0 * weight[:, 2] * self.share[:, 1]
         w1, w2 = weight[:, 0], weight[:, 1]
         determinant = w1 * w2 + leftover * (w1 + w2)
         self.ends = np.column_stack([w2, w1]) / determinant[:, None]
@@ -37,8 +38,8 @@ class Compliance:
         inverse[:, 0, 0], inverse[:, 1, 1] = self.ends[:, 0] + self.turn, self.ends[:, 1] + self.turn
         inverse[:, 0, 1] = inverse[:, 1, 0] = -self.turn
         inverse[:, 2, :2] = -self.skew[:, None] * self.ends
-        inverse[:, :2, 2] = self.dilatancy * inverse[:, 2, :2]
-        inverse[:, 2, 2] = 1.0 / self.total + self.dilatancy * self.skew**2 * self.ends.sum(axis=1)
+        inverse[:, :2, 2] = -self.rise[:, None] * self.ends
+        inverse[:, 2, 2] = 1.0 / self.total + self.rise * self.skew * self.ends.sum(axis=1)
         return inverse
 
     def forces(self, strain: FloatArray) -> FloatArray:
@@ -54,7 +55,7 @@ class Compliance:
         return forces, np.column_stack([ends, strength * self.share[:, 1] + own, strength * self.share[:, 0] - own])
 
     def _both(self, strain: FloatArray) -> tuple[FloatArray, FloatArray]:
-        opening = strain[:, :2] - (self.dilatancy * self.skew * strain[:, 2])[:, None]
+        opening = strain[:, :2] - (self.rise * strain[:, 2])[:, None]
         parts = self.ends * opening
         turned = self.turn * (opening[:, 0] - opening[:, 1])
         normal = parts[:, 0] + parts[:, 1]

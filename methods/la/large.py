@@ -244,7 +244,7 @@ def large_search(
             found.add(*_path_state(problem, guide, newton, seed))
     if velocities is not None:
         _search_part(found, problem, newton, seed, velocities)
-    if whole and not found.states:
+    if whole and not found.states and not problem.dilates:
         found.add(*lagged_state(problem, newton))
     if whole and not found.states:
         found.add(*_path_state(problem, problem, newton, seed))

@@ -171,9 +171,11 @@ def _searched(search: Search, settings: SearchSettings, tolerance: float) -> Ans
     if below is not None:
         climbed += descend_from(search.adopt(below, POOL), search, effort, plan.descents)
     gravity = gravity_of(problem)
-    light = list(light_states(search, gravity, plan.kinks, associated.greatest))
-    climbed += descend_from(light, search, effort, plan.descents)
-    climbed += descend_from(list(mechanism_states(search, plan.mechanisms)), search, effort, plan.descents)
+    light: list[CollapseState] = []
+    if not problem.dilates:  # Springs slide without lifting, and so do the blocks whose motions are drawn.
+        light = list(light_states(search, gravity, plan.kinks, associated.greatest))
+        climbed += descend_from(light, search, effort, plan.descents)
+        climbed += descend_from(list(mechanism_states(search, plan.mechanisms)), search, effort, plan.descents)
     found += light
     if not found and not climbed:
         return _with_falling_blocks(_nothing_found(search, associated), gravity.falling)
@@ -269,7 +271,8 @@ def _large(search: Search, found: LargeSearch, settings: SearchSettings, toleran
     velocities = None if associated.state is None else associated.state.velocities
     unbounded = associated.outcome == "unbounded"
     central_search(found, problem, newton, settings.seed)
-    soon = problem.n_interfaces <= MOST_INTERFACES and not unbounded
+    springs = not (unbounded or problem.dilates)
+    soon = problem.n_interfaces <= MOST_INTERFACES and springs
     if soon and not found.states:
         found.add(first_state(search, LARGE_KINKS), 0, found.gap)
     large_search(found, problem, newton, settings.seed, velocities)
@@ -281,11 +284,11 @@ def _large(search: Search, found: LargeSearch, settings: SearchSettings, toleran
         gravity = gravity_of(problem)
         falling = gravity.falling
         light = light_states(search, gravity, 1 if unbounded else LARGE_KINKS, associated.greatest)
-        for state in chain(light, mechanism_states(search, 0)):
+        for state in () if problem.dilates else chain(light, mechanism_states(search, 0)):
             found.add(state, 0, found.gap)
-    if not (found.states or unbounded or soon):
+    if springs and not (found.states or soon):
         found.add(first_state(search, LARGE_KINKS), 0, found.gap)
-    if not (found.states or unbounded):
+    if springs and not found.states:
         for state in last_states(search, associated.greatest, LARGE_KINKS):
             found.add(state, 0, found.gap)
     found.steps += search.tally.newton_steps
@@ -325,7 +328,7 @@ def _starting_states(
     few = search.problem.n_interfaces <= FEW_INTERFACES
     if associated.state is not None and (few or states[0] is None):
         states.append(search.nearest_mechanism(associated.state.forces))
-    if not few or not any(states):
+    if not search.problem.dilates and (not few or not any(states)):
         state, steps, _ = lagged_state(search.problem, search.newton, ((100, 0.6),))
         search.tally.newton_steps += steps
         if state is not None:
@@ -369,7 +372,7 @@ def _answer(
         "proved_least": proof.complete,
         "proof_nodes": proof.nodes,
     }
-    if problem.n_interfaces <= rational_interfaces:
+    if problem.n_interfaces <= rational_interfaces and not problem.dilates:
         details["rational_confirmation"] = confirm(problem, best)
     if associated.state is not None:
         details["associated"] = problem.to_multiplier(associated.state.multiplier)

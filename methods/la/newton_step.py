@@ -67,7 +67,7 @@ class NewtonStep:
             raise FloatingPointError("the iterate left the interior")
         self.slack = np.where(tight, 1.0, point.slack)
         self.weight = np.where(tight, RIGID, np.maximum(point.rates / self.slack, SOFTEST))
-        self.compliance = Compliance(problem.friction, self.weight, dilatancy)
+        self.compliance = Compliance(problem.friction, self.weight, problem.lift(dilatancy))
         self.statics = problem.imbalance(problem.forces_of_slacks(point.slack), point.multiplier)
         self.kinematics = problem.strains(point.velocities) - problem.strains_of_rates(point.rates, dilatancy)
         self.work = problem.live_work - float(problem.live @ point.velocities)
@@ -137,7 +137,7 @@ class NewtonStep:
         ahead = self.weight[:, 2] >= self.weight[:, 3]
         rate[:, 2] = np.where(stiff & ahead, strain[:, 2] + backward, forward)
         rate[:, 3] = np.where(stiff & ~ahead, forward - strain[:, 2], backward)
-        dilation = self.dilatancy * self.problem.friction * (rate[:, 2] + rate[:, 3])
+        dilation = self.problem.lift(self.dilatancy) * (rate[:, 2] + rate[:, 3])
         for end in (0, 1):
             rate[:, end] = np.where(self.weight[:, end] > 1.0, strain[:, end] - dilation, rate[:, end])
         return rate

@@ -2,7 +2,7 @@
 
 Per interface the forces r = (n1, n2, s) give the yield slacks y = S r = (n1, n2, mu N + s, mu N - s) >= 0 with
 N = n1 + n2. The mechanism u has the strains C u = E g with rates g = (open1, open2, slip+, slip-) >= 0, where
-E = S' for associated flow and E without the dilatant terms for sliding without dilatancy. At collapse y o g = 0.
+E = S' for associated flow, and with the dilatancy of the joints in place of mu else. At collapse y o g = 0.
 Source: Baggio and Trovalusci (1995), equations 1 to 7.
 """
 
@@ -16,6 +16,7 @@ import scipy.sparse as sp
 from scipy.sparse.linalg import spsolve
 
 from harness.model.assembly import Assembly, BoolArray, FloatArray
+from harness.model.joint_law import JointLaw, block_diagonal
 
 FRICTIONLESS = 1e-12
 """Friction coefficients below this are zero to rounding."""
@@ -36,6 +37,7 @@ class Problem:
         kinematic: (3m, 3n) scaled matrix C, strains from velocities (ux, uy, omega * unit_length).
         dead, live: (3n,) scaled loads.
         friction: (m,) friction coefficients.
+        dilatancy: (m,) coefficients by which a slip lifts, at most the friction.
         unit_force: mean dead load of a free block [force].
         unit_length: typical size of a block [length].
         unit_multiplier: multiplier per scaled multiplier.
@@ -50,6 +52,7 @@ class Problem:
     unit_force: float
     unit_length: float
     unit_multiplier: float
+    dilatancy: FloatArray
     cohesion: FloatArray | None = None
 
     @property
@@ -107,9 +110,24 @@ class Problem:
         own = slack if self.cohesion is None else slack - self.cohesion
         return np.column_stack([own[:, :2], 0.5 * (own[:, 2] - own[:, 3])])
 
+    @property
+    def dilates(self) -> bool:
+        """Whether any joint lifts as it slides."""
+        return bool(np.any(self.dilatancy > 0.0))
+
+    def lift(self, share: float) -> FloatArray:
+        """(m,) coefficients by which a slip lifts: the joints' own for `share` 0, the friction for 1."""
+        own = np.minimum(self.dilatancy, self.friction)
+        return np.asarray(own + share * (self.friction - own))
+
+    def law(self, associated: bool) -> JointLaw:
+        """The law of the joints, of associated flow if so."""
+        law = JointLaw(self.friction, np.minimum(self.dilatancy, self.friction))
+        return law.associated if associated else law
+
     def strains_of_rates(self, rates: FloatArray, dilatancy: float) -> FloatArray:
-        """(m, 3) strains E g of rates g (m, 4); a slip opens by mu times `dilatancy`."""
-        dilation = dilatancy * self.friction * (rates[:, 2] + rates[:, 3])
+        """(m, 3) strains E g of rates g (m, 4); a slip lifts by `lift` of `dilatancy`."""
+        dilation = self.lift(dilatancy) * (rates[:, 2] + rates[:, 3])
         return np.column_stack([rates[:, 0] + dilation, rates[:, 1] + dilation, rates[:, 2] - rates[:, 3]])
 
     def strains(self, velocities: FloatArray) -> FloatArray:
@@ -120,7 +138,7 @@ class Problem:
         """(m, 4) smallest rates g with C u = E g; openings come out negative where blocks pass through each other."""
         strain = self.strains(velocities)
         slip = strain[:, 2]
-        dilation = self.friction * abs(slip) if associated else 0.0
+        dilation = self.law(associated).dilatancy * abs(slip)
         return np.column_stack(
             [strain[:, 0] - dilation, strain[:, 1] - dilation, np.maximum(slip, 0.0), np.maximum(-slip, 0.0)]
         )
@@ -155,12 +173,7 @@ class Problem:
 
 def slack_matrix(friction: FloatArray) -> sp.csr_matrix:
     """Sparse (4m, 3m) matrix S of the slacks y = S r of forces r = (n1, n2, s), for friction coefficients (m,)."""
-    m = len(friction)
-    base, one = 3 * np.arange(m), np.ones(m)
-    rows = np.concatenate([4 * np.arange(m) + k for k in (0, 1, 2, 2, 2, 3, 3, 3)])
-    columns = np.concatenate([base, base + 1, base, base + 1, base + 2, base, base + 1, base + 2])
-    values = np.concatenate([one, one, friction, friction, one, friction, friction, -one])
-    return sp.csr_matrix((values, (rows, columns)), shape=(4 * m, 3 * m))
+    return block_diagonal(JointLaw(friction, friction).rows)
 
 
 def make_problem(assembly: Assembly) -> Problem:
@@ -182,4 +195,5 @@ def make_problem(assembly: Assembly) -> Problem:
         unit_force=unit_force,
         unit_length=unit_length,
         unit_multiplier=unit_multiplier,
+        dilatancy=assembly.law.dilatancy,
     )

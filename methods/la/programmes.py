@@ -12,6 +12,7 @@ import numpy as np
 import scipy.sparse as sp
 
 from harness.model.assembly import BoolArray, FloatArray
+from harness.model.joint_law import block_diagonal
 from methods.la.problem import Problem
 from methods.numerics.linear_programme import INFINITY, Programme
 
@@ -120,19 +121,7 @@ class KinematicProgramme:
     def __init__(self, problem: Problem, associated: bool = False) -> None:
         self.problem = problem
         m, n = problem.n_interfaces, problem.n_velocities
-        base, pair = 3 * np.arange(m), 4 * np.arange(m)
-        rows = [base, base + 1, base + 2, base + 2]
-        columns = [pair, pair + 1, pair + 2, pair + 3]
-        values = [np.ones(m), np.ones(m), np.ones(m), -np.ones(m)]
-        if associated:
-            for end in (0, 1):
-                for slip in (2, 3):
-                    rows.append(base + end)
-                    columns.append(pair + slip)
-                    values.append(problem.friction)
-        flow = sp.coo_matrix(
-            (np.concatenate(values), (np.concatenate(rows), np.concatenate(columns))), shape=(3 * m, 4 * m)
-        )
+        flow = block_diagonal(problem.law(associated).flow)
         live = sp.hstack([sp.csr_matrix(problem.live[None, :]), sp.csr_matrix((1, 4 * m))])
         right = np.append(np.zeros(3 * m), problem.live_work)
         self._n = n

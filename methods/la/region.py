@@ -44,6 +44,7 @@ def moving_region(problem: Problem, velocities: FloatArray) -> Region:
     by_interface = ("block_a", "block_b", "end1", "end2", "face1", "face2", "normal", "friction")
     part = replace(
         assembly,
+        dilatancy=None if assembly.dilatancy is None else assembly.dilatancy[kept],
         fixed=fixed,
         dead=np.where(fixed[:, None], 0.0, assembly.dead),
         live=np.where(fixed[:, None], 0.0, assembly.live),

@@ -20,9 +20,11 @@ def test_seconds_left_are_those_to_the_alarm(monkeypatch: pytest.MonkeyPatch):
 
 
 def test_programme_out_of_time_is_told_and_not_taken_for_infeasible(monkeypatch: pytest.MonkeyPatch):
-    matrix = sp.csc_matrix(np.random.default_rng(0).normal(size=(60, 90)))
-    bounds = (np.zeros(90), np.full(90, 10.0))
-    programme = Programme(matrix, np.ones(90), bounds, (-np.ones(60), np.full(60, INFINITY)))
+    matrix = sp.csc_matrix(np.random.default_rng(0).normal(size=(200, 300)))
+    bounds = (np.zeros(300), np.full(300, 10.0))
+    programme = Programme(
+        matrix, np.random.default_rng(1).normal(size=300), bounds, (-np.ones(200), np.full(200, INFINITY))
+    )
     with monkeypatch.context() as patch:
         patch.setattr("methods.numerics.linear_programme.seconds_left", lambda: 0.0)
         with pytest.raises(OutOfTime):
