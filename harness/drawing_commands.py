@@ -16,6 +16,7 @@ from harness.model.errors import InputError, raise_faults
 from harness.model.inspection import Inspection, inspect
 from harness.model.library import library
 from harness.model.method import load_method
+from harness.model.plausibility import allowing
 from harness.model.reading import parse_wall, read_document, wall_json
 from harness.model.repair import repair as mend
 from harness.model.salvage import salvaged
@@ -93,7 +94,7 @@ def _list_marks(looked: Inspection) -> None:
         far = max(mark.size or 0.0 for _, mark in near)
         say(
             "doubt: faces look at each other, or lie a little within each other, and have no joint; if they bear on "
-            f'each other, say "interfaces": {{"tolerance": {1.02 * far:.3g}}}'
+            f"each other, say {allowing(far)}"
         )
         terminal.print_rows(
             [

@@ -14,6 +14,7 @@ from harness import terminal
 from harness.engine import compare as comparing
 from harness.engine.plan import Limits, Run, check_methods, find_cases
 from harness.engine.store import open_store
+from harness.model import inspection
 from harness.model.errors import InputError
 from harness.model.method import Finding, Status
 from harness.model.reading import wall_json
@@ -52,6 +53,11 @@ def import_(drawing: Path, output: Path | None, mapping: Path | None, **said: An
     chosen = validate(Mapping, base.model_dump(exclude_none=True) | given, "the options")
     imported = import_drawing(drawing, chosen)
     for sentence in imported.account:
+        say(f"drystone: {drawing.name}: {sentence}", err=True)
+    looked = inspection.inspect(imported.wall, drawing.stem)
+    for fault in looked.faults:
+        say(f"drystone: {drawing.name}: fault: {fault}", err=True)
+    for sentence in looked.built.warnings if looked.built is not None else ():
         say(f"drystone: {drawing.name}: {sentence}", err=True)
     _write(wall_json(imported.wall), output)
 

@@ -12,7 +12,6 @@ from pathlib import Path
 from typing import Any, Literal
 
 import numpy as np
-import shapely
 from pydantic import Field
 
 from harness.formats.drawing import CROSSES, LINES, Drawing, Outline
@@ -165,9 +164,8 @@ def import_drawing(path: Path, mapping: Mapping | None = None) -> Imported:
     if chosen.gravity is not None:
         data["loads"]["gravity"] = list(chosen.gravity)
     tolerance, tolerated = _tolerance(kept, chosen)
-    if tolerance is not None:
-        data["interfaces"] = {"tolerance": tolerance}
-    doubts += _apart(kept, tolerance, unit)
+    sight = {"sight": NEAR * _size(kept)}
+    data["interfaces"] = sight if tolerance is None else sight | {"tolerance": tolerance}
     for name, value, said in (
         ("friction", f"{FRICTION}", chosen.friction),
         ("unit weight", f"{UNIT_WEIGHT:g} kN/m3", chosen.unit_weight),
@@ -311,22 +309,6 @@ def _tolerance(outlines: list[Outline], mapping: Mapping) -> tuple[float | None,
             told = f"joints: faces up to {1.5 * step:g} apart, because the coordinates are rounded to {step:g}"
             return 1.5 * step, [told]
     return None, []
-
-
-def _apart(outlines: list[Outline], tolerance: float | None, unit: str) -> list[str]:
-    """A sentence on stones near to each other that are further apart than a joint may be."""
-    shapes = np.array([item.shape for item in outlines])
-    size = _size(outlines)
-    least = 1e-6 * size if tolerance is None else tolerance
-    i, j = shapely.STRtree(shapes).query(shapes, predicate="dwithin", distance=NEAR * size)
-    gaps = shapely.distance(shapes[i[i < j]], shapes[j[i < j]])
-    gaps = gaps[gaps > least]
-    if not len(gaps):
-        return []
-    return [
-        f"{len(gaps)} pairs of stones lie {gaps.min():.3g} to {gaps.max():.3g} {unit} apart and have no joint, because "
-        f"joints are up to {least:.3g} {unit} wide: if they bear on each other, say --tolerance {1.02 * gaps.max():.3g}"
-    ]
 
 
 def _supports(outlines: list[Outline], mapping: Mapping, path: Path) -> tuple[list[bool], str]:

@@ -20,7 +20,7 @@ from harness.model.contacts import check_gap
 from harness.model.errors import InputError, Spot, sorted_out
 from harness.model.interfaces import Joints, faults_of_given, floating, floating_groups, joints_of, limits_of
 from harness.model.names import faults_of_wall
-from harness.model.plausibility import NEAR_MISS
+from harness.model.plausibility import NEAR_MISS, allowing
 from harness.model.slips import unknown_in_rules
 from harness.model.wall import Block, Detection, Interface, Wall
 
@@ -194,7 +194,7 @@ def _missed(names: Sequence[str], joints: Joints) -> list[Mark]:
                 f'blocks "{pair[0]}" and "{pair[1]}"',
                 f"faces {NEAR_MISS} {gap:.3g} apart, or as deep within each other, and have no joint, because "
                 f"joints are up to {joints.gap:.3g} wide",
-                f'If they bear on each other, say "interfaces": {{"tolerance": {1.02 * gap:.3g}}}',
+                f"If they bear on each other, say {allowing(gap)}",
                 pair,
                 at,
                 gap,

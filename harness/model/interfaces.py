@@ -15,7 +15,7 @@ from harness.model import geometry
 from harness.model.assembly import BoolArray, FloatArray, IntArray
 from harness.model.contacts import TIMES, JointLimits, check_gap, find_contacts
 from harness.model.errors import InputError, Spot, first_few, raise_faults
-from harness.model.plausibility import span
+from harness.model.plausibility import allowing, span
 from harness.model.wall import Detection, Interface
 
 DEFAULT_TOLERANCE = 1e-6
@@ -45,7 +45,7 @@ def limits_of(detection: Detection, size: float) -> JointLimits:
         overlap=detection.greatest_overlap or detection.tolerance or DEFAULT_TOLERANCE * size,
         angle=math.radians(detection.greatest_angle),
         length=detection.least_contact or min(gap, LEAST_CONTACT * size),
-        sight=max(TIMES * gap, geometry.NEAR * size),
+        sight=detection.sight or max(TIMES * gap, geometry.NEAR * size),
     )
 
 
@@ -168,8 +168,7 @@ def floating(names: Sequence[str], blocks: IntArray, joints: Joints) -> InputErr
         one, other = (names[k] for k in unlucky[int(np.argmin(gaps))])
         remedy = (
             f'Faces look at each other {span(gaps)} apart, those of "{one}" and "{other}" the nearest, '
-            f"and joints are up to {joints.gap:.3g} wide: if they bear on each other, say "
-            f'"interfaces": {{"tolerance": {1.02 * gaps.max():.3g}}}'
+            f"and joints are up to {joints.gap:.3g} wide: if they bear on each other, say {allowing(gaps.max())}"
         )
     return InputError(
         "no chain of interfaces joins "

@@ -55,6 +55,11 @@ def span(values: FloatArray) -> str:
     return least if least == greatest else f"{least} to {greatest}"
 
 
+def allowing(gap: float) -> str:
+    """What a file says so that faces this far apart have a joint."""
+    return f'"interfaces": {{"tolerance": {1.02 * gap:.3g}}} (--tolerance of a drawing)'
+
+
 def near_misses(names: Sequence[str], pairs: IntArray, gaps: FloatArray, greatest: float) -> list[str]:
     """A sentence about pairs (k, 2) of blocks whose faces look at each other and have no joint.
 
@@ -65,11 +70,10 @@ def near_misses(names: Sequence[str], pairs: IntArray, gaps: FloatArray, greates
         return []
     order = np.argsort(gaps, kind="stable")
     shown = first_few([f"{names[pairs[k, 0]]}/{names[pairs[k, 1]]} ({gaps[k]:.3g})" for k in order.tolist()], 5)
-    far = 1.02 * gaps.max()
     return [
         f"{len(pairs)} pair(s) of faces {NEAR_MISS} {span(gaps)} apart, or lie as deep "
         f"within each other, and have no joint, because joints are up to {greatest:.3g} wide: {shown}. If they bear on "
-        f'each other the answer is another: say "interfaces": {{"tolerance": {far:.3g}}}'
+        f"each other the answer is another: say {allowing(gaps.max())}"
     ]
 
 

@@ -216,6 +216,11 @@ class Detection(Strict):
         description="faces beside each other along no more than this touch at a corner [length]; default the "
         "greatest gap, at most a hundredth of the typical block size",
     )
+    sight: Positive | None = Field(
+        None,
+        description="faces that look at each other from no further than this and have no joint are told [length]; "
+        "default ten times the greatest gap, at least a fiftieth of the typical block size",
+    )
     given: list[Interface] = Field(
         default_factory=list, description="these, in place of those found between their blocks"
     )

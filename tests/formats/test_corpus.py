@@ -10,6 +10,7 @@ import pytest
 from cases.start import stack
 from harness.formats.importing import import_drawing
 from harness.model.build import build
+from harness.model.errors import InputError
 from harness.model.method import load_method
 from harness.model.wall import Wall
 from tests.formats.corpus import BASES, TRAITS, Trait, drawn
@@ -64,7 +65,9 @@ def test_open_joints_are_told_with_their_width_and_closed_when_asked_for(tmp_pat
     apart = Trait(change=lambda polygons: [polygon + np.array([0.0, 0.01 * k]) for k, polygon in enumerate(polygons)])
     wall = stack(3)
     mapping = drawn(wall, apart, tmp_path / "wall.dxf")
-    (doubt,) = [d for d in import_drawing(tmp_path / "wall.dxf", mapping).doubts if "apart" in d]
-    assert "10 to 10 mm apart" in doubt
+    with pytest.raises(InputError) as caught:
+        build(import_drawing(tmp_path / "wall.dxf", mapping).wall)
+    assert "look at each other 10 apart" in str(caught.value)
+    assert '"tolerance": 10.2' in str(caught.value)
     wide = mapping.model_copy(update={"tolerance": 10.2})
     assert _value(import_drawing(tmp_path / "wall.dxf", wide).wall) == pytest.approx(_value(wall), rel=0.05)
