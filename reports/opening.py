@@ -15,14 +15,10 @@ from reports.agreement import agreement
 from reports.facts import value_in_words
 from reports.joints import joints_in_words, motion
 from reports.reasons import SAME_MOTION, least_known, mechanism_in_words
-from reports.tables import anchor_of
+from reports.tables import anchor_of, certified_bound
 
 CLOSE = 0.01
 """Methods that lie within a hundredth of each other agree, in the words of the paper's comparison."""
-
-CERTIFIED = 3e-6
-"""Relative height above a certified bound up to which a state is called the minimum: certificates leave 2e-6, and the
-rest is for rounding of the state."""
 
 
 @dataclass(frozen=True)
@@ -137,18 +133,8 @@ def _mains(item: CaseResults) -> list[Result]:
     return [result for result in item.mains if result.status is Status.OK]
 
 
-def _certified_bound(item: CaseResults, least: Result) -> float | None:
-    """The bound of a certificate in fractions that the least state lies on, of whichever method wrote it."""
-    value = least.multiplier
-    accepted = [r for r in item.results if r.status is Status.OK and r.judge.accepted is not False]
-    bounds = [float(r.details["certified_bound"]) for r in accepted if "certified_bound" in r.details]
-    if value is None:
-        return None
-    return next((bound for bound in bounds if 0.0 <= value - bound <= CERTIFIED * abs(value)), None)
-
-
 def _called(result: Result, item: CaseResults) -> str:
-    if _certified_bound(item, result) is not None:
+    if certified_bound(item, result) is not None:
         return "minimum, proved"
     return "least by branch and bound, to rounding" if result.details.get("proved_least") else "least known"
 
@@ -226,7 +212,7 @@ def which_number(item: CaseResults) -> str:
     if least is None:
         return ""
     value = numbers.multiplier(least.multiplier)
-    certified = _certified_bound(item, least)
+    certified = certified_bound(item, least)
     if certified is not None:
         first = (
             f"For safety use {value}, the minimum ({least.method}): "

@@ -134,7 +134,7 @@ class _Search:
         return True
 
     def _bound_size(self) -> None:
-        """Bound the size of this window's mechanisms; within half of the relaxation's own value will do."""
+        """Bound the size of this window's mechanisms, to within `Windows.size` times the relaxation's own value."""
         spent = time.process_time() - self._began
 
         def stop(bound: DualBound | None, primal: float) -> bool:
@@ -143,7 +143,7 @@ class _Search:
             size = bound.greatest_size()
             if size < self._size:
                 self._size, self._size_products = size, bound.products
-            return self._size < 1.5 * max(abs(bound.value), 1e-9)
+            return self._size < WINDOWS.size * max(abs(bound.value), 1e-9)
 
         self._run("size", max(5.0, 0.25 * spent), stop)
 

@@ -39,9 +39,9 @@ def dual_bound(relaxation: Relaxation, iterate: FloatArray, step: float, cost: F
     Negative reduced costs are paid with the greatest slack in the window times the greatest size of the mechanism.
     """
     matrix = _repaired(relaxation, (relaxation.project(iterate) - iterate) / step)
+    left = float(abs(relaxation.row_basis.T @ matrix @ relaxation.column_basis).max())
     reduced = cost - matrix
-    unused = float(abs(reduced[relaxation.unused]).max(initial=0.0))
-    if unused > ROUNDING.unused * max(1.0, float(abs(reduced).max())):
+    if left > ROUNDING.unused * max(1.0, float(abs(reduced).max())):
         return None
     m, f, columns = relaxation.equations.n_interfaces, len(relaxation.free), relaxation.lift_column + 1
     value = float(reduced[relaxation.unit_row, relaxation.work_column] * relaxation.unit)
@@ -52,7 +52,7 @@ def dual_bound(relaxation: Relaxation, iterate: FloatArray, step: float, cost: F
     limit = np.where(paid > 0.0, relaxation.row_limit[:, None], 0.0)
     price = (limit * paid).sum(axis=0)
     per_size = max(float(price[:f].max(initial=0.0)), float(price[-1])) + _paid_for_signed_slips(relaxation, true)
-    return DualBound(value, float(price[f]), per_size, np.where(relaxation.unused, 0.0, true))
+    return DualBound(value, float(price[f]), per_size, true)
 
 
 def _paid_for_signed_slips(relaxation: Relaxation, true: FloatArray) -> float:
@@ -70,21 +70,17 @@ def _paid_for_signed_slips(relaxation: Relaxation, true: FloatArray) -> float:
     return 2.0 * worst * (equations.n_blocks + strength)
 
 
-def _repaired(relaxation: Relaxation, matrix: FloatArray, most: int = 1000) -> FloatArray:
-    """The matrix made orthogonal to all A Z B' and zero on unused products, by conjugate gradients."""
-    matrix = matrix - relaxation.project(matrix)
-    unused = relaxation.unused
-    residual = -np.where(unused, matrix, 0.0)
-    change, direction = np.zeros_like(matrix), residual.copy()
-    size = first = float((residual * residual).sum())
-    for _ in range(most):
-        if size <= ROUNDING.settled * max(first, 1e-300):
-            break
-        image = np.where(unused, direction - relaxation.project(direction), 0.0)
-        length = size / float((direction * image).sum())
-        change += length * direction
-        residual -= length * image
-        before, size = size, float((residual * residual).sum())
-        direction = residual + size / before * direction
-    matrix = matrix + change - relaxation.project(change)
-    return np.asarray(matrix - relaxation.project(matrix))
+def _repaired(relaxation: Relaxation, matrix: FloatArray) -> FloatArray:
+    """The matrix made zero on unused products, and orthogonal to all A Z B' by the least change of free ones.
+
+    What rates, work and lift cannot take is first taken by the products of signed slips with their own interface.
+    """
+    matrix = np.where(relaxation.unused, 0.0, matrix)
+    for _ in range(ROUNDING.repairs):
+        if relaxation.alone.shape[1]:
+            rest = relaxation.row_basis.T @ matrix @ relaxation.column_basis @ relaxation.alone
+            matrix[relaxation.own] -= relaxation.own_inverse @ rest.ravel()
+        rest = relaxation.row_basis.T @ matrix @ relaxation.column_basis
+        rows, columns = relaxation.n_rows, relaxation.lift_column + 1
+        matrix[:rows, :columns] -= relaxation.row_inverse.T @ rest @ relaxation.column_inverse
+    return matrix

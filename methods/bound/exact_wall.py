@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterable
 from fractions import Fraction
 from typing import Any
@@ -78,6 +79,12 @@ class ExactWall:
                     if value:
                         total[k] += value * force
         return total
+
+
+def integers(forms: list[Form]) -> tuple[list[dict[int, int]], int]:
+    """Forms times their common denominator, and that denominator."""
+    unit = math.lcm(*(value.denominator for form in forms for value in form.values()))
+    return [{k: int(value * unit) for k, value in form.items() if value} for form in forms], unit
 
 
 def paired(first: Iterable[Any], second: Any) -> list[tuple[Any, Any]]:

@@ -9,6 +9,8 @@ has no interior. docs/theory-bound.md holds the proofs.
 
 from __future__ import annotations
 
+from functools import cached_property
+
 import numpy as np
 import scipy.linalg
 
@@ -29,6 +31,7 @@ class Relaxation:
         rows, columns: (a, .) and (c, .) matrices A and B over orthonormal bases of statics and mechanisms.
         lower, upper: (a, c) bounds of the scaled products; -inf and inf where a product is not used.
         row_scale, column_scale: (a,), (c,) factors that make rows of A and B unit vectors.
+        n_rows: 4m + 3, rows that are not local.
         free: (f,) contacts; unloadable: (q,) interfaces; normal: (m,) least normal forces.
     """
 
@@ -43,7 +46,7 @@ class Relaxation:
         may = ~still.reshape(-1, 4)
         may[self.unloadable, 2:] = False
         self.free: IntArray = np.flatnonzero(may.ravel())
-        self.unit_row, self.multiplier_row = 4 * m, 4 * m + 1
+        self.unit_row, self.multiplier_row, self.n_rows = 4 * m, 4 * m + 1, 4 * m + 3
         self.work_column, self.lift_column = len(self.free), len(self.free) + 1
         self.rows, self.columns = self._static_rows(), self._kinematic_columns()
         self.row_scale, self.column_scale = _scales(self.rows), _scales(self.columns)
@@ -97,6 +100,34 @@ class Relaxation:
             lower[4 * m + 3 + first + np.arange(len(q)), column] = 0.0
         lower[self.unit_row, self.work_column] = upper[self.unit_row, self.work_column] = self.unit
         return lower, upper
+
+    @cached_property
+    def row_inverse(self) -> FloatArray:
+        """Pseudo-inverse of the part of the basis of A that multiplies rates, work and lift."""
+        return np.linalg.pinv(self.row_basis[: self.n_rows])
+
+    @cached_property
+    def column_inverse(self) -> FloatArray:
+        """Pseudo-inverse of the part of the basis of B of rates, work and lift."""
+        return np.linalg.pinv(self.column_basis[: self.lift_column + 1], rcond=ROUNDING.no_row)
+
+    @cached_property
+    def alone(self) -> FloatArray:
+        """Directions of the basis of B in which signed slips move alone."""
+        return scipy.linalg.null_space(self.column_basis[: self.lift_column + 1], rcond=ROUNDING.no_row)
+
+    @cached_property
+    def own(self) -> tuple[IntArray, IntArray]:
+        """Rows and columns of the products of signed slips with their own interface."""
+        rows, columns = np.nonzero(~self.unused[:, self.lift_column + 1 :])
+        return rows, columns + self.lift_column + 1
+
+    @cached_property
+    def own_inverse(self) -> FloatArray:
+        """What of `own` has a part in `alone` by least change."""
+        rows, columns = self.own
+        image = np.einsum("ka,ke->aek", self.row_basis[rows], self.column_basis[columns] @ self.alone)
+        return np.linalg.pinv(image.reshape(-1, len(rows)), rcond=ROUNDING.no_row)
 
     def project(self, products: FloatArray) -> FloatArray:
         """The nearest matrix of the form A Z B'."""

@@ -14,6 +14,7 @@ class Windows:
         proved: relative distance of a certified bound at which the state is called the minimum: as near as trees come.
         narrow: relative width of a window below which a narrower one costs more than it gains.
         gain: part of the bracket that one window must gain before the next is built, and one check to go on with it.
+        size: bound of the size of mechanisms, in that which its relaxation comes to, that is good enough.
         above: relative distance of the window's upper end above the state, so that rounding does not cut it off.
         below: part of the bracket that a certificate may lose to rounding before it takes more digits.
         finished: relative distance at which a window ends: less than `closed`, because a certificate loses some.
@@ -23,6 +24,7 @@ class Windows:
     proved: float = 2.001e-6
     narrow: float = 4e-3
     gain: float = 0.3
+    size: float = 2.5
     above: float = 1e-9
     below: float = 1e-2
     finished: float = 5e-7
@@ -62,9 +64,8 @@ class Rounding:
     """What counts as rounding in dual matrices, in rows of the relaxation, in programmes and in certificates.
 
     Attributes:
-        settled: squared residual, relative to the first, at which the repair of unused products ends.
-        unused: multiplier of a product that must not be used, relative to the largest, beyond which a dual matrix
-            proves nothing.
+        repairs: of a dual matrix; the second takes what the first left to rounding.
+        unused: what is left in A Z B', relative to the largest multiplier, beyond which a dual matrix proves nothing.
         no_row: norm below which an inequality vanishes on its whole space.
         margin: added to both sides of a bound from a linear programme, in mean block weights: a thousand times its
             tolerances.
@@ -73,7 +74,7 @@ class Rounding:
         below: relative distance below a fraction at which a float is not above it, whatever the conversion rounds.
     """
 
-    settled: float = 1e-24
+    repairs: int = 2
     unused: float = 1e-9
     no_row: float = 1e-9
     margin: float = 1e-6
@@ -89,7 +90,7 @@ class Precision:
         numbers: of multipliers and least forces; velocities: of virtual velocities; weights: of the size of mechanisms;
         motions: of the velocities that strains give; size: of multipliers of products that bound the size,
         the first with which it is at most `enough_size` times that of the search.
-        multipliers: of those that bound the multiplier, the first that suffice.
+        multipliers: of those that bound the multiplier, at first and at most, with as many more as what is lost needs.
         refinements: of what the multipliers of products leave, before they are rounded.
     """
 
@@ -99,7 +100,7 @@ class Precision:
     motions: int = 30
     size: tuple[int, ...] = (20, 24, 28, 36)
     enough_size: float = 1.1
-    multipliers: tuple[int, ...] = (26, 30, 34, 38, 42, 46, 52)
+    multipliers: tuple[int, int] = (28, 54)
     refinements: int = 2
 
 

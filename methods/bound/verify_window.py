@@ -11,7 +11,7 @@ import math
 from fractions import Fraction
 from typing import Any
 
-from methods.bound.exact_wall import ZERO, CertificateError, ExactWall, Form, paired, whole, whole_numbers
+from methods.bound.exact_wall import ZERO, CertificateError, ExactWall, Form, integers, paired, whole, whole_numbers
 from methods.bound.window_limits import Columns, Forces, Motions
 
 
@@ -128,10 +128,10 @@ class _Products:
     ) -> tuple[list[list[int]], int]:
         """Cost minus all products, by velocity, as integers over the denominator that comes with them."""
         columns, wall, m = self.columns, self.wall, self.wall.n_interfaces
-        rows, row_unit = _integers(self._rows())
+        rows, row_unit = integers(self._rows())
         slips = [dict(wall.sparse[3 * p + 2]) for p in columns.signed]
         forms = [*columns.rates.values(), columns.work, columns.lift, *slips, *columns.still]
-        kinematic, unit = _integers(forms)
+        kinematic, unit = integers(forms)
         statics = [self._combined(column, rows) for column in multipliers.values()]
         for k, value in self._cost(of_size).items():
             place = list(multipliers).index(k)
@@ -172,7 +172,7 @@ class _Products:
         """Greatest value of what is left, after multiples of the equilibrium equations, for mechanisms of size one."""
         wall, m = self.wall, self.wall.n_interfaces
         loads = [dict(enumerate(wall.live)), dict(enumerate(wall.dead))]
-        rows, unit = _integers([*(dict(wall.sparse[k]) for k in range(3 * m)), *loads])
+        rows, unit = integers([*(dict(wall.sparse[k]) for k in range(3 * m)), *loads])
         sizes = []
         for mu, normal in zip(wall.friction, self.forces.normal, strict=True):
             sizes += [normal, normal, mu * normal]
@@ -188,9 +188,3 @@ class _Products:
                 rest += abs(value * unit - equilibrium * left_unit) * size
             price += rest * limit
         return price / Fraction(self.unit * left_unit * unit * grain)
-
-
-def _integers(forms: list[Form]) -> tuple[list[dict[int, int]], int]:
-    """Forms times their common denominator, and that denominator."""
-    unit = math.lcm(*(value.denominator for form in forms for value in form.values()))
-    return [{k: int(value * unit) for k, value in form.items() if value} for form in forms], unit

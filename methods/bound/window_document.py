@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import cached_property
@@ -104,16 +105,17 @@ class WindowDocument:
         """
         limits = WindowLimits(self.wall, self.parts)
         size, greatest = self._shortest_size(limits)
-        best: tuple[dict[str, Any], Fraction] | None = None
-        for exponent in PRECISION.multipliers:
+        most, mine = Fraction(self.proof.bound) * Fraction(self.scales.multiplier), Fraction(0)
+        exponent, best = PRECISION.multipliers[0], self.parts
+        while True:
             products = self._products(self.proof.multiplier, exponent, False)
             bound = limits.bound(products, greatest)
-            if best is None or bound > best[1]:
-                best = self.parts | {"size": size, "multiplier": products}, bound
-            if bound >= needed:
-                break
-        assert best is not None
-        return best
+            if best is self.parts or bound > mine:
+                best, mine = self.parts | {"size": size, "multiplier": products}, bound
+            if bound >= needed or exponent == PRECISION.multipliers[1]:
+                return best, mine
+            loss = float(most - bound) / max(float(most - needed), 1e-15 * float(most))
+            exponent = min(exponent + max(2, math.ceil(math.log2(max(loss, 1.0)))), PRECISION.multipliers[1])
 
     def _shortest_size(self, limits: WindowLimits) -> tuple[dict[str, Any], Fraction]:
         """The shortest multipliers that bound the size of mechanisms as the search does, else the longest."""

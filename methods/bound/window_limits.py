@@ -5,7 +5,17 @@ from __future__ import annotations
 from fractions import Fraction
 from typing import Any
 
-from methods.bound.exact_wall import ZERO, CertificateError, ExactWall, Form, Vector, paired, whole, whole_numbers
+from methods.bound.exact_wall import (
+    ZERO,
+    CertificateError,
+    ExactWall,
+    Form,
+    Vector,
+    integers,
+    paired,
+    whole,
+    whole_numbers,
+)
 
 
 class Forces:
@@ -19,6 +29,10 @@ class Forces:
         self.wall, self.low, self.high = wall, low, high
         self.unit = 2 ** whole(document["exponent"], 0, 200)
         m = wall.n_interfaces
+        self._rows, self._row_unit = integers([dict(row) for row in wall.sparse])
+        self._loads, self._load_unit = integers([dict(enumerate(wall.live)), dict(enumerate(wall.dead))])
+        friction, self._friction_unit = integers([dict(enumerate(wall.friction))])
+        self._friction = {p: friction[0].get(p, 0) for p in range(m)}
         self.total: Fraction | None = None
         base, worst = self._above({p: Fraction(1) for p in range(m)}, document["total"])
         if worst >= 1:
@@ -47,18 +61,21 @@ class Forces:
 
     def _above_form(self, form: Form, velocities: Any) -> tuple[Fraction, Fraction]:
         """(a, b) such that the form of forces is at most a + b times the sum of normal forces."""
-        wall, unit = self.wall, self.unit
-        v = whole_numbers(velocities, len(wall.dead))
-        worst = ZERO
-        for p, mu in enumerate(wall.friction):
+        v = whole_numbers(velocities, len(self.wall.dead))
+        scale, mu_unit = self.unit * self._row_unit * self._friction_unit, self._friction_unit
+        worst = 0
+        for p, mu in self._friction.items():
             first, second, shear = (
-                form.get(k, ZERO) - sum((value * v[d] for d, value in wall.sparse[k]), ZERO) / unit
+                (int(form[k] * scale) if k in form else 0)
+                - mu_unit * sum([value * v[d] for d, value in self._rows[k].items()])
                 for k in range(3 * p, 3 * p + 3)
             )
-            worst = max(worst, max(first, second) + mu * abs(shear))
-        live = -sum((f * x for f, x in zip(wall.live, v, strict=True)), ZERO) / unit
-        dead = -sum((f * x for f, x in zip(wall.dead, v, strict=True)), ZERO) / unit
-        return dead + max(self.low * live, self.high * live), worst
+            worst = max(worst, max(first, second) * mu_unit + mu * abs(shear))
+        live, dead = (
+            Fraction(-sum([value * v[d] for d, value in load.items()]), self.unit * self._load_unit)
+            for load in self._loads
+        )
+        return dead + max(self.low * live, self.high * live), Fraction(worst, scale * mu_unit)
 
 
 class Columns:

@@ -177,12 +177,12 @@ def test_unknown_method_of_a_third_party_is_shown():
 def test_only_values_that_are_proved_are_marked_as_proved():
     case = samples.bond()
     proved, known = samples.solved(case, "la", 0.5), samples.solved(case, "la-from-fe", 0.5)
-    proved.details["proved_least"], known.details["proved_least"] = True, False
+    proved.details["certified_bound"], known.details["proved_least"] = 0.499999, True
     pages = [
         build.render(ComparisonRun("small", "", "", [CaseResults(case, [result])]), data_folder="x")
         for result in (proved, known)
     ]
-    assert ["the least by branch and bound, to rounding</span>" in page for page in pages] == [True, False]
+    assert ["least, proved in fractions</span>" in page for page in pages] == [True, False]
 
 
 def test_fifty_cases_by_eight_methods_stay_below_five_megabytes():
