@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import sys
 from pathlib import Path
-from typing import Any
+from typing import Any, Literal
 
 import click
 
@@ -22,21 +22,23 @@ from methods.bound.verify import verify
 @click.option("-o", "--output", type=click.Path(path_type=Path), required=True, help="The certificate to write.")
 @click.option("--nodes", type=click.IntRange(min=1), default=1500, show_default=True, help="Of the tree at most.")
 @click.option("--seconds", type=click.FloatRange(min=0.0), default=120.0, show_default=True, help="For the windows.")
+@click.option("--effort", type=click.Choice(["quick", "normal", "deep"]), default="normal", help="Of the search.")
 @catching
-def bound(wall: Path, output: Path, nodes: int, seconds: float) -> None:
+def bound(wall: Path, output: Path, nodes: int, seconds: float, effort: Literal["quick", "normal", "deep"]) -> None:
     """Write a certificate in fractions of the multiplier below which WALL has no collapse state.
 
     Columns, rings and small walls have one of a tree, bonded walls one of windows. An output whose name ends in .gz is
     compressed. Exit code 1: none was found, and nothing is written.
     """
     from methods.la.bound_adapter import find_certificate
+    from methods.la.settings import SearchSettings
 
     built = read_wall(wall)
     for sentence in built.warnings:
         say(f"drystone: {sentence}", err=True)
     if not built.assembly.has_live_load:
         raise InputError("the wall has no live load", 'Give "loads": {"live": ...}', str(wall))
-    document = find_certificate(built.assembly, nodes, seconds)
+    document = find_certificate(built.assembly, nodes, seconds, SearchSettings(effort=effort))
     if document is None:
         say("No certificate: nothing was proved in time, or the wall's numbers are not short fractions.", err=True)
         sys.exit(1)

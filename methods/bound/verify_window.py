@@ -105,11 +105,13 @@ class _Products:
         for mu, normal in zip(self.wall.friction, self.forces.normal, strict=True):
             limit += [normal, normal, 2 * mu * normal, 2 * mu * normal]
         limit += [Fraction(1), width, width]
+        grain = 2**20
+        whole_limit = [math.ceil(most * grain) for most in limit]
         loss: dict[Any, Fraction] = {}
         for name, column in multipliers.items():
             free = name if isinstance(name, int) else 4 * m if name == "work" else -1
-            parts = (-v * limit[j] for j, v in enumerate(column) if v < 0 and j != free)
-            loss[name] = sum(parts, ZERO) / self.unit
+            parts = [-v * whole_limit[j] for j, v in enumerate(column) if v < 0 and j != free]
+            loss[name] = Fraction(sum(parts), self.unit * grain)
         worst = ZERO
         for p, (first, second, shear) in paired(self.columns.signed, signed):
             mu = self.wall.friction[p]

@@ -107,13 +107,16 @@ class WindowDocument:
         size, greatest = self._shortest_size(limits)
         most, mine = Fraction(self.proof.bound) * Fraction(self.scales.multiplier), Fraction(0)
         exponent, best = PRECISION.multipliers[0], self.parts
+        before: Fraction | None = None
         while True:
             products = self._products(self.proof.multiplier, exponent, False)
             bound = limits.bound(products, greatest)
             if best is self.parts or bound > mine:
                 best, mine = self.parts | {"size": size, "multiplier": products}, bound
-            if bound >= needed or exponent == PRECISION.multipliers[1]:
+            useless = before is not None and bound - before < (needed - bound) / 2
+            if bound >= needed or useless or exponent == PRECISION.multipliers[1]:
                 return best, mine
+            before = bound
             loss = float(most - bound) / max(float(most - needed), 1e-15 * float(most))
             exponent = min(exponent + max(2, math.ceil(math.log2(max(loss, 1.0)))), PRECISION.multipliers[1])
 

@@ -109,19 +109,22 @@ def certified(known: Answer, document: dict[str, Any] | None) -> Answer:
     return replace(known, sentence=sentence, details=details)
 
 
-def find_certificate(assembly: Assembly, nodes: int, seconds: float) -> dict[str, Any] | None:
+def find_certificate(
+    assembly: Assembly, nodes: int, seconds: float, search: SearchSettings | None = None
+) -> dict[str, Any] | None:
     """The certificate of the tree where that ends, else of windows; None where neither proves anything.
 
     Args:
         assembly: a wall of one component, which stands under its dead load.
         nodes: of the tree at most.
         seconds: of CPU time for the windows.
+        search: of the state below which the windows lie.
     """
     document = certificate(assembly, nodes)
     if document is not None or not assembly.has_live_load:
         return document
     problem = make_problem(assembly)
-    known = least_known(problem, NewtonMatrix(problem), SearchSettings(), BoundedLimitAnalysis.tolerance)
+    known = least_known(problem, NewtonMatrix(problem), search or SearchSettings(), BoundedLimitAnalysis.tolerance)
     if known.finding is not Finding.COLLAPSES or known.mechanism is None or not (known.multiplier or 0.0) > 0.0:
         return None
     assert known.multiplier is not None

@@ -15,8 +15,10 @@ from click.testing import CliRunner
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from harness.certificates import CERTIFICATE, PACKED, read_certificate
 from harness.cli import main as drystone
 from harness.model.assembly import Assembly
+from harness.model.case import read_case, shipped_cases
 from methods.bound.exact_wall import CertificateError
 from methods.bound.same_wall import require_same_wall
 from methods.bound.verify import digest, verify
@@ -138,6 +140,18 @@ def test_a_window_that_claims_more_is_refused(name: str) -> None:
     assert refused_or_true(document)
 
 
+@pytest.mark.parametrize(
+    "file",
+    [pytest.param(file, id=file.parent.name, marks=[pytest.mark.slow] * (file.stat().st_size > 200_000))
+     for file in sorted(shipped_cases().glob(f"*/{CERTIFICATE}{PACKED}"))],
+)  # fmt: skip
+def test_the_certificates_of_windows_of_library_walls_hold(file: Path) -> None:
+    document = read_certificate(file)
+    require_same_wall(document, read_case(file.parent).assembly)
+    lower, upper = verify(document)
+    assert 0 < upper - lower <= Fraction(2, 10**6) * upper
+
+
 @pytest.mark.slow
 @pytest.mark.parametrize(
     ("courses", "bricks", "least"), [(3, 2, Fraction(7, 11)), (4, 2, Fraction(3, 5)), (3, 3, Fraction(7, 11))]
@@ -154,7 +168,9 @@ def test_the_commands_write_and_read_a_compressed_certificate(tmp_path: Path) ->
     wall, file = tmp_path / "wall.json", tmp_path / "certificate.json.gz"
     wall.write_text(json.dumps(wall_data(pattern | {"start": "half"}, 0.65)))
     run = CliRunner()
-    assert run.invoke(drystone, ["bound", str(wall), "-o", str(file), "--nodes", "1"]).exit_code == 0
+    assert (
+        run.invoke(drystone, ["bound", str(wall), "-o", str(file), "--nodes", "1", "--effort", "quick"]).exit_code == 0
+    )
     answer = run.invoke(drystone, ["verify-bound", str(file), "--wall", str(wall), "--json"])
     assert json.loads(answer.output)["multiplier"] == "13/20"
     file.write_bytes(file.read_bytes()[:-9])
