@@ -46,7 +46,7 @@ def verify(document: Any) -> tuple[Fraction, Fraction]:
         else:
             leaves = [_Leaf(wall, leaf) for leaf in document["leaves"]]
             _check_cover([(leaf.tight, leaf.still) for leaf in leaves])
-    except (KeyError, TypeError, ValueError, ZeroDivisionError, AttributeError) as error:
+    except (LookupError, TypeError, ValueError, ArithmeticError, AttributeError) as error:
         raise CertificateError(str(error)) from error
     for leaf in leaves:
         leaf.check(wall, bound)
