@@ -29,7 +29,7 @@ from methods.la.search import Search
 from methods.la.settings import BoundSettings
 from methods.la.window_certificate import certified_bracket
 from tests.la.bodies import running_bond
-from tests.walls import wall_data
+from tests.walls import stack, wall_data
 
 LEAST = Fraction(13, 20)
 """Least multiplier of 2 courses of 2 bricks .4 x .2 on friction 13/20: the top course slides."""
@@ -175,3 +175,11 @@ def test_the_commands_write_and_read_a_compressed_certificate(tmp_path: Path) ->
     assert json.loads(answer.output)["multiplier"] == "13/20"
     file.write_bytes(file.read_bytes()[:-9])
     assert run.invoke(drystone, ["verify-bound", str(file)]).exit_code == 2
+
+
+def test_a_wall_whose_joints_lift_as_they_slide_gets_no_certificate(tmp_path: Path) -> None:
+    wall, file = tmp_path / "wall.json", tmp_path / "certificate.json"
+    wall.write_text(json.dumps(wall_data(stack(2), {"default": 0.5, "dilatancy": 0.2})))
+    answer = CliRunner().invoke(drystone, ["bound", str(wall), "-o", str(file)])
+    assert (answer.exit_code, file.exists()) == (2, False)
+    assert "lift as they slide" in answer.output
