@@ -15,6 +15,7 @@ from methods.de.release import ReleaseSettings, release
 from methods.de.settings import HoldSettings, MujocoSettings
 from methods.de.space import StripSpace
 from methods.de.strips import CannotModel
+from methods.numerics.statics import analysed
 
 
 class DampedHolds:
@@ -36,6 +37,9 @@ class DampedHolds:
     def solve(self, assembly: Assembly, settings: HoldSettings) -> Answer:
         """Bracket of the collapse multiplier over body orders; see `methods.de.answer`."""
 
+        return analysed(assembly, lambda part: self._of_component(part, settings))
+
+    def _of_component(self, assembly: Assembly, settings: HoldSettings) -> Answer:
         def engine(blocks: IntArray, joints: IntArray, tuning: Tuning) -> StripSpace:
             return StripSpace(assembly, blocks, joints, settings.iterations, tuning)
 
@@ -69,6 +73,9 @@ class MujocoHolds:
             InputError: mujoco is not installed.
         """
         load_mujoco()
+        return analysed(assembly, lambda part: self._of_component(part, settings))
+
+    def _of_component(self, assembly: Assembly, settings: MujocoSettings) -> Answer:
         candidates = mujoco_tunings(assembly, settings)
         soft = dict(candidates)
 

@@ -13,7 +13,6 @@ from methods.de.bracket import LOOSE, Bracket, Search, held_forces, mechanism_at
 from methods.de.courses import Tuning, courses, insertion_orders, tunings
 from methods.de.engine import Engine
 from methods.de.settings import HoldSettings
-from methods.numerics.statics import with_proof
 
 BRACKET_MEANING = (
     "[lowest multiplier held, highest multiplier moving] over the body orders: every order was held at or above the "
@@ -61,7 +60,7 @@ def solve_by_holds(
         if answer.finding is Finding.COLLAPSES:
             answer.mechanism, answer.flow = mechanism_at(engine, settings, best), "approximate"
         answer.iterations += engine.steps
-    return with_proof(assembly, answer)
+    return answer
 
 
 def first_bracket(
@@ -172,6 +171,11 @@ def _collapse(brackets: list[Bracket]) -> Answer:
         f"{best.middle:.6g} is the middle of the median order's bracket [{best.held:.6g}, {best.moving:.6g}], not an "
         "exact value"
     )
+    if best.nothing:
+        sentence = (
+            f"collapses at 0: it stands without live load and moved at {best.moving:.3g}, the least that residuals "
+            f"tell from none; over {len(brackets)} body orders between {low:.6g} and {high:.6g}"
+        )
     if undecided:
         sentence += f"; {undecided} holds could not be told and are not counted as held"
     status = Status.OK

@@ -14,8 +14,9 @@ WIDE = 5e-3
 """Relative width of [held, moving] above which undecided holds make the search look for a lower moving state."""
 
 
-LOOSE = 0.02
-"""Widest bracket of one order, as a part of the multiplier, that still counts as converged."""
+LOOSE = 0.01
+"""Widest bracket of one order, as a part of the multiplier, that still counts as converged: twice the accuracy that is
+stated, so that its middle keeps it."""
 
 
 @dataclass(eq=False)
@@ -28,8 +29,10 @@ class Bracket:
         moving: lowest multiplier at which it moved, or None.
         undecided: multipliers of holds that could not be told, none of them called held.
         state: contact state of the engine at `held`.
-        velocity: (n, 3) velocity field at `moving`.
+        moving_residual: of that motion; velocity: (n, 3) its field.
         proof: what shows that it moved there.
+        nothing: whether none of the live load is held as far as residuals tell: half of `moving` would leave less out
+            of balance than shows a motion. The multiplier is then zero.
         holds: number of holds.
         steps: time steps made.
         capped: whether the load cap was held.
@@ -42,8 +45,10 @@ class Bracket:
     moving: float | None = None
     undecided: list[float] = field(default_factory=list)
     state: FloatArray | None = None
+    moving_residual: float = 0.0
     velocity: FloatArray | None = None
     proof: Proof | None = None
+    nothing: bool = False
     holds: int = 0
     steps: int = 0
     capped: bool = False
@@ -52,14 +57,18 @@ class Bracket:
 
     @property
     def middle(self) -> float | None:
-        """Middle of [held, moving]."""
+        """Middle of [held, moving]; zero where nothing is held."""
         if self.held is None or self.moving is None:
             return None
+        if self.nothing:
+            return 0.0
         return (self.held + self.moving) / 2.0
 
     @property
     def width(self) -> float | None:
-        """(moving - held) / moving."""
+        """(moving - held) / moving; zero where nothing is held."""
+        if self.nothing:
+            return 0.0
         if self.held is None or self.moving is None or self.moving <= 0.0:
             return None
         return (self.moving - self.held) / self.moving
@@ -126,6 +135,7 @@ class Search:
             found.held, found.state = multiplier, self.engine.save()
         elif end.state is State.MOVING and (found.moving is None or multiplier < found.moving):
             found.moving, found.velocity, found.proof = multiplier, end.velocity, end.proof
+            found.moving_residual = end.residual
         elif end.state is State.UNDECIDED:
             found.undecided.append(multiplier)
         return end
@@ -164,6 +174,9 @@ class Search:
         while not self._spent():
             cheap = self.engine.steps * self.engine.interfaces < CHEAP
             accuracy = self.settings.accuracy if told or cheap else max(self.settings.accuracy, CREEPING)
+            found.nothing = found.held == 0.0 and told and found.moving_residual <= 2.0 * self.settings.moving_residual
+            if found.nothing:
+                return
             if high - found.held <= accuracy * high:
                 break
             middle = (found.held + high) / 2.0
@@ -200,6 +213,8 @@ def held_forces(engine: Engine, settings: HoldSettings, found: Bracket) -> tuple
 
 def mechanism_at(engine: Engine, settings: HoldSettings, found: Bracket, excess: float = 1.02) -> FloatArray:
     """Velocity field (n, 3) at `excess` times the middle of the bracket, from the highest held state."""
+    if found.nothing and found.velocity is not None:
+        return found.velocity
     assert found.middle is not None
     assert found.state is not None
     engine.restore(found.state)

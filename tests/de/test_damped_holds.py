@@ -9,9 +9,13 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from harness.engine.judge import answered
+from harness.engine.plan import find_cases
+from harness.engine.symmetry import beside
 from harness.model.build import build
 from harness.model.method import Finding, Status
 from harness.model.reading import parse_wall
+from methods.de.adapter import DampedHolds
 from tests.de.answers import run, unbalanced, unyielding
 from tests.walls import assembly, running_bond, stack
 
@@ -78,6 +82,16 @@ def test_arches_that_settle_slowly_are_followed_to_rest(name, exact):
     assert answer.multiplier == pytest.approx(exact, rel=EXACT)
     assert answer.bracket[0] <= exact <= answer.bracket[1]
     assert {order["proof"] for order in answer.details["orders"]} == {"virtual work"}
+
+
+@pytest.mark.parametrize("share", [1e-12, 1.0, 1e12])
+@pytest.mark.parametrize("name", ["column-5-sliding", "stack-10", "running-bond-overturns"])
+def test_an_independent_block_of_any_weight_changes_no_bracket(name, share):
+    wall = find_cases((name,), None, ())[0].assembly
+    alone, (result, judgement) = run(wall, orders=1), answered(DampedHolds(), beside(wall, share), orders=1)
+    assert judgement.accepted, judgement.sentence
+    assert result.multiplier == pytest.approx(alone.multiplier, rel=1e-9)
+    assert result.bracket == pytest.approx(alone.bracket, rel=1e-9)
 
 
 def two_friction_block():
