@@ -1,8 +1,9 @@
 """Thin arches and slender walls whose one multiplier is known: `python -m benchmarks.slender [--methods de,de-soft]`.
 
 The associated maximum, a linear programme, is the only multiplier, because nothing slides in its mechanism; limit
-analysis finds nothing below it (of arches it is asked with `--least`, because that takes most of the time). Forces pass through such long chains of blocks slowly. A measured answer is right within 0.5 %, or
-says that it does not know; anything else is wrong.
+analysis finds nothing below it (of arches it is asked with `--least`, because that takes most of the time). Forces pass
+through such long chains of blocks slowly. A measured answer is right within 0.5 %, or says that it does not know;
+anything else is wrong.
 """
 
 from __future__ import annotations
