@@ -10,6 +10,7 @@ HERE = Path(__file__).resolve().parent
 sys.path[:0] = [str(HERE), str(HERE.parent)]
 
 import figures  # noqa: E402
+import gallery  # noqa: E402
 import manual  # noqa: E402
 import pages  # noqa: E402
 
@@ -29,7 +30,7 @@ autodoc_typehints = "description"
 def _generate(_app: Any) -> None:
     folder = HERE / "generated"
     folder.mkdir(exist_ok=True)
-    for write in (*pages.ALL, manual.manual_page, *figures.ALL):
+    for write in (*pages.ALL, manual.manual_page, gallery.gallery_page, *figures.ALL):
         write(folder)
 
 

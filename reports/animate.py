@@ -13,6 +13,7 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from PIL import Image
 
 from harness.model.case import Case
+from harness.model.displaced import carried, released
 from harness.model.errors import InputError
 from harness.model.result import Result
 from reports import figures, joints, numbers, shapes, words
@@ -41,7 +42,7 @@ def animate(case: Case, result: Result, path: Path) -> None:
     suffix = path.suffix.lower()
     if suffix not in FORMATS:
         raise InputError(f'no animation is written as "{path.suffix}"', f"Use {', '.join(FORMATS)}", source=str(path))
-    if result.mechanism is None and shapes.released(result, case.assembly.n_blocks) is None:
+    if result.mechanism is None and released(result, case.assembly.n_blocks) is None:
         raise InputError(
             f"{result.method} left no mechanism to animate ({words.STATUS[result.status][1]}: {result.sentence})",
             "Choose a method that ended with a collapse state",
@@ -61,13 +62,13 @@ def animate(case: Case, result: Result, path: Path) -> None:
 def frames(case: Case, result: Result) -> list[Image.Image]:
     """The pictures of an animation: the collapse a run followed, else the mechanism from rest to twice its size."""
     assembly = case.assembly
-    followed = shapes.released(result, assembly.n_blocks)
+    followed = released(result, assembly.n_blocks)
     if followed is not None:
         return [
             _picture(
                 case,
                 result,
-                partial(figures.draw_blocks, assembly=assembly, polygons=shapes.moved(assembly, places)),
+                partial(figures.draw_blocks, assembly=assembly, polygons=carried(assembly, places)),
             )
             for places in followed
         ]

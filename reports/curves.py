@@ -8,8 +8,9 @@ from typing import Any
 from markupsafe import Markup
 
 from harness.model.comparison import CaseResults
+from harness.model.displaced import carried, released
 from harness.model.result import Result
-from reports import charts, numbers, shapes, words
+from reports import charts, numbers, words
 from reports.drawing import polygons_svg
 from reports.marks import mark_of
 
@@ -94,12 +95,12 @@ def _release(item: CaseResults, result: Result) -> list[tuple[str, Markup]]:
             series=[charts.Series(result.method, result.path["time"], moved, marks=False, mark=mark_of(result))],
         )
         found.append((f"{result.method}: the wall released just above its multiplier.", charts.svg(chart)))
-    frames = shapes.released(result, item.case.assembly.n_blocks)
+    frames = released(result, item.case.assembly.n_blocks)
     if frames is not None:
         found.append(
             (
                 f"{result.method}: the wall at the end of the release.",
-                polygons_svg(item.case, shapes.moved(item.case.assembly, frames[-1])),
+                polygons_svg(item.case, carried(item.case.assembly, frames[-1])),
             )
         )
     return found

@@ -10,7 +10,7 @@ import numpy as np
 from harness.model.assembly import Assembly, FloatArray, IntArray
 from harness.model.case import Case
 from harness.model.errors import InputError
-from harness.model.result import Result, relative_velocities, vertex_velocities
+from harness.model.result import relative_velocities, vertex_velocities
 
 
 def problem(case: Case) -> str:
@@ -142,24 +142,6 @@ def hinges(assembly: Assembly, mechanism: FloatArray, ends: FloatArray, chosen: 
     opening, _ = relative_velocities(assembly, mechanism)
     second = opening[chosen, 1] < opening[chosen, 0]
     return np.asarray(np.where(second[:, None], ends[:, 1], ends[:, 0]))
-
-
-def released(result: Result, n_blocks: int) -> FloatArray | None:
-    """Frames (k, n, 3) of a collapse that was followed: displacements (x, y) [length] and rotations; or None."""
-    release = result.details.get("release")
-    if not isinstance(release, dict) or not isinstance(release.get("frames"), list):
-        return None
-    frames = np.array(release["frames"], dtype=float)
-    return frames if frames.ndim == 3 and frames.shape[0] > 1 and frames.shape[1:] == (n_blocks, 3) else None
-
-
-def moved(assembly: Assembly, places: FloatArray) -> list[FloatArray]:
-    """Polygons displaced by (n, 3) displacements and finite rotations about the centroids."""
-    polygons = []
-    for polygon, centroid, (x, y, angle) in zip(assembly.polygons, assembly.centroid, places, strict=True):
-        turn = np.array([[np.cos(angle), -np.sin(angle)], [np.sin(angle), np.cos(angle)]])
-        polygons.append(centroid + np.array([x, y]) + (polygon - centroid) @ turn.T)
-    return polygons
 
 
 def moving(assembly: Assembly, mechanism: FloatArray, smallest: float = 1e-3) -> np.ndarray:

@@ -14,6 +14,7 @@ import numpy as np
 
 from harness.model.assembly import Assembly, FloatArray
 from harness.model.build import Built
+from harness.model.displaced import carried, released
 from harness.model.errors import InputError, did_you_mean
 from harness.model.result import Result, vertex_velocities
 from harness.model.rings import rings_of
@@ -45,10 +46,12 @@ def moved(assembly: Assembly, result: Result | None, part: float = 1.0) -> list[
 
 def write_vtu(built: Built, result: Result | None, path: Path) -> None:
     """Blocks as polygons and joints as lines, for ParaView: velocity, displacement, forces and states."""
-    _mesh(built.assembly, result, 1.0).write(path, file_format="vtu", binary=True)
+    displacement = [SHOWN * built.assembly.length_scale * v for v in _velocities(built.assembly, result)]
+    _mesh(built.assembly, result, displacement).write(path, file_format="vtu", binary=True)
 
 
-def _mesh(assembly: Assembly, result: Result | None, part: float) -> Any:
+def _mesh(assembly: Assembly, result: Result | None, displacement: list[FloatArray]) -> Any:
+    """The mesh of a wall with its answer and displacements (k, 2) of the vertices of every block [length]."""
     import meshio
 
     polygons, joints = assembly.polygons, np.stack([assembly.face1, assembly.face2], axis=1)
@@ -89,24 +92,45 @@ def _mesh(assembly: Assembly, result: Result | None, part: float) -> Any:
     }
     flat = np.zeros((len(points), 1))
     across = np.hstack([velocity, flat])
+    shift = np.hstack([np.concatenate([*displacement, np.zeros((2 * len(joints), 2))]), flat])
     return meshio.Mesh(
         np.hstack([points, flat]),
         cells,
-        point_data={"velocity": across, "displacement": part * SHOWN * assembly.length_scale * across},
+        point_data={"velocity": across, "displacement": shift},
         cell_data=data,
     )
 
 
 def write_pvd(built: Built, result: Result | None, path: Path) -> None:
-    """A series of VTU files beside a .pvd in which the mechanism grows; the time is the part of what is drawn."""
+    """A series of VTU files beside a .pvd, one a step.
+
+    A collapse that was followed is the series of its states in its time [sqrt(length scale / gravity)]; else the
+    mechanism grows, and the time is the part of what is drawn.
+    """
+    assembly = built.assembly
     rows = []
-    for step in range(STEPS + 1):
-        part = step / STEPS
+    for step, (time, displacement) in enumerate(_steps(assembly, result)):
         name = f"{path.stem}-{step:03d}.vtu"
-        _mesh(built.assembly, result, part).write(path.with_name(name), file_format="vtu", binary=True)
-        rows.append(f'    <DataSet timestep="{part:g}" part="0" file={quoteattr(name)}/>')
+        _mesh(assembly, result, displacement).write(path.with_name(name), file_format="vtu", binary=True)
+        rows.append(f'    <DataSet timestep="{time:.9g}" part="0" file={quoteattr(name)}/>')
     text = '<?xml version="1.0"?>\n<VTKFile type="Collection" version="0.1">\n  <Collection>\n'
     path.write_text(text + "\n".join(rows) + "\n  </Collection>\n</VTKFile>\n", encoding="utf-8")
+
+
+def _steps(assembly: Assembly, result: Result | None) -> list[tuple[float, list[FloatArray]]]:
+    """Times and displacements (k, 2) of the vertices of every block [length]."""
+    followed = None if result is None else released(result, assembly.n_blocks)
+    if result is None or followed is None:
+        velocities = [SHOWN * assembly.length_scale * v for v in _velocities(assembly, result)]
+        parts = [step / STEPS for step in range(STEPS + 1)]
+        return [(part, [part * v for v in velocities]) for part in parts]
+    times = result.path.get("time", [])
+    if len(times) != len(followed):
+        times = list(range(len(followed)))
+    return [
+        (float(time), [p - q for p, q in zip(carried(assembly, places), assembly.polygons, strict=True)])
+        for time, places in zip(times, followed, strict=True)
+    ]
 
 
 def write_dxf(built: Built, result: Result | None, path: Path) -> None:

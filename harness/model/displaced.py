@@ -1,4 +1,4 @@
-"""A state of rest at large displacements: contacts where they are then, which those of the assembly no longer are."""
+"""Walls that have moved far: states of rest with contacts of their own, and collapses that were followed."""
 
 from __future__ import annotations
 
@@ -7,7 +7,8 @@ from typing import Any
 
 import numpy as np
 
-from harness.model.assembly import FloatArray, IntArray
+from harness.model.assembly import Assembly, FloatArray, IntArray
+from harness.model.result import Result
 
 NAME = "displaced_state"
 """Name under which an answer's details hold it."""
@@ -45,3 +46,21 @@ class DisplacedState:
             return None
         whole = ("interface", "onto")
         return cls(**{k: np.array(v, dtype=np.int64 if k in whole else float) for k, v in data.items()})
+
+
+def released(result: Result, n_blocks: int) -> FloatArray | None:
+    """Frames (k, n, 3) of a collapse that was followed: displacements (x, y) [length] and rotations; or None."""
+    release = result.details.get("release")
+    if not isinstance(release, dict) or not isinstance(release.get("frames"), list):
+        return None
+    frames = np.array(release["frames"], dtype=float)
+    return frames if frames.ndim == 3 and frames.shape[0] > 1 and frames.shape[1:] == (n_blocks, 3) else None
+
+
+def carried(assembly: Assembly, places: FloatArray) -> list[FloatArray]:
+    """Polygons displaced by (n, 3) displacements and finite rotations about the centroids."""
+    polygons = []
+    for polygon, centroid, (x, y, angle) in zip(assembly.polygons, assembly.centroid, places, strict=True):
+        turn = np.array([[np.cos(angle), -np.sin(angle)], [np.sin(angle), np.cos(angle)]])
+        polygons.append(centroid + np.array([x, y]) + (polygon - centroid) @ turn.T)
+    return polygons

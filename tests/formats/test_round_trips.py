@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 from pathlib import Path
+from xml.etree import ElementTree
 
 import compas
 import ezdxf
@@ -148,6 +149,28 @@ def test_a_series_of_the_mechanism_grows_from_nothing(answer: Result, tmp_path: 
     sizes = [np.abs(meshio.read(file).point_data["displacement"]).max() for file in (files[0], files[10], files[-1])]
     assert sizes[0] == 0.0
     assert sizes[2] == pytest.approx(2.0 * sizes[1])
+
+
+def test_a_collapse_that_was_followed_is_a_series_in_its_time(answer: Result, tmp_path: Path) -> None:
+    built = build(WALL)
+    assembly = built.assembly
+    angles, times = [0.0, 0.2, 0.5], [0.0, 1.5, 2.5]
+    frames = [[[0.1 * a, 0.0, a] if free else [0.0, 0.0, 0.0] for free in ~assembly.fixed] for a in angles]
+    followed = answer.model_copy(update={"details": {"release": {"frames": frames}}, "path": {"time": times}})
+    WRITERS[".pvd"](built, followed, tmp_path / "w.pvd")
+    rows = ElementTree.parse(tmp_path / "w.pvd").getroot().findall(".//DataSet")
+    assert [float(row.attrib["timestep"]) for row in rows] == times
+    points = [meshio.read(tmp_path / row.attrib["file"]) for row in rows]
+    block = int(assembly.free[0])
+    middle = assembly.centroid[block]
+    first = sum(len(polygon) for polygon in assembly.polygons[:block])
+    own = slice(first, first + len(assembly.polygons[block]))
+    for mesh, angle in zip(points, angles, strict=True):
+        turned = (mesh.points + mesh.point_data["displacement"])[own, :2] - middle - [0.1 * angle, 0.0]
+        arm = assembly.polygons[block] - middle
+        assert np.hypot(*turned.T) == pytest.approx(np.hypot(*arm.T))  # a rigid motion keeps distances
+        cross = arm[:, 0] * turned[:, 1] - arm[:, 1] * turned[:, 0]
+        assert np.arctan2(cross, (arm * turned).sum(axis=1)) == pytest.approx(angle)
 
 
 def test_ezdxf_reads_blocks_joints_and_mechanism(answer: Result, tmp_path: Path) -> None:

@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 from harness.model.comparison import CaseResults, ComparisonRun
+from harness.model.displaced import carried, released
 from harness.model.method import Status
 from harness.model.result import Verdict
 from reports import agreement, charts, curves, drawing, families, grid, numbers, paper, shapes, studies, tables
@@ -241,7 +242,7 @@ def test_worst_residual_leaves_out_what_ought_to_be_large():
 def test_released_blocks_turn_without_changing_their_shape():
     assembly = samples.bond().assembly
     places = np.tile([0.1, -0.2, 1.3], (assembly.n_blocks, 1))
-    for before, after in zip(assembly.polygons, shapes.moved(assembly, places), strict=True):
+    for before, after in zip(assembly.polygons, carried(assembly, places), strict=True):
         sides = [np.linalg.norm(polygon - np.roll(polygon, 1, axis=0), axis=1) for polygon in (before, after)]
         assert sides[0] == pytest.approx(sides[1], rel=1e-12)
 
@@ -261,7 +262,7 @@ def test_released_wall_is_drawn_over_time_and_at_its_end():
 def test_frames_of_another_wall_are_not_drawn():
     case = samples.bond()
     result = samples.solved(case, "de-tilt", 0.5, details={"release": {"frames": [[[0.0, 0.0, 0.0]]] * 3}})
-    assert shapes.released(result, case.assembly.n_blocks) is None
+    assert released(result, case.assembly.n_blocks) is None
 
 
 MAINS = ("fe", "la", "de")
