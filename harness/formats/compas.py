@@ -13,7 +13,7 @@ from typing import Any
 import numpy as np
 import shapely
 
-from harness.formats.drawing import Drawing
+from harness.formats.drawing import Drawing, nested
 from harness.model.assembly import FloatArray
 from harness.model.errors import InputError
 from harness.model.reading import read_json
@@ -45,7 +45,7 @@ def read_compas(path: Path, _accuracy: float, plane: str = "xz", at: float | Non
     heights = np.concatenate([points[:, across] for points, _, _ in solids])
     level = float(0.5 * (heights.min() + heights.max())) if at is None else at
     for number, (points, faces, said) in enumerate(solids):
-        name = str(said.get("name") or said.get("node") or number)
+        name = str(said.get("key") or said.get("name") or said.get("node") or number)
         more: dict[str, Any] = {"name": name, "fixed": any(bool(said.get(word)) for word in SUPPORT)}
         if np.ptp(points[:, across]) == 0.0:
             for face in faces:
@@ -60,8 +60,8 @@ def read_compas(path: Path, _accuracy: float, plane: str = "xz", at: float | Non
         )
         if len(parts) == 0:
             drawing.left_out[f"block that the plane {plane} at {level:g} does not cut"] += 1
-        for part in parts:
-            drawing.add(f"block cut by {plane} at {level:g}", np.asarray(part.exterior.coords), **more)
+        for outer, holes in nested([np.asarray(part.exterior.coords) for part in parts]):
+            drawing.add(f"block cut by {plane} at {level:g}", outer, holes, **more)
     return drawing
 
 
@@ -103,7 +103,9 @@ def _solids(
         for key, item in data.items():
             if key in ("node", "parts") and isinstance(item, dict):
                 for node, inner in item.items():
-                    yield from _solids(inner, told | {"node": node}, placed)
+                    # A key that is a word is written in quotes, and is a name before that of the mesh, as "Box".
+                    word = node.strip("'\"")
+                    yield from _solids(inner, told | ({"node": node} if word == node else {"key": word}), placed)
             elif key not in ("interface", "interfaces", "interactions", "edge"):
                 yield from _solids(item, told, placed)
 

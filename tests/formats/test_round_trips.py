@@ -16,6 +16,8 @@ import scipy.sparse as sp
 import shapefile
 import shapely
 from click.testing import CliRunner
+from compas.datastructures import Graph, Mesh
+from compas.geometry import Box, Frame, Polyhedron, Translation
 from shapely.geometry import mapping, shape
 
 from cases.start import STARTS, facade, flemish, laid
@@ -71,7 +73,7 @@ def framed() -> Wall:
     return Wall.model_validate(WALL.document() | {"title": "frame", "blocks": [ground, frame, inner]})
 
 
-@pytest.mark.parametrize("suffix", [".dxf", ".svg", ".geojson", ".csv", ".wkt", ".shp"])
+@pytest.mark.parametrize("suffix", [".dxf", ".svg", ".geojson", ".csv", ".json", ".wkt", ".shp"])
 def test_a_frame_written_and_imported_again_keeps_its_holes(suffix: str, tmp_path: Path) -> None:
     built, path = build(framed()), tmp_path / f"wall{suffix}"
     shapes = shapes_of(built.assembly.polygons)
@@ -199,6 +201,24 @@ def test_compas_reads_the_blocks_as_closed_meshes(answer: Result, tmp_path: Path
     volumes = [mesh.volume() for mesh in meshes]
     areas = [shapely.Polygon(polygon).area * 0.25 for polygon in built.assembly.polygons]
     assert volumes == pytest.approx(areas)  # outward faces: volumes are positive
+
+
+def test_blocks_in_a_graph_are_read_as_compas_writes_them(tmp_path: Path) -> None:
+    """Assemblies of compas are graphs whose nodes hold meshes, polyhedra or boxes and say which are supports."""
+    ground = Box(4.0, 1.0, 1.0, frame=Frame([0.0, 0.0, -0.5], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]))
+    column = Mesh.from_shape(Box(1.0, 1.0, 2.0)).transformed(Translation.from_vector([0.0, 0.0, 1.0]))
+    top = Polyhedron.from_platonicsolid(6)
+    size = np.ptp(np.array(top.vertices), axis=0).max()
+    top.transform(Translation.from_vector([0.0, 0.0, 2.0 + 0.5 * size]))
+    graph = Graph()
+    for name, solid, held in (("ground", ground, True), ("column", column, False), ("top", top, False)):
+        graph.add_node(name, block=solid, is_support=held)
+    compas.json_dump(graph, tmp_path / "w.json")
+    assembly = build(import_drawing(tmp_path / "w.json", SAID).wall).assembly
+    assert assembly.block_ids == ("ground", "column", "top")
+    assert assembly.fixed.tolist() == [True, False, False]
+    assert assembly.n_interfaces == 2
+    assert assembly.weight[1:] == pytest.approx([20.0 * 0.25 * 2.0, 20.0 * 0.25 * size**2])
 
 
 @pytest.mark.parametrize("suffix", [".npz", ".mat"])
