@@ -91,13 +91,13 @@ def _concluded(wall: str, loaded: tuple[float, float | None] | None) -> Answer:
         return Answer(Status.NOT_CONVERGED, Finding.NONE, sentence)
     stood, fell = loaded
     if fell is None:
-        sentence = f"{wall} stood at {stood:.6g}, the greatest multiplier asked."
+        sentence = f"{wall} stood at {stood:.6g} and is not shown to fall up to the greatest multiplier asked."
         return Answer(Status.NOT_CONVERGED, Finding.NONE, sentence)
     return Answer(
         Status.OK,
         Finding.COLLAPSES,
         f"{wall}, with springs in the contacts and gaps that distinct elements found, came to rest at {stood:.6g} and "
-        f"did not at {fell:.6g}.",
+        f"fell at {fell:.6g}.",
         multiplier=0.5 * (stood + fell),
         bracket=(stood, fell),
         bracket_meaning=BRACKET_MEANING,

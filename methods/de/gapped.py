@@ -16,7 +16,8 @@ from harness.model.assembly import Assembly, FloatArray
 from harness.model.displaced import DisplacedState
 from methods.de.bodies import RADIUS
 from methods.de.edges import FacingEdges
-from methods.de.loading import raise_until_it_falls
+from methods.de.loading import raise_until_it_falls, shown_to_fall
+from methods.de.motion import by_travel
 from methods.springs.factor import make_factor
 from methods.springs.newton import Equilibrium, newton
 from methods.springs.settings import GapSettings
@@ -56,7 +57,13 @@ class GappedRest:
 
 
 class GappedWall:
-    """A wall of blocks with given outlines, at rest somewhere, with springs in its contacts."""
+    """A wall of blocks with given outlines, at rest somewhere, with springs in its contacts.
+
+    Attributes:
+        assembly: the wall of even blocks.
+        rest: the last rest.
+        moved: multipliers at which it is shown to move.
+    """
 
     def __init__(self, assembly: Assembly, outlines: tuple[FloatArray, ...], places: FloatArray, reach: float) -> None:
         """The wall where an engine left it.
@@ -69,6 +76,7 @@ class GappedWall:
         """
         self.assembly, self._edges, self._reach = assembly, FacingEdges.of(assembly, outlines), reach
         self._first = places
+        self.moved: list[float] = []
         structure, openings = self._edges.at(places)
         self._shift = np.where(openings < CLOSED * assembly.length_scale, -openings, 0.0)
         none = np.zeros(2 * assembly.n_interfaces)
@@ -96,6 +104,9 @@ class GappedWall:
                 rest, step = None, step * min(1.0, STRIDE / max(size, STILL))
             places = places + step
             if not np.abs(places - before)[:, :2].max(initial=0.0) < self._reach * unit:
+                load = self.assembly.dead + multiplier * self.assembly.live
+                if by_travel(self.assembly, load, places - before, self._reach) is not None:
+                    self.moved.append(multiplier)
                 return False
             if rest is not None and size < STILL:
                 break
@@ -126,7 +137,7 @@ class GappedWall:
 
 
 def load_gapped(wall: GappedWall, greatest: float, step: float, accuracy: float) -> tuple[float, float | None] | None:
-    """The highest multiplier at which the wall came to rest and the lowest at which it did not.
+    """The highest multiplier at which the wall came to rest and the lowest at which it is shown to move, if any.
 
     Args:
         wall: the wall, which stays at its last rest.
@@ -135,7 +146,10 @@ def load_gapped(wall: GappedWall, greatest: float, step: float, accuracy: float)
     Returns:
         None where it does not come to rest under its dead load.
     """
-    return raise_until_it_falls(wall.rests, greatest, step, accuracy) if wall.rests(0.0) else None
+    if not wall.rests(0.0):
+        return None
+    ends = raise_until_it_falls(wall.rests, greatest, step, accuracy)
+    return shown_to_fall(wall.rests, wall.moved, ends, greatest, accuracy)
 
 
 def _at_rest(model: WallModel, multiplier: float) -> Equilibrium:

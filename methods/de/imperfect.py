@@ -10,9 +10,9 @@ from harness.model.assembly import Assembly
 from harness.model.method import Answer, Finding, Settings, Status, Traits
 from harness.model.rings import rings_of
 from methods.de.defects import Faces
-from methods.de.uneven import load_uneven
+from methods.de.uneven import Loading, load_uneven
 
-BRACKET_MEANING = "[highest multiplier at which it came to rest, lowest at which it did not]"
+BRACKET_MEANING = "[highest multiplier at which it came to rest, lowest at which it fell]"
 
 
 class UnevenSettings(Settings):
@@ -64,20 +64,26 @@ class UnevenBlocks:
             assembly, settings.size, settings.faces, settings.seed, settings.greatest, accuracy=settings.accuracy
         )
         wall = settings.wall
-        if found.stood is None:
-            return Answer(
-                Status.OK, Finding.FALLS, f"{wall} does not come to rest under its dead load.", flow="approximate"
-            )
-        if found.fell is None:
-            sentence = f"{wall} stood at {found.stood:.6g}, the greatest multiplier asked."
-            return Answer(Status.NOT_CONVERGED, Finding.NONE, sentence)
+        if found.stood is None and not found.undecided:
+            return Answer(Status.OK, Finding.FALLS, f"{wall} falls under its dead load.", flow="approximate")
+        if found.stood is None or found.fell is None:
+            return Answer(Status.NOT_CONVERGED, Finding.NONE, _without_fall(wall, found))
         return Answer(
             Status.OK,
             Finding.COLLAPSES,
-            f"{wall} came to rest at {found.stood:.6g} and did not at {found.fell:.6g}.",
+            f"{wall} came to rest at {found.stood:.6g} and fell at {found.fell:.6g}.",
             multiplier=0.5 * (found.stood + found.fell),
             bracket=(found.stood, found.fell),
             bracket_meaning=BRACKET_MEANING,
             flow="approximate",
             details={"drift": found.drift},
         )
+
+
+def _without_fall(wall: str, found: Loading) -> str:
+    """What is said of a wall that is not shown to move at any load."""
+    if found.stood is None:
+        return f"{wall} neither came to rest under its dead load nor is shown to fall."
+    if found.undecided:
+        return f"{wall} came to rest at {found.stood:.6g}, and above it neither did so nor is shown to fall."
+    return f"{wall} stood at {found.stood:.6g}, the greatest multiplier asked."

@@ -32,3 +32,24 @@ def raise_until_it_falls(
         else:
             fell = trial
     return stood, fell
+
+
+def shown_to_fall(
+    rests: Rests, moved: list[float], ends: tuple[float, float | None], greatest: float, rise: float
+) -> tuple[float, float | None]:
+    """The highest multiplier at which a wall came to rest and the least above it at which it is shown to move, if any.
+
+    Args:
+        rests: holds the wall, and notes in `moved` where it is shown to move.
+        moved: those multipliers.
+        ends: what `raise_until_it_falls` found.
+        greatest: multiplier at which the loading ends.
+        rise: where nothing shows a motion, so much more is tried, then twice as much again, and so on.
+    """
+    stood, trial = ends
+    while trial is not None and trial + rise <= greatest and not any(multiplier > stood for multiplier in moved):
+        trial += rise
+        rise *= 2.0
+        if rests(trial):
+            stood = trial
+    return stood, min((multiplier for multiplier in moved if multiplier > stood), default=None)

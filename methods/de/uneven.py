@@ -14,7 +14,8 @@ import numpy as np
 from harness.model.assembly import Assembly, FloatArray
 from methods.de.bodies import BlockSpace
 from methods.de.defects import Faces, block_height
-from methods.de.loading import REACH, raise_until_it_falls
+from methods.de.loading import REACH, raise_until_it_falls, shown_to_fall
+from methods.de.motion import by_travel
 
 SETTLING_DAMPING = 0.01
 """Part of the velocity kept by a unit of time sqrt(length scale / gravity) while the wall settles."""
@@ -95,7 +96,7 @@ def come_to_rest(space: BlockSpace, most_steps: int, reach: float) -> tuple[Floa
         if float(np.abs(now - before).max()) < 1e-5 * unit and space.speed() < 1e-4:
             return now, True
         before = now
-        if float(np.abs(now - start)[:, :2].max()) > reach * unit:
+        if float(np.abs(now - start)[:, :2].max()) >= reach * unit:
             break
     return before, False
 
@@ -106,13 +107,15 @@ class Loading:
 
     Attributes:
         stood: highest multiplier at which it came to rest; None if it did not under its dead load.
-        fell: lowest multiplier at which it did not, or None if it stood up to the greatest multiplier asked.
+        fell: lowest multiplier above it at which it is shown to move; None if there is none.
+        undecided: whether the least multiplier at which it did not come to rest is none at which it is shown to move.
         drift: largest displacement of a block at `stood` since the dead load, in length scales.
     """
 
     stood: float | None
     fell: float | None
     drift: float
+    undecided: bool = False
 
 
 def load_uneven(
@@ -141,10 +144,12 @@ def load_uneven(
     """
     outlines = uneven_blocks(assembly, size, faces, seed)
     space = BlockSpace(assembly, outlines, SETTLING_DAMPING)
-    rest, at_rest = come_to_rest(space, most_steps, np.inf)
+    rest, at_rest = come_to_rest(space, most_steps, reach)
     if not at_rest:
-        return Loading(None, 0.0, 0.0)
+        falls = by_travel(assembly, assembly.dead, rest, reach) is not None
+        return Loading(None, 0.0 if falls else None, 0.0, not falls)
     first, fallen = rest, False
+    moved: list[float] = []
 
     def rests(trial: float) -> bool:
         nonlocal space, rest, fallen
@@ -153,13 +158,18 @@ def load_uneven(
             space.put(rest)
         space.load(trial)
         places, at_rest = come_to_rest(space, most_steps, reach)
+        load = assembly.dead + trial * assembly.live
         if at_rest:
             rest = places
+        elif by_travel(assembly, load, places - rest, reach) is not None:
+            moved.append(trial)
         fallen = fallen or not at_rest
         return at_rest
 
-    stood, fell = raise_until_it_falls(rests, greatest, step, accuracy)
-    return Loading(stood, fell, float(np.abs(rest - first)[:, :2].max()) / assembly.length_scale)
+    ends = raise_until_it_falls(rests, greatest, step, accuracy)
+    stood, fell = shown_to_fall(rests, moved, ends, greatest, accuracy)
+    drift = float(np.abs(rest - first)[:, :2].max()) / assembly.length_scale
+    return Loading(stood, fell, drift, fell != ends[1])
 
 
 def with_contacts(assembly: Assembly, space: BlockSpace, places: FloatArray) -> tuple[Assembly, int]:
