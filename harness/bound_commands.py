@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import sys
 from pathlib import Path
-from typing import Any, Literal
+from typing import Literal
 
 import click
 
-from harness.certificates import read_certificate, write_certificate
+from harness.certificates import proved, read_certificate, write_certificate
 from harness.model.errors import InputError
 from harness.model.reading import read_wall
 from harness.options import catching, json_flag, print_json, say
@@ -45,7 +45,7 @@ def bound(wall: Path, output: Path, nodes: int, seconds: float, effort: Literal[
         say("No certificate: nothing was proved in time, or the wall's numbers are not short fractions.", err=True)
         sys.exit(1)
     write_certificate(output, document)
-    say(_sentence(document))
+    say(f"{proved(document).capitalize()}.")
 
 
 @click.command(name="verify-bound")
@@ -72,14 +72,6 @@ def verify_bound(certificate: Path, wall: Path | None, as_json: bool) -> None:
     if as_json:
         print_json({"holds": True, "bound": str(lower), "multiplier": str(upper), "value": float(upper)})
     else:
-        say(_sentence(document))
+        say(f"{proved(document).capitalize()}.")
         if wall is not None:
             say(f"It is of the wall in {wall}.")
-
-
-def _sentence(document: dict[str, Any]) -> str:
-    none = "none from zero to below" if "windows" in document else "none below"
-    state, bound = document["multiplier"], document["bound"]
-    if "state" not in document:
-        return f"There is {none} {bound}: proved in fractions; to rounding there is a collapse state at {state}."
-    return f"There is a collapse state at {state}, and {none} {bound}: proved in fractions."

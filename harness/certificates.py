@@ -6,6 +6,7 @@ import gzip
 import json
 import zlib
 from collections.abc import Sequence
+from fractions import Fraction
 from pathlib import Path
 from typing import Any
 
@@ -18,6 +19,7 @@ from harness.model.reading import LARGEST_FILE, json_of, read_bytes, read_json
 from harness.model.result import Result, Verdict
 from methods.bound.exact_wall import CertificateError
 from methods.bound.same_wall import require_same_wall
+from methods.bound.tuning import PRECISION
 from methods.bound.verify import verify
 
 CERTIFICATE = "certificate.json"
@@ -62,6 +64,18 @@ def write_certificate(path: Path, document: dict[str, Any]) -> None:
         path.write_text(json.dumps(document, indent=None if "windows" in document else 1), encoding="utf-8")
 
 
+def proved(document: Any) -> str:
+    """What a certificate that holds proves, as the main clause of a sentence."""
+    least = "no collapse state lies from zero to below" if "windows" in document else "no collapse state lies below"
+    bound, state = (
+        text if len(text) <= PRECISION.shown else f"{float(Fraction(text)):.9g}"
+        for text in (str(document["bound"]), str(document["multiplier"]))
+    )
+    if "state" not in document:
+        return f"{least} {bound}, proved in fractions, and one at {state} to rounding"
+    return f"{least} {bound}, and one at {state}, proved in fractions"
+
+
 def certificate_runs(cases: Sequence[Case], limits: Limits) -> list[Run]:
     """The runs whose multipliers the certificates of the cases are held to."""
     return [Run(case, library().methods.one, {}, limits) for case in cases if certificate_of(case) is not None]
@@ -80,9 +94,8 @@ def certificate_line(run: Run, result: Result) -> dict[str, Any]:
     try:
         document = read_certificate(path)
         require_same_wall(document, run.case.assembly)
-        proved = verify(document)
-        lower = float(proved[0])
-        verdict, sentence = _held(result, lower, f"none lies below {proved[0]}, one at {proved[1]}")
+        lower = float(verify(document)[0])
+        verdict, sentence = _held(result, lower, proved(document))
     except (CertificateError, InputError) as error:
         verdict, sentence = Verdict.VIOLATES_BOUND, f"the certificate is refused: {error}"
     return {
@@ -105,8 +118,8 @@ def certificate_line(run: Run, result: Result) -> dict[str, Any]:
 
 def _held(result: Result, lower: float, proved: str) -> tuple[Verdict, str]:
     if result.finding is not Finding.COLLAPSES or result.multiplier is None:
-        return Verdict.OUTSIDE_TOLERANCE, f"{proved}: proved in fractions, and {result.method} gives no multiplier"
+        return Verdict.OUTSIDE_TOLERANCE, f"{proved}, and {result.method} gives no multiplier"
     found = f"{result.method} finds {result.multiplier:.9g}"
     if result.multiplier < lower - ROUNDING * abs(lower):
-        return Verdict.VIOLATES_BOUND, f"{proved}: proved in fractions, and {found}"
-    return Verdict.AGREES, f"{proved}: proved in fractions; {found}"
+        return Verdict.VIOLATES_BOUND, f"{proved}, and {found}"
+    return Verdict.AGREES, f"{proved}; {found}"

@@ -12,7 +12,7 @@ from harness.model.method import Answer, Finding, Settings, Status, Traits
 from methods.bound.bracket import Bracket
 from methods.bound.exact_wall import CertificateError
 from methods.bound.same_wall import require_same_wall
-from methods.bound.tuning import WINDOWS
+from methods.bound.tuning import PRECISION, WINDOWS
 from methods.bound.verify import verify
 from methods.la.certify import certificate
 from methods.la.family import LimitAnalysisFamily
@@ -25,9 +25,6 @@ from methods.numerics.statics import analysed
 from methods.springs.warm_up import load_kernels
 
 load_kernels()
-
-SHORT = 40
-"""Characters of a fraction that a sentence shows."""
 
 
 class BoundedLimitAnalysis(LimitAnalysisFamily):
@@ -99,7 +96,7 @@ def certified(known: Answer, document: dict[str, Any] | None) -> Answer:
         )
     if abs(float(upper) - known.multiplier) > SAME * max(abs(known.multiplier), SAME):
         return known
-    exact = str(upper) if len(str(upper)) <= SHORT else f"{float(upper):.9g}"
+    exact = str(upper) if len(str(upper)) <= PRECISION.shown else f"{float(upper):.9g}"
     state = "" if "state" in document else " (its forces to rounding)"
     sentence = (
         f"The minimum collapse multiplier is {exact} to two millionths, proved in fractions: "
