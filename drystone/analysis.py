@@ -4,21 +4,24 @@ from __future__ import annotations
 
 import time
 from datetime import UTC, datetime
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
-import pandas as pd
-from matplotlib.figure import Figure
 from pydantic import PrivateAttr
 
 from drystone.walls import Wall
-from harness.engine.compare import judged
+from harness.engine import compare as engine
 from harness.engine.judge import judge as judge_result
 from harness.engine.plan import Limits, Run, check_methods
 from harness.engine.provenance import machine, versions
+from harness.model.errors import InputError
 from harness.model.method import Answer, Method, check_takes, load_method, method_names, traits_of
 from harness.model.reading import validate
 from harness.model.result import Judgement, result_of
 from harness.model.result import Result as Record
+
+if TYPE_CHECKING:
+    import pandas as pd
+    from matplotlib.figure import Figure
 
 
 class Result(Record):
@@ -49,6 +52,8 @@ class Result(Record):
 
     def forces_to_pandas(self) -> pd.DataFrame:
         """Contact forces: one row an interface with its blocks and n1, n2, s; `attrs["units"]` names the unit."""
+        import pandas as pd
+
         assembly = self._wall.assembly
         ends = zip(assembly.block_a, assembly.block_b, strict=True)
         pairs = [(assembly.block_ids[a], assembly.block_ids[b]) for a, b in ends]
@@ -59,6 +64,8 @@ class Result(Record):
 
     def mechanism_to_pandas(self) -> pd.DataFrame:
         """The mechanism: one row a block with ux, uy, omega, scaled so that the fastest vertex has speed 1."""
+        import pandas as pd
+
         table = pd.DataFrame({"block": self._wall.assembly.block_ids})
         names = ["ux", "uy", "omega"]
         table[names] = pd.DataFrame(self.mechanism or [], columns=names).reindex(table.index)
@@ -94,30 +101,49 @@ def methods() -> list[str]:
     return method_names()
 
 
-def analyse(wall: Wall, method: str | Method = "la", **settings: Any) -> Result:
-    """What a method finds on a wall, in this process and without limits of time or memory; judged.
+def analyse(
+    wall: Wall,
+    method: str | Method = "la",
+    *,
+    isolated: bool = False,
+    seconds: float = Limits().seconds,
+    memory_bytes: int = Limits().memory_bytes,
+    **settings: Any,
+) -> Result:
+    """What a method finds on a wall, judged; in this process and without limits unless it is isolated.
 
     Args:
         wall: the wall.
         method: its name; `methods()` lists them. Or a method of your own, as an object.
+        isolated: in a process of its own, so that a method that hangs or crashes gives a result that says so.
+        seconds: wall-clock limit of an isolated run [s].
+        memory_bytes: memory limit of an isolated run [bytes].
         settings: of the method, by name; what is not given has its default.
 
     Raises:
-        InputError: an unknown method or setting, or a wall that the method refuses.
+        InputError: an unknown method or setting, a wall that the method refuses (isolated: the result says so), or one
+            of your own is to be isolated.
     """
     if isinstance(method, str):
         check_methods([method], "method")
         loaded = load_method(method)
+    elif isolated:
+        raise InputError("an isolated method is called by its name", "Give it an entry point, or run it here", "method")
     else:
         loaded = method
-    name = loaded.name
     chosen = validate(loaded.Settings, settings, "settings")
+    references = tuple(item for item in wall.case.file.references if loaded.name in item.applies_to)
+    fitting = tuple(item for item in references if item.settings == settings)
+    run = Run(wall.case, loaded.name, settings, Limits(seconds, memory_bytes), fitting)
+    if isolated:
+        (record,) = engine.execute([run], None, 1)
+        return Result.on(wall, record)
     check_takes(loaded, wall.assembly)
     started, clock, work = datetime.now(UTC), time.perf_counter(), time.process_time()
     answer = loaded.solve(wall.assembly, chosen)
     cost = {"cpu_seconds": time.process_time() - work, "wall_seconds": time.perf_counter() - clock}
     record = result_of(
-        answer, wall.assembly, case=wall.name, method=name, family=loaded.family, traits=traits_of(loaded)
+        answer, wall.assembly, case=wall.name, method=loaded.name, family=loaded.family, traits=traits_of(loaded)
     ).model_copy(
         update={
             **cost,
@@ -127,9 +153,7 @@ def analyse(wall: Wall, method: str | Method = "la", **settings: Any) -> Result:
             "started": started.isoformat(timespec="seconds"),
         }
     )
-    references = tuple(item for item in wall.case.file.references if name in item.applies_to)
-    fitting = tuple(item for item in references if item.settings == settings)
-    return Result.on(wall, judged(Run(wall.case, name, settings, Limits(), fitting), record, loaded.tolerance))
+    return Result.on(wall, engine.judged(run, record, loaded.tolerance))
 
 
 def judge(wall: Wall, answer: Answer | Record, tolerance: float = 1e-9) -> Judgement:

@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
+from contextlib import nullcontext
 from dataclasses import dataclass
 from pathlib import Path
-
-import pandas as pd
-from matplotlib.figure import Figure
+from typing import TYPE_CHECKING, Any
 
 from drystone.analysis import Result, analyse
 from drystone.walls import Wall
@@ -19,6 +18,10 @@ from harness.engine.store import open_store
 from harness.model.comparison import ComparisonRun
 from harness.model.errors import InputError
 from harness.model.result import Result as Record
+
+if TYPE_CHECKING:
+    import pandas as pd
+    from matplotlib.figure import Figure
 
 
 @dataclass(frozen=True)
@@ -48,6 +51,8 @@ class Comparison:
 
     def multipliers(self) -> pd.DataFrame:
         """Multipliers by wall (rows) and method (columns), in the order given."""
+        import pandas as pd
+
         table = pd.DataFrame([(item.case, item.method, item.multiplier) for item in self.results])
         table.columns = pd.Index(["wall", "method", "multiplier"])
         wide = table.pivot(index="wall", columns="method", values="multiplier")
@@ -84,18 +89,29 @@ def compare(
     seconds: float = Limits().seconds,
     memory_bytes: int = Limits().memory_bytes,
     store: str | Path | None = None,
+    settings: Mapping[str, dict[str, Any]] | None = None,
+    fresh: bool = False,
+    told: engine.Told | None = None,
+    title: str = "",
+    command: str = "drystone.compare",
+    studies: Sequence[dict[str, Any]] = (),
 ) -> Comparison:
     """Run methods on walls, judge every answer, and hold them against references and theory.
 
     Args:
         walls: one wall or several.
-        methods: names of methods; None: those of each case, else fe, la, la-associated and de.
+        methods: names of methods; None: those of each case, else those of the library.
         isolated: each run in a process of its own, so that one that hangs or crashes costs its row only; False: in this
             process, one after the other, without limits.
         jobs: isolated runs at a time.
         seconds: wall-clock limit of an isolated run [s].
         memory_bytes: memory limit of an isolated run [bytes].
-        store: file in which results are looked for and kept; None: nowhere.
+        store: file in which results and what the comparison consisted of are kept and looked for; None: nowhere.
+        settings: of methods, by name, where not the defaults.
+        fresh: run again what is in the store.
+        told: called after each isolated run with the run, its result and whether it was stored.
+        title, command: what the report says was compared, and how to repeat it.
+        studies: for the report to draw, as `reports.studies` describes them.
 
     Raises:
         InputError: an unknown method, two walls of one name, or a store that is damaged.
@@ -108,21 +124,22 @@ def compare(
     if methods is not None:
         check_methods(methods, "methods")
     limits = Limits(seconds, memory_bytes)
-    planned = [run for wall in chosen for run in plan_case(wall.case, methods, limits)]
-    results = _isolated(planned, jobs, store) if isolated else _here(chosen, planned)
+    planned = [run for wall in chosen for run in plan_case(wall.case, methods, limits, settings=settings)]
     cases = [wall.case for wall in chosen]
-    run = engine.comparison_run(", ".join(names), "drystone.compare", cases, planned, results)
+    with nullcontext() if store is None else open_store(Path(store)) as opened:
+        if isolated:
+            announce(run.method for run in planned)
+            results = engine.execute(planned, opened, jobs, fresh=fresh, told=told)
+        else:
+            results = _here(chosen, planned)
+        run = engine.comparison_run(title or ", ".join(names), command, cases, planned, results)
+        if studies:
+            run.provenance["studies"] = list(studies)
+        if opened is not None:
+            engine.remember(opened, run, planned)
     by_name = {wall.name: wall for wall in chosen}
     rows = [Result.on(by_name[item.case.id], result) for item in run.cases for result in item.results]
     return Comparison(chosen, rows, run)
-
-
-def _isolated(planned: list[Run], jobs: int, store: str | Path | None) -> list[Record]:
-    announce(run.method for run in planned)
-    if store is None:
-        return engine.execute(planned, None, jobs)
-    with open_store(Path(store)) as opened:
-        return engine.execute(planned, opened, jobs)
 
 
 def _here(walls: list[Wall], planned: list[Run]) -> list[Record]:

@@ -5,9 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
-
-from matplotlib.figure import Figure
+from typing import TYPE_CHECKING, Any
 
 from harness import formats
 from harness.engine.plan import find_cases
@@ -16,6 +14,9 @@ from harness.model.assembly import Assembly
 from harness.model.case import Case, CaseFile, case_folders, case_of_wall, id_of, shipped_cases
 from harness.model.errors import InputError, did_you_mean
 from harness.model.wall import Wall as Description
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
 
 formats.register()
 

@@ -11,14 +11,16 @@ from typing import Any
 
 import click
 
+from drystone.analysis import analyse
+from drystone.comparing import compare as make_comparison
+from drystone.walls import Wall
 from harness import terminal
 from harness.engine import compare as comparing
 from harness.engine import regression
 from harness.engine.isolate import announce
-from harness.engine.plan import Limits, Run, check_methods, find_cases, plan_case
+from harness.engine.plan import Limits, check_methods, find_cases, plan_case
 from harness.engine.store import open_store
 from harness.junit import tests_of_comparison, write_junit
-from harness.model.case import Case
 from harness.model.comparison import ComparisonRun
 from harness.model.errors import InputError, did_you_mean
 from harness.model.library import library
@@ -68,10 +70,8 @@ def run(
     check_methods([method], "method")
     (found,) = find_cases([case], None, folders)
     chosen = _settings(method, settings)
-    limits = Limits(seconds, memory * 2**20)
-    references = tuple(item for item in found.file.references if method in item.applies_to and item.settings == chosen)
     warn(found)
-    (result,) = comparing.execute([Run(found, method, chosen, limits, references)], None, 1)
+    result = analyse(Wall(found), method, isolated=True, seconds=seconds, memory_bytes=memory * 2**20, **chosen)
     if as_json:
         print_json(result.model_dump(mode="json") if fields else result.summary())
     else:
@@ -174,11 +174,26 @@ def compare(
     title = ", ".join(cases) if cases else f"suite {suite or 'small'}"
     asked = method_settings(settings)
     written = None if no_report else report
-    announce(planned.method for case in chosen for planned in plan_case(case, names, limits))
-    study = None if studied is None else curve_of_shipped(studied, jobs, store, fresh=fresh, quiet=as_json)
-    compared = _compare(
-        title, chosen, names, limits, jobs, written, store, fresh, quiet=as_json, study=study, settings=asked
-    )
+    planned = [run for case in chosen for run in plan_case(case, names, limits, settings=asked)]
+    announce(run.method for run in planned)
+    study = [] if studied is None else [curve_of_shipped(studied, jobs, store, fresh=fresh, quiet=as_json)]
+    with terminal.progress(len(planned), quiet=as_json) as told:
+        compared = make_comparison(
+            [Wall(case) for case in chosen],
+            names,
+            jobs=jobs,
+            seconds=limits.seconds,
+            memory_bytes=limits.memory_bytes,
+            store=store,
+            settings=asked,
+            fresh=fresh,
+            told=told,
+            title=title,
+            command=_command_line(),
+            studies=study,
+        ).run
+    if written is not None:
+        _write_report(compared, written)
     if junit is not None:
         write_junit(f"drystone compare, {title}", tests_of_comparison(compared), junit)
     if as_json:
@@ -186,34 +201,6 @@ def compare(
     else:
         terminal.print_comparison(compared, written)
     sys.exit(1 if regression.violations(compared) else 0)
-
-
-def _compare(
-    title: str,
-    chosen: list[Case],
-    methods: list[str] | None,
-    limits: Limits,
-    jobs: int,
-    report: Path | None,
-    store: Path,
-    fresh: bool,
-    *,
-    quiet: bool,
-    study: dict[str, Any] | None = None,
-    settings: dict[str, dict[str, Any]] | None = None,
-) -> ComparisonRun:
-    """Run, judge, store and report; what is printed afterwards is the command's own affair."""
-    runs = [planned for case in chosen for planned in plan_case(case, methods, limits, settings=settings)]
-    with open_store(store) as opened:
-        with terminal.progress(len(runs), quiet=quiet) as told:
-            results = comparing.execute(runs, opened, jobs, fresh=fresh, told=told)
-        compared = comparing.comparison_run(title, _command_line(), chosen, runs, results)
-        if study is not None:
-            compared.provenance["studies"] = [study]
-        comparing.remember(opened, compared, runs)
-    if report is not None:
-        _write_report(compared, report)
-    return compared
 
 
 def _command_line() -> str:

@@ -8,9 +8,10 @@ from typing import Any
 
 import click
 
+from drystone.analysis import judge as judge_answer
+from drystone.walls import read_wall as wall_of_file
 from harness import terminal
 from harness.engine import compare as comparing
-from harness.engine.judge import judge as judge_result
 from harness.engine.plan import Limits, Run, check_methods, find_cases
 from harness.engine.store import open_store
 from harness.model.case import Case, case_folders, read_case, shipped_cases
@@ -18,7 +19,7 @@ from harness.model.errors import InputError
 from harness.model.library import library
 from harness.model.method import Finding, Status, load_method, method_names
 from harness.model.reading import read_json, read_wall, wall_json
-from harness.model.result import Result, result_of
+from harness.model.result import Result
 from harness.model.wall import Wall
 from harness.options import cases_option, catching, json_flag, print_json, say, say_json, store_option, warn
 
@@ -97,15 +98,14 @@ def judge(wall: Path, result: Path, tolerance: float, as_json: bool) -> None:
     besides, which balance the live load alone. Exit code 0: accepted; 1: rejected; 3: not judged, because the answer
     shows nothing that proves its claim.
     """
-    built = read_wall(wall)
-    for sentence in built.warnings:
+    described = wall_of_file(wall)
+    for sentence in described.warnings:
         say(f"drystone: {sentence}", err=True)
-    answer = terminal.foreign_answer(read_json(result), built.assembly, str(result))
-    judged = result_of(answer, built.assembly, case=wall.stem, method="foreign", family="foreign")
-    judgement = judge_result(built.assembly, judged, tolerance)
+    answer = terminal.foreign_answer(read_json(result), described.assembly, str(result))
+    judgement = judge_answer(described, answer, tolerance)
     if as_json:
         print_json(
-            judgement.model_dump(mode="json") | {"multiplier": judged.multiplier, "finding": str(judged.finding)}
+            judgement.model_dump(mode="json") | {"multiplier": answer.multiplier, "finding": str(answer.finding)}
         )
     else:
         terminal.print_judgement(judgement)

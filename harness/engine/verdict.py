@@ -102,7 +102,7 @@ def theory_gates(results: CaseResults) -> list[Gate]:
     """The statements of limit analysis that tie the methods' answers on one case together.
 
     Sources: bounds of associated limit analysis hold for every state in equilibrium within yield (Drucker 1954;
-    Livesley 1978 for masonry); a finite-element plateau is a collapse state (Baggio and Trovalusci 1995, section 2).
+    Livesley 1978 for masonry); a finite-element plateau is a collapse state (Baggio and Trovalusci 1995).
     """
     usable = {
         result.method: result for result in results.results if result.status is Status.OK and result.judge.accepted

@@ -39,7 +39,7 @@ class UnevenSettings(Settings):
 
 
 class UnevenBlocks:
-    """Distinct elements on a wall with seeded defects of planarity (C. Baggio and P. Trovalusci 1995, section 4)."""
+    """Distinct elements on a wall with seeded defects of planarity (C. Baggio and P. Trovalusci 1995, section 6)."""
 
     name: ClassVar[str] = "de-uneven"
     family: ClassVar[str] = "de"
