@@ -182,7 +182,7 @@ def check_takes(method: Method, assembly: Assembly) -> None:
         raise InputError(
             f"{method.name} lets no joint lift as it slides; that between {names} has the dilatancy "
             f"{assembly.law.dilatancy[joint]:g}",
-            "Take la or la-associated, or leave the dilatancy out",
+            "Take a method of limit analysis (`drystone list methods`), or leave the dilatancy out",
         )
 
 
