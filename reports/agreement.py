@@ -20,7 +20,9 @@ class Agreement:
 
     Attributes:
         first, second: names of the methods.
-        difference: multiplier of the second over that of the first, less one.
+        difference: multiplier of the second over that of the first, less one; of a measured bracket the nearest end,
+            and 0 where the other lies within.
+        within: whether one of the two is a measured bracket and the other lies within it.
         cosine: of the two velocity fields, 1 where they are the same motion.
         same_state: share of interfaces in the same state.
         only_first, only_second: ids of blocks that move in one and not in the other.
@@ -33,6 +35,43 @@ class Agreement:
     same_state: float | None
     only_first: list[str]
     only_second: list[str]
+    within: bool = False
+
+
+def range_of(result: Result) -> tuple[float, float] | None:
+    """Where the multiplier lies as the method vouches for it: a measured one in its bracket, another at its value."""
+    if result.multiplier is None:
+        return None
+    if result.flow == "approximate" and result.bracket is not None:
+        return result.bracket
+    return result.multiplier, result.multiplier
+
+
+def mains(item: CaseResults) -> list[Result]:
+    """The main method of every family that gave an answer, in the paper's order."""
+    return [result for result in item.mains if result.status is Status.OK]
+
+
+def spread(item: CaseResults) -> float | None:
+    """How far the families are apart at least, as a share of the lowest; a measured value is its whole bracket."""
+    known = [
+        ends
+        for r in mains(item)
+        if r.finding is Finding.COLLAPSES and r.judge.accepted is not False and (ends := range_of(r)) is not None
+    ]
+    if len(known) < 2 or min(high for _, high in known) <= 0.0:
+        return None
+    return max(0.0, max(low for low, _ in known) / min(high for _, high in known) - 1.0)
+
+
+def _difference(first: Result, second: Result) -> tuple[float | None, bool]:
+    """The second multiplier over the first, less one, between the nearest ends; and whether a bracket holds both."""
+    one, other = range_of(first), range_of(second)
+    if one is None or other is None or min(*one, *other) <= 0.0:
+        return None, False
+    if other[0] <= one[1] and one[0] <= other[1]:
+        return 0.0, one[0] < one[1] or other[0] < other[1]
+    return (other[0] / one[1] if other[0] > one[1] else other[1] / one[0]) - 1.0, False
 
 
 def measure_of(assembly: Assembly) -> FloatArray:
@@ -67,9 +106,7 @@ def _polar_moment(polygon: FloatArray, centroid: FloatArray) -> float:
 def agreement(assembly: Assembly, first: Result, second: Result, measure: FloatArray | None = None) -> Agreement:
     """How far two results agree; None where one of them lacks what is compared."""
     measure = measure_of(assembly) if measure is None else measure
-    difference = None
-    if first.multiplier and second.multiplier is not None:
-        difference = second.multiplier / first.multiplier - 1.0
+    difference, within = _difference(first, second)
     cosine, same = None, None
     only_first: list[str] = []
     only_second: list[str] = []
@@ -81,7 +118,7 @@ def agreement(assembly: Assembly, first: Result, second: Result, measure: FloatA
         only_second = [assembly.block_ids[i] for i in np.flatnonzero(moves_too & ~moves)]
     if first.states and second.states and "approximate" not in (first.flow, second.flow):
         same = float(np.mean([a == b for a, b in zip(first.states, second.states, strict=True)]))
-    return Agreement(first.method, second.method, difference, cosine, same, only_first, only_second)
+    return Agreement(first.method, second.method, difference, cosine, same, only_first, only_second, within)
 
 
 def agreements(item: CaseResults) -> list[Agreement]:

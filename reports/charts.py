@@ -114,11 +114,20 @@ class Axis:
         """A tick's label."""
         if self.log and not 1e-2 <= value < 1e4:
             return numbers.power(value)
-        return numbers.plain(float(f"{value:.4g}"), 4) if value == 0.0 else _short(value)
+        return "0" if value == 0.0 else _short(value, self._digits)
+
+    @property
+    def _digits(self) -> int:
+        """Significant digits that tell one tick from the next."""
+        if self.log or len(self.ticks) < 2:
+            return 4
+        step = self.ticks[1] - self.ticks[0]
+        largest = max(abs(self.ticks[0]), abs(self.ticks[-1]))
+        return max(4, math.ceil(math.log10(largest / step) + 1e-9) + 1)
 
 
-def _short(value: float) -> str:
-    return f"{value:.4g}".replace("-", "−") if 1e-3 <= abs(value) < 1e5 else numbers.power(value, 2)
+def _short(value: float, digits: int = 4) -> str:
+    return f"{value:.{digits}g}".replace("-", "−") if 1e-3 <= abs(value) < 1e5 else numbers.power(value, 2)
 
 
 def thin(x: list[float], y: list[float], most: int = MOST_POINTS) -> tuple[list[float], list[float]]:

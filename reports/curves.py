@@ -16,11 +16,13 @@ from reports.marks import mark_of
 
 TIMES = ("cpu_seconds", "seconds", "search_seconds")
 """Columns of a path that tell when a value was found [s]."""
+SAME = 1e-9
+"""Relative difference of values that a chart would draw as one: there is nothing to see, and words say it."""
 LENGTHS = ("live_displacement", "displacement")
 
 
 def curves(item: CaseResults) -> list[tuple[str, Markup]]:
-    """Captions and charts of a case, as far as its results recorded a path."""
+    """Captions and charts of a case, as far as its results recorded a path; an empty chart where words say it all."""
     found: list[tuple[str, Markup]] = []
     ordered = sorted(item.results, key=words.order)
     for result in ordered:
@@ -171,6 +173,9 @@ def _orders(result: Result) -> list[tuple[str, Markup]]:
 def _starts(result: Result) -> tuple[str, Markup]:
     """The collapse states that the starts of a search lead to, and the least known after each of them."""
     values = [float(value) for value in result.details["start_values"]]
+    if max(values) - min(values) <= SAME * abs(min(values)):
+        every = f"each of {len(values)} starts of the search leads to {numbers.multiplier(min(values))}"
+        return f"{result.method}: {every}.", Markup("")
     number = [float(k) for k in range(1, len(values) + 1)]
     least = [min(values[:k]) for k in range(1, len(values) + 1)]
     levels = []
@@ -219,6 +224,11 @@ def _history(results: list[Result]) -> tuple[str, Markup] | None:
         )
     if not series:
         return None
+    if all(len(line.x) == 1 for line in series):
+        told = [
+            f"{line.name} knew {numbers.multiplier(line.y[0])} after {numbers.seconds(line.x[0])}" for line in series
+        ]
+        return f"Of the search: {', '.join(told)} of CPU time, and found nothing lower.", Markup("")
     levels = [
         (f"associated maximum {numbers.multiplier(result.multiplier)}", result.multiplier)
         for result in results

@@ -127,12 +127,17 @@ def _study(drawn: list[tuple[Members, list[charts.Series]]], parameter: Paramete
     for members, series in drawn:
         title = members[0][1].case.file.title
         chart = charts.Chart(f"Multiplier against {parameter.name}, {title}", parameter.label, "multiplier", series)
-        found.append((f"{title} and its kin. {_changes(members)}" if len(drawn) > 1 else "", charts.svg(chart)))
+        found.append(
+            (
+                f"{title}, and the same with other {parameter.name}. {_changes(members)}" if len(drawn) > 1 else "",
+                charts.svg(chart),
+            )
+        )
     how_many = (
         f"The same wall with {len({value for value, _ in first})} values of {parameter.name}, all methods in one plot"
     )
     return Study(
-        f"Multiplier against {parameter.name}: {first[0][1].case.file.title} and its kin",
+        f"Multiplier against {parameter.name}: walls that differ in it alone",
         f"{how_many}. {_changes(first)}" if len(drawn) == 1 else f"{how_many}; {len(drawn)} walls side by side.",
         "A bar is a bracket. Where a line bends, another mechanism takes over; where the lines part, the answer "
         "depends on the flow rule or on the path, and the least one known is the one to trust.",

@@ -11,7 +11,7 @@ from harness.model.comparison import CaseResults, ComparisonRun
 from harness.model.method import Finding, Status
 from harness.model.result import Result, Verdict
 from reports import drawing, numbers, paper, shapes, words
-from reports.agreement import agreement
+from reports.agreement import agreement, mains, spread
 from reports.facts import value_in_words
 from reports.joints import joints_in_words, motion
 from reports.reasons import SAME_MOTION, least_known, mechanism_in_words
@@ -93,7 +93,7 @@ def _rank(item: CaseResults) -> int:
     if item.case.id in paper.printed().cases:
         return 1
     wrong = any(gate.passed is False for gate in item.gates) or any(_wrong(result) for result in item.results)
-    return 2 if wrong or (_spread(item) or 0.0) > CLOSE else 3
+    return 2 if wrong or (spread(item) or 0.0) > CLOSE else 3
 
 
 def red_rows(run: ComparisonRun) -> list[RedRow]:
@@ -128,11 +128,6 @@ def _broken_theory(run: ComparisonRun) -> list[str]:
     return [f"Theory is violated on {', '.join(broken)}: at least one method is wrong there."]
 
 
-def _mains(item: CaseResults) -> list[Result]:
-    """The main method of every family that gave an answer, in the paper's order."""
-    return [result for result in item.mains if result.status is Status.OK]
-
-
 def _called(result: Result, item: CaseResults) -> str:
     if certified_bound(item, result) is not None:
         return "minimum, proved"
@@ -142,8 +137,8 @@ def _called(result: Result, item: CaseResults) -> str:
 def wall_findings(item: CaseResults, *, short: bool = False) -> str:
     """What was found of one wall, in a few sentences; `short` leaves the mechanism out."""
     least, assembly = least_known(item), item.case.assembly
-    mains = _mains(item)
-    others = ", ".join(f"{r.method.upper()} {value_in_words(r)}" for r in mains if r is not least)
+    answered = mains(item)
+    others = ", ".join(f"{r.method.upper()} {value_in_words(r)}" for r in answered if r is not least)
     if least is None:
         answers = others or "no method gave an answer"
         return f"{item.case.id}: no collapse state without dilatancy was accepted ({answers})."
@@ -166,44 +161,32 @@ def _above(second: Result, first: Result) -> bool:
     return (second.multiplier or 0.0) > (first.multiplier or 0.0) * (1.0 + 1e-6)
 
 
-def _spread(item: CaseResults) -> float | None:
-    """How far the families are apart at least, as a share of the lowest; a measured value is its whole bracket."""
-    known = [
-        (r.bracket if r.flow == "approximate" and r.bracket is not None else (r.multiplier, r.multiplier))
-        for r in _mains(item)
-        if r.multiplier is not None and r.finding is Finding.COLLAPSES and r.judge.accepted is not False
-    ]
-    if len(known) < 2 or min(high for _, high in known) <= 0.0:
-        return None
-    return max(0.0, max(low for low, _ in known) / min(high for _, high in known) - 1.0)
-
-
 def _agreement(item: CaseResults) -> str:
     """Whether the families agree on a wall, and in a clause why where they part."""
-    spread = _spread(item)
-    if spread is None:
+    apart_by = spread(item)
+    if apart_by is None:
         return ""
-    if spread <= 1e-4:
+    if apart_by <= 1e-4:
         return "The methods agree."
-    if spread <= CLOSE:
-        return f"They lie within {100.0 * spread:.2f} % of each other."
+    if apart_by <= CLOSE:
+        return f"They lie within {100.0 * apart_by:.2f} % of each other."
     least = least_known(item)
     apart = [
         r
-        for r in _mains(item)
+        for r in mains(item)
         if r is not least and r.mechanism is not None and r.flow == "non-associated" and least is not None
     ]
     if least is None or not apart:
-        return f"They part by {100.0 * spread:.1f} %."
+        return f"They part by {100.0 * apart_by:.1f} %."
     pair = agreement(item.case.assembly, least, apart[0])
     if pair.cosine is None:
-        return f"They part by {100.0 * spread:.1f} %."
+        return f"They part by {100.0 * apart_by:.1f} %."
     why = (
         "the mechanism is the same and the forces differ, which equilibrium does not determine"
         if pair.cosine >= SAME_MOTION
         else "the mechanisms differ"
     )
-    return f"They part by {100.0 * spread:.1f} %: {why}."
+    return f"They part by {100.0 * apart_by:.1f} %: {why}."
 
 
 def which_number(item: CaseResults) -> str:
@@ -233,7 +216,7 @@ def which_number(item: CaseResults) -> str:
             f"a lower one is not excluded{proof}."
         )
     sentences = [first]
-    springs = [r for r in _mains(item) if r.traits.elastic and r is not least and r.multiplier is not None]
+    springs = [r for r in mains(item) if r.traits.elastic and r is not least and r.multiplier is not None]
     if springs and springs[0].finding is Finding.COLLAPSES:
         sentences.append(
             f"Elastic joints without self-stress would give {_or_the_same(springs[0], least)} ({springs[0].method})."
@@ -254,7 +237,7 @@ def _or_the_same(result: Result, least: Result) -> str:
 
 
 def _suite(items: list[CaseResults]) -> list[str]:
-    spreads = [(spread, item.case.id) for item in items if (spread := _spread(item)) is not None]
+    spreads = [(by, item.case.id) for item in items if (by := spread(item)) is not None]
     if not spreads:
         return []
     apart = sorted((entry for entry in spreads if entry[0] > CLOSE), reverse=True)
@@ -264,7 +247,7 @@ def _suite(items: list[CaseResults]) -> list[str]:
     )
     if not apart:
         return [f"{sentence}."]
-    named = ", ".join(f"{name} ({100.0 * spread:.1f} %)" for spread, name in apart[:6])
+    named = ", ".join(f"{name} ({100.0 * by:.1f} %)" for by, name in apart[:6])
     more = f" and {len(apart) - 6} more" if len(apart) > 6 else ""
     return [f"{sentence}; they part on {named}{more}."]
 
@@ -276,7 +259,7 @@ def _focus(items: list[CaseResults], one: bool) -> CaseResults | None:
         return None
     return next(
         (item for item in drawn if one or item.case.id == paper.printed().wall.case),
-        max(drawn, key=lambda item: _spread(item) or 0.0),
+        max(drawn, key=lambda item: spread(item) or 0.0),
     )
 
 
@@ -287,7 +270,7 @@ def figure_of(item: CaseResults) -> tuple[Markup, str]:
         return Markup(""), ""
     apart = [
         r
-        for r in _mains(item)
+        for r in mains(item)
         if r is not least and r.mechanism is not None and r.finding is Finding.COLLAPSES and r.flow == "non-associated"
     ]
     other = apart[0] if apart else None

@@ -13,6 +13,7 @@ from harness.model.reading import read_text, validate
 from harness.model.result import Result
 from harness.model.wall import Strict
 from reports import numbers
+from reports.agreement import range_of
 from reports.tables import Cell, anchor_of
 
 LARGEST_FILE = 2**16
@@ -53,11 +54,27 @@ class PrintedWall(Strict):
     rows: list[PrintedCost]
 
 
+class PrintedApplicationRow(Strict):
+    """What the paper's text says that one of its walls carries."""
+
+    case: str
+    printed: str
+
+
+class PrintedApplication(Strict):
+    """The paper's application: methods to set beside it, and what of the load our cases count as dead."""
+
+    dead: float
+    methods: list[str]
+    rows: list[PrintedApplicationRow]
+
+
 class Printed(Strict):
     """The content of `cases/paper.toml`."""
 
     block: PrintedBlock
     wall: PrintedWall
+    application: PrintedApplication
 
     @property
     def cases(self) -> tuple[str, str]:
@@ -107,10 +124,13 @@ class Paper:
     names: str
     ratio_paper: str
     ratio_ours: str
+    ratio_to_value: str
     experiment: str
     imperfection: str
     block_case: int | None
     wall_case: int | None
+    applied: list[str]
+    applications: list[ApplicationRow]
 
 
 def _find(run: ComparisonRun, case: str) -> tuple[int, CaseResults] | None:
@@ -129,23 +149,31 @@ def paper_comparison(run: ComparisonRun) -> Paper | None:
         return None
     cost = [] if wall is None else _cost(*wall)
     times = {row.method: row.cpu.sort for row in cost if row.cpu.sort}
-    names = [row.method for row in said.wall.rows]
-    base = said.wall.rows[0]
-    ratio = ""
-    if len(times) == len(names):
-        per_second = base.minutes / (times[base.method] or 1.0)
-        ratio = " : ".join(numbers.plain((times[name] or 0.0) * per_second, 2) for name in names)
+    to_value = {row.method: _to_value(wall[1], row.method) for row in cost} if wall is not None else {}
+    earlier = {name: value for name, value in to_value.items() if value is not None}
     return Paper(
         block=[] if block is None else _block(*block),
         cost=cost,
-        names=" : ".join(name.upper() for name in names),
+        names=" : ".join(row.method.upper() for row in said.wall.rows),
         ratio_paper=" : ".join(numbers.given(row.minutes, 3) for row in said.wall.rows),
-        ratio_ours=ratio,
+        ratio_ours=_ratio(times),
+        ratio_to_value=_ratio(times | earlier) if earlier else "",
         experiment="" if wall is None else _experiment(wall[1]),
         imperfection=_imperfection(run),
         block_case=None if block is None else block[0],
         wall_case=None if wall is None else wall[0],
+        applied=printed().application.methods,
+        applications=applications(run),
     )
+
+
+def _ratio(times: dict[str, float]) -> str:
+    """CPU times by method, with the first set to the paper's figure; empty where one of them is missing."""
+    rows = printed().wall.rows
+    if len(times) < len(rows) or not times[rows[0].method]:
+        return ""
+    per_second = rows[0].minutes / times[rows[0].method]
+    return " : ".join(numbers.plain(times[row.method] * per_second, 2) for row in rows)
 
 
 def _block(number: int, item: CaseResults) -> list[BlockRow]:
@@ -217,13 +245,62 @@ def _imperfection(run: ComparisonRun) -> str:
 
 def _experiment(item: CaseResults) -> str:
     said = printed().wall
-    values = [
-        (row.method.upper(), entry[1].multiplier)
+    lowered = [
+        f"{_lowered(ends, 1.0 + said.experiment)} ({row.method.upper()})"
         for row in said.rows
-        if (entry := _result(item, row.method)) is not None and entry[1].multiplier is not None
+        if (entry := _result(item, row.method)) is not None and (ends := range_of(entry[1])) is not None
     ]
-    if not values:
+    if not lowered:
         return ""
-    left = 1.0 + said.experiment
-    lowered = ", ".join(f"{numbers.plain(left * (value or 0.0), 3)} ({name})" for name, value in values)
-    return f"A wall that fails {-100.0 * said.experiment:.0f} % earlier than ours would fail at {lowered}."
+    return f"A wall that fails {-100.0 * said.experiment:.0f} % earlier than ours would fail at {', '.join(lowered)}."
+
+
+def _lowered(ends: tuple[float, float], left: float) -> str:
+    """A value, or the ends of a bracket, as far below as the experiment of the paper was."""
+    low, high = (numbers.plain(left * end, 3) for end in ends)
+    return low if low == high else f"{low} to {high}"
+
+
+def _to_value(item: CaseResults, method: str) -> float | None:
+    """CPU time after which a search first knew its value [s], of a method that recorded when it found what."""
+    found = _result(item, method)
+    if found is None or found[1].multiplier is None:
+        return None
+    result = found[1]
+    values, times = result.path.get("multiplier", []), result.path.get("cpu_seconds", [])
+    if len(values) != len(times):
+        return None
+    reached = found[1].multiplier * (1.0 + 1e-9)
+    return next((time for value, time in zip(values, times, strict=True) if value <= reached), None)
+
+
+@dataclass(frozen=True)
+class ApplicationRow:
+    """What a wall of the paper's application carries: the paper's text, and ours by method."""
+
+    number: int
+    case: str
+    printed: str
+    ours: list[Cell]
+
+
+def applications(run: ComparisonRun) -> list[ApplicationRow]:
+    """The walls of the paper's application that were run, in its unit: the dead part and the multiplier."""
+    said = printed().application
+    rows = []
+    for row in said.rows:
+        found = _find(run, row.case)
+        if found is None:
+            continue
+        number, item = found
+        ours = [_carried(_result(item, method), said.dead) for method in said.methods]
+        rows.append(ApplicationRow(number, item.case.file.title, row.printed, ours))
+    return rows
+
+
+def _carried(found: tuple[int, Result] | None, dead: float) -> Cell:
+    ends = None if found is None else range_of(found[1])
+    if ends is None:
+        return Cell(numbers.NOTHING)
+    low, high = (numbers.plain(dead + end, 3) for end in ends)
+    return Cell(low if low == high else f"{low} to {high}", f"{dead} dead and {numbers.every_digit(ends)} live")

@@ -7,14 +7,16 @@ A comparison may bring further studies in `provenance["studies"]`, a list of obj
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from typing import Any
 
 import numpy as np
 
 from harness.model.comparison import CaseResults, ComparisonRun
+from harness.model.method import Finding
 from harness.model.result import Result
 from reports import charts, numbers
+from reports.facts import friction_text
 from reports.families import Study, families, methods_of, solved
 from reports.grid import grids
 from reports.marks import Mark, mark_of
@@ -29,15 +31,11 @@ def studies(run: ComparisonRun) -> list[Study]:
 
 
 def cost_against_size(run: ComparisonRun) -> Study | None:
-    """CPU time of solved runs against the number of free blocks and of interfaces, log-log, with slopes."""
+    """CPU time of collapses found against the number of free blocks and of interfaces, log-log, with slopes."""
     by_blocks = _costs(run, lambda item, result: result.blocks)
     by_interfaces = _costs(run, lambda item, result: item.case.assembly.n_interfaces)
     if len({x for line in by_blocks for x in line.x}) < 2:
         return None
-    slopes = [
-        f"{line.name} {slope:.2f}" for line in by_blocks if (slope := _slope(list(line.x), list(line.y))) is not None
-    ]
-    fitted = f" Fitted slopes over walls of at least 10 blocks: {', '.join(slopes)}." if slopes else ""
     drawings = []
     for what, series in (("free blocks", by_blocks), ("interfaces", by_interfaces)):
         title = f"CPU time against number of {what}"
@@ -45,22 +43,19 @@ def cost_against_size(run: ComparisonRun) -> Study | None:
         drawings.append((f"Against {what}", charts.svg(chart)))
     return Study(
         "Cost against size",
-        "What a wall costs grows with its number of blocks, differently for every method." + fitted,
-        "Both axes are logarithmic: a slope of 1 means that twice the blocks cost twice the time. Only runs that "
-        "ended with an accepted answer are drawn; time to start the process is not counted.",
+        f"What a wall costs grows with its number of blocks, differently for every method. {_slopes(run)}",
+        "Both axes are logarithmic: a slope of 1 means that twice the blocks cost twice the time. Only runs that found "
+        "a collapse and were accepted are drawn; time to start the process is not counted. Of limit analysis it is the "
+        "time of the whole search; its value is known much earlier.",
         drawings,
     )
 
 
 def _costs(run: ComparisonRun, size: Callable[[CaseResults, Result], int]) -> list[charts.Series]:
-    """CPU time of each method's solved runs over the size of the wall."""
+    """CPU time of each method's collapses over the size of the wall."""
     series = []
     for method in methods_of(run):
-        points = sorted(
-            (float(size(item, result)), result.cpu_seconds)
-            for item in run.cases
-            if (result := item.of(method)) is not None and solved(result) and result.cpu_seconds
-        )
+        points = sorted((float(size(item, result)), seconds) for item, result, seconds in _collapses(run, method))
         if points:
             series.append(
                 charts.Series(
@@ -70,15 +65,43 @@ def _costs(run: ComparisonRun, size: Callable[[CaseResults, Result], int]) -> li
     return series
 
 
+def _collapses(run: ComparisonRun, method: str) -> Iterator[tuple[CaseResults, Result, float]]:
+    for item in run.cases:
+        result = item.of(method)
+        if result is not None and solved(result) and result.finding is Finding.COLLAPSES and result.cpu_seconds:
+            yield item, result, result.cpu_seconds
+
+
+def _slopes(run: ComparisonRun) -> str:
+    """Slopes fitted over walls of one pattern and friction that differ in size, of which there must be four sizes."""
+    found = []
+    for method in methods_of(run):
+        families: dict[tuple[str, str], list[tuple[float, float]]] = {}
+        for item, result, seconds in _collapses(run, method):
+            pattern = item.case.wall.pattern
+            if pattern is not None and not isinstance(pattern, list):
+                key = (pattern.type.replace("_", " "), friction_text(item.case.assembly))
+                families.setdefault(key, []).append((float(result.blocks), seconds))
+        for (pattern_name, friction), points in families.items():
+            slope = _slope([x for x, _ in points], [y for _, y in points])
+            if slope is not None:
+                sizes = len({x for x, _ in points})
+                found.append(f"{method} {slope:.2f} ({pattern_name}, friction {friction}, {sizes} sizes)")
+    if not found:
+        return "There are fewer than four sizes of any one kind of wall, so no slope is fitted."
+    return f"Slopes fitted over one kind of wall each: {'; '.join(found)}."
+
+
 def _mark(run: ComparisonRun, method: str) -> Mark:
     """How a method that solved some case of a run is drawn: from such a case, as a failed run knows no traits."""
     return next(mark_of(r) for item in run.cases for r in item.results if r.method == method and solved(r))
 
 
-def _slope(x: list[float], y: list[float], smallest: float = 10.0) -> float | None:
-    """Slope of log y over log x by least squares, if there are at least 3 points that span a factor of 3."""
-    pairs = [(math.log(a), math.log(b)) for a, b in zip(x, y, strict=True) if a >= smallest and b > 0.0]
-    if len(pairs) < 3 or max(p[0] for p in pairs) - min(p[0] for p in pairs) < math.log(3.0):
+def _slope(x: list[float], y: list[float]) -> float | None:
+    """Slope of log y over log x by least squares, if there are at least 4 sizes that span a factor of 3."""
+    pairs = [(math.log(a), math.log(b)) for a, b in zip(x, y, strict=True) if a > 0.0 and b > 0.0]
+    sizes = {first for first, _ in pairs}
+    if len(sizes) < 4 or max(sizes) - min(sizes) < math.log(3.0):
         return None
     return float(np.polyfit([p[0] for p in pairs], [p[1] for p in pairs], 1)[0])
 

@@ -178,7 +178,10 @@ def test_cost_stands_against_blocks_and_against_interfaces():
 def test_slope_of_a_power_law_is_found():
     x = [10.0, 20.0, 50.0, 100.0]
     assert studies._slope(x, [3.0 * value**1.7 for value in x]) == pytest.approx(1.7)
-    assert studies._slope([10.0, 11.0, 12.0], [1.0, 2.0, 3.0]) is None, "no slope over less than a factor of 3"
+    assert studies._slope([10.0, 11.0, 12.0, 13.0], [1.0, 2.0, 3.0, 4.0]) is None, (
+        "no slope over less than a factor of 3"
+    )
+    assert studies._slope([10.0, 20.0, 40.0, 40.0], [1.0, 2.0, 3.0, 4.0]) is None, "nor over three sizes"
 
 
 def test_walls_that_differ_in_friction_make_a_study():
