@@ -68,6 +68,8 @@ def render(run: ComparisonRun, *, data_folder: str) -> str:
     return template.render(
         run=run,
         created=_date(run.created),
+        digest=_digest(rows),
+        versions=run.provenance.get("versions", {}),
         opening=opening(run),
         findings=tables.findings(run),
         columns=tables.columns(run),
@@ -157,6 +159,12 @@ def _case_data(item: CaseResults, fields: str) -> dict[str, Any]:
             {"method": result.method} | result_data(item.case, result, unit, fields=fields) for result in item.results
         ],
     }
+
+
+def _digest(rows: list[list[tables.RunRow]]) -> str:
+    """A hash over the keys of all runs, which stand for wall, method, settings, limits and code."""
+    keys = sorted(row.key for case_rows in rows for row in case_rows)
+    return hashlib.sha256("\n".join(keys).encode()).hexdigest()[:12]
 
 
 def _origins(rows: list[list[tables.RunRow]]) -> list[tuple[str, str, int]]:

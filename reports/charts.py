@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import csv
+import io
+import itertools
 import math
 from dataclasses import dataclass, field
 
@@ -144,7 +147,26 @@ def thin(x: list[float], y: list[float], most: int = MOST_POINTS) -> tuple[list[
     return [x[k] for k in kept], [y[k] for k in kept]
 
 
-def svg(chart: Chart) -> Markup:
+class Drawing(Markup):
+    """A chart as an SVG element that still knows what it shows, so that its data can be written beside it."""
+
+    chart: Chart | None = None
+
+
+def csv_of(chart: Chart) -> str:
+    """The data of a chart: one row a point, with the ends of its bar where it has one."""
+    stream = io.StringIO()
+    writer = csv.writer(stream, quoting=csv.QUOTE_NONNUMERIC, lineterminator="\n")
+    writer.writerow(("series", chart.x_label, chart.y_label, "low", "high"))
+    for series in chart.series:
+        for x, y, low, high in itertools.zip_longest(series.x, series.y, series.low, series.high, fillvalue=""):
+            writer.writerow((series.name, x, y, low, high))
+    for name, value in chart.levels:
+        writer.writerow((name, "", value, "", ""))
+    return stream.getvalue()
+
+
+def svg(chart: Chart) -> Drawing:
     """The chart as an inline SVG element."""
     rows = math.ceil(len(chart.series) / PER_ROW) if len(chart.series) > 1 else 0
     top = TOP + rows * ROW
@@ -173,7 +195,9 @@ def svg(chart: Chart) -> Markup:
         if rows:
             parts.append(_legend(series, number))
     parts.append(Markup("</svg>"))
-    return Markup("").join(parts)
+    drawing = Drawing(Markup("").join(parts))
+    drawing.chart = chart
+    return drawing
 
 
 def _axes(chart: Chart, across: Axis, up: Axis, height: float, top: float) -> Markup:

@@ -18,7 +18,7 @@ from harness.model.case import Case
 from harness.model.comparison import CaseResults, ComparisonRun
 from harness.model.result import Result
 from harness.model.rings import rings_of
-from reports import joints, numbers, shapes
+from reports import flow, joints, numbers, shapes
 
 SIZE = 4000
 MARGIN = 560
@@ -108,8 +108,20 @@ def wall_svg(case: Case) -> Markup:
     parts.append(_labels(frame, assembly))
     parts.append(_arrows(frame, assembly, shapes.extra_dead_load(assembly), "dead"))
     parts.append(_arrows(frame, assembly, assembly.live, "live"))
+    parts.append(_length_scale(frame, case.wall.units.length))
     parts.append(Markup("</svg>"))
     return Markup("").join(parts)
+
+
+def _length_scale(frame: Frame, unit: str) -> Markup:
+    """A bar of a round length below the wall."""
+    length = flow.round_number(0.3 * frame.extent.longest)
+    y = round(frame.extent.height * frame.scale) + BELOW // 2
+    text = f"{numbers.given(length, 3)} {unit}".removesuffix(" 1")
+    return Markup(
+        '<g class="scale"><path d="M0 {0}H{1}M0 {2}v80M{1} {2}v80"/><text x="{3}" y="{4}" font-size="110" '
+        'style="text-anchor:start">{5}</text></g>'
+    ).format(y, round(length * frame.scale), y - 40, round(length * frame.scale) + 60, y + 38, text)
 
 
 def polygons_svg(case: Case, polygons: list[FloatArray]) -> Markup:

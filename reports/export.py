@@ -9,13 +9,16 @@ import os
 import re
 import tempfile
 from collections.abc import Sequence
+from importlib.resources import files
 from importlib.util import find_spec
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from harness.model.comparison import CaseResults, ComparisonRun
 from harness.model.result import Result
-from reports import columns, shapes, words
+from reports import charts, columns, shapes, words
+from reports.curves import curves
+from reports.studies import studies
 from reports.tables import reference_of, worst_residual
 
 if TYPE_CHECKING:
@@ -71,12 +74,46 @@ def export(run: ComparisonRun, folder: Path, *, drawn: bool = False) -> None:
         drawing = comparison_figure(item) if drawn else None
         if drawing is not None:
             contents[f"figures/{_safe(item.case.id)}.pdf"] = drawing
+    contents |= _charts(run)
     earlier = _index(folder)
     contents["index.json"] = _json({"files": sorted(contents)})
     for name, content in contents.items():
         _write(folder / name, content)
     for name in earlier - set(contents):
         (folder / name).unlink(missing_ok=True)
+
+
+def _charts(run: ComparisonRun) -> dict[str, bytes]:
+    """Every chart of the report as a vector file, and its data as CSV beside it."""
+    drawings = [
+        (f"{_safe(item.case.id)}-{number}", drawing)
+        for item in run.cases
+        if not shapes.problem(item.case)
+        for number, (_, drawing) in enumerate(curves(item), start=1)
+    ]
+    for place, study in enumerate(studies(run), start=1):
+        drawings += [(f"study-{place}-{number}", drawing) for number, (_, drawing) in enumerate(study.charts, start=1)]
+    style = _chart_style()
+    contents: dict[str, bytes] = {}
+    for name, drawing in drawings:
+        if isinstance(drawing, charts.Drawing) and drawing.chart is not None:
+            contents[f"charts/{name}.csv"] = charts.csv_of(drawing.chart).encode()
+            contents[f"charts/{name}.svg"] = _alone(str(drawing), style).encode()
+    return contents
+
+
+def _alone(drawing: str, style: str) -> str:
+    """An SVG element of the page as a file of its own, with the rules it needs."""
+    inside = drawing.index(">")
+    opened = drawing[: inside + 1].replace("<svg", '<svg xmlns="http://www.w3.org/2000/svg"', 1)
+    return f"{opened}<style>{style}</style>{drawing[inside + 1 :]}"
+
+
+def _chart_style() -> str:
+    """The rules of the page that charts need: its colours and its section on charts."""
+    css = files("reports").joinpath("static/report.css").read_text(encoding="utf-8")
+    root = css[: css.index("}") + 1]
+    return root + css[css.index("/* Charts */") : css.index("footer {")]
 
 
 def comparison_figure(item: CaseResults) -> bytes | None:

@@ -4,12 +4,13 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 
+import numpy as np
 from markupsafe import Markup
 
 from harness.model.case import Case
 from harness.model.comparison import CaseResults
 from harness.model.result import Result
-from reports import numbers, shapes
+from reports import flow, numbers, shapes
 from reports.agreement import Agreement
 from reports.drawing import Frame, mechanisms_svg, stroke_factor
 from reports.facts import facts
@@ -55,6 +56,7 @@ class CaseSection:
     view_box: str
     stroke: float
     loads_drawn: str
+    through: str
     facts: list[tuple[str, str]]
     warnings: tuple[str, ...]
     rows: list[RunRow]
@@ -93,7 +95,7 @@ def case_section(
     """The section of one case; `fields` as in `reports.drawing.fields_drawn`."""
     problem = shapes.problem(item.case)
     if problem:
-        return CaseSection(number, item.case, wall, "", 1.0, "", [], (), rows, [], rows, [], [], problem)
+        return CaseSection(number, item.case, wall, "", 1.0, "", "", [], (), rows, [], rows, [], [], problem)
     frame = Frame(item.case.assembly)
     calm = is_calm(item)
     overlay, caption = (Markup(""), "") if calm else figure_of(item)
@@ -124,6 +126,7 @@ def case_section(
         view_box=frame.view_box,
         stroke=stroke_factor(item.case.assembly),
         loads_drawn=_loads_drawn(item.case),
+        through=_through(item),
         facts=facts(item.case),
         warnings=(*item.case.warnings, *filter(None, [item.split_on_dead_load])),
         rows=rows,
@@ -147,6 +150,14 @@ def _loads_drawn(case: Case) -> str:
     step = shapes.drawn_every(len(shapes.load_arrows(assembly, assembly.live)))
     every = f", drawn on one block in {step}" if step > 1 else ""
     return f"The wall with its loads{every}; dots are contact points."
+
+
+def _through(item: CaseResults) -> str:
+    """What lines through the blocks are: the line of thrust where each result has one, else how forces flow."""
+    drawn = [np.asarray(result.forces, dtype=float) for result in item.results if result.forces is not None]
+    assembly = item.case.assembly
+    found = [shapes.thrusts(assembly, forces, flow.STYLE.smallest) for forces in drawn if len(forces)]
+    return "line of thrust" if all(flow.has_line_of_thrust(assembly, f) for f in found) else "flow of forces"
 
 
 def _states(case: Case, result: Result) -> str:

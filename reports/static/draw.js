@@ -3,6 +3,8 @@
   "use strict";
   const NS = "http://www.w3.org/2000/svg";
   const FORCE_STEPS = 10000;
+  const MOST_LABELS = 45;
+  const REACH = 500; /* displacement of the fastest vertex at amplitude 1, an eighth of the longer side */
   const STATES = { k: "stick", s: "slide", r: "rock", b: "rock and slide", o: "open", d: "dilatant slip" };
   const CLASSES = { s: "slide", r: "rock", b: "both", o: "open", d: "dilatant" };
   const HEAVY = "sbd";
@@ -87,6 +89,30 @@
     return (k) => movers.forEach(([element, i]) => element.setAttribute("transform", matrix(wall, result, i, k)));
   };
 
+  /* A resultant as an arrow to where it is passed on downwards, or to the right; it ends at a support, never within. */
+  const arrow = (wall, p, point, way, held) => {
+    const up = way[1] < -1e-9 || (Math.abs(way[1]) <= 1e-9 && way[0] < 0);
+    const down = up ? [-way[0], -way[1]] : way;
+    const sign = held[0] ? 1 : -1;
+    const leaves = sign * (down[0] * wall.n[2 * p] + down[1] * wall.n[2 * p + 1]) > 0;
+    const half = 0.36 * wall.block;
+    const anchored = held[0] || held[1];
+    const [before, after] = anchored ? (leaves ? [0, 2 * half] : [2 * half, 0]) : [half, half];
+    const at = (length) => [point[0] + length * down[0], point[1] + length * down[1]];
+    return { tail: at(-before), tip: at(after), down };
+  };
+  const forceScale = (svg, wall, largest, size) => {
+    if (!largest) return;
+    const real = (largest * wall.unit) / FORCE_STEPS;
+    const power = 10 ** Math.floor(Math.log10(real));
+    const round = Math.max(...[1, 2, 5].map((head) => head * power).filter((force) => force <= real * (1 + 1e-9)));
+    const [left, , width, bottom] = wall.box.split(" ").map(Number);
+    const [x, y] = [left + width - 900, bottom + Number(wall.box.split(" ")[1]) - 90];
+    const group = make("g", { class: "scale" }, svg);
+    make("path", { d: `M${x - 330} ${y}H${x}`, "stroke-width": Math.max(0.02 * wall.block, (0.16 * wall.block * round) / real) }, group);
+    make("text", { x: x + 60, y: y + 0.35 * size, "font-size": size }, group).textContent = `${digits(round)} ${wall.force === "1" ? "" : wall.force}`;
+  };
+
   const drawForces = (svg, wall, result) => {
     make("path", { class: "outline held", d: wall.path.filter((_, i) => wall.fixed[i] === "1").join("") }, svg);
     make("path", { class: "outline", d: wall.path.filter((_, i) => wall.fixed[i] !== "1").join("") }, svg);
@@ -115,6 +141,9 @@
       const [[x0, y0], [x1, y1]] = touching[block].map(pressure);
       return [(x0 + x1) / 2, (y0 + y1) / 2];
     };
+    const letters = Math.min(110, 0.17 * wall.block);
+    const labelled = wall.a.filter((_, p) => carries(p)).length <= MOST_LABELS;
+    forceScale(svg, wall, largest, Math.min(110, Math.max(80, letters)));
     for (let p = 0; p < wall.a.length; p++) {
       const [n1, n2, s] = [result.f[3 * p], result.f[3 * p + 1], result.f[3 * p + 2]];
       const normal = n1 + n2;
@@ -122,22 +151,37 @@
       if (!carries(p)) continue;
       const [x, y] = pressure(p);
       const t = tangent(wall, p);
+      const held = [wall.a[p], wall.b[p]].map((block) => wall.fixed[block] === "1");
       const way = [
         (normal * wall.n[2 * p] / 1000 + s * t[0]) / force,
         (normal * wall.n[2 * p + 1] / 1000 + s * t[1]) / force,
       ];
-      const half = 0.36 * wall.block;
       const width = Math.max(0.02 * wall.block, (0.16 * wall.block * force) / largest);
+      const size = Math.max(0.2 * wall.block, 1.7 * width);
       const limit = at(wall.mu, p) * normal;
       const full = limit > 0 && Math.abs(s) >= 0.999 * limit;
       const group = make("g", { class: full ? "full" : "partly", "data-joint": p }, bars);
+      const { tail, tip, down } = arrow(wall, p, [x, y], way, held);
+      const neck = [tip[0] - size * down[0], tip[1] - size * down[1]];
+      const side = [-0.4 * size * down[1], 0.4 * size * down[0]];
       make("path", {
-        d: `M${x - half * way[0]} ${y - half * way[1]}L${x + half * way[0]} ${y + half * way[1]}`,
+        d: `M${tail[0]} ${tail[1]}L${0.3 * tip[0] + 0.7 * neck[0]} ${0.3 * tip[1] + 0.7 * neck[1]}`,
         "stroke-width": width,
       }, group);
+      make("path", {
+        class: "tip-of",
+        d: `M${tip[0]} ${tip[1]}L${neck[0] + side[0]} ${neck[1] + side[1]}L${neck[0] - side[0]} ${neck[1] - side[1]}z`,
+      }, group);
+      if (labelled) {
+        const level = Math.abs(wall.n[2 * p + 1]) > 500;
+        const text = make("text", {
+          x: x + (level ? 0.09 * wall.block : 0), y: y - (level ? 0.05 : 0.1) * wall.block,
+          "font-size": letters, "text-anchor": level ? "start" : "middle",
+        }, group);
+        text.textContent = digits(force * wall.unit / FORCE_STEPS);
+      }
       if (full) make("circle", { cx: x, cy: y, r: Math.max(0.05 * wall.block, 0.5 * width + 9) }, group);
-      const leg = (block, sign) => (wall.fixed[block] === "1" ? [x + sign * half * way[0], y + sign * half * way[1]] : junction(block));
-      const [from, to] = [leg(wall.a[p], -1), leg(wall.b[p], 1)];
+      const [from, to] = [wall.a[p], wall.b[p]].map((block, k) => (held[k] ? [x, y] : junction(block)));
       make("path", {
         d: `M${from[0]} ${from[1]}L${x} ${y}L${to[0]} ${to[1]}`,
         "stroke-width": width,
@@ -156,6 +200,13 @@
     const update = (mechanism ? drawMechanism : drawForces)(svg, wall, result);
     drawn.set(svg, update);
     update(amplitudeOf(svg.closest("section")));
+  };
+
+  /* Room for what moves further than the drawing's margin, so that no block leaves the picture. */
+  const widen = (svg, k) => {
+    const [x, y, width, height] = cases[Number(svg.dataset.case)].box.split(" ").map(Number);
+    const room = Math.max(0, k - 1) * REACH;
+    svg.setAttribute("viewBox", `${x - room} ${y - room} ${width + 2 * room} ${height + 2 * room}`);
   };
 
   const figures = [...document.querySelectorAll("svg[data-kind]")];
@@ -182,6 +233,7 @@
         output.textContent = `${slider.value} %`;
         for (const svg of section.querySelectorAll("svg[data-kind=mechanism]")) {
           if (drawn.has(svg)) drawn.get(svg)(Number(slider.value) / 100);
+          widen(svg, Number(slider.value) / 100);
         }
       });
     }

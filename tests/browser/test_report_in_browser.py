@@ -14,7 +14,8 @@ from reports.build import render
 from tests.reports import samples
 
 pytestmark = pytest.mark.browser
-PHONE, DESKTOP = {"width": 390, "height": 844}, {"width": 1280, "height": 900}
+PHONE, DESKTOP = {"width": 360, "height": 780}, {"width": 1280, "height": 900}
+TABLET, WIDE = {"width": 768, "height": 1024}, {"width": 1920, "height": 1080}
 
 
 class Opened:
@@ -111,18 +112,44 @@ def test_slider_at_zero_puts_the_wall_back(opened: Opened):
     assert {tuple(float(x) for x in item[7:-1].split()) for item in transforms} == {(1, 0, 0, 1, 0, 0)}
 
 
-def test_thrust_lines_replace_resultants(opened: Opened):
+def test_flow_of_forces_replaces_resultants(opened: Opened):
     opened.look_at("#case-1 .tools")
     section = opened.page.locator("#case-1")
     assert section.locator(".bars").first.is_visible()
-    section.get_by_label("thrust lines").check()
+    section.get_by_label("flow of forces").check()
     assert not section.locator(".bars").first.is_visible()
     assert section.locator(".thrust").first.is_visible()
 
 
+def test_resultants_are_arrows_with_their_size_and_a_scale(opened: Opened):
+    opened.see_everything()
+    forces = opened.page.locator("#case-1 svg[data-kind=forces]").first
+    groups = forces.locator(".bars g")
+    assert groups.count() == forces.locator(".bars path.tip-of").count() == forces.locator(".bars text").count() > 0
+    assert "kN" in (forces.locator(".scale text").text_content() or "")
+    assert (opened.page.locator("#case-1 .sheet svg.wall .scale text").text_content() or "").endswith(" m")
+
+
+def test_a_mechanism_stays_in_its_picture_at_the_end_of_the_slider(opened: Opened):
+    opened.see_everything()
+    section = opened.page.locator("#case-1")
+    section.locator("input[type=range]").evaluate(
+        "slider => { slider.value = slider.max; slider.dispatchEvent(new Event('input', {bubbles: true})); }"
+    )
+    outside = section.locator("svg[data-kind=mechanism]").evaluate_all(
+        """all => all.flatMap((svg) => {
+          const frame = svg.getBoundingClientRect();
+          const boxes = [...svg.querySelectorAll('path.moves')].map((path) => path.getBoundingClientRect());
+          const beside = (box) => box.left < frame.left - 1 || box.right > frame.right + 1;
+          return boxes.filter((box) => beside(box) || box.top < frame.top - 1 || box.bottom > frame.bottom + 1);
+        }).length"""
+    )
+    assert outside == 0
+
+
 def test_hover_shows_the_values_of_an_interface(opened: Opened):
     opened.look_at("#case-1 svg[data-kind=forces]")
-    opened.page.locator("#case-1 svg[data-kind=forces] .bars g").first.hover(force=True)
+    opened.page.locator("#case-1 svg[data-kind=forces] .bars g path.tip-of").first.hover(force=True)
     text = opened.page.locator(".tip").inner_text()
     assert "kN" in text
     assert "friction used: 50 %" in text
@@ -176,7 +203,7 @@ def test_runs_are_filtered_by_word_method_and_trouble(opened: Opened):
     assert sorted(column(page, 2)) == ["de", "de", "fe-qp", "la-paper"]
 
 
-@pytest.mark.parametrize("size", [PHONE, DESKTOP], ids=["phone", "desktop"])
+@pytest.mark.parametrize("size", [PHONE, TABLET, DESKTOP, WIDE], ids=["phone", "tablet", "desktop", "wide"])
 def test_page_never_scrolls_sideways(browser: Browser, report: Path, size: Any):
     opened = Opened(browser, report, size)
     opened.see_everything()
@@ -185,9 +212,10 @@ def test_page_never_scrolls_sideways(browser: Browser, report: Path, size: Any):
     assert width <= size["width"]
 
 
-@pytest.mark.parametrize("size", [PHONE, DESKTOP], ids=["phone", "desktop"])
-def test_no_serious_accessibility_fault(browser: Browser, report: Path, size: Any):
+@pytest.mark.parametrize(("size", "scheme"), [(PHONE, "light"), (DESKTOP, "dark")], ids=["phone", "desktop, dark"])
+def test_no_serious_accessibility_fault(browser: Browser, report: Path, size: Any, scheme: Any):
     opened = Opened(browser, report, size)
+    opened.page.emulate_media(color_scheme=scheme)
     opened.see_everything()
     opened.page.evaluate(files("axe_core_python").joinpath("axe.min.js").read_text(encoding="utf-8"))
     found = opened.page.evaluate("axe.run(document)")

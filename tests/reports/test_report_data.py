@@ -5,6 +5,7 @@ from __future__ import annotations
 import csv
 import json
 from pathlib import Path
+from xml.etree import ElementTree
 
 import pyarrow.parquet as pq
 import pytest
@@ -100,3 +101,16 @@ def test_method_names_are_made_into_file_names(tmp_path: Path):
     case = samples.bond()
     export(ComparisonRun("", "", "", [CaseResults(case, [samples.solved(case, "../../evil", 0.5)])]), tmp_path / "d")
     assert [path.name for path in tmp_path.iterdir()] == ["d"]
+
+
+def test_every_chart_is_a_vector_file_with_its_data_beside_it(folder: Path):
+    charts = folder / "charts"
+    drawn = {path.stem for path in charts.glob("*.svg")}
+    assert drawn
+    assert drawn == {path.stem for path in charts.glob("*.csv")}
+    for name in drawn:
+        root = ElementTree.parse(charts / f"{name}.svg").getroot()
+        assert root.tag == "{http://www.w3.org/2000/svg}svg"
+        heads, *rows = list(csv.reader((charts / f"{name}.csv").read_text(encoding="utf-8").splitlines()))
+        assert heads[0] == "series"
+        assert len(rows) > 0
