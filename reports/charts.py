@@ -166,8 +166,8 @@ def csv_of(chart: Chart) -> str:
     return stream.getvalue()
 
 
-def svg(chart: Chart) -> Drawing:
-    """The chart as an inline SVG element."""
+def svg(chart: Chart) -> Markup:
+    """The chart as an inline SVG element, a `Drawing`."""
     rows = math.ceil(len(chart.series) / PER_ROW) if len(chart.series) > 1 else 0
     top = TOP + rows * ROW
     height = HEIGHT + rows * ROW
