@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import time
 from typing import Any
 
 import highspy
@@ -95,6 +96,7 @@ class Programme:
         self.highs.run()
         status = self.highs.getModelStatus()
         if status == highspy.HighsModelStatus.kTimeLimit:
+            time.sleep(seconds_left())  # The alarm is to ring here, not while an answer is made of what is known.
             raise OutOfTime
         return status
 
