@@ -12,6 +12,10 @@ from methods.de.engine import Engine, Measured
 from methods.de.motion import Motion, Proof, Trend, by_power, by_virtual_work
 from methods.de.settings import HoldSettings
 
+FOLLOWED = 0.02
+"""Part of the work of an order after which an even decay is no longer followed: thin arches of 100 voussoirs come to
+rest within it; the wall of Ferris and Tin-Loi, which creeps, would use up all."""
+
 
 class State(StrEnum):
     """What a hold showed."""
@@ -130,7 +134,7 @@ def hold(engine: Engine, settings: HoldSettings, patience: int = 1) -> Hold:
     """
     check = max(10, round(engine.relaxation / 3.0))
     usual = patience * hold_limit(engine, settings) / check
-    affordable = (settings.work / max(engine.interfaces, 1) - engine.steps) / check
+    affordable = (FOLLOWED * settings.work / max(engine.interfaces, 1) - engine.steps) / check
     start, watch = engine.steps, Watch(settings.held_residual, settings.moving_residual)
     while True:
         engine.advance(check)
