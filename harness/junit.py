@@ -6,7 +6,6 @@ failures; a run that crashed or met a limit is an error; what a method refuses o
 
 from __future__ import annotations
 
-import os
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from pathlib import Path
@@ -18,6 +17,7 @@ from harness.model.difference import Difference, Kind
 from harness.model.errors import visible
 from harness.model.method import Status
 from harness.model.result import Result, Verdict
+from harness.model.writing import write_whole
 
 Outcome = Literal["passed", "failure", "error", "skipped"]
 
@@ -69,10 +69,7 @@ def write_junit(name: str, tests: Iterable[TestCase], path: Path) -> None:
     suites = ElementTree.Element("testsuites")
     suites.append(suite)
     ElementTree.indent(suites)
-    path.parent.mkdir(parents=True, exist_ok=True)
-    part = path.with_name(f".{path.name}.part")
-    part.write_bytes(ElementTree.tostring(suites, encoding="utf-8", xml_declaration=True))
-    os.replace(part, path)
+    write_whole(path, ElementTree.tostring(suites, encoding="utf-8", xml_declaration=True))
 
 
 def tests_of_check(lines: Iterable[dict[str, Any]]) -> Iterator[TestCase]:

@@ -5,7 +5,6 @@ from __future__ import annotations
 import hashlib
 import io
 import json
-import os
 from dataclasses import dataclass
 from importlib.resources import files
 from pathlib import Path
@@ -18,6 +17,7 @@ from harness.model.assembly import FloatArray
 from harness.model.comparison import CaseResults, ComparisonRun
 from harness.model.method import Status
 from harness.model.result import Result
+from harness.model.writing import write_whole
 from reports import numbers, words
 from reports.environment import environment
 from reports.facts import facts, value_in_words
@@ -78,10 +78,7 @@ class BlockRow:
 
 def write_appendix(run: ComparisonRun, path: Path) -> None:
     """Write the appendix of the only wall of a comparison as one HTML file, ready to print on A4."""
-    path.parent.mkdir(parents=True, exist_ok=True)
-    part = path.with_name(f".{path.name}.part")
-    part.write_text(render(run), encoding="utf-8")
-    os.replace(part, path)
+    write_whole(path, render(run))
 
 
 def render(run: ComparisonRun) -> str:

@@ -5,8 +5,6 @@ from __future__ import annotations
 import base64
 import hashlib
 import json
-import os
-import tempfile
 from dataclasses import replace
 from datetime import datetime
 from importlib.resources import files
@@ -16,6 +14,7 @@ from typing import Any
 from markupsafe import Markup
 
 from harness.model.comparison import CaseResults, ComparisonRun
+from harness.model.writing import write_whole
 from reports import agreement, numbers, paper, shapes, tables, words
 from reports.curves import curves
 from reports.drawing import case_data, fields_drawn, force_unit, result_data, wall_svg
@@ -41,15 +40,7 @@ def write_report(run: ComparisonRun, path: Path, *, drawn: bool = False) -> None
     path.parent.mkdir(parents=True, exist_ok=True)
     text = render(run, data_folder=f"{path.stem}-data")
     export(run, path.with_name(f"{path.stem}-data"), drawn=drawn)
-    handle, name = tempfile.mkstemp(dir=path.parent, prefix=f".{path.stem}-", suffix=".html")
-    try:
-        with os.fdopen(handle, "w", encoding="utf-8") as stream:
-            stream.write(text)
-        os.chmod(name, 0o644)
-        os.replace(name, path)
-    except BaseException:
-        Path(name).unlink(missing_ok=True)
-        raise
+    write_whole(path, text)
 
 
 def render(run: ComparisonRun, *, data_folder: str) -> str:

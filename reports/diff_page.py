@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-import os
 from importlib.resources import files
 from pathlib import Path
 
 from markupsafe import Markup
 
 from harness.model.difference import Difference
+from harness.model.writing import write_whole
 from reports import numbers
 from reports.environment import environment
 
@@ -17,10 +17,7 @@ GLYPH = {"worse": "✗", "gone": "∅", "slower": "…", "better": "✓", "new":
 
 def write_diff(found: Difference, path: Path) -> None:
     """Write the page of a comparison of two sets as one HTML file that works offline."""
-    path.parent.mkdir(parents=True, exist_ok=True)
-    part = path.with_name(f".{path.name}.part")
-    part.write_text(render(found), encoding="utf-8")
-    os.replace(part, path)
+    write_whole(path, render(found))
 
 
 def render(found: Difference) -> str:

@@ -5,7 +5,6 @@ from __future__ import annotations
 import csv
 import io
 import json
-import os
 import re
 import tempfile
 from collections.abc import Sequence
@@ -16,6 +15,7 @@ from typing import TYPE_CHECKING, Any
 
 from harness.model.comparison import CaseResults, ComparisonRun
 from harness.model.result import Result
+from harness.model.writing import write_whole
 from reports import charts, columns, shapes, words
 from reports.curves import curves
 from reports.studies import studies
@@ -78,7 +78,7 @@ def export(run: ComparisonRun, folder: Path, *, drawn: bool = False) -> None:
     earlier = _index(folder)
     contents["index.json"] = _json({"files": sorted(contents)})
     for name, content in contents.items():
-        _write(folder / name, content)
+        write_whole(folder / name, content)
     for name in earlier - set(contents):
         (folder / name).unlink(missing_ok=True)
 
@@ -146,13 +146,6 @@ def _index(folder: Path) -> set[str]:
         return set()
     plain = re.compile(r"[A-Za-z0-9_-][A-Za-z0-9._-]*(/[A-Za-z0-9_-][A-Za-z0-9._-]*)?")
     return {name for name in names if isinstance(name, str) and plain.fullmatch(name)}
-
-
-def _write(path: Path, content: bytes) -> None:
-    path.parent.mkdir(parents=True, exist_ok=True)
-    part = path.with_name(f".{path.name}.part")
-    part.write_bytes(content)
-    os.replace(part, path)
 
 
 def _json(data: Any) -> bytes:

@@ -22,6 +22,7 @@ from harness.model.rings import rings_of
 from harness.model.units import DIMENSIONLESS
 from reports import shapes
 from reports.figures import PAGE, checked, draw_joints, draw_loads, metadata, style
+from reports.flow import round_number
 from reports.force_figure import BLUE, GREY, INK, RUST, stones
 
 
@@ -189,16 +190,10 @@ def _axes(ax: Axes, extent: shapes.Extent, margin: float, unit: str, sheet: Shee
     ax.ticklabel_format(useOffset=False)
     for axis, name in ((ax.xaxis, "x"), (ax.yaxis, "y")):
         axis.set_label_text(f"{name} [{unit}]" if unit else name, fontsize=sheet.text)
-    length = round_length(0.25 * extent.width)
+    length = round_number(0.25 * extent.width)
     left, low = extent.left, extent.bottom - 0.6 * margin
     ax.plot([left, left + length], [low, low], color=INK, linewidth=2.0, solid_capstyle="butt")
     ax.text(left + length, low, f"  {length:g} {unit}", va="center", fontsize=sheet.text, color=INK)
-
-
-def round_length(longest: float) -> float:
-    """The greatest of 1, 2 and 5 times a power of ten that is no greater than a length."""
-    power = 10.0 ** np.floor(np.log10(longest))
-    return float(power * max(step for step in (1.0, 2.0, 5.0) if step * power <= longest or step == 1.0))
 
 
 def _marks(ax: Axes, marks: Sequence[Mark], sheet: Sheet) -> None:

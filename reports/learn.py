@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 from dataclasses import dataclass
 from importlib.resources import files
 from pathlib import Path
@@ -12,6 +11,7 @@ from markupsafe import Markup
 from harness.model.comparison import CaseResults, ComparisonRun
 from harness.model.method import Finding, Status
 from harness.model.result import Result
+from harness.model.writing import write_whole
 from reports import charts, numbers, words
 from reports.build import script_hash, script_json
 from reports.drawing import mechanisms_svg
@@ -95,10 +95,7 @@ def write_learn(run: ComparisonRun, path: Path) -> None:
         run: the paper's block and walls that differ in friction alone, with fe, la, la-associated and de.
         path: the file.
     """
-    path.parent.mkdir(parents=True, exist_ok=True)
-    part = path.with_name(f".{path.name}.part")
-    part.write_text(render(run), encoding="utf-8")
-    os.replace(part, path)
+    write_whole(path, render(run))
 
 
 def render(run: ComparisonRun) -> str:

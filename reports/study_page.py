@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
 from importlib.resources import files
@@ -12,6 +11,7 @@ from typing import Any
 import pandas as pd
 from markupsafe import Markup
 
+from harness.model.writing import write_whole
 from reports import charts
 from reports.environment import environment
 
@@ -57,10 +57,7 @@ class StudyPage:
 
 def write_page(page: StudyPage, path: Path) -> None:
     """Write the page of a study as one HTML file that works offline."""
-    path.parent.mkdir(parents=True, exist_ok=True)
-    part = path.with_name(f".{path.name}.part")
-    part.write_text(render(page), encoding="utf-8")
-    os.replace(part, path)
+    write_whole(path, render(page))
 
 
 def render(page: StudyPage) -> str:

@@ -13,7 +13,8 @@ from cases.start import stack
 from harness.cli import main
 from harness.model.inspection import inspect
 from harness.model.salvage import salvaged
-from reports.inspected import inspected_figure, round_length
+from reports.flow import round_number
+from reports.inspected import inspected_figure
 from tests.engine.test_validate import faulty
 
 
@@ -49,7 +50,7 @@ def test_sizes_are_drawn_on_request_and_axes_unless_they_are_not_wanted():
 
 @pytest.mark.parametrize(("longest", "expected"), [(0.26, 0.2), (0.99, 0.5), (1.0, 1.0), (37.0, 20.0), (5e3, 5e3)])
 def test_scale_has_a_round_length(longest: float, expected: float):
-    assert round_length(longest) == pytest.approx(expected)
+    assert round_number(longest) == pytest.approx(expected)
 
 
 def test_show_draws_a_faulty_file_tells_its_faults_and_ends_with_2(tmp_path: Path):
