@@ -125,7 +125,7 @@ def agreements(item: CaseResults) -> list[Agreement]:
     """All pairs of the families' main methods and the associated maximum that found a collapse."""
     usable = [
         result
-        for result in sorted(item.results, key=words.order)
+        for result in words.in_order(item)
         if result.status is Status.OK
         and result.finding is Finding.COLLAPSES
         and (result.is_main or result is item.associated)

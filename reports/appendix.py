@@ -105,7 +105,7 @@ def render(run: ComparisonRun) -> str:
             assumptions=ASSUMPTIONS,
             loads=_loads(item),
             blocks=_blocks(item),
-            methods=[_method_row(result) for result in _in_order(item)],
+            methods=[_method_row(result) for result in words.in_order(item)],
             gates=[gate for gate in item.gates if gate.passed is not None],
             wall=_svg(wall_figure(case.built)) if _drawn(item) else Markup(""),
             answer=[_svg(results_figure(case, [shown], kind)) for kind in ("mechanism", "forces")]
@@ -127,16 +127,15 @@ def _drawn(item: CaseResults) -> bool:
     return item.case.assembly.n_blocks <= LIMITS.figures
 
 
-def _in_order(item: CaseResults) -> list[Result]:
-    return sorted(item.results, key=words.order)
-
-
 def _shown(item: CaseResults) -> Result | None:
     """The state that is drawn and whose reactions are told: the least, or any accepted one with forces."""
     least = least_known(item)
     if least is not None and least.forces is not None and least.mechanism is not None:
         return least
-    return next((r for r in _in_order(item) if r.status is Status.OK and r.forces is not None and r.mechanism), None)
+    return next(
+        (r for r in words.in_order(item) if r.status is Status.OK and r.forces is not None and r.mechanism),
+        None,
+    )
 
 
 def _reactions(item: CaseResults, shown: Result | None) -> tuple[list[Reaction], float | None]:

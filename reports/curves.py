@@ -24,7 +24,7 @@ LENGTHS = ("live_displacement", "displacement")
 def curves(item: CaseResults) -> list[tuple[str, Markup]]:
     """Captions and charts of a case, as far as its results recorded a path; an empty chart where words say it all."""
     found: list[tuple[str, Markup]] = []
-    ordered = sorted(item.results, key=words.order)
+    ordered = words.in_order(item)
     for result in ordered:
         if "time" in result.path:
             found.extend(_release(item, result))

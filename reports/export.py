@@ -120,7 +120,7 @@ def comparison_figure(item: CaseResults) -> bytes | None:
     """A PDF of the families' main results side by side, or None where there is nothing to draw or too much."""
     usable = [
         result
-        for result in sorted(item.results, key=words.order)
+        for result in words.in_order(item)
         if (result.is_main or result is item.associated) and result.mechanism is not None
     ]
     if not usable or shapes.problem(item.case) or item.case.assembly.n_blocks > FIGURE_BLOCKS:

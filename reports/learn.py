@@ -10,7 +10,6 @@ from markupsafe import Markup
 
 from harness.model.comparison import CaseResults, ComparisonRun
 from harness.model.method import Finding, Status
-from harness.model.result import Result
 from harness.model.writing import write_whole
 from reports import charts, numbers, words
 from reports.build import script_hash, script_json
@@ -114,7 +113,7 @@ def render(run: ComparisonRun) -> str:
             start=START,
             answers=block_answers(START.rear, START.front),
             measured=[
-                (r.method, r.traits.caption, value_in_words(r)) for r in _in_order(block) if r.status is Status.OK
+                (r.method, r.traits.caption, value_in_words(r)) for r in words.in_order(block) if r.status is Status.OK
             ],
             steps=[Step(friction_text(item.case.assembly), _panels(item)) for item in walls],
             chart=Markup(charts.svg(_chart(walls))),
@@ -128,13 +127,9 @@ def render(run: ComparisonRun) -> str:
     )
 
 
-def _in_order(item: CaseResults) -> list[Result]:
-    return sorted(item.results, key=words.order)
-
-
 def _panels(item: CaseResults) -> list[Panel]:
     panels = []
-    for result in _in_order(item):
+    for result in words.in_order(item):
         if result.status is not Status.OK or result.mechanism is None:
             continue
         found = motion(item.case.assembly, result)
@@ -152,7 +147,7 @@ def _panels(item: CaseResults) -> list[Panel]:
 def _chart(walls: list[CaseResults]) -> charts.Chart:
     """Multipliers over friction; what is measured is drawn with its bracket."""
     series = []
-    for name in dict.fromkeys(result.method for item in walls for result in _in_order(item)):
+    for name in dict.fromkeys(result.method for item in walls for result in words.in_order(item)):
         points = [
             (float(item.case.assembly.friction[0]), result)
             for item in walls

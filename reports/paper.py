@@ -2,22 +2,17 @@
 
 from __future__ import annotations
 
-import tomllib
 from dataclasses import dataclass
 from functools import cache
 
-from harness.model.case import shipped_cases
 from harness.model.comparison import CaseResults, ComparisonRun
+from harness.model.library import shipped_words
 from harness.model.method import Status
-from harness.model.reading import read_text, validate
 from harness.model.result import Result
 from harness.model.wall import Strict
 from reports import numbers
 from reports.agreement import range_of
 from reports.tables import Cell, anchor_of
-
-LARGEST_FILE = 2**16
-"""Bytes of paper.toml at most; it comes with Drystone."""
 
 
 class PrintedRow(Strict):
@@ -85,8 +80,7 @@ class Printed(Strict):
 @cache
 def printed() -> Printed:
     """What the paper prints, read once."""
-    path = shipped_cases() / "paper.toml"
-    return validate(Printed, tomllib.loads(read_text(path, LARGEST_FILE)), str(path))
+    return shipped_words(Printed, "paper.toml")
 
 
 @dataclass(frozen=True)

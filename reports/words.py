@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable
 
 from harness.model.case import ReferenceType
+from harness.model.comparison import CaseResults
 from harness.model.library import library
 from harness.model.method import Finding, Status
 from harness.model.result import Result, Verdict
@@ -62,6 +63,11 @@ PURPOSE: dict[str, tuple[str, tuple[ReferenceType, ...], str]] = {
 def order(result: Result) -> tuple[int, bool, str]:
     """Sort key of results: families in the library's order, a family's main method first."""
     return library().order(result.method, result.family)
+
+
+def in_order(item: CaseResults) -> list[Result]:
+    """The results of a case in the order of `order`."""
+    return sorted(item.results, key=order)
 
 
 def all_of(names: Iterable[str]) -> str:

@@ -94,8 +94,7 @@ def overall(comparisons: Iterable[Comparison]) -> Verdict:
 
 def _is_the_least_known(result: Result) -> bool:
     """Whether a result is of a family's main method that seeks the least state, and ended its search."""
-    seeks = result.traits.seeks_least and result.method == result.family
-    return seeks and not result.details.get("stopped_by_limit", False)
+    return result.traits.seeks_least and result.is_main and not result.details.get("stopped_by_limit", False)
 
 
 def theory_gates(results: CaseResults) -> list[Gate]:
@@ -183,7 +182,7 @@ def _unique(results: CaseResults, usable: dict[str, Result]) -> tuple[Result | N
     proved = next((result for result in collapses if result.details.get("proved_least")), None)
     if proved is not None:
         return proved, f"that of {proved.method} is proved"
-    least = next((result for result in collapses if result.traits.seeks_least and result.method == result.family), None)
+    least = next((result for result in collapses if result.traits.seeks_least and result.is_main), None)
     bounding = next((result for result in collapses if result.traits.bounds_above), None)
     if least is None or bounding is None or least.multiplier is None or bounding.multiplier is None:
         return None, ""

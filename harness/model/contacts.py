@@ -11,6 +11,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 import shapely
@@ -76,10 +77,13 @@ class Edges:
     last: FloatArray
     before: IntArray
 
+    @cached_property
+    def _tree(self) -> shapely.STRtree:
+        return shapely.STRtree(shapely.linestrings(np.stack([self.first, self.last], axis=1)))
+
     def near(self, distance: float) -> tuple[IntArray, IntArray]:
         """Vertices, by the edge that begins there, and the edges of other blocks within a distance of them [length]."""
-        lines = shapely.linestrings(np.stack([self.first, self.last], axis=1))
-        vertex, edge = shapely.STRtree(lines).query(shapely.points(self.first), predicate="dwithin", distance=distance)
+        vertex, edge = self._tree.query(shapely.points(self.first), predicate="dwithin", distance=distance)
         others = self.owner[vertex] != self.owner[edge]
         return vertex[others], edge[others]
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import tomllib
 from functools import cache
-from typing import Annotated
+from typing import Annotated, TypeVar
 
 from pydantic import Field
 
@@ -13,7 +13,8 @@ from harness.model.reading import read_text, validate
 from harness.model.wall import Strict
 
 LARGEST_FILE = 2**16
-"""Bytes of library.toml at most; it comes with Drystone."""
+"""Bytes at most of a file of words that comes with Drystone."""
+Words = TypeVar("Words", bound=Strict)
 
 
 class DefaultMethods(Strict):
@@ -42,8 +43,13 @@ class Library(Strict):
         return (known.index(family) if family in known else len(known), method != family, method)
 
 
+def shipped_words(kind: type[Words], name: str) -> Words:
+    """The content of a TOML file that stands beside the cases."""
+    path = shipped_cases() / name
+    return validate(kind, tomllib.loads(read_text(path, LARGEST_FILE)), str(path))
+
+
 @cache
 def library() -> Library:
     """The library's own words, read once."""
-    path = shipped_cases() / "library.toml"
-    return validate(Library, tomllib.loads(read_text(path, LARGEST_FILE)), str(path))
+    return shipped_words(Library, "library.toml")

@@ -58,8 +58,8 @@ class Search:
     """Everything that a wall's search shares: programmes, known mechanisms, counters.
 
     `lower` holds each state that was lower than all before, `history` its multiplier (scaled) with the CPU time of the
-    process at which it was found [s], `ends`
-    those at which descents ended, `associated` the programme of statics alone, once it is solved.
+    process at which it was found [s], `ends` those at which descents ended, `associated` the programme of statics
+    alone, once it is solved.
     """
 
     def __init__(self, problem: Problem, newton: NewtonMatrix, seed: int = 0, parent: Search | None = None) -> None:

@@ -212,7 +212,7 @@ def test_report_is_replaced_as_a_whole(tmp_path: Path, monkeypatch: pytest.Monke
     path = tmp_path / "deep" / "report.html"
     build.write_report(samples.typical(), path)
     before = path.read_text(encoding="utf-8")
-    monkeypatch.setattr(build.os, "replace", _refuse)
+    monkeypatch.setattr("os.replace", _refuse)
     with pytest.raises(OSError, match="no space"):
         build.write_report(ComparisonRun("new", "", "", []), path)
     assert path.read_text(encoding="utf-8") == before
