@@ -12,10 +12,6 @@ from methods.de.engine import Engine, Measured
 from methods.de.motion import Motion, Proof, Trend, by_power, by_virtual_work
 from methods.de.settings import HoldSettings
 
-FOLLOWED = 0.02
-"""Part of the work of an order after which an even decay is no longer followed: thin arches of 100 voussoirs come to
-rest within it; the wall of Ferris and Tin-Loi, which creeps, would use up all."""
-
 
 class State(StrEnum):
     """What a hold showed."""
@@ -106,6 +102,19 @@ class Watch:
         old, middle, new = (float(np.log(np.mean(self.residuals[-k * part :][:part]))) for k in (3, 2, 1))
         return (middle - new) / part if 0.5 * (old - middle) <= middle - new and middle > new else 0.0
 
+    def over(self, usual: float, affordable: float, relaxations: float) -> bool:
+        """Whether the time of a hold is over.
+
+        Args:
+            usual: checks that a hold has.
+            affordable: checks that it has at most, on its way to rest.
+            relaxations: relaxation times of the wall for which it is then followed.
+        """
+        count = len(self.residuals)
+        if count < usual or count >= affordable:
+            return count >= usual
+        return not 0.0 < count * self.decay < relaxations
+
     def motion(self, engine: Measured) -> Motion | None:
         """The motion, where it is shown that the wall moves; else None."""
         if len(self.velocities) < 8 or self.residuals[-1] <= self.moving:
@@ -134,17 +143,16 @@ def hold(engine: Engine, settings: HoldSettings, patience: int = 1) -> Hold:
     """
     check = max(10, round(engine.relaxation / 3.0))
     usual = patience * hold_limit(engine, settings) / check
-    affordable = (FOLLOWED * settings.work / max(engine.interfaces, 1) - engine.steps) / check
     start, watch = engine.steps, Watch(settings.held_residual, settings.moving_residual)
+    affordable = (watch.trend.followed * settings.work / max(engine.interfaces, 1) - engine.steps) / check
     while True:
         engine.advance(check)
         velocity = engine.velocity()
         watch.note(velocity, engine.unbalance(velocity))
-        residual, count = watch.residuals[-1], len(watch.residuals)
+        residual = watch.residuals[-1]
         if watch.rests:
             return Hold(State.HELD, residual, engine.steps - start, velocity)
-        decay = watch.decay if usual <= count < affordable else 0.0
-        over = count >= usual and not count * decay < patience * settings.hold_steps * (decay > 0.0)
+        over = watch.over(usual, affordable, patience * settings.hold_steps)
         if over or watch.steady or watch.doubled:
             motion = watch.motion(engine)
             if motion is not None:

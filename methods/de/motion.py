@@ -46,12 +46,15 @@ class Trend:
             rest keeps nothing, one on its way to a steady motion all that it then has: half parts the two.
         steady: change of the speed from one check, or quarter, to the next below which rounding decides its sign.
         checks: checks in a row with no more change than that that make a field worth asking about.
+        followed: part of the work of an order after which an even decay is no longer followed: thin arches of 100
+            voussoirs come to rest within it; the wall of Ferris and Tin-Loi, which creeps, would use up all.
     """
 
     alike: float = 0.9
     left: float = 0.5
     steady: float = 3e-3
     checks: int = 4
+    followed: float = 0.02
 
     def goes_on(self, fields: Sequence[FloatArray]) -> bool:
         """Whether the motion of the last of three fields (each (n, 3), means over equal times) will go on.

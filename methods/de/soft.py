@@ -149,12 +149,10 @@ class Holds:
             residual = wall.advance(LOOK)
             moved, places = wall.places - places, wall.places.copy()
             watch.note(moved / [size, size, 1.0], residual)
-            count = len(watch.residuals)
             if residual < settings.held_residual or not np.all(np.isfinite(places)):
                 state = State.HELD if residual < settings.held_residual else State.UNDECIDED
                 return Hold(state, residual, wall.steps - start, places - before)
-            decay = watch.decay if looks <= count < affordable else 0.0
-            over = count >= looks and not count * decay < settings.relaxations * (decay > 0.0)
+            over = watch.over(looks, affordable, settings.relaxations)
             motion = by_travel(wall.assembly, load, places - before, settings.reach)
             far = float(np.abs((places - before)[:, :2]).max(initial=0.0)) > away
             if motion is None and (over or watch.doubled or far):
