@@ -13,13 +13,13 @@ from typing import Protocol
 
 import numpy as np
 import scipy.linalg as sla
-from scipy.sparse.linalg import SuperLU, splu
+from scipy.sparse.linalg import SuperLU
 
 from harness.model.assembly import FloatArray, IntArray
 from methods.numerics.block_kernels import MANY
 from methods.numerics.block_lu import BlockFactor, BlockPattern
 from methods.numerics.compiled import compiled
-from methods.numerics.failures import SingularMatrix
+from methods.numerics.failures import SingularMatrix, sparse_lu
 from methods.numerics.vectors import largest
 from methods.springs.wall_model import WallModel, add_tangent
 
@@ -176,8 +176,10 @@ class SparseFactor:
         for pin in pins:
             matrix[pin, pin] += 1.0
         try:
-            return splu(matrix, "NATURAL", 1e-3, relax=1, panel_size=1, options=options)
-        except RuntimeError as error:
+            return sparse_lu(
+                matrix, permc_spec="NATURAL", diag_pivot_thresh=1e-3, relax=1, panel_size=1, options=options
+            )
+        except SingularMatrix as error:
             raise SingularTangent(str(error)) from error
 
     def solve(self, right: FloatArray) -> FloatArray:

@@ -12,9 +12,10 @@ from dataclasses import dataclass
 
 import numpy as np
 import scipy.sparse as sp
-from scipy.sparse.linalg import SuperLU, splu
+from scipy.sparse.linalg import SuperLU
 
 from harness.model.assembly import Assembly, BoolArray, FloatArray, IntArray
+from methods.numerics.failures import SingularMatrix, sparse_lu
 from methods.springs.factor import SingularTangent
 from methods.springs.gap_law import STICK, classify, gap_forces
 from methods.springs.path_record import Snapshot
@@ -171,8 +172,8 @@ def _of_many_mechanisms(model: WallModel, shot: Snapshot) -> CollapseState:
 
 def _regular(model: WallModel, state: IntArray) -> SuperLU:
     try:
-        return splu(model.tangent(state, SHIFT))
-    except RuntimeError as error:
+        return sparse_lu(model.tangent(state, SHIFT))
+    except SingularMatrix as error:
         raise SingularTangent(NOT_UNIQUE) from error
 
 
@@ -185,8 +186,8 @@ def _beyond_yield(model: WallModel, opening: FloatArray, trial: FloatArray, stat
 
 def _bordered(tangent: sp.csc_matrix, fastest: int, live: FloatArray) -> SuperLU:
     try:
-        return splu(_with_column(tangent, fastest, -live))
-    except RuntimeError as error:
+        return sparse_lu(_with_column(tangent, fastest, -live))
+    except SingularMatrix as error:
         raise SingularTangent(NOT_UNIQUE) from error
 
 
