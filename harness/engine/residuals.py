@@ -199,7 +199,7 @@ def _mechanism_residuals(
         mechanism, live_work = mechanism * (largest / live_work), largest
     opening, slip = relative_velocities(assembly, mechanism)
     dilatancy = assembly.friction if flow == "associated" else assembly.dilatancy
-    lift = np.zeros(len(slip)) if dilatancy is None else dilatancy * abs(slip)
+    lift = dilatancy * abs(slip)
     opening = opening - lift[:, None]
     normal, shear = forces[:, :2], forces[:, 2]
     strength = assembly.friction * normal.sum(axis=1)

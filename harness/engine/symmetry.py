@@ -85,7 +85,7 @@ def renumbered(assembly: Assembly, seed: int = 1) -> Assembly:
         face2=assembly.face2[joints],
         normal=np.where(swap[:, None], -1.0, 1.0) * assembly.normal[joints],
         friction=assembly.friction[joints],
-        dilatancy=None if assembly.dilatancy is None else assembly.dilatancy[joints],
+        dilatancy=assembly.dilatancy[joints],
         joint=tuple(assembly.joint[k] for k in joints),
     )
 
@@ -121,7 +121,7 @@ def beside(assembly: Assembly, share: float) -> Assembly:
         face2=np.vstack([assembly.face2, ends[1:]]),
         normal=np.vstack([assembly.normal, [[0.0, 1.0]]]),
         friction=np.append(assembly.friction, 0.5),
-        dilatancy=None if assembly.dilatancy is None else np.append(assembly.dilatancy, 0.0),
+        dilatancy=np.append(assembly.dilatancy, 0.0),
         joint=(*assembly.joint, "bed"),
     )
 

@@ -46,9 +46,9 @@ class Assembly:
         face1, face2: (m, 2) ends of the touching segment before contact points were set in [length].
         normal: (m, 2) unit normals, from a into b.
         friction: (m,) friction coefficients mu = tan(phi), zero or more.
+        dilatancy: (m,) coefficients by which a slip lifts the ends, from zero to the friction.
         joint: (m,) names of the joints ("bed", "head" or as given).
         dead, live: (n, 3) generalised loads (fx, fy, moment about the centroid); zero on fixed blocks.
-        dilatancy: (m,) coefficients by which a slip lifts the ends, from zero to the friction; None: zero everywhere.
     """
 
     name: str
@@ -65,20 +65,20 @@ class Assembly:
     face2: FloatArray
     normal: FloatArray
     friction: FloatArray
+    dilatancy: FloatArray
     joint: tuple[str, ...]
     dead: FloatArray
     live: FloatArray
-    dilatancy: FloatArray | None = None
 
     @cached_property
     def law(self) -> JointLaw:
         """The law of its joints."""
-        return JointLaw(self.friction, np.zeros(self.n_interfaces) if self.dilatancy is None else self.dilatancy)
+        return JointLaw(self.friction, self.dilatancy)
 
     @property
     def dilates(self) -> bool:
         """Whether any joint has a dilatancy."""
-        return self.dilatancy is not None and bool(np.any(self.dilatancy != 0.0))
+        return bool(np.any(self.dilatancy != 0.0))
 
     @property
     def n_blocks(self) -> int:

@@ -98,10 +98,10 @@ def build(wall: Wall, name: str = "wall") -> Built:
         face2=face2,
         normal=normal,
         friction=friction,
+        dilatancy=dilatancy,
         joint=joints,
         dead=_dead_load(wall.loads, blocks, index, weight, centroids, fixed),
         live=_load(wall.loads.live or Load(), blocks, index, weight, centroids, fixed),
-        dilatancy=dilatancy if dilatancy.any() else None,
     )
     if wall.loads.live is not None and not assembly.has_live_load:
         raise InputError(
@@ -223,7 +223,7 @@ def _law(
 ) -> tuple[FloatArray, FloatArray]:
     """Friction and dilatancy (m,) of the interfaces."""
     pairs = [_pair(wall, interface, joint, blocks, index) for interface, joint in zip(interfaces, joints, strict=True)]
-    friction, dilatancy = np.array(pairs, dtype=float).reshape(-1, 2).T
+    friction, dilatancy = np.ascontiguousarray(np.array(pairs, dtype=float).reshape(-1, 2).T)
     return friction, dilatancy
 
 

@@ -76,10 +76,9 @@ def _component(assembly: Assembly, moving: BoolArray) -> Component:
     place = np.full(assembly.n_blocks, -1, dtype=np.int64)
     place[blocks] = np.arange(len(blocks))
     by_block = ("centroid", "weight", "fixed", "dead", "live")
-    by_interface = ("end1", "end2", "face1", "face2", "normal", "friction")
+    by_interface = ("end1", "end2", "face1", "face2", "normal", "friction", "dilatancy")
     part = replace(
         assembly,
-        dilatancy=None if assembly.dilatancy is None else assembly.dilatancy[interfaces],
         block_ids=tuple(assembly.block_ids[i] for i in blocks),
         polygons=tuple(assembly.polygons[i] for i in blocks),
         block_a=place[assembly.block_a[interfaces]],

@@ -41,10 +41,9 @@ def moving_region(problem: Problem, velocities: FloatArray) -> Region:
     speed = abs(motion).max(axis=1)
     fixed = ~with_all_above(assembly, speed > MOVES * speed.max())
     kept = ~(fixed[assembly.block_a] & fixed[assembly.block_b])
-    by_interface = ("block_a", "block_b", "end1", "end2", "face1", "face2", "normal", "friction")
+    by_interface = ("block_a", "block_b", "end1", "end2", "face1", "face2", "normal", "friction", "dilatancy")
     part = replace(
         assembly,
-        dilatancy=None if assembly.dilatancy is None else assembly.dilatancy[kept],
         fixed=fixed,
         dead=np.where(fixed[:, None], 0.0, assembly.dead),
         live=np.where(fixed[:, None], 0.0, assembly.live),

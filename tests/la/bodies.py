@@ -49,6 +49,7 @@ def stack(widths: list[float], heights: list[float], friction: float, halves: in
         face2=np.array(end2),
         normal=np.tile([0.0, 1.0], (m, 1)),
         friction=np.full(m, friction),
+        dilatancy=np.zeros(m),
         joint=("bed",) * m,
         dead=dead,
         live=live,
