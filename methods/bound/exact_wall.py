@@ -73,11 +73,10 @@ class ExactWall:
     def resultant(self, forces: Vector) -> Vector:
         """C' r of forces (3m,)."""
         total = [Fraction(0)] * len(self.dead)
-        for row, force in zip(self.rows, forces, strict=True):
+        for row, force in zip(self.sparse, forces, strict=True):
             if force:
-                for k, value in enumerate(row):
-                    if value:
-                        total[k] += value * force
+                for k, value in row:
+                    total[k] += value * force
         return total
 
 

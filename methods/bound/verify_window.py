@@ -105,8 +105,7 @@ class _Products:
         for mu, normal in zip(self.wall.friction, self.forces.normal, strict=True):
             limit += [normal, normal, 2 * mu * normal, 2 * mu * normal]
         limit += [Fraction(1), width, width]
-        grain = 2**20
-        whole_limit = [math.ceil(most * grain) for most in limit]
+        whole_limit, grain = _not_below(limit)
         loss: dict[Any, Fraction] = {}
         for name, column in multipliers.items():
             free = name if isinstance(name, int) else 4 * m if name == "work" else -1
@@ -179,8 +178,7 @@ class _Products:
         for mu, normal in zip(wall.friction, self.forces.normal, strict=True):
             sizes += [normal, normal, mu * normal]
         sizes += [max(abs(self.forces.low), abs(self.forces.high)), Fraction(1)]
-        grain = 2**20
-        whole_sizes = [math.ceil(size * grain) for size in sizes]
+        whole_sizes, grain = _not_below(sizes)
         matrix, left_unit = left
         price: Fraction = ZERO
         for static, velocities, limit in zip(matrix, balance, motions.limits, strict=True):
@@ -190,3 +188,9 @@ class _Products:
                 rest += abs(value * unit - equilibrium * left_unit) * size
             price += rest * limit
         return price / Fraction(self.unit * left_unit * unit * grain)
+
+
+def _not_below(values: list[Fraction]) -> tuple[list[int], int]:
+    """Whole numbers no less than the values times a unit, and that unit: their sums are quicker than of fractions."""
+    unit = 2**20
+    return [math.ceil(value * unit) for value in values], unit

@@ -151,7 +151,6 @@ class WindowDocument:
         """All but the multipliers of products."""
         bounds, scales, m = self.relaxation.bounds, self.scales, self.wall.n_interfaces
         by_interface = 1.0 / scales.length[:, None]
-        weights = np.round(scales.blocks / (scales.multiplier * scales.length) * 2.0**PRECISION.weights)
         total = self.programme.least(np.repeat(-1.0 / scales.length, 4) * np.tile([1.0, 1.0, 0.0, 0.0], m))
         if total[0] != "optimal":
             raise CertificateError("the normal forces of a window are not bounded")
@@ -164,8 +163,8 @@ class WindowDocument:
                 "greatest": self._velocities(by_interface * bounds.greatest_velocities),
             },
             "weight_exponent": PRECISION.weights,
-            "weights": [int(w) for w in weights],
-            "lift_weight": round(2**PRECISION.weights / scales.multiplier),
+            "weights": [int(w) for w in self._weights[0]],
+            "lift_weight": self._weights[1],
             "still": self.still.tolist(),
             "still_velocities": self._velocities(
                 np.repeat(by_interface, 4, axis=0)[self.still] * bounds.still_velocities[self.still]
@@ -175,6 +174,12 @@ class WindowDocument:
             "least_velocities": self._velocities((by_interface * bounds.least_velocities)[list(self.least)]),
             "motions": self._motions(),
         }
+
+    @cached_property
+    def _weights(self) -> tuple[FloatArray, int]:
+        """Whole weights (m,) of rates in the size of a mechanism, and of the lift, over 2^`Precision.weights`."""
+        scales, unit = self.scales, 2**PRECISION.weights
+        return np.round(scales.blocks / (scales.multiplier * scales.length) * unit), round(unit / scales.multiplier)
 
     def _velocities(self, velocities: FloatArray) -> list[Any]:
         return _whole(-velocities * self.scales.velocity, PRECISION.velocities)
@@ -267,21 +272,38 @@ class WindowDocument:
             still += [3 * p + 2] if {4 * p + 2, 4 * p + 3} <= held else []
         return rates, strains[3 * relaxation.unloadable + 2], strains[still]
 
+    @cached_property
+    def _inverses(self) -> tuple[FloatArray, FloatArray, FloatArray]:
+        """Pseudo-inverses of the static inequalities, transposed, of the rates and of the still strains."""
+        rates, _, still = self._kinematic
+        still_inverse = np.linalg.pinv(still) if len(still) else np.zeros((rates.shape[1], 0))
+        return np.asarray(np.linalg.pinv(self._static.T)), np.asarray(np.linalg.pinv(rates)), np.asarray(still_inverse)
+
+    @cached_property
+    def _equilibrium(self) -> tuple[FloatArray, FloatArray]:
+        """The equations of equilibrium over forces, multiplier and one, and an orthonormal basis of their columns."""
+        equations = np.vstack([self.strains, self.live, self.dead])
+        return equations, scipy.linalg.orth(equations)
+
+    @cached_property
+    def _alone(self) -> FloatArray:
+        """Directions of motions in which nothing but signed slips moves."""
+        rates, _, still = self._kinematic
+        return scipy.linalg.null_space(np.vstack([rates, still]), rcond=ROUNDING.no_row)
+
     def _products(self, products: FloatArray, exponent: int, of_size: bool) -> dict[str, Any]:
         """Multipliers of products, rounded, with the multiples of equations that leave next to nothing of the rest."""
-        relaxation, scales, m = self.relaxation, self.scales, self.wall.n_interfaces
+        relaxation, m = self.relaxation, self.wall.n_interfaces
         multipliers = self._unscaled(products, of_size)
         rates, signed, still = self._kinematic
         own = self._signed(products, of_size)
-        static = self._static
-        equations = np.vstack([self.strains, self.live, self.dead])
-        basis = scipy.linalg.orth(equations)
-        still_inverse = np.linalg.pinv(still) if len(still) else np.zeros((rates.shape[1], 0))
+        static, (equations, basis) = self._static, self._equilibrium
+        static_inverse, rate_inverse, still_inverse = self._inverses
         cost = np.zeros((4 * m + 3, rates.shape[0]))
         if of_size:
-            weights = np.round(scales.blocks / (scales.multiplier * scales.length) * 2.0**PRECISION.weights)
+            weights, lift_weight = self._weights
             cost[4 * m, :-2] = -weights[relaxation.free // 4] / 2.0**PRECISION.weights
-            cost[4 * m, -1] = -round(2**PRECISION.weights / scales.multiplier) / 2.0**PRECISION.weights
+            cost[4 * m, -1] = -lift_weight / 2.0**PRECISION.weights
         else:
             cost[4 * m + 1, -2] = 1.0
         unit = 2.0**exponent
@@ -295,16 +317,16 @@ class WindowDocument:
         for _ in range(PRECISION.refinements):
             rest = rest_of(multipliers, own)
             rest -= basis @ (basis.T @ rest)
-            own = own + self._own_change(rest, basis, np.vstack([rates, still]), signed)
+            own = own + self._own_change(rest, basis, signed)
             rest = rest_of(multipliers, own)
             rest -= basis @ (basis.T @ rest)
             rest -= rest @ still_inverse @ still
-            multipliers = multipliers + np.linalg.pinv(static.T) @ rest @ np.linalg.pinv(rates)
+            multipliers = multipliers + static_inverse @ rest @ rate_inverse
         multipliers, own = np.round(multipliers * unit) / unit, np.round(own * unit) / unit
         rest = rest_of(multipliers, own)
         fixed = np.round((rest - basis @ (basis.T @ rest)) @ still_inverse * unit) / unit
         rest = rest - fixed @ still
-        balance = np.linalg.lstsq(equations, rest, rcond=None)[0]
+        balance: FloatArray = np.asarray(np.linalg.lstsq(equations, rest, rcond=None)[0], dtype=np.float64)
         return {
             "exponent": exponent,
             "columns": _whole(multipliers.T, exponent),
@@ -313,10 +335,10 @@ class WindowDocument:
             "balance": _whole(balance.T, exponent),
         }
 
-    def _own_change(self, rest: FloatArray, basis: FloatArray, others: FloatArray, signed: FloatArray) -> FloatArray:
+    def _own_change(self, rest: FloatArray, basis: FloatArray, signed: FloatArray) -> FloatArray:
         """(q, 3) change of the signed slips' multipliers that takes what no other column can from the rest."""
-        alone = scipy.linalg.null_space(others, rcond=ROUNDING.no_row)
-        slips, q = signed @ alone, self.relaxation.unloadable
+        alone, q = self._alone, self.relaxation.unloadable
+        slips = signed @ alone
         if not alone.shape[1]:
             return np.zeros((len(q), 3))
         places = (3 * q[:, None] + np.arange(3)).ravel()

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import copy
 import json
-import re
 from fractions import Fraction
 from functools import cache
 from pathlib import Path
@@ -28,6 +27,7 @@ from methods.la.problem import make_problem
 from methods.la.search import Search
 from methods.la.settings import BoundSettings
 from methods.la.window_certificate import certified_bracket
+from tests.bound.digits import one_digit_changed
 from tests.la.bodies import running_bond
 from tests.walls import stack, wall_data
 
@@ -71,29 +71,16 @@ def test_a_bonded_wall_is_proved_to_a_millionth() -> None:
 @settings(max_examples=40, deadline=None, derandomize=True)
 @given(st.data())
 def test_one_digit_changed_anywhere_is_refused(data: st.DataObject) -> None:
-    text = json.dumps(of_bond())
-    where = data.draw(st.sampled_from([match.start() for match in re.finditer(r"[0-9]", text)]))
-    digit = data.draw(st.sampled_from([d for d in "0123456789" if d != text[where]]))
-    try:
-        changed = json.loads(text[:where] + digit + text[where + 1 :])
-    except json.JSONDecodeError:
-        return
     with pytest.raises(CertificateError):
-        verify(changed)
+        verify(one_digit_changed(data, of_bond()))
 
 
 @settings(max_examples=40, deadline=None, derandomize=True)
 @given(st.data())
 def test_one_digit_changed_proves_nothing_false_even_with_the_digest_made_anew(data: st.DataObject) -> None:
     """Changed in its last places a multiplier is only a slightly worse proof; nothing above the least is proved."""
-    text = json.dumps({key: of_bond()[key] for key in ("windows", "bound", "multiplier", "state")})
-    where = data.draw(st.sampled_from([match.start() for match in re.finditer(r"[0-9]", text)]))
-    digit = data.draw(st.sampled_from([d for d in "0123456789" if d != text[where]]))
-    try:
-        changed = json.loads(text[:where] + digit + text[where + 1 :])
-    except json.JSONDecodeError:
-        return
-    refused_or_true(of_bond() | changed)
+    part = {key: of_bond()[key] for key in ("windows", "bound", "multiplier", "state")}
+    refused_or_true(of_bond() | one_digit_changed(data, part))
 
 
 @pytest.mark.parametrize("friction", ["7/10", "16/25"])

@@ -1,0 +1,21 @@
+"""Documents with one digit changed, which certificates must refuse or survive truly."""
+
+from __future__ import annotations
+
+import json
+import re
+from typing import Any
+
+from hypothesis import reject
+from hypothesis import strategies as st
+
+
+def one_digit_changed(data: st.DataObject, document: Any) -> Any:
+    """The document with one digit changed anywhere; an example is dropped where it is no JSON any more."""
+    text = json.dumps(document)
+    where = data.draw(st.sampled_from([match.start() for match in re.finditer(r"[0-9]", text)]))
+    digit = data.draw(st.sampled_from([d for d in "0123456789" if d != text[where]]))
+    try:
+        return json.loads(text[:where] + digit + text[where + 1 :])
+    except json.JSONDecodeError:
+        reject()
