@@ -25,9 +25,9 @@ from harness.model.case import Case
 from harness.model.comparison import ComparisonRun
 from harness.model.difference import Difference, Kind
 from harness.model.errors import InputError, first_few, visible
+from harness.model.fields import LARGEST
 from harness.model.method import Answer, Finding, Status
 from harness.model.result import Judgement, Result
-from harness.model.wall import LARGEST
 
 JUDGED = {True: 0, False: 1, None: 3}
 """Exit codes for an answer that is accepted, rejected, or shows nothing that proves or refutes its claim."""

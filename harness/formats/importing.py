@@ -16,9 +16,10 @@ from pydantic import Field
 
 from harness.formats.drawing import CROSSES, LINES, Drawing, Outline
 from harness.model.errors import InputError, did_you_mean
+from harness.model.fields import Coefficient, Name, NonNegative, Point, Positive, Strict
 from harness.model.reading import parse_wall, read_json, read_text, validate
 from harness.model.units import METRES, LengthUnit
-from harness.model.wall import Coefficient, FrictionRule, Name, NonNegative, Point, Positive, Strict, Wall
+from harness.model.wall import FrictionRule, Wall
 
 READERS = {
     ".dxf": ("dxf", "read_dxf", "ezdxf"),

@@ -12,15 +12,16 @@ import numpy as np
 from harness.model import geometry
 from harness.model.assembly import Assembly, BoolArray, FloatArray, polygon_area
 from harness.model.errors import InputError, Spot, of_each, raise_faults
+from harness.model.fields import MOST_BLOCKS
 from harness.model.interfaces import check_held, faces_of, find_joints, normals_of
 from harness.model.joint_law import JointLaw
 from harness.model.names import faults_of_wall
 from harness.model.pattern import blocks_of, count_of
+from harness.model.pattern_fields import PatternBase
 from harness.model.plausibility import contact_warnings, force_warnings, interface_warnings, near_misses
 from harness.model.rings import hole_faults, ringed
 from harness.model.slips import slip_warnings, thickness_of
 from harness.model.wall import (
-    MOST_BLOCKS,
     Block,
     BodyForce,
     Friction,
@@ -29,7 +30,6 @@ from harness.model.wall import (
     Interface,
     Load,
     Loads,
-    PatternBase,
     Wall,
     coefficient_of,
 )

@@ -14,9 +14,10 @@ from pydantic import Field, model_validator
 from harness.model.assembly import Assembly
 from harness.model.build import Built, build
 from harness.model.errors import InputError
+from harness.model.fields import Strict
 from harness.model.method import method_names
 from harness.model.reading import parse_wall, read_document, read_json, read_text, validate
-from harness.model.wall import Strict, Wall
+from harness.model.wall import Wall
 
 LARGEST_CASE_FILE = 2**20
 """Bytes of a case.toml at most: the library's longest has 5,046."""

@@ -9,8 +9,8 @@ from typing import Annotated, TypeVar
 from pydantic import Field
 
 from harness.model.case import shipped_cases
+from harness.model.fields import Strict
 from harness.model.reading import read_text, validate
-from harness.model.wall import Strict
 
 LARGEST_FILE = 2**16
 """Bytes at most of a file of words that comes with Drystone."""

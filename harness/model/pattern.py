@@ -11,7 +11,9 @@ import shapely
 from pydantic import ValidationError
 
 from harness.model.errors import InputError
-from harness.model.wall import Block, Panel, PatternBase, Point, Ring, RunningBond, Stack
+from harness.model.fields import Point
+from harness.model.pattern_fields import Panel, PatternBase, Ring, RunningBond, Stack
+from harness.model.wall import Block
 
 
 def blocks_of(pattern: PatternBase) -> list[Block]:

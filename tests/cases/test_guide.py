@@ -10,8 +10,8 @@ import pytest
 from harness.model.build import build
 from harness.model.case import CaseFile, Reference
 from harness.model.errors import InputError
+from harness.model.pattern_fields import Panel, Ring, RunningBond, Stack
 from harness.model.reading import parse_wall
-from harness.model.wall import Panel, Ring, RunningBond, Stack
 
 GUIDE = (Path(__file__).parents[2] / "docs" / "writing-a-wall.md").read_text(encoding="utf-8")
 EXAMPLES = re.findall(r"```json\n(.*?)```", GUIDE, re.DOTALL)

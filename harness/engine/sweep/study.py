@@ -11,8 +11,8 @@ import numpy as np
 from pydantic import Discriminator, Field, Tag, model_validator
 
 from harness.model.errors import InputError
+from harness.model.fields import Strict
 from harness.model.reading import read_text, validate
-from harness.model.wall import Strict
 
 MOST_RUNS = 1_000_000
 """Runs a study may expand to."""

@@ -1,0 +1,26 @@
+"""Kinds of numbers and names in files that people write, and the base of their models."""
+
+from __future__ import annotations
+
+from typing import Annotated
+
+from pydantic import BaseModel, ConfigDict, Field
+
+LARGEST = 1e15
+"""Greatest size of any number of the format, whatever its unit, so that no product of a few of them overflows."""
+MOST_BLOCKS = 100_000
+"""Blocks of a wall at most, those that patterns make included."""
+Number = Annotated[float, Field(ge=-LARGEST, le=LARGEST, strict=True)]
+Point = tuple[Number, Number]
+Positive = Annotated[float, Field(gt=0.0, le=LARGEST, strict=True)]
+NonNegative = Annotated[float, Field(ge=0.0, le=LARGEST, strict=True)]
+Coefficient = Annotated[float, Field(ge=0.0, le=1e4, strict=True)]
+Angle = Annotated[float, Field(ge=0.0, lt=90.0, strict=True)]
+Count = Annotated[int, Field(ge=1, le=MOST_BLOCKS)]
+Name = Annotated[str, Field(min_length=1, max_length=200)]
+
+
+class Strict(BaseModel):
+    """Base of the format: unknown fields, NaN and infinities are refused."""
+
+    model_config = ConfigDict(extra="forbid", allow_inf_nan=False, frozen=True, populate_by_name=True)
