@@ -12,9 +12,8 @@ from functools import cache
 from pathlib import Path
 from typing import Any
 
-from harness.conformance import answered
 from harness.engine.compare import comparison_run, recall, remember
-from harness.engine.judge import judge
+from harness.engine.judge import answered, judge
 from harness.engine.plan import Limits, Run
 from harness.engine.store import open_store
 from harness.model.build import Built, build

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from harness.conformance import answered
+from harness.engine.judge import answered
 from harness.engine.symmetry import beside, renumbered
 from harness.model.assembly import Assembly
 from harness.model.build import build

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from harness.conformance import answered
+from harness.engine.judge import answered
 from harness.model.build import build
 from harness.model.errors import InputError
 from harness.model.method import load_method

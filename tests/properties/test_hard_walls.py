@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from harness.conformance import answered
+from harness.engine.judge import answered
 from harness.engine.symmetry import VIEWS
 from harness.model.assembly import Assembly
 from harness.model.build import build

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from harness.conformance import answered
+from harness.engine.judge import answered
 from harness.model.assembly import Assembly
 from harness.model.method import load_method
 from tests.walls import assembly, running_bond

@@ -9,7 +9,7 @@ import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
-from harness.conformance import answered
+from harness.engine.judge import answered
 from harness.engine.symmetry import VIEWS
 from harness.model.assembly import Assembly
 from harness.model.method import Finding, Status, load_method

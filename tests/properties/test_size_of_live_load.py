@@ -6,7 +6,7 @@ from dataclasses import replace
 
 import pytest
 
-from harness.conformance import answered
+from harness.engine.judge import answered
 from harness.model.method import load_method
 from tests.walls import assembly, running_bond
 
