@@ -32,12 +32,11 @@ class EndOfPath:
     Attributes:
         above: interfaces above which it comes before the simplex method: on walls of more it is the quicker.
         gap: complementarity y.g relative to the live work at which the path ends; the multiplier is known to that.
-        exact: residual of a state, and slack or rate of a contact that has both, up to which contacts are told apart.
+        exact: residual of a state, and slack or rate of a contact that has both, up to which one is taken.
         biases: ratios g / y above which a slack counts as zero and below which a rate does, tried in turn. At one both
             are at the size of the gap; a greater one leaves the forces more freedom where a mechanism is slow.
         held: such ratios of forces beside the motion of the path, tried in turn where contacts are not told apart: both
             fall with the root of the gap there, and the slacks of all of them are held at zero.
-        accepted: as `exact`, of such a state: some of the 1e-10 that the judge accepts of `la`, which may hand it over.
     """
 
     above: int = 400
@@ -45,7 +44,6 @@ class EndOfPath:
     exact: float = 1e-11
     biases: tuple[float, ...] = (1.0, 1e3, 1e6)
     held: tuple[float, ...] = (1e-4, 1e-5, 1e-6, 1e-7)
-    accepted: float = 4e-11
 
 
 END = EndOfPath()
@@ -144,7 +142,7 @@ def _by_interior_point(problem: Problem, newton: NewtonMatrix) -> AssociatedResu
             return AssociatedResult("optimal", clear, duality_gap(problem, clear), result.iterations)
     for bias in END.held:
         state = _from_path(problem, newton, result.point, bias)
-        if state is not None and _unclear(problem, state) <= END.accepted:
+        if state is not None and _unclear(problem, state) <= END.exact:
             return AssociatedResult("optimal", state, duality_gap(problem, state), result.iterations)
     return None
 
