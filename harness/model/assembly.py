@@ -29,6 +29,9 @@ FloatArray = NDArray[np.float64]
 IntArray = NDArray[np.int64]
 BoolArray = NDArray[np.bool_]
 
+OF_BLOCKS = ("polygons", "centroid", "weight", "fixed", "dead", "live")
+OF_JOINTS = ("block_a", "block_b", "end1", "end2", "face1", "face2", "normal", "friction", "dilatancy")
+
 
 @dataclass(frozen=True, eq=False)
 class Assembly:
@@ -69,6 +72,17 @@ class Assembly:
     joint: tuple[str, ...]
     dead: FloatArray
     live: FloatArray
+
+    def __post_init__(self) -> None:
+        """Every joint has one entry in each array of joints, every block in each of blocks.
+
+        Raises:
+            ValueError: if not, naming the array.
+        """
+        for names, count in ((OF_BLOCKS, len(self.block_ids)), (OF_JOINTS, len(self.joint))):
+            for name in names:
+                if len(getattr(self, name)) != count:
+                    raise ValueError(f"{name} has {len(getattr(self, name))} entries for {count}")
 
     @cached_property
     def law(self) -> JointLaw:

@@ -12,7 +12,7 @@ from typing import Literal
 
 import numpy as np
 
-from harness.model.assembly import Assembly, BoolArray, FloatArray
+from harness.model.assembly import OF_JOINTS, Assembly, BoolArray, FloatArray
 
 Faces = Literal["beds", "heads", "both"]
 
@@ -101,8 +101,5 @@ def closed_contacts(assembly: Assembly, forces: FloatArray, threshold: float = 1
 def restrict(assembly: Assembly, keep: BoolArray) -> Assembly:
     """The same blocks with only the interfaces of the mask (m,): what another method analyses afterwards."""
     index = np.flatnonzero(keep)
-    arrays = {
-        name: getattr(assembly, name)[index]
-        for name in ("block_a", "block_b", "end1", "end2", "face1", "face2", "normal", "friction")
-    }
+    arrays = {name: getattr(assembly, name)[index] for name in OF_JOINTS}
     return replace(assembly, joint=tuple(assembly.joint[p] for p in index), **arrays)

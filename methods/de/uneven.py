@@ -209,6 +209,7 @@ def with_contacts(assembly: Assembly, space: BlockSpace, places: FloatArray) -> 
         face2=two,
         normal=np.array([row[4] for row in rows]),
         friction=np.array([row[5] for row in rows]),
+        dilatancy=np.zeros(len(rows)),
         joint=tuple("bed" if flat else "head" for flat in level),
     ), single
 

@@ -12,7 +12,7 @@ import pytest
 
 from harness.engine.isolate import run_isolated
 from harness.engine.worker import Task
-from harness.model.assembly import Assembly
+from harness.model.assembly import OF_JOINTS, Assembly
 from harness.model.build import build
 from harness.model.method import Answer, Finding, Status
 from harness.model.reading import parse_wall
@@ -144,10 +144,7 @@ def test_fe_floating_block_is_a_gravity_failure_that_names_it() -> None:
     wall = running_bond(3, 3, 0.65)
     top = wall.n_blocks - 1
     keep = (wall.block_a != top) & (wall.block_b != top)
-    cut = {
-        name: getattr(wall, name)[keep]
-        for name in ("block_a", "block_b", "end1", "end2", "face1", "face2", "normal", "friction")
-    }
+    cut = {name: getattr(wall, name)[keep] for name in OF_JOINTS}
     answer = solve(replace(wall, joint=tuple(np.array(wall.joint)[keep]), **cut))
     assert answer.finding is Finding.FALLS
     assert answer.details["path_status"] == "gravity_failure"
