@@ -93,7 +93,8 @@ def _component(assembly: Assembly, moving: BoolArray) -> Component:
 def analysed_apart(assembly: Assembly, solve: Solve, bear: Bear) -> Answer:
     """The answer for a wall from those for its components, each analysed alone.
 
-    The smallest come first, so that a run that is stopped knows as much as it can.
+    The smallest come first, so that a run that is stopped knows as much as it can. After one that was stopped by the
+    time limit (`details["stopped_by_limit"]`) there is no time for the others.
 
     Args:
         assembly: the wall.
@@ -104,9 +105,17 @@ def analysed_apart(assembly: Assembly, solve: Solve, bear: Bear) -> Answer:
     if len(parts) == 1:
         return solve(parts[0].assembly)
     answers: dict[int, Answer] = {}
+    stopped = False
     for k in sorted(range(len(parts)), key=lambda k: parts[k].assembly.n_free):
-        answers[k] = solve(parts[k].assembly)
+        answers[k] = _not_reached(parts[k]) if stopped else solve(parts[k].assembly)
+        stopped = stopped or bool(answers[k].details.get("stopped_by_limit"))
     return joined(assembly, parts, [answers[k] for k in range(len(parts))], bear)
+
+
+def _not_reached(part: Component) -> Answer:
+    """The answer for a component for which no time was left."""
+    sentence = f"the time was over before the component of {part.named} was analysed"
+    return Answer(Status.NOT_CONVERGED, Finding.NONE, sentence)
 
 
 def joined(assembly: Assembly, parts: list[Component], answers: list[Answer], bear: Bear) -> Answer:

@@ -7,23 +7,25 @@ from typing import ClassVar
 import numpy as np
 
 from harness.model.assembly import Assembly, IntArray
-from harness.model.method import Answer, Finding, Settings, Status, Traits
+from harness.model.method import Answer, Finding, OutOfTime, Settings, Status, Traits
 from methods.de.answer import solve_by_holds
 from methods.de.courses import Tuning
+from methods.de.engine import Engine
 from methods.de.mujoco_wall import MujocoWall, SolverFailed, load_mujoco, mujoco_tunings
 from methods.de.release import ReleaseSettings, release
-from methods.de.settings import HoldSettings, MujocoSettings
+from methods.de.settings import MujocoSettings, SweepSettings
 from methods.de.space import StripSpace
 from methods.de.strips import CannotModel
+from methods.de.sweeps import SweptWall
 from methods.numerics.statics import analysed
 
 
 class DampedHolds:
-    """Damped holds of a wall of contact strips in pymunk, bracketed over body orders."""
+    """Damped holds of a wall at frozen geometry, bracketed over body orders."""
 
     name: ClassVar[str] = "de"
     family: ClassVar[str] = "de"
-    title: ClassVar[str] = "distinct elements (pymunk, damped holds)"
+    title: ClassVar[str] = "distinct elements (damped holds)"
     tolerance: ClassVar[float] = 1e-6
     traits: ClassVar[Traits] = Traits(
         caption="between held and moving",
@@ -32,16 +34,17 @@ class DampedHolds:
         colour="#2f6b3a",
         marker="d",
     )
-    Settings: ClassVar[type[Settings]] = HoldSettings
+    Settings: ClassVar[type[Settings]] = SweepSettings
 
-    def solve(self, assembly: Assembly, settings: HoldSettings) -> Answer:
+    def solve(self, assembly: Assembly, settings: SweepSettings) -> Answer:
         """Bracket of the collapse multiplier over body orders; see `methods.de.answer`."""
 
         return analysed(assembly, lambda part: self._of_component(part, settings))
 
-    def _of_component(self, assembly: Assembly, settings: HoldSettings) -> Answer:
-        def engine(blocks: IntArray, joints: IntArray, tuning: Tuning) -> StripSpace:
-            return StripSpace(assembly, blocks, joints, settings.iterations, tuning)
+    def _of_component(self, assembly: Assembly, settings: SweepSettings) -> Answer:
+        def engine(blocks: IntArray, joints: IntArray, tuning: Tuning) -> Engine:
+            make = StripSpace if settings.engine == "pymunk" else SweptWall
+            return make(assembly, blocks, joints, settings.iterations, tuning)
 
         try:
             return solve_by_holds(assembly, settings, engine)
@@ -111,10 +114,14 @@ class ReleasedCollapse:
     def solve(self, assembly: Assembly, settings: ReleaseSettings) -> Answer:
         """Answer of `de` with the history of the collapse: frames in `details`, time and displacement in `path`."""
         answer = DampedHolds().solve(assembly, settings)
-        if answer.finding not in (Finding.COLLAPSES, Finding.FALLS):
+        if answer.finding not in (Finding.COLLAPSES, Finding.FALLS) or answer.details.get("stopped_by_limit"):
             return answer
         multiplier = settings.excess * (answer.multiplier or 0.0)
-        collapse = release(assembly, multiplier, settings)
+        try:
+            collapse = release(assembly, multiplier, settings)
+        except OutOfTime:
+            answer.sentence += "; what follows a release was stopped by the time limit"
+            return answer
         pairs = [
             (assembly.block_ids[assembly.block_a[p]], assembly.block_ids[assembly.block_b[p]])
             for p in collapse.separated

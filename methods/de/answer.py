@@ -3,16 +3,18 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
 
 from harness.model.assembly import Assembly, IntArray
-from harness.model.method import Answer, Finding, Status
+from harness.model.method import Answer, Finding, OutOfTime, Status
 from methods.de.bracket import LOOSE, Bracket, Search, held_forces, mechanism_at
 from methods.de.courses import Tuning, courses, insertion_orders, tunings
 from methods.de.engine import Engine
 from methods.de.settings import HoldSettings
+from methods.de.stopped import Known, stopped_answer
 
 BRACKET_MEANING = (
     "[lowest multiplier held, highest multiplier moving] over the body orders: every order was held at or above the "
@@ -33,6 +35,8 @@ def solve_by_holds(
         settings: settings of the holds.
         make_engine: makes the engine.
         candidates: tunings to try in turn; None: those of `methods.de.courses.tunings`.
+
+    Where the time is over what is shown by then is the answer (`methods.de.stopped`).
     """
     if assembly.n_free == 0:
         return Answer(Status.OK, Finding.STANDS, "every block is fixed: nothing can move")
@@ -40,27 +44,49 @@ def solve_by_holds(
     course = courses(assembly)
     orders = insertion_orders(assembly, course, settings.orders, settings.seed)
     candidates = candidates or tunings(course, settings.mass_decay)
-    tuning, first = first_bracket(assembly, settings, make_engine, orders[0], candidates)
-    brackets = [first]
-    for name, blocks, joints in orders[1:]:
-        engine = make_engine(blocks, joints, tuning)
-        brackets.append(Search(engine, settings, unit, name).run(assembly.has_live_load))
-    details = describe(assembly, brackets)
-    answer = _conclude(assembly, settings, brackets, unit)
-    answer.iterations = sum(b.steps for b in brackets)
-    answer.details = {**details, "mass_decay": tuning.mass_decay, "damping": tuning.damping, **answer.details}
-    best = reporting(brackets)
-    if best is not None:
+    known = Known(len(orders))
+    try:
+        tuning, first = first_bracket(assembly, settings, make_engine, orders[0], candidates, known)
+        known.finished.append(first)
+        for name, blocks, joints in orders[1:]:
+            search = Search(make_engine(blocks, joints, tuning), settings, unit, name)
+            known.finished.append(known.searched(search, assembly.has_live_load))
+        brackets = known.finished
+        answer = _conclude(assembly, settings, brackets, unit)
+        answer.details = {**describe(assembly, brackets), **_of_tuning(tuning), **answer.details}
+        answer.iterations = sum(b.steps for b in brackets)
+        best = reporting(brackets)
+        if best is None:
+            return answer
         _, blocks, joints = next(order for order in orders if order[0] == best.order)
-        engine = make_engine(blocks, joints, tuning)
-        answer.forces, residual = held_forces(engine, settings, best)
-        answer.forces_multiplier = best.held
-        answer.details["residual_of_forces"] = residual
-        answer.path = {"multiplier": [t[0] for t in best.trials], "residual": [t[1] for t in best.trials]}
-        if answer.finding is Finding.COLLAPSES:
-            answer.mechanism, answer.flow = mechanism_at(engine, settings, best), "approximate"
-        answer.iterations += engine.steps
+        return _with_state(answer, make_engine(blocks, joints, tuning), settings, best)
+    except OutOfTime:
+        found = [search.found for search in known.counted()]
+        return stopped_answer(assembly, known, describe(assembly, found))
+
+
+def _of_tuning(tuning: Tuning) -> dict[str, Any]:
+    return {"mass_decay": tuning.mass_decay, "damping": tuning.damping}
+
+
+def _with_state(answer: Answer, engine: Engine, settings: HoldSettings, best: Bracket) -> Answer:
+    """The answer with the contact forces, the motion and the way of the order that is reported."""
+    forces, residual = held_forces(engine, settings, best)
+    answer = replace(
+        answer,
+        forces=forces,
+        forces_multiplier=best.held,
+        details=answer.details | {"residual_of_forces": residual},
+        path=_way(best),
+    )
+    if answer.finding is Finding.COLLAPSES:
+        answer.mechanism, answer.flow = mechanism_at(engine, settings, best), "approximate"
+    answer.iterations += engine.steps
     return answer
+
+
+def _way(best: Bracket) -> dict[str, list[float]]:
+    return {"multiplier": [t[0] for t in best.trials], "residual": [t[1] for t in best.trials]}
 
 
 def first_bracket(
@@ -69,6 +95,7 @@ def first_bracket(
     make_engine: EngineMaker,
     order: tuple[str, IntArray, IntArray],
     candidates: list[Tuning],
+    known: Known,
 ) -> tuple[Tuning, Bracket]:
     """The first order's bracket, and the tuning that gave it: the first that converges, else the one that got nearest.
 
@@ -78,8 +105,8 @@ def first_bracket(
     name, blocks, joints = order
     tried: list[tuple[tuple[bool, float, bool, int], Tuning, Bracket]] = []
     for k, tuning in enumerate(candidates):
-        engine = make_engine(blocks, joints, tuning)
-        found = Search(engine, settings, assembly.load_unit, name).run(assembly.has_live_load)
+        search = Search(make_engine(blocks, joints, tuning), settings, assembly.load_unit, name)
+        found = known.searched(search, assembly.has_live_load)
         if found.held is not None and found.told(assembly.has_live_load):
             return tuning, found
         width = 1.0 if found.width is None else found.width

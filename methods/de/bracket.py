@@ -100,6 +100,9 @@ class Search:
         settings: steps and tolerances.
         unit: multiplier at which the live load equals the dead load.
         order: name of the order.
+
+    Attributes:
+        states: multiplier and contact state of the engine of everything that was held, the highest last.
     """
 
     def __init__(self, engine: Engine, settings: HoldSettings, unit: float, order: str) -> None:
@@ -107,6 +110,7 @@ class Search:
         self.settings = settings
         self.unit = unit
         self.found = Bracket(order)
+        self.states: list[tuple[float, FloatArray]] = []
 
     def run(self, ask_multiplier: bool = True) -> Bracket:
         """Hold at zero, then, if asked, climb and bisect."""
@@ -114,7 +118,6 @@ class Search:
             self._climb()
             if not self.found.capped:
                 self._narrow()
-        self.found.steps = self.engine.steps
         return self.found
 
     def _spent(self) -> bool:
@@ -129,10 +132,12 @@ class Search:
         self.engine.load(multiplier)
         patience = 4 if multiplier == 0.0 else 1
         end = hold(self.engine, self.settings, patience)
+        found.steps = self.engine.steps
         found.holds += 1
         found.trials.append((multiplier, end.residual))
         if end.state is State.HELD:
             found.held, found.state = multiplier, self.engine.save()
+            self.states.append((multiplier, found.state))
         elif end.state is State.MOVING and (found.moving is None or multiplier < found.moving):
             found.moving, found.velocity, found.proof = multiplier, end.velocity, end.proof
             found.moving_residual = end.residual

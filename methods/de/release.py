@@ -9,10 +9,10 @@ from pydantic import Field
 
 from harness.model.assembly import Assembly, FloatArray
 from methods.de.bodies import TIME_STEP, BlockSpace
-from methods.de.settings import HoldSettings
+from methods.de.settings import SweepSettings
 
 
-class ReleaseSettings(HoldSettings):
+class ReleaseSettings(SweepSettings):
     """Settings of the bracket and of the release that follows it.
 
     Attributes:

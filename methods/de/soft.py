@@ -21,8 +21,10 @@ from methods.de.hold import Hold, State, Watch
 from methods.de.loading import REACH, raise_until_it_falls
 from methods.de.motion import Proof, by_travel
 from methods.de.soft_wall import SoftWall
+from methods.de.stopped import STOPPED
 from methods.numerics.statics import with_proof
 
+BRACKET_MEANING = "[highest multiplier at which it came to rest, lowest at which it fell]"
 STIFF = 1e6
 """Stiffness of joints where none is given, in mean dead loads of a block over the square of the length scale."""
 ROUND = 2e-4
@@ -89,6 +91,7 @@ class Holds:
         wall, settings: what is held, and how.
         rest: the last rest.
         motion, proof: (n, 3) displacements of the last fall under one load, and what shows that it is one.
+        fell: multiplier of that fall.
         undecided: multipliers at which the wall neither rested nor fell.
         path: multiplier and displacement of the live load at every rest.
     """
@@ -98,6 +101,7 @@ class Holds:
     rest: tuple[FloatArray, FloatArray] = field(init=False)
     motion: FloatArray | None = None
     proof: Proof | None = None
+    fell: float | None = None
     undecided: list[float] = field(default_factory=list)
     path: dict[str, list[float]] = field(default_factory=lambda: {"multiplier": [], "live_displacement": []})
 
@@ -106,10 +110,6 @@ class Holds:
         self.rest = self.wall.save()
         high = number_of_courses(courses(self.wall.assembly)) / LOW
         self._looks = int(self.settings.hold_steps * max(1.0, high**2)) // LOOK
-
-    def so_far(self) -> str:
-        """How far the load came, in words."""
-        return f": it came to rest at {self.path['multiplier'][-1]:.6g}" if self.path["multiplier"] else ""
 
     def rests(self, multiplier: float) -> bool:
         """Whether the wall comes to rest at a multiplier; if not it is put back where it rested last."""
@@ -127,7 +127,7 @@ class Holds:
             self.path["live_displacement"].append(_live_displacement(wall))
             return state
         if state is State.MOVING:
-            self.motion, self.proof = end.velocity, end.proof
+            self.motion, self.proof, self.fell = end.velocity, end.proof, multiplier
         else:
             self.undecided.append(multiplier)
         wall.restore(self.rest)
@@ -188,10 +188,10 @@ class DeformableJoints:
         stiffness = settings.stiffness or STIFF * mean / assembly.length_scale**2
         answer = self._with_joints(assembly, settings, stiffness, ROUND * assembly.length_scale)
         factor = _too_soft(answer, settings)
-        if settings.stiffness is None and factor > 1.0:
+        if settings.stiffness is None and factor > 1.0 and not answer.details.get("stopped_by_limit"):
             again = self._with_joints(assembly, settings, factor * stiffness, ROUND / factor * assembly.length_scale)
             again.iterations += answer.iterations
-            answer = again if again.status is Status.OK or answer.status is not Status.OK else answer
+            answer = _better(answer, again)
         return with_proof(assembly, _saying_soft(answer, settings))
 
     def _with_joints(self, assembly: Assembly, settings: SoftSettings, stiffness: float, round_by: float) -> Answer:
@@ -203,8 +203,7 @@ class DeformableJoints:
         try:
             answer = self._at_zero(assembly, holds, joints) or self._loaded(holds, joints, assembly.load_unit)
         except OutOfTime:
-            wall.restore(holds.rest)
-            answer = Answer(Status.NOT_CONVERGED, Finding.NONE, f"the time is over{holds.so_far()}, with {joints}")
+            answer = _stopped(holds, joints)
         answer.iterations, answer.path, answer.flow = wall.steps, holds.path, "approximate"
         answer.forces_multiplier = holds.path["multiplier"][-1] if holds.path["multiplier"] else None
         if answer.finding in (Finding.COLLAPSES, Finding.FALLS):
@@ -268,8 +267,39 @@ def _concluded(holds: Holds, joints: str, stood: float, fell: float | None, cap:
         sentence,
         multiplier=0.5 * (stood + fell),
         bracket=(stood, fell),
-        bracket_meaning="[highest multiplier at which it came to rest, lowest at which it fell]",
+        bracket_meaning=BRACKET_MEANING,
     )
+
+
+def _stopped(holds: Holds, joints: str) -> Answer:
+    """What is shown when the time is over: the highest rest, and the fall above it if there is one."""
+    details = {"stopped_by_limit": True}
+    if not holds.path["multiplier"]:
+        sentence = f"whether the dead load is held was not decided, with {joints}: {STOPPED}"
+        return Answer(Status.NOT_CONVERGED, Finding.NONE, sentence, details=details)
+    stood, fell = holds.path["multiplier"][-1], holds.fell
+    if fell is None or fell <= stood:
+        sentence = f"stands at {stood:.6g}, with {joints}; no motion was shown: {STOPPED}"
+        return Answer(Status.NOT_CONVERGED, Finding.NONE, sentence, details=details)
+    sentence = (
+        f"came to rest at {stood:.6g} and fell at {fell:.6g}, with {joints}; {STOPPED}, and the multiplier is no more "
+        "than the middle of what is known so far"
+    )
+    answer = Answer(Status.OK, Finding.COLLAPSES, sentence, 0.5 * (stood + fell), (stood, fell), details=details)
+    answer.bracket_meaning = BRACKET_MEANING
+    return answer
+
+
+def _better(answer: Answer, again: Answer) -> Answer:
+    """The answer with stiffer joints, unless it was not found, or not to its end, and that with softer ones was."""
+    if again.status is Status.OK and not again.details.get("stopped_by_limit"):
+        return again
+    if answer.status is not Status.OK:
+        return again
+    if again.details.get("stopped_by_limit"):
+        answer.sentence += f"; stiffer joints were not tried to the end: {STOPPED}"
+        answer.details["stopped_by_limit"] = True
+    return answer
 
 
 def _fall_above(holds: Holds, multiplier: float, cap: float) -> float | None:

@@ -75,6 +75,7 @@ class StripSpace:
         self.load(0.0)
         self._space.step(TIME_STEP)
         self._space.step(TIME_STEP)
+        self._records = self._find_records()
         self._at_rest()
 
     def _add_bodies(self, mass: FloatArray) -> dict[int, pymunk.Body]:
@@ -160,7 +161,16 @@ class StripSpace:
         batch.set_space_bodies(self._space, _REST, self._in)
 
     def _contacts(self) -> Iterator[tuple[int, int, Any]]:
-        """Interface, end (0 or 1) and engine record of every contact point; all of them, or an error.
+        """Interface, end (0 or 1) and engine record of every contact point."""
+        for p, first_is_one, record in self._records:
+            yield p, 0 if first_is_one else 1, record.contacts[0]
+            yield p, 1 if first_is_one else 0, record.contacts[1]
+
+    def _find_records(self) -> list[tuple[int, bool, Any]]:
+        """Interface, whether its first contact is end 1, and the engine's record of both; of all, or an error.
+
+        The engine keeps a record as long as its shapes touch, which at frozen geometry is for ever. They are asked for
+        once only, because what is raised inside a call back from the engine, as by the alarm of a time limit, is lost.
 
         Raises:
             ArithmeticError: the engine lost a contact, which frozen geometry forbids.
@@ -178,9 +188,7 @@ class StripSpace:
         for p, record in found.items():
             if record.count != 2:
                 raise ArithmeticError(f"pymunk sees {record.count} of 2 contact points of interface {p}")
-            first_is_one = self._first_contact_is_end_one(p, record)
-            yield p, 0 if first_is_one else 1, record.contacts[0]
-            yield p, 1 if first_is_one else 0, record.contacts[1]
+        return [(p, self._first_contact_is_end_one(p, record), record) for p, record in found.items()]
 
     @property
     def _loaded_interfaces(self) -> int:

@@ -10,7 +10,7 @@ import scipy.sparse as sp
 
 from harness.model.assembly import Assembly, FloatArray, IntArray
 from harness.model.components import analysed_apart
-from harness.model.method import Answer, Finding, Status
+from harness.model.method import Answer, Finding, OutOfTime, Status
 from methods.numerics.linear_programme import INFINITY, Programme
 
 LEAST_WORK = 1e-7
@@ -41,6 +41,27 @@ def within_yield(forces: FloatArray, friction: FloatArray) -> FloatArray:
     normal = np.maximum(forces[:, :2], 0.0)
     strength = friction * normal.sum(axis=1)
     return np.column_stack([normal, np.clip(forces[:, 2], -strength, strength)])
+
+
+def out_of_balance(assembly: Assembly, forces: FloatArray, load: FloatArray) -> FloatArray:
+    """(n_free,) largest force or moment left over on each free block, as a share of all that acts on it.
+
+    Moments count divided by the length scale. A block on which nothing acts is in balance.
+
+    Args:
+        assembly: the wall.
+        forces: (m, 3) contact forces (n1, n2, s) [force].
+        load: (n, 3) loads on the blocks [force, force, moment].
+    """
+    column = np.tile([1.0, 1.0, 1.0 / (assembly.length_scale or 1.0)], assembly.n_free)
+    own = load[assembly.free].ravel()
+    left = abs(column * (assembly.kinematic_matrix.T @ forces.ravel() + own)).reshape(-1, 3).max(axis=1)
+    acting = abs(load[:, :2]).sum(axis=1) + abs(load[:, 2]) / (assembly.length_scale or 1.0)
+    for side in (assembly.block_a, assembly.block_b):
+        np.add.at(acting, side, abs(forces).sum(axis=1))
+    all_of_it = acting[assembly.free]
+    share: FloatArray = left / np.where(all_of_it > 0.0, all_of_it, 1.0)
+    return share
 
 
 def admissible_forces(assembly: Assembly, load: FloatArray) -> FloatArray | None:
@@ -127,10 +148,18 @@ def with_proof(assembly: Assembly, answer: Answer) -> Answer:
 
     `details["live_forces"]` (m, 3) balance the live load alone, so that with forces under the dead load they bear any
     multiplier; `details["dilatant_mechanism"]` (n, 3) shows that a wall falls whose motion was measured only. Where
-    there is none the answer stays as it is, and is not judged.
+    there is none, or no time is left to find it, the answer stays as it is, and is not judged.
     """
     if answer.status is not Status.OK:
         return answer
+    try:
+        return _proved(assembly, answer)
+    except OutOfTime:
+        return answer
+
+
+def _proved(assembly: Assembly, answer: Answer) -> Answer:
+    """As `with_proof`; raises OutOfTime where the time is over."""
     if answer.finding is Finding.UNBOUNDED:
         growth = admissible_forces(assembly, assembly.live)
         own = (answer.forces, answer.forces_multiplier)

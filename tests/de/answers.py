@@ -9,11 +9,11 @@ import numpy as np
 from harness.model.assembly import Assembly
 from harness.model.method import Answer
 from methods.de.adapter import DampedHolds
-from methods.de.settings import HoldSettings
+from methods.de.settings import SweepSettings
 
 
 def run(wall: Assembly, **settings: Any) -> Answer:
-    return DampedHolds().solve(wall, HoldSettings(**settings))
+    return DampedHolds().solve(wall, SweepSettings(**settings))
 
 
 def unbalanced(wall: Assembly, answer: Answer) -> float:

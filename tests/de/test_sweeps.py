@@ -1,0 +1,58 @@
+"""Requirements on the engine of `de`: it solves the wall that pymunk solves, and finds its contact forces."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from methods.de.courses import courses, insertion_orders, tunings
+from methods.de.settings import HoldSettings
+from methods.de.space import StripSpace
+from methods.de.sweeps import SweptWall
+from tests.de.answers import run, unbalanced, unyielding
+from tests.walls import assembly, running_bond, stack
+
+ARCH = {"type": "ring", "inner_radius": 1.0, "outer_radius": 1.15, "count": 11, "angles": [160, 20]}
+
+
+@pytest.mark.parametrize("pattern", [stack(3), ARCH], ids=["stack", "arch"])
+def test_both_engines_come_to_one_multiplier(pattern):
+    # Nothing is left open by statics at the collapse of these, so that no order of the sweeps matters.
+    wall = assembly(pattern, 0.75)
+    own, other = (run(wall, orders=1, engine=engine) for engine in ("sweeps", "pymunk"))
+    assert own.multiplier == pytest.approx(other.multiplier, rel=1e-3)
+    for answer in (own, other):
+        assert unbalanced(wall, answer) < 1e-6
+        assert unyielding(wall, answer) < 1e-12
+
+
+def test_first_step_is_that_of_pymunk():
+    """One block on the ground: one sweep over one interface has no order, and both engines make the same step."""
+    wall = assembly(stack(1, 0.4, 0.2), 0.6)
+    course = courses(wall)
+    tuning = tunings(course, None)[0]
+    _, blocks, joints = insertion_orders(wall, course, 1, 0)[0]
+    engines = [make(wall, blocks, joints, 20, tuning) for make in (StripSpace, SweptWall)]
+    for engine in engines:
+        engine.restore(np.zeros_like(engine.save()))
+        engine.load(0.5)
+        engine.advance(3)
+    one, two = (engine.contact_forces() for engine in engines)
+    # The strips of pymunk lie a few 1e-7 lengths apart.
+    assert one == pytest.approx(two, rel=1e-5, abs=1e-5 * wall.force_scale)
+    assert engines[0].velocity() == pytest.approx(engines[1].velocity(), abs=1e-5)
+
+
+def test_restored_state_is_at_rest_with_the_forces_it_had():
+    wall = assembly(running_bond(4, 2), 0.65)
+    course = courses(wall)
+    _, blocks, joints = insertion_orders(wall, course, 3, 0)[2]
+    engine = SweptWall(wall, blocks, joints, HoldSettings().iterations, tunings(course, None)[0])
+    engine.advance(40)
+    state, forces = engine.save(), engine.contact_forces()
+    engine.load(0.4)
+    engine.advance(40)
+    assert np.abs(engine.contact_forces() - forces).max() > 1e-3 * wall.force_scale
+    engine.restore(state)
+    assert np.array_equal(engine.contact_forces(), forces)
+    assert not engine.velocity().any()
