@@ -14,12 +14,12 @@ from harness.engine.threads import pin
 
 COMMANDS = {
     "run": ("run_commands", "run", "Run METHOD on CASE and print what it finds."),
-    "compare": ("run_commands", "compare", "Run methods on CASES or a suite, judge, store and report."),
+    "compare": ("compare_commands", "compare", "Run methods on CASES or a suite, judge, store and report."),
     "study": ("sweep_commands", "study", "List the studies that come with Drystone, or print one."),
     "sweep": ("sweep_commands", "sweep_", "Make every run of a study: many walls, many settings."),
     "store": ("sweep_commands", "store_", "Merge result stores."),
     "learn": ("learn_commands", "learn", "Make a page for teaching: a block with sliders, a wall over friction."),
-    "report": ("run_commands", "report", "Build the report of the last comparison again."),
+    "report": ("compare_commands", "report", "Build the report of the last comparison again."),
     "check": ("check_commands", "check", "Hold the methods to their gated references."),
     "diff": ("diff_commands", "diff", "Compare the answers of two stores or baselines."),
     "baseline": ("check_commands", "baseline", "Show how today's values stand to the recorded ones."),

@@ -18,6 +18,7 @@ from harness.engine.sweep.expand import SweepRun, expand, sources_of
 from harness.engine.sweep.quick import quick_study
 from harness.engine.sweep.running import Row
 from harness.engine.sweep.study import Study, read_study
+from harness.given_settings import method_settings
 from harness.model.errors import InputError
 from harness.model.library import library
 from harness.options import (
@@ -33,7 +34,6 @@ from harness.options import (
     seconds_option,
     store_option,
 )
-from harness.run_commands import method_settings
 from harness.studying import duration, made, shipped_studies
 
 OUT = Path("out")

@@ -26,7 +26,6 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-import scipy.sparse.linalg  # noqa: F401  (preloaded for the methods)
 
 from harness.model.assembly import Assembly
 from harness.model.errors import InputError

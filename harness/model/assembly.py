@@ -18,12 +18,15 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
+from typing import TYPE_CHECKING
 
 import numpy as np
-import scipy.sparse as sp
 from numpy.typing import NDArray
 
 from harness.model.joint_law import JointLaw
+
+if TYPE_CHECKING:
+    import scipy.sparse as sp  # walls are read, drawn and judged without: methods that need it load it
 
 FloatArray = NDArray[np.float64]
 IntArray = NDArray[np.int64]
@@ -174,6 +177,8 @@ class Assembly:
 
         Used by the methods; the judge does not use it.
         """
+        import scipy.sparse as sp
+
         column = np.full(self.n_blocks, -1, dtype=np.int64)
         column[self.free] = np.arange(self.n_free)
         rows: list[IntArray] = []

@@ -11,11 +11,10 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
-import scipy.sparse as sp
-from scipy.sparse.csgraph import connected_components
 
 from harness.model.assembly import Assembly, BoolArray, FloatArray, IntArray
 from harness.model.errors import first_few
+from harness.model.groups import groups_of
 from harness.model.method import Answer, Finding, Status
 
 NAMED = 8
@@ -59,8 +58,7 @@ def components_of(assembly: Assembly) -> list[Component]:
     free = ~assembly.fixed
     joined = free[a] & free[b]
     n = assembly.n_blocks
-    graph = sp.coo_matrix((np.ones(int(joined.sum())), (a[joined], b[joined])), shape=(n, n))
-    label = connected_components(graph, directed=False)[1]
+    label = groups_of(n, a[joined], b[joined])
     _, first = np.unique(label[assembly.free], return_index=True)
     if len(first) <= 1:
         return [Component(assembly, np.arange(n), np.arange(assembly.n_interfaces))]

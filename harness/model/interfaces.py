@@ -7,14 +7,13 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
-import scipy.sparse as sp
 import shapely
-from scipy.sparse.csgraph import connected_components
 
 from harness.model import geometry
 from harness.model.assembly import BoolArray, FloatArray, IntArray
 from harness.model.contacts import TIMES, JointLimits, check_gap, find_contacts
 from harness.model.errors import InputError, Spot, first_few, raise_faults
+from harness.model.groups import groups_of
 from harness.model.plausibility import allowing, span
 from harness.model.wall import Detection, Interface
 
@@ -150,9 +149,7 @@ def check_held(names: tuple[str, ...], fixed: np.ndarray, block_a: IntArray, blo
 
 def floating_groups(fixed: BoolArray, pairs: IntArray) -> list[IntArray]:
     """Blocks that no chain of joined pairs (k, 2) leads from to a fixed one, those joined to each other together."""
-    count = len(fixed)
-    graph = sp.coo_matrix((np.ones(len(pairs)), (pairs[:, 0], pairs[:, 1])), shape=(count, count))
-    component = connected_components(graph, directed=False)[1]
+    component = groups_of(len(fixed), pairs[:, 0], pairs[:, 1])
     return [np.flatnonzero(component == label) for label in np.setdiff1d(component, component[fixed])]
 
 

@@ -10,10 +10,13 @@ lifted for psi = 0. Sources: Coulomb (1776); Drucker (1954) for flow with dilata
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
-import scipy.sparse as sp
 from numpy.typing import NDArray
+
+if TYPE_CHECKING:
+    import scipy.sparse as sp
 
 FloatArray = NDArray[np.float64]
 
@@ -56,6 +59,8 @@ def _rows(slope: FloatArray) -> FloatArray:
 
 def block_diagonal(parts: FloatArray) -> sp.csr_matrix:
     """Sparse (a m, b m) matrix with the m matrices (m, a, b) on its diagonal; zeros within them are left out."""
+    import scipy.sparse as sp
+
     m, a, b = parts.shape
     part, row, column = np.nonzero(parts)
     return sp.csr_matrix((parts[part, row, column], (a * part + row, b * part + column)), shape=(a * m, b * m))

@@ -10,14 +10,13 @@ from dataclasses import dataclass
 
 import numpy as np
 import shapely
-from scipy.sparse import coo_matrix
-from scipy.sparse.csgraph import connected_components
 from scipy.spatial import cKDTree
 
 from harness.model import geometry
 from harness.model.assembly import FloatArray, IntArray
 from harness.model.build import blocks_of_wall, polygons_of
 from harness.model.errors import InputError
+from harness.model.groups import groups_of
 from harness.model.rings import rings_of
 from harness.model.wall import Block, Wall
 
@@ -114,11 +113,10 @@ def _once(blocks: list[Block], snap: float) -> tuple[list[Block], list[tuple[str
 def _met(points: FloatArray, snap: float) -> FloatArray:
     """The points (k, 2), those near to each other at their mean unless one of them would move too far."""
     pairs = cKDTree(points).query_pairs(snap, output_type="ndarray")
-    graph = coo_matrix((np.ones(len(pairs)), (pairs[:, 0], pairs[:, 1])), shape=(len(points), len(points)))
-    count, label = connected_components(graph, directed=False)
-    size = np.bincount(label, minlength=count)
-    mean = np.stack([np.bincount(label, points[:, axis], count) / size for axis in (0, 1)], axis=1)
-    furthest = np.zeros(count)
+    label = groups_of(len(points), pairs[:, 0], pairs[:, 1])
+    size = np.bincount(label)
+    mean = np.stack([np.bincount(label, points[:, axis]) / size for axis in (0, 1)], axis=1)
+    furthest = np.zeros(len(size))
     np.maximum.at(furthest, label, np.linalg.norm(mean[label] - points, axis=1))
     return np.where(((size > 1) & (furthest <= snap))[label][:, None], mean[label], points)
 

@@ -12,14 +12,15 @@ from typing import TYPE_CHECKING, cast
 
 import numpy as np
 import scipy.sparse as sp
-from scipy.sparse.csgraph import connected_components
-from scipy.sparse.linalg import SuperLU
 
 from harness.model.assembly import FloatArray, IntArray
+from harness.model.groups import groups_of
 from methods.la.problem import Problem
 from methods.numerics.failures import SingularMatrix, sparse_lu
 
 if TYPE_CHECKING:
+    from scipy.sparse.linalg import SuperLU
+
     from methods.numerics.block_lu import BlockFactor
 
 FEW = 200
@@ -190,5 +191,4 @@ class Factor:
 def _exchanges(order: IntArray) -> int:
     """How many exchanges of two make this permutation: its length less its number of cycles."""
     n = len(order)
-    graph = sp.csr_matrix((np.ones(n), (np.arange(n), order)), shape=(n, n))
-    return n - int(connected_components(graph, directed=False)[0])
+    return n - len(np.unique(groups_of(n, np.arange(n), order)))

@@ -1,0 +1,189 @@
+"""Commands that run many methods and report: compare, report."""
+
+from __future__ import annotations
+
+import os
+import shlex
+import sys
+from pathlib import Path
+
+import click
+
+from drystone.comparing import compare as make_comparison
+from drystone.walls import Wall
+from harness import terminal
+from harness.engine import compare as comparing
+from harness.engine import regression
+from harness.engine.isolate import announce
+from harness.engine.plan import Limits, check_methods, find_cases, plan_case
+from harness.engine.store import open_store
+from harness.given_settings import method_settings
+from harness.junit import tests_of_comparison, write_junit
+from harness.model.comparison import ComparisonRun
+from harness.model.errors import InputError
+from harness.model.library import library
+from harness.options import (
+    cases_option,
+    catching,
+    fresh_flag,
+    jobs_option,
+    json_flag,
+    junit_option,
+    memory_option,
+    print_json,
+    report_option,
+    say,
+    seconds_option,
+    store_option,
+    warn,
+)
+from harness.printing import PrintError, print_pdf
+from harness.studying import curve_of_shipped
+
+
+@click.command()
+@click.argument("cases", nargs=-1)
+@click.option("--suite", help='A suite of cases, or "all".  [default: small]')
+@click.option(
+    "--methods",
+    help=f"Names of methods, separated by commas.  [default: {','.join(library().methods.compare)} and those gated]",
+)
+@click.option(
+    "--study",
+    "studied",
+    metavar="NAME[:SEEDS]",
+    help="Also make a study that comes with Drystone, of so many seeds, and draw its curve in the report.",
+)
+@click.option(
+    "--set", "settings", multiple=True, metavar="METHOD.NAME=VALUE", help="A setting of a method; may be repeated."
+)
+@click.option("--no-report", is_flag=True, help="Print and store only.")
+@seconds_option
+@memory_option
+@jobs_option
+@report_option
+@store_option
+@fresh_flag
+@junit_option
+@json_flag
+@cases_option
+@catching
+def compare(
+    cases: tuple[str, ...],
+    suite: str | None,
+    methods: str | None,
+    studied: str | None,
+    settings: tuple[str, ...],
+    no_report: bool,
+    seconds: float,
+    memory: int,
+    jobs: int,
+    report: Path,
+    store: Path,
+    fresh: bool,
+    junit: Path | None,
+    as_json: bool,
+    folders: tuple[Path, ...],
+) -> None:
+    """Run methods on CASES (ids, case folders, WALL.json files) or a suite, judge, store and report."""
+    chosen = find_cases(cases, suite, folders)
+    names = [name.strip() for name in methods.split(",") if name.strip()] if methods is not None else None
+    if names is not None:
+        if not names:
+            raise InputError("it names no method", "`drystone list methods` shows them", "--methods")
+        check_methods(names)
+    limits = Limits(seconds, memory * 2**20)
+    for case in chosen:
+        warn(case)
+    title = ", ".join(cases) if cases else f"suite {suite or 'small'}"
+    asked = method_settings(settings)
+    written = None if no_report else report
+    planned = [run for case in chosen for run in plan_case(case, names, limits, settings=asked)]
+    announce(run.method for run in planned)
+    study = [] if studied is None else [curve_of_shipped(studied, jobs, store, fresh=fresh, quiet=as_json)]
+    with terminal.progress(len(planned), quiet=as_json) as told:
+        compared = make_comparison(
+            [Wall(case) for case in chosen],
+            names,
+            jobs=jobs,
+            seconds=limits.seconds,
+            memory_bytes=limits.memory_bytes,
+            store=store,
+            settings=asked,
+            fresh=fresh,
+            told=told,
+            title=title,
+            command=_command_line(),
+            studies=study,
+        ).run
+    if written is not None:
+        _write_report(compared, written)
+    if junit is not None:
+        write_junit(f"drystone compare, {title}", tests_of_comparison(compared), junit)
+    if as_json:
+        print_json(terminal.comparison_json(compared, written))
+    else:
+        terminal.print_comparison(compared, written)
+    sys.exit(1 if regression.violations(compared) else 0)
+
+
+def _command_line() -> str:
+    return shlex.join(["drystone", *sys.argv[1:]])
+
+
+def _write_report(compared: ComparisonRun, path: Path, *, drawn: bool = False) -> None:
+    from reports.build import write_report
+
+    path.parent.mkdir(parents=True, exist_ok=True)
+    try:
+        write_report(compared, path, drawn=drawn)
+    except OSError as error:  # an error while writing to an open file does not say which
+        error.filename = error.filename or str(path)
+        raise
+
+
+@click.command()
+@report_option
+@click.option("--figures", is_flag=True, help="Also draw each case as a PDF in the folder beside the report.")
+@click.option("--appendix", metavar="WALL", help="Run WALL and write an engineer's appendix on it, as HTML and PDF.")
+@store_option
+@catching
+def report(report: Path, figures: bool, appendix: str | None, store: Path) -> None:
+    """Build the report of the last comparison again, from the store, without running anything.
+
+    With --appendix, write two to four sheets on one wall beside the report: result, assumptions, loads, drawing,
+    reactions, mechanism, forces. What the store does not have is run.
+    """
+    if appendix is not None:
+        _appendix(appendix, report.parent, store)
+        return
+    if not store.exists():
+        raise InputError("there is no such store", "Run `drystone compare` first", source=str(store))
+    with open_store(store, read_only=True) as opened:
+        compared = comparing.recall(opened)
+    if compared is None:
+        raise InputError("no comparison is in the store", "Run `drystone compare` first", source=str(store))
+    _write_report(compared, report, drawn=figures)
+    say(f"Report: {report}")
+
+
+def _appendix(wall: str, folder: Path, store: Path) -> None:
+    """Run the methods on one wall and write its appendix; the PDF where a browser is installed."""
+    from reports.appendix import write_appendix
+
+    chosen = find_cases([wall], None, ())
+    warn(chosen[0])
+    runs = [planned for case in chosen for planned in plan_case(case, None, Limits())]
+    announce(planned.method for planned in runs)
+    with open_store(store) as opened, terminal.progress(len(runs), quiet=False) as told:
+        results = comparing.execute(runs, opened, os.cpu_count() or 1, told=told)
+    compared = comparing.comparison_run(chosen[0].id, _command_line(), chosen, runs, results)
+    page = folder / f"{chosen[0].id}-appendix.html"
+    write_appendix(compared, page)
+    say(f"Appendix: {page}")
+    try:
+        print_pdf(page, page.with_suffix(".pdf"))
+    except PrintError as error:
+        say(f"drystone: {error}", err=True)
+    else:
+        say(f"Appendix: {page.with_suffix('.pdf')}")
