@@ -44,7 +44,6 @@ schema: $(READY)  ## write the JSON Schema of the wall format again
 	$(BIN)/drystone schema > docs/wall-1.schema.json
 
 lock: $(READY)  ## resolve the dependencies anew (versions and hashes only)
-	$(BIN)/python -m pip install --quiet uv
 	$(BIN)/uv pip compile --quiet --universal --python-version 3.11 --generate-hashes --extra dev --extra mujoco \
 	  --no-emit-index-url --no-emit-find-links --no-annotate --no-header --upgrade pyproject.toml -o requirements.lock
 
