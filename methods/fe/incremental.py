@@ -32,8 +32,6 @@ MOST_ITERATIONS = 60
 """Newton iterations of one step of displacement control."""
 SHORTEST = 0.05
 """Least share of a Newton step that is taken where states come round in a cycle."""
-SHIFT = 1e-9
-"""Inertia added to the tangent, which is singular on a plateau; the residual has none of it."""
 
 
 @dataclass(frozen=True)
@@ -92,7 +90,7 @@ def march(
     travel = point.u - gravity.u
     if not np.any(travel):
         with suppress(SingularTangent):
-            factor.refactor(point.state, SHIFT)
+            factor.refactor(point.state, footing=True)
             travel = step * factor.solve(model.live)
     state, end, spent = _displacement_control(model, factor, point, travel, displacement_steps, record)
     sentence = f"displacement control reached a plateau, where load control stopped at {reached:.6g}"
@@ -162,7 +160,7 @@ def _controlled(
             share = max(0.5 * share, SHORTEST)
         seen.add(state.tobytes())
         try:
-            factor.refactor(state, SHIFT)
+            factor.refactor(state, footing=True)
             right = factor.solve(model.residual(u, multiplier, model.history, state))
             drive = factor.solve(model.live)
         except SingularTangent:

@@ -12,7 +12,7 @@ from harness.model.assembly import FloatArray, IntArray
 from methods.numerics.block_kernels import MANY as AT_ONCE
 from methods.numerics.vectors import largest
 from methods.springs.continuation import Tracer
-from methods.springs.factor import Change, Factor, SingularTangent
+from methods.springs.factor import Change, Factor, SingularTangent, refactor_any
 from methods.springs.gap_law import OPEN, SLIP_MINUS, SLIP_PLUS, STICK, TIED, classify, same_forces
 from methods.springs.wall_model import WallModel, point_strains
 
@@ -91,7 +91,7 @@ def change_states(model: WallModel, factor: Factor, state: IntArray, wanted: Int
             state[:] = wanted
             return
     state[:] = wanted
-    factor.refactor(state)
+    refactor_any(factor, state)
 
 
 def _way(point: int, old: int, new: int) -> tuple[Change, ...]:

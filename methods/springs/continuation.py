@@ -199,6 +199,8 @@ class Tracer:
         if ahead == np.inf:
             if self.is_mechanism():
                 return PathEnd.PLATEAU
+            if way.pins:
+                return PathEnd.BREAKDOWN
             return PathEnd.UNBOUNDED if way.speed > 0.0 else PathEnd.RUNS_DOWN
         if ahead * largest(way.velocity) > LARGE * self.first_displacement:
             return PathEnd.BREAKDOWN

@@ -22,7 +22,7 @@ import numpy as np
 from harness.model.assembly import FloatArray, IntArray
 from methods.numerics.vectors import combine, largest
 from methods.springs.exact_rates import exact_gap_rates
-from methods.springs.factor import Change, Factor, SingularTangent
+from methods.springs.factor import Change, Factor, SingularTangent, refactor_any
 from methods.springs.tolerances import (
     BEARABLE,
     BENT,
@@ -32,7 +32,6 @@ from methods.springs.tolerances import (
     CROOKED,
     FREE,
     MOST,
-    SLIGHT,
     SOFT,
     STEEP,
     STRAIGHT,
@@ -120,31 +119,17 @@ class Direction:
     def _factorise(self, state: IntArray, careful: bool) -> None:
         """Factorise the tangent, and where a pinned one is still soft, pin the softest motion as well.
 
-        One without any stiffness left is pinned first: whatever the load does, the wall moves along it.
+        One without any stiffness left that the live load works on is pinned first: whatever the load does, the wall
+        moves along it. Others without stiffness stay on their footing.
         """
         while True:
-            try:
-                self.factor.refactor(state, pins=self.pins, careful=careful)
-                self.response = self.factor.solve(self.model.live)
-            except SingularTangent:
-                self._pin_first(state, careful)
-                continue
+            refactor_any(self.factor, state, careful, self.pins)
+            self.response = self.factor.solve(self.model.live)
             softest = int(np.argmax(np.abs(self.response)))
             if not self.pins or not self._is_soft() or softest in self.pins or len(self.pins) == MOST:
                 break
-            self.pins.append(softest)
+            self.pins.insert(0 if self.factor.footed else len(self.pins), softest)
         self.shapes = [self._shape(pin, state) for pin in self.pins[1:]]
-
-    def _pin_first(self, state: IntArray, careful: bool) -> None:
-        """Pin a motion without stiffness before all others. Raises SingularTangent where none or all may be pinned."""
-        singular = SingularTangent("the tangent is singular in these states")
-        if not 0 < len(self.pins) < MOST:
-            raise singular
-        self.factor.refactor(state, SLIGHT, careful, self.pins)
-        softest = int(np.argmax(np.abs(self.factor.solve(self.model.live))))
-        if softest in self.pins:
-            raise singular
-        self.pins.insert(0, softest)
 
     def _is_soft(self) -> bool:
         """Whether the response to the live load shows a soft motion that is not pinned."""
@@ -268,7 +253,7 @@ class Direction:
                 shape.value -= y * (float(b @ shape.value[index]) / (1.0 + along))
                 shape.tail -= y * (float(b @ shape.tail[index]) / (1.0 + along))
                 self._refine(shape, state, 1)
-        if self.pins or look:
+        if self.pins or look or self.factor.footed:
             return self.straighten(state, extent, strict=True) and not self._leads_back(change, crossing)
         self.measure()
         return True
@@ -285,10 +270,10 @@ class Direction:
         else:
             enough, bearable = BENT * self.live_size * abs(self.speed), CROOKED * self.live_size * abs(self.speed)
         previous = np.inf
-        for _ in range(CAREFUL):
+        for count in range(CAREFUL):
             defect = self.model.out_of_balance(self.opening_rate, self.trial_rate, state, self.speed, 0.0)
             worst = largest(defect)
-            if worst <= enough:
+            if worst <= enough and (count > 0 or not self.factor.footed):
                 return True
             if not worst < 0.5 * previous:
                 return worst <= bearable

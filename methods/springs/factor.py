@@ -27,7 +27,8 @@ GROWTH = 1e5
 """Entries of L above this cost too many digits; a factorisation with row exchanges is called for."""
 DENSE_LIMIT = 70
 """Unknowns up to which the dense inverse is faster than the sparse product form."""
-
+SOFTEST = 1e-4
+"""Stiffness, as a share of the footing's, below which a motion has none: rounding of the tangent leaves 1e-8 of it."""
 
 Change = tuple[int, int, int]
 """A point, its state and the state that it turns to."""
@@ -43,18 +44,32 @@ class Factor(Protocol):
     Attributes:
         count: changes since the last factorisation; capacity: how many there may be.
         factorisations: in all; careful: whether the last one chose its pivots among all rows.
+        footed: whether the last one had the footing added, so that solutions are to be refined.
     """
 
     count: int
     capacity: int
     factorisations: int
     careful: bool
+    footed: bool
 
-    def refactor(self, state: IntArray, shift: float = 0.0, careful: bool = False, pins: Sequence[int] = ()) -> None:
-        """Factorise the tangent in these states afresh, with `shift` times the inertia added.
+    def refactor(
+        self,
+        state: IntArray,
+        shift: float = 0.0,
+        careful: bool = False,
+        pins: Sequence[int] = (),
+        footing: bool = False,
+    ) -> None:
+        """Factorise the tangent in these states afresh.
 
-        `pins` are displacements that springs of unit stiffness are added to.
-        `careful` asks for pivots among all rows, which keep more digits near a limit point and cost more.
+        Args:
+            state: (P,) states; shift: times the inertia, which is added; footing: whether the footing is added.
+            careful: asks for pivots among all rows, which keep more digits near a limit point and cost more.
+            pins: displacements that springs of unit stiffness are added to.
+
+        Raises:
+            SingularTangent: a motion has no stiffness beyond rounding, and neither shift nor footing gives it any.
         """
 
     def solve(self, right: FloatArray) -> FloatArray:
@@ -78,6 +93,19 @@ def make_factor(model: WallModel) -> Factor:
     return DenseFactor(model) if model.n_unknowns <= DENSE_LIMIT else SparseFactor(model)
 
 
+def refactor_any(factor: Factor, state: IntArray, careful: bool = False, pins: Sequence[int] = ()) -> None:
+    """Factorise the tangent in these states afresh, with the footing where it is singular.
+
+    A block that nothing touches, or that balances on an edge, takes no stiffness from its joints. Loads that do no work
+    on such a motion leave the wall in equilibrium all the same, and the footing keeps it where it is: solutions that
+    are refined until the tangent without the footing is met have none of its force (proximal point; Rockafellar, 1976).
+    """
+    try:
+        factor.refactor(state, careful=careful, pins=pins)
+    except SingularTangent:
+        factor.refactor(state, careful=careful, pins=pins, footing=True)
+
+
 class DenseFactor:
     """The inverse itself."""
 
@@ -87,13 +115,25 @@ class DenseFactor:
         self.count = 0
         self.factorisations = 0
         self.careful = True
+        self.footed = False
         self.inverse = np.empty((0, 0))
+        self._size = np.sqrt(model.footing)
 
-    def refactor(self, state: IntArray, shift: float = 0.0, careful: bool = True, pins: Sequence[int] = ()) -> None:
+    def refactor(
+        self,
+        state: IntArray,
+        shift: float = 0.0,
+        careful: bool = True,
+        pins: Sequence[int] = (),
+        footing: bool = False,
+    ) -> None:
         """Invert afresh. Raises SingularTangent."""
         self.count = 0
         self.factorisations += 1
+        self.footed = footing
         matrix = self.model.tangent(state, shift).toarray()
+        if footing:
+            matrix[np.diag_indices_from(matrix)] += self.model.footing
         for pin in pins:
             matrix[pin, pin] += 1.0
         lu, pivots, info = sla.lapack.dgetrf(matrix, overwrite_a=True)
@@ -101,6 +141,8 @@ class DenseFactor:
             self.inverse, info = sla.lapack.dgetri(lu, pivots, overwrite_lu=True)
         if info != 0 or not np.isfinite(self.inverse).all():
             raise SingularTangent("the tangent is singular in these states")
+        if not (shift or footing) and SOFTEST * largest((self.inverse * self._size).T @ self._size) > 1.0:
+            raise SingularTangent("the tangent is singular to rounding in these states")
 
     def solve(self, right: FloatArray) -> FloatArray:
         """K^-1 right (N,)."""
@@ -141,6 +183,7 @@ class SparseFactor:
         self._diagonal = pattern.diagonal
         self._lu = BlockFactor(pattern)
         self.careful = False
+        self.footed = False
         self._exchanged: SuperLU | None = None
         self._foreseen: dict[Change, FloatArray] = {}
         self._y = np.empty((self.capacity, n))
@@ -149,38 +192,53 @@ class SparseFactor:
         self._index = np.empty((self.capacity, 6), dtype=np.int64)
         self._b = np.empty((self.capacity, 6))
 
-    def refactor(self, state: IntArray, shift: float = 0.0, careful: bool = False, pins: Sequence[int] = ()) -> None:
+    def refactor(
+        self,
+        state: IntArray,
+        shift: float = 0.0,
+        careful: bool = False,
+        pins: Sequence[int] = (),
+        footing: bool = False,
+    ) -> None:
         """Factorise afresh. Raises SingularTangent."""
         self.count = 0
         self.factorisations += 1
+        self.footed = footing
         self._exchanged = None
         self._foreseen.clear()
-        if careful or not self._factorise_blocks(state, shift, pins):
-            self._exchanged = self._with_row_exchanges(state, shift, pins)
+        added = shift * self.model.inertia + (self.model.footing if footing else 0.0)
+        if careful or not self._factorise_blocks(state, added, pins):
+            self._exchanged = self._with_row_exchanges(state, added, pins)
         self.careful = self._exchanged is not None
 
-    def _factorise_blocks(self, state: IntArray, shift: float, pins: Sequence[int]) -> bool:
+    def _factorise_blocks(self, state: IntArray, added: FloatArray, pins: Sequence[int]) -> bool:
         model = self.model
         self._lu.values[:] = 0.0
         springs = model.interface, model.position, model.kn, model.kt, model.mu
         add_tangent(self._slot, model.rows, *springs, state, self._lu.values)
-        if shift:
-            self._lu.values[self._diagonal] += shift * model.inertia
+        self._lu.values[self._diagonal] += added
         for pin in pins:
             self._lu.values[self._diagonal[pin]] += 1.0
-        return self._lu.factorise(GROWTH)
+        return self._lu.factorise(GROWTH) and self._stiff(self._lu.values[self._diagonal], added)
 
-    def _with_row_exchanges(self, state: IntArray, shift: float, pins: Sequence[int]) -> SuperLU:
+    def _stiff(self, pivots: FloatArray, added: FloatArray) -> bool:
+        """Whether every pivot (N,) is beyond rounding, be it by what was added to the tangent."""
+        return bool((abs(pivots) >= SOFTEST * np.where(added == 0.0, self.model.footing, 0.0)).all())
+
+    def _with_row_exchanges(self, state: IntArray, added: FloatArray, pins: Sequence[int]) -> SuperLU:
         options = {"SymmetricMode": True}
-        matrix = self.model.tangent(state, shift)
+        matrix = self.model.tangent(state)
+        if added.any():
+            matrix.setdiag(matrix.diagonal() + added)
         for pin in pins:
             matrix[pin, pin] += 1.0
         try:
-            return sparse_lu(
-                matrix, permc_spec="NATURAL", diag_pivot_thresh=1e-3, relax=1, panel_size=1, options=options
-            )
+            lu = sparse_lu(matrix, permc_spec="NATURAL", diag_pivot_thresh=1e-3, relax=1, panel_size=1, options=options)
         except SingularMatrix as error:
             raise SingularTangent(str(error)) from error
+        if not self._stiff(lu.U.diagonal(), added):
+            raise SingularTangent("the tangent is singular to rounding in these states")
+        return lu
 
     def solve(self, right: FloatArray) -> FloatArray:
         """K^-1 right (N,). Raises SingularTangent when the result is not finite."""

@@ -11,7 +11,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from harness.model.assembly import FloatArray, IntArray
-from methods.springs.factor import Factor, SingularTangent
+from methods.springs.factor import Factor, SingularTangent, refactor_any
 from methods.springs.gap_law import TIED, same_forces
 from methods.springs.wall_model import WallModel, load_scale
 
@@ -54,7 +54,7 @@ def newton(
     while iterations < limit and state.tobytes() not in seen:
         seen.add(state.tobytes())
         try:
-            factor.refactor(state)
+            refactor_any(factor, state)
             step = factor.solve(model.residual(u, multiplier, history, state))
         except SingularTangent:
             break

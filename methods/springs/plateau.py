@@ -16,6 +16,7 @@ from scipy.sparse.linalg import SuperLU
 
 from harness.model.assembly import Assembly, BoolArray, FloatArray, IntArray
 from methods.numerics.failures import SingularMatrix, sparse_lu
+from methods.numerics.vectors import largest
 from methods.springs.factor import SingularTangent
 from methods.springs.gap_law import STICK, classify, gap_forces
 from methods.springs.path_record import Snapshot
@@ -226,10 +227,11 @@ def _with_column(matrix: sp.csc_matrix, k: int, column: FloatArray) -> sp.csc_ma
 def check(assembly: Assembly, multiplier: float, forces: FloatArray, mechanism: FloatArray) -> CollapseState:
     """Measure how exactly forces and mechanism form a non-associated collapse state (zero dilatancy).
 
-    Forces are relative to a mean block weight, rates to the fastest block. Complementarity is the work of contact
-    forces on the motion they ought to have none in, slip with its friction among it, as a share of the work of the live
-    load at max(load unit, |multiplier|). What both presses (or lacks friction) and moves counts by the smaller of force
-    and rate.
+    Forces are relative to a mean block weight, rates to the fastest block, or to one on which the largest live load of
+    a block would do all the work there is: rounding of an idle motion is no mechanism. Complementarity is the work of
+    contact forces on the motion they ought to have none in, slip with its friction among it, as a share of the work of
+    the live load at max(load unit, |multiplier|). What both presses (or lacks friction) and moves counts by the
+    smaller of force and rate.
 
     Args:
         multiplier: of the live load; forces: (m, 3) end forces [force]; mechanism: (n, 3) block velocities.
@@ -241,10 +243,10 @@ def check(assembly: Assembly, multiplier: float, forces: FloatArray, mechanism: 
     lengths = np.tile([1.0, 1.0, assembly.length_scale], assembly.n_free)
     balance = (matrix.T @ forces.ravel() + dead + multiplier * live) / lengths
     rates = (matrix @ velocity).reshape(-1, 3)
-    speed = float(np.abs(velocity * lengths).max()) or 1.0
+    power = float(live @ velocity)
+    speed = min(float(np.abs(velocity * lengths).max()), max(power, 0.0) / (largest(live / lengths) or 1.0)) or 1.0
     total = forces[:, 0] + forces[:, 1]
     slack = assembly.friction * total - np.abs(forces[:, 2])
-    power = float(live @ velocity)
     size = max(assembly.load_unit, abs(multiplier))
     against = assembly.friction * total + np.sign(rates[:, 2]) * forces[:, 2]
     idle = float(np.abs(forces[:, :2] * rates[:, :2]).sum() + np.abs(against * rates[:, 2]).sum())

@@ -24,7 +24,7 @@ import numpy as np
 
 from harness.model.assembly import FloatArray
 from methods.numerics.vectors import largest
-from methods.springs.factor import Factor, SingularTangent, make_factor
+from methods.springs.factor import Factor, SingularTangent, make_factor, refactor_any
 from methods.springs.gap_law import STICK
 from methods.springs.newton import Equilibrium, newton
 from methods.springs.wall_model import WallModel, load_scale, point_strains
@@ -174,7 +174,7 @@ class SlowMotion:
         moment = self._moment(start.u, start.history)
         state = model.states(start.u, start.history, True)
         try:
-            self.factor.refactor(state)
+            refactor_any(self.factor, state)
             u = self.factor.solve(model.residual(start.u, start.multiplier, start.history, state))
         except SingularTangent:
             return moment

@@ -22,8 +22,6 @@ BEARABLE = 1e-4
 """The same when refinement no longer helps, above which the tangent is factorised afresh."""
 SOFT = 1e8
 """A response of the pinned wall to the live load this many times the first one is a soft motion to be pinned too."""
-SLIGHT = 1e-9
-"""Share of the inertia added to a singular tangent to see which motion has no stiffness."""
 MOST = 4
 """Pins at most."""
 CLEAR = 1e-6

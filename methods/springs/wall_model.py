@@ -30,6 +30,9 @@ from methods.springs.gap_law import (
 from methods.springs.points import gap_points
 from methods.springs.settings import GapSettings
 
+FOOTING = 1e-8
+"""Stiffness of a block against the ground, in springs of a gap point, where the tangent alone is singular."""
+
 
 @dataclass(frozen=True, eq=False)
 class WallModel:
@@ -47,6 +50,7 @@ class WallModel:
             compression before anything has moved.
         dead, live: (N,) dimensionless loads.
         inertia: (N,) dimensionless masses for slow motion.
+        footing: (N,) stiffness of every block against the ground that a singular tangent is factorised with.
         column_start, row_index: CSC pattern of the tangent; slot: (m, 36) where each interface adds to its values.
         force, length, displacement: what one unit inside is worth outside.
     """
@@ -65,6 +69,7 @@ class WallModel:
     dead: FloatArray
     live: FloatArray
     inertia: FloatArray
+    footing: FloatArray
     column_start: IntArray
     row_index: IntArray
     slot: IntArray
@@ -183,7 +188,9 @@ def build_model(assembly: Assembly, settings: GapSettings, friction_cap: float =
     weight = np.linalg.norm(assembly.dead[order, :2], axis=1) / force
     mass = np.maximum(weight, 1e-3)
     gyration = np.array([np.ptp(assembly.polygons[i], axis=0) @ np.ptp(assembly.polygons[i], axis=0) for i in order])
-    inertia = np.stack([mass, mass, mass * gyration / (12.0 * length**2)], axis=1).ravel()
+    lever = gyration / (12.0 * length**2)
+    inertia = np.stack([mass, mass, mass * lever], axis=1).ravel()
+    footing = FOOTING * np.stack([np.ones_like(lever), np.ones_like(lever), lever], axis=1).ravel()
     stiffness = settings.normal_stiffness or 1000.0 * force / length
     model = WallModel(
         assembly=assembly,
@@ -200,6 +207,7 @@ def build_model(assembly: Assembly, settings: GapSettings, friction_cap: float =
         dead=(assembly.dead[order] * scale).ravel(),
         live=(assembly.live[order] * scale).ravel(),
         inertia=inertia,
+        footing=footing,
         column_start=start,
         row_index=row_index,
         slot=slot,
