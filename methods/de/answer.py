@@ -206,7 +206,8 @@ def _collapse(brackets: list[Bracket]) -> Answer:
     if undecided:
         sentence += f"; {undecided} holds could not be told and are not counted as held"
     status = Status.OK
-    widest = max(b.width or 0.0 for b in complete)
+    # Beside a range that the orders leave open, what one of them leaves open is as small as it is to that range.
+    widest = max(0.0 if b.nothing else ((b.moving or 0.0) - (b.held or 0.0)) / high for b in complete)
     if len(complete) < len(brackets) or widest > LOOSE:
         status = Status.NOT_CONVERGED
         sentence += f"; not converged: {len(brackets) - len(complete)} orders without a moving state, widest bracket "

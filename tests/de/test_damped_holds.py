@@ -96,6 +96,25 @@ def test_a_wall_that_bears_no_live_load_at_all_collapses_at_zero(name):
     assert result.bracket[1] <= 1e-4 * wall.load_unit
 
 
+# Bricks that overhang to the limit stand at 0, and what their head joints carry besides is left open: the associated
+# maximum is 2/119.
+def test_a_range_that_orders_leave_open_is_an_answer_though_it_is_wide_beside_the_brackets():
+    result, judgement = answered(DampedHolds(), drawn("p01-overhang-6-mu010"))
+    assert (result.status, result.finding) == (Status.OK, Finding.COLLAPSES)
+    assert judgement.accepted, judgement.sentence
+    assert 0.0 <= result.bracket[0] < result.bracket[1] <= 2 / 119
+    orders = result.details["orders"]
+    assert max(order["moving"] - order["held"] for order in orders) <= 0.01 * result.bracket[1]
+
+
+@pytest.mark.parametrize("friction", ["stable", "sliding"])
+def test_arch_next_to_the_least_friction_is_decided(friction):
+    """The engine of whole bodies left it undecided: places rounded to 1e-9 shook the contacts by as much."""
+    result, judgement = answered(DampedHolds(), find_cases((f"arch-100-friction-{friction}",), None, ())[0].assembly)
+    assert result.finding is (Finding.STANDS if friction == "stable" else Finding.FALLS)
+    assert judgement.accepted, judgement.sentence
+
+
 @pytest.mark.parametrize(
     ("name", "share"),
     [("column-5-sliding", 1e-12), ("column-5-sliding", 1.0), ("running-bond-overturns", 1e12), ("stack-10", 1e6)],
