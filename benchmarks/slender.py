@@ -126,7 +126,10 @@ def _slides(wall: Assembly, motion: FloatArray) -> bool:
 
 
 def verdict(known: Known, result: Result, accuracy: float) -> str:
-    """ "right", "undecided", "soft" (a low answer that says its joints are soft), or "wrong"."""
+    """ "right", "undecided", "soft" (a low answer that says its joints are soft), or "wrong".
+
+    A bracket that the time limit left wide is undecided where it holds the multiplier, and wrong where it does not.
+    """
     if result.status is not Status.OK or result.finding is Finding.NONE:
         return "undecided"
     if known.multiplier is None or result.multiplier is None:
@@ -136,6 +139,10 @@ def verdict(known: Known, result: Result, accuracy: float) -> str:
         right = abs(result.multiplier - known.multiplier) <= accuracy * known.multiplier
     if right:
         return "right"
+    if result.details.get("stopped_by_limit") and known.multiplier is not None and result.bracket is not None:
+        slack = accuracy * known.multiplier
+        if result.bracket[0] - slack <= known.multiplier <= result.bracket[1] + slack:
+            return "undecided"
     low = known.multiplier is not None and result.multiplier is not None and result.multiplier < known.multiplier
     return "soft" if low and result.details.get("soft_joints") else "wrong"
 
