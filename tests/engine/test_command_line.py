@@ -10,6 +10,7 @@ from typing import Any
 
 import pytest
 
+from tests.commands import drystone
 from tests.walls import running_bond, stack, wall_data, wedge
 
 PROMISED = {
@@ -27,13 +28,6 @@ PROMISED = {
     "settings",
     "versions",
 }
-
-
-def drystone(*words: str, cwd: Path) -> subprocess.CompletedProcess[str]:
-    program = "from harness.cli import main; main()"
-    return subprocess.run(
-        [sys.executable, "-c", program, *words], cwd=cwd, capture_output=True, text=True, timeout=300, check=False
-    )
 
 
 @pytest.fixture

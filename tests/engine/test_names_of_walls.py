@@ -10,7 +10,7 @@ import pytest
 
 from harness.engine.plan import find_cases
 from harness.model.errors import InputError
-from tests.faults.test_store import drystone
+from tests.commands import drystone
 from tests.walls import stack, wall_data
 
 

@@ -30,7 +30,7 @@ from harness.model.build import build
 from harness.model.errors import InputError
 from harness.model.reading import parse_wall, validate
 from harness.studying import shipped_studies
-from tests.engine.test_command_line import drystone
+from tests.commands import drystone
 from tests.walls import running_bond, stack, wall_data
 
 

@@ -18,6 +18,7 @@ from harness.engine.compare import comparison_run, execute, judged, recall, reme
 from harness.engine.plan import Limits, plan_case
 from harness.engine.store import SCHEMA_VERSION, open_store
 from harness.model.errors import InputError
+from tests.commands import drystone
 from tests.walls import case, stack
 
 
@@ -46,11 +47,6 @@ def change(path: Path, statement: str, *values: Any) -> None:
     with connection:
         connection.execute(statement, values)
     connection.close()
-
-
-def drystone(*words: str | Path, prefix: tuple[str, ...] = (), **more: Any) -> subprocess.CompletedProcess[str]:
-    command = [*prefix, sys.executable, "-m", "harness.cli", *map(str, words)]
-    return subprocess.run(command, capture_output=True, text=True, timeout=120, **more)
 
 
 def told_in_one_sentence(done: subprocess.CompletedProcess[str], *words: str) -> None:
