@@ -10,12 +10,13 @@ from harness.model.assembly import Assembly
 from harness.model.method import Answer, Finding, Settings, Status, Traits, load_method
 from methods.la.answers import NO_MOTION, collapse_answer, not_converged, unbounded_answer
 from methods.la.associated import solve_associated
+from methods.la.budget import Budget, Limits
 from methods.la.cooperation import project_forces
 from methods.la.family import LimitAnalysisFamily
 from methods.la.newton_matrix import NewtonMatrix
 from methods.la.paper_programme import PaperResult, solve_paper_programme
 from methods.la.problem import Problem
-from methods.la.search import Effort, Search
+from methods.la.search import Search
 from methods.la.settings import FromFeSettings, PaperSettings, TrescaSettings
 from methods.la.state import CollapseState, moving_contacts, polished, tight_contacts
 from methods.la.tresca import tresca_sequence
@@ -84,7 +85,7 @@ def paper_answer(problem: Problem, newton: NewtonMatrix, result: PaperResult, st
     if not (np.all(np.isfinite(result.forces)) and np.all(np.isfinite(result.rates))):
         return not_converged(f"Ipopt ended with {result.message}.", result.iterations, details)
     search = Search(problem, newton)
-    state = search.nearest_mechanism(result.forces, result.rates)
+    state = search.nearest_state(problem.slacks(result.forces), result.rates)
     if state is None and not search.finds_motion():
         return unbounded_answer(NO_MOTION, result.iterations, details)
     if state is None:
@@ -173,13 +174,14 @@ class FromFiniteElements(LimitAnalysisFamily):
         forces, _, projected = project_forces(
             problem, given.forces / problem.unit_force, given.multiplier / problem.unit_multiplier
         )
-        effort = Effort(failures=settings.failures)
-        warm = Search(problem, newton, settings.seed)
-        first = warm.nearest_mechanism(forces, fe_rates(problem, given))
-        warm_end = None if first is None else warm.descend(first, effort)
-        cold = Search(problem, newton, settings.seed)
+        limits = Limits(failures=settings.failures)
+        warm = Search(problem, newton, settings.seed, Budget(limits))
+        first = warm.nearest_state(problem.slacks(forces), fe_rates(problem, given))
+        warm_end = None if first is None else warm.descend(first)
+        cold = Search(problem, newton, settings.seed, Budget(limits))
         second = cold.interior()
-        cold_end = None if second is None else cold.descend(second, effort)
+        cold_end = None if second is None else cold.descend(second)
+        spent, cold_spent = warm.budget.spent.programmes, cold.budget.spent.programmes + cold.budget.spent.newton_steps
         if first is None or warm_end is None:
             return not_converged("No collapse state lies near the finite-element forces.")
         unit = problem.unit_multiplier
@@ -195,11 +197,11 @@ class FromFiniteElements(LimitAnalysisFamily):
             "fe_multiplier": given.multiplier,
             "projected": projected,
             "first_multiplier": first.multiplier * unit,
-            "iterations": {"from_fe": warm.tally.programmes, "cold": cold.tally.programmes + cold.tally.newton_steps},
+            "iterations": {"from_fe": spent, "cold": cold_spent},
             "cold_first_multiplier": None if second is None else second.multiplier * unit,
             "cold_multiplier": None if cold_end is None else cold_end.multiplier * unit,
             "gain_in_value": None if cold_end is None else (cold_end.multiplier - warm_end.multiplier) * unit,
-            "gain_in_iterations": cold.tally.programmes + cold.tally.newton_steps - warm.tally.programmes,
+            "gain_in_iterations": cold_spent - spent,
         }
         return collapse_answer(
             problem,
@@ -207,7 +209,7 @@ class FromFiniteElements(LimitAnalysisFamily):
             f"From the finite-element state at {given.multiplier:.6g} the descent leads to a collapse state at "
             f"{state.multiplier * unit:.7g}.",
             self.tolerance,
-            warm.tally.programmes,
+            spent,
             details,
         )
 

@@ -1,4 +1,4 @@
-"""Collapse states sought from mechanisms instead of forces: single blocks, and mechanisms drawn from all there are.
+"""The motions of one block among others, and the least multiplier at which its own equilibrium allows each.
 
 Interior paths, descent and paths of springs all begin with forces, and so with the joints that those press. A block
 that slides out alone from among others, which could press on it but need not, is seldom found from there. Its motions
@@ -17,52 +17,22 @@ from scipy.optimize import linprog
 
 from harness.model.assembly import FloatArray
 from methods.la.problem import Problem, slack_matrix
-from methods.la.search import LOWER, Search
-from methods.la.state import CollapseState
 
 ROUNDING = 1e-9
 """Rates and products of unit vectors up to this are zero to rounding."""
-HEAVY = 6
-"""Power of the exponential costs of rates: a drawn mechanism moves in the few contacts that cost next to nothing."""
 
 
-def mechanism_states(search: Search, draws: int) -> Iterator[CollapseState]:
-    """Collapse states of blocks that may move alone below the least multiplier known, then of drawn mechanisms.
-
-    Args:
-        search: of the wall; its generator draws the mechanisms.
-        draws: how many mechanisms are drawn.
-    """
-    problem = search.problem
-    for block in range(problem.assembly.n_free):
-        for velocities in _motions_below(search, block):
-            state = search.state_of(velocities, problem.rates_of_velocities(velocities, False))
-            if state is not None:
-                yield state
-    everywhere = np.ones((problem.n_interfaces, 4), dtype=bool)
-    for _ in range(draws):
-        search.tally.programmes += 1
-        mechanism = search.kinematic.solve(everywhere, search.generator.exponential(size=everywhere.shape) ** HEAVY)
-        if mechanism is None:
-            return
-        state = search.state_of(mechanism.velocities, mechanism.rates)
-        if state is not None:
-            yield state
-
-
-def _motions_below(search: Search, block: int) -> Iterator[FloatArray]:
-    """Velocities (3n,) of the block's own motions that its equilibrium allows below the least multiplier known."""
-    problem = search.problem
+def motions_of(problem: Problem, block: int) -> Iterator[tuple[FloatArray, float]]:
+    """Velocities (3n,) of the block's own motions, and the least scaled multiplier that its equilibrium allows each."""
     own = slice(3 * block, 3 * block + 3)
     columns = problem.kinematic[:, own].tocoo()
     joints, row = np.unique(columns.row // 3, return_inverse=True)
     strains = np.zeros((len(joints), 3, 3))
     strains[row, columns.row % 3, columns.col] = columns.data
     for motion in extreme_motions(strains, problem.live[own]):
-        if least_of_block(problem, block, joints, strains, motion) < search.least - LOWER:
-            velocities = np.zeros(problem.n_velocities)
-            velocities[own] = motion * (problem.live_work / float(problem.live[own] @ motion))
-            yield velocities
+        velocities = np.zeros(problem.n_velocities)
+        velocities[own] = motion * (problem.live_work / float(problem.live[own] @ motion))
+        yield velocities, least_of_block(problem, block, joints, strains, motion)
 
 
 def extreme_motions(strains: FloatArray, live: FloatArray) -> FloatArray:

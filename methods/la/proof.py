@@ -13,7 +13,7 @@ blocks of any shape reach that at six or seven blocks.
 from __future__ import annotations
 
 import heapq
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -32,6 +32,12 @@ COMPLEMENTARY = 1e-9
 """Work of slacks on rates, in mean block weights, that is rounding."""
 AGREES = 1e-7
 """Difference of two scaled multipliers that linear programmes leave."""
+
+
+LEAVES = 100
+"""Leaves of a tree that does not come to an end, which are bounded to rounding: 15 ms each on 16 interfaces."""
+PER_LEAF = 3
+"""Programmes that a leaf may take to be bounded to rounding."""
 
 
 @dataclass(frozen=True)
@@ -56,126 +62,163 @@ class Proof:
         return self.lower_bound >= _below(self.state.multiplier)
 
 
-def prove(search: Search, known: CollapseState, most: int) -> Proof:
-    """The least collapse state and the bound that a tree of `most` nodes proves.
+def prove(search: Search, known: CollapseState, most: int, leaves: int = LEAVES) -> Proof:
+    """The least collapse state and the bound that a tree of `most` nodes proves, as far as the budget goes.
+
+    A tree that does not come to an end is cut back to its first divisions, so that its bound is computed to rounding
+    soon: the bound of later ones is little higher, and each leaf takes as long as four nodes.
 
     Args:
         search: of the wall, which stands under its dead load; known: its least collapse state so far.
         most: with none, all that is said is that no multiplier is negative.
+        leaves: of a tree that does not come to an end, which are bounded to rounding at most.
     """
     if most == 0:
         return Proof(known, 0.0, 0)
     tree = _Tree(search, known)
-    shape = (search.problem.n_interfaces, 4)
-    nothing = np.zeros(shape, dtype=bool)
+    nothing = np.zeros((search.problem.n_interfaces, 4), dtype=bool)
     tree.add(nothing, nothing, 0.0)
-    while tree.open and tree.nodes < most and tree.open[0].bound < _below(tree.known.multiplier):
-        node = heapq.heappop(tree.open)
-        held = np.zeros(shape, dtype=bool)
-        held[node.contact] = True
-        tree.add(node.tight | held, node.still, node.bound, node.least_work)
-        tree.add(node.tight, node.still | held, node.bound)
-    search.tally.programmes += 2 * tree.nodes
-    bound = min([tree.undecided, _below(tree.known.multiplier), *(node.bound for node in tree.open[:1])])
-    if bound <= 0.0 or not tree.certified():  # a bound of zero needs no certificate
-        return Proof(tree.known, 0.0, tree.nodes)
-    leaves = tree.closed + [(node.tight, node.still) for node in tree.open]
-    return Proof(tree.known, bound, tree.nodes, tuple(leaves))
+    while tree.open and len(tree.parts) < most and search.budget.programmes and tree.open[0][0] < tree.limit:
+        tree.divide()
+    ended = tree.bound() >= tree.limit and search.budget.programmes >= PER_LEAF * len(tree.leaves())
+    affordable = search.budget.programmes // PER_LEAF
+    divisions = tree.divisions if ended else min(tree.divisions, max(min(leaves, affordable) - 1, 0))
+    bound = min(tree.bound(divisions), tree.limit)
+    if not ended:
+        bound = _below(bound)
+    given_up = tree.leaves(divisions)
+    if bound <= 0.0 or not _bounded_to_rounding(search, given_up, bound):  # a bound of zero needs no certificate
+        return Proof(tree.known, 0.0, len(tree.parts))
+    return Proof(tree.known, bound, len(tree.parts), tuple((part.tight, part.still) for part in given_up))
 
 
 def _below(multiplier: float) -> float:
     return multiplier - CLOSE * abs(multiplier) - 1e-12
 
 
-@dataclass(order=True)
-class _Node:
+@dataclass
+class _Part:
+    """The states with slacks `tight` and rates `still` (m, 4) at zero.
+
+    Attributes:
+        bound: on their multipliers; infinite where it is closed.
+        born, divided: number of divisions of the tree before it was there, and when it was divided itself.
+        contact: to divide it at; least_work: the bound of its rates alone, which its first half shares.
+    """
+
+    tight: BoolArray
+    still: BoolArray
     bound: float
-    number: int
-    tight: BoolArray = field(compare=False)
-    still: BoolArray = field(compare=False)
-    contact: tuple[int, int] = field(compare=False)
-    least_work: float = field(compare=False)
+    born: int
+    divided: float = np.inf
+    contact: tuple[int, int] = (0, 0)
+    least_work: float = -np.inf
 
 
 class _Tree:
-    """The nodes still open, least bound first; the least bound of nodes that no programme decided."""
+    """Parts of all states there are; the open ones with the least bound first."""
 
     def __init__(self, search: Search, known: CollapseState) -> None:
         self._search = search
         self._work = _DeadWork(search.problem)
         self.known = known
-        self.open: list[_Node] = []
-        self.closed: list[tuple[BoolArray, BoolArray]] = []
-        self.undecided = np.inf
-        self.nodes = 0
+        self.parts: list[_Part] = []
+        self.open: list[tuple[float, int]] = []
+        self.divisions = 0
+
+    @property
+    def limit(self) -> float:
+        """Multiplier from which on no other state is sought."""
+        return _below(self.known.multiplier)
+
+    def leaves(self, divisions: int | None = None) -> list[_Part]:
+        """The parts that there were after so many divisions, by default after all."""
+        count = self.divisions if divisions is None else divisions
+        return [part for part in self.parts if part.born <= count < part.divided]
+
+    def bound(self, divisions: int | None = None) -> float:
+        """The least bound of these."""
+        return min(part.bound for part in self.leaves(divisions))
+
+    def divide(self) -> None:
+        """Divide the open part of the least bound at its contact: no slack there, or no rate."""
+        parent = self.parts[heapq.heappop(self.open)[1]]
+        held = np.zeros(parent.tight.shape, dtype=bool)
+        held[parent.contact] = True
+        parent.divided = self.divisions = self.divisions + 1
+        self.add(parent.tight | held, parent.still, parent.bound, parent.least_work)
+        self.add(parent.tight, parent.still | held, parent.bound)
 
     def add(self, tight: BoolArray, still: BoolArray, bound: float, least_work: float | None = None) -> None:
-        """Bound a node; close it, or keep it with the contact to divide it at.
+        """Bound a part; close it, or keep it with the contact to divide it at.
 
         Args:
             tight, still: (m, 4) contacts; bound: of its parent; least_work: of its `still`, if known.
         """
-        self.nodes += 1
-        limit = _below(self.known.multiplier)
-        statics = self._search.static.solve(tight)
-        if statics == "infeasible" or (not isinstance(statics, str) and statics.multiplier >= limit):
-            self.closed.append((tight, still))
-            return
-        least_work = self._work.least(~still) if least_work is None else least_work
-        if least_work >= limit:
-            self.closed.append((tight, still))
-            return
+        part = _Part(tight, still, bound, self.divisions)
+        self.parts.append(part)
+        if self._decide(part, least_work):
+            heapq.heappush(self.open, (part.bound, len(self.parts) - 1))
+
+    def _decide(self, part: _Part, least_work: float | None) -> bool:
+        """Bound a part; whether it is to be divided. One that no programme decides keeps the bound of its parent."""
+        search, spent = self._search, self._search.budget.spent
+        spent.programmes += 1
+        statics = search.static.solve(part.tight)
+        if statics == "infeasible" or (not isinstance(statics, str) and statics.multiplier >= self.limit):
+            part.bound = np.inf
+            return False
+        if least_work is None:
+            spent.programmes += 1
+            least_work = self._work.least(~part.still)
+        if least_work >= self.limit:
+            part.bound = np.inf
+            return False
         if isinstance(statics, str):
-            self.undecided = min(self.undecided, bound)
-            return
-        bound = max(bound, statics.multiplier, least_work)
-        slack = np.maximum(self._search.problem.slacks(statics.forces), 0.0)
-        mechanism = self._search.kinematic.solve(~still, slack)
+            return False
+        part.least_work = least_work
+        part.bound = max(part.bound, statics.multiplier, least_work)
+        slack = np.maximum(search.problem.slacks(statics.forces), 0.0)
+        spent.programmes += 1
+        mechanism = search.kinematic.solve(~part.still, slack)
         if mechanism is None:
-            self.undecided = min(self.undecided, bound)
-            return
-        work = np.where(tight | still, 0.0, slack * mechanism.rates)
+            return False
+        work = np.where(part.tight | part.still, 0.0, slack * mechanism.rates)
         if work.sum() > COMPLEMENTARY:
             row, column = np.unravel_index(int(work.argmax()), work.shape)
-            node = _Node(bound, self.nodes, tight, still, (int(row), int(column)), least_work)
-            heapq.heappush(self.open, node)
-            return
-        self.closed.append((tight, still))
-        state = self._search.state_of(mechanism.velocities, mechanism.rates)
-        if state is None or state.multiplier > statics.multiplier + AGREES:
-            self.undecided = min(self.undecided, bound)
+            part.contact = (int(row), int(column))
+            return True
+        state = search.state_of(mechanism.velocities, mechanism.rates)
+        if state is not None and state.multiplier <= statics.multiplier + AGREES:
+            part.bound = np.inf
         if state is not None and state.multiplier < self.known.multiplier:
             self.known = state
-
-    def certified(self) -> bool:
-        """Whether every part of the tree that is given up has a bound computed to rounding of its own terms.
-
-        The tree itself trusts programmes that round at 1e-9 of a mean block weight.
-        """
-        problem, limit = self._search.problem, _below(self.known.multiplier)
-        if self.undecided < limit:
-            return True  # nothing is proved beyond that
-        units = units_of(problem)
-        programme = ForceProgramme(problem, units)
-        given_up = self.closed + [(node.tight, node.still) for node in self.open if node.bound >= limit]
-        return all(_bounded(problem, programme, units, tight, still, limit) for tight, still in given_up)
+        return False
 
 
-def _bounded(
-    problem: Problem,
-    programme: ForceProgramme,
-    units: Units | None,
-    tight: BoolArray,
-    still: BoolArray,
-    limit: float,
-) -> bool:
-    """Whether no state with these slacks and rates at zero has a multiplier below the limit, by exact vertices."""
-    least = programme.extreme(greatest=False, tight=tight)
+def _bounded_to_rounding(search: Search, parts: list[_Part], limit: float) -> bool:
+    """Whether every part has a bound of at least `limit` that is computed to rounding of its own terms.
+
+    The tree itself trusts programmes that round at 1e-9 of a mean block weight.
+    """
+    problem = search.problem
+    units = units_of(problem)
+    programme = ForceProgramme(problem, units)
+    for part in parts:
+        search.budget.spent.programmes += PER_LEAF
+        if not _bounded(problem, programme, units, part, limit):
+            return False
+    return True
+
+
+def _bounded(problem: Problem, programme: ForceProgramme, units: Units | None, part: _Part, limit: float) -> bool:
+    """Whether no state of a part has a multiplier below the limit, by exact vertices."""
+    least = programme.extreme(greatest=False, tight=part.tight)
     if not isinstance(least, str) and least.statics.multiplier >= limit:
         return True
-    if least == "infeasible" and bears_no_load(problem, units, tight):
+    if least == "infeasible" and bears_no_load(problem, units, part.tight):
         return True
-    work = programme.least_dead_work(still)
+    work = programme.least_dead_work(part.still)
     return work == "unbounded" if isinstance(work, str) else work >= limit
 
 

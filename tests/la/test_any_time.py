@@ -9,7 +9,7 @@ import pytest
 from harness.engine.judge import judge
 from harness.model.method import Finding, OutOfTime, Status, load_method
 from harness.model.result import result_of
-from methods.la import least
+from methods.la.sources import SOURCES
 from tests.walls import assembly, running_bond
 
 
@@ -17,41 +17,52 @@ def out_of_time(*_: Any, **__: Any) -> Any:
     raise OutOfTime
 
 
-@pytest.mark.parametrize("step", ["Search.solve_associated", "climb", "gravity_of", "prove"])
+STEPS = {
+    "later": ("sources.paths.CentralPath.states", "central path"),
+    "ladder": ("sources.ladder.FrictionLadder.states", "friction ladder"),
+    "springs": ("search.gravity_of", "springs with little self-stress"),
+    "proof": ("least.prove", "moving blocks joined"),
+}
+
+
+@pytest.mark.parametrize("step", STEPS)
 def test_state_known_before_the_time_was_over_is_the_answer(step: str, monkeypatch: pytest.MonkeyPatch):
     wall, method = assembly(running_bond(6, 3), 0.65), load_method("la")
     settings = method.Settings()
     whole = method.solve(wall, settings)
-    monkeypatch.setattr(f"methods.la.least.{step}", out_of_time)
+    place, source = STEPS[step]
+    monkeypatch.setattr(f"methods.la.{place}", out_of_time)
     answer = method.solve(wall, settings)
     assert (answer.status, answer.finding) == (Status.OK, Finding.COLLAPSES)
     assert "stopped by the time limit" in answer.sentence
     assert answer.details["stopped_by_limit"]
+    assert answer.path["multiplier"][-1] == pytest.approx(answer.multiplier, rel=1e-9)
+    assert source in answer.sentence
     assert judge(wall, result_of(answer, wall, case="x", method="la", family="la"), method.tolerance).accepted
     assert answer.multiplier is not None
     assert whole.multiplier is not None
     assert answer.multiplier >= whole.multiplier - 1e-9
 
 
-def test_state_of_a_large_wall_is_kept(monkeypatch: pytest.MonkeyPatch):
+@pytest.mark.parametrize("source", SOURCES, ids=lambda source: source.name)
+def test_no_source_ends_a_search_without_what_is_known(source: Any, monkeypatch: pytest.MonkeyPatch):
+    """Each may be the one that the limit meets; where it is not begun on this wall, the search comes to its end."""
     wall, method = assembly(running_bond(6, 3), 0.65), load_method("la")
-    monkeypatch.setattr(least, "SIMPLEX_SEARCH", 10)
-    monkeypatch.setattr(least, "gravity_of", out_of_time)
-    answer = method.solve(wall, method.Settings())
-    assert answer.status is Status.OK
-    assert answer.details["stopped_by_limit"]
+    monkeypatch.setattr(type(source), "states", out_of_time)
+    answer = method.solve(wall, method.Settings(effort="quick"))
+    assert (answer.status, answer.finding) == (Status.OK, Finding.COLLAPSES)
 
 
 def test_without_a_state_the_time_is_over(monkeypatch: pytest.MonkeyPatch):
     method = load_method("la")
-    monkeypatch.setattr(least.Search, "interior", out_of_time)
+    monkeypatch.setattr("methods.la.search.solve_associated", out_of_time)
     with pytest.raises(OutOfTime):
         method.solve(assembly(running_bond(6, 3), 0.65), method.Settings())
 
 
 def test_bound_of_a_search_that_was_stopped_is_the_answer_of_the_search(monkeypatch: pytest.MonkeyPatch):
     wall, method = assembly(running_bond(6, 3), 0.65), load_method("la-bound")
-    monkeypatch.setattr(least, "climb", out_of_time)
+    monkeypatch.setattr("methods.la.sources.ladder.FrictionLadder.states", out_of_time)
     answer = method.solve(wall, method.Settings())
     assert answer.status is Status.OK
     assert answer.details["stopped_by_limit"]
@@ -60,8 +71,7 @@ def test_bound_of_a_search_that_was_stopped_is_the_answer_of_the_search(monkeypa
 def test_associated_state_is_the_answer_where_no_other_is_known(monkeypatch: pytest.MonkeyPatch):
     """It is told as what it is: an upper bound, which the gates do not take for the least known."""
     wall, method = assembly(running_bond(6, 3), 0.65), load_method("la")
-    monkeypatch.setattr(least, "SIMPLEX_SEARCH", 10)
-    monkeypatch.setattr(least, "central_search", out_of_time)
+    monkeypatch.setattr("methods.la.sources.paths.SmootherJoints.states", out_of_time)
     answer = method.solve(wall, method.Settings())
     assert answer.status is Status.OK
     assert "No collapse state without dilatancy is known yet" in answer.sentence

@@ -11,18 +11,20 @@ from scipy.linalg import block_diag
 from harness.model.method import Finding
 from methods.la.adapter import AssociatedLimitAnalysis, LimitAnalysis
 from methods.la.arc import RESIDUAL, ArcPath
-from methods.la.associated import END, solve_associated
+from methods.la.associated import END
+from methods.la.budget import Budget, Limits
 from methods.la.exact import close_tight
 from methods.la.feasible_pair import FEASIBLE, feasible_pair
 from methods.la.interior_point import PathSettings, follow_path, start_point
-from methods.la.large import LargeSearch, large_search
 from methods.la.least import least_of
 from methods.la.newton_matrix import NewtonMatrix
 from methods.la.newton_step import NewtonStep, Point
 from methods.la.problem import make_problem
 from methods.la.region import with_all_above
-from methods.la.search import Search
+from methods.la.search import CHOICES, Search
 from methods.la.settings import AssociatedSettings, SearchSettings
+from methods.la.sources import explore
+from methods.la.sources.arcs import ArcPaths
 from methods.la.state import residuals
 from tests.la.bodies import running_bond
 
@@ -100,7 +102,7 @@ def test_path_to_a_tiny_gap_stays_in_equilibrium() -> None:
 def test_vertical_force_on_one_block_of_a_large_wall_is_unbounded(monkeypatch: pytest.MonkeyPatch) -> None:
     """The interior point meets no end there; forces that bear the live load alone tell."""
     monkeypatch.setattr("methods.la.associated.END", replace(END, above=100))
-    monkeypatch.setattr("methods.la.least.SIMPLEX_SEARCH", 100)
+    monkeypatch.setattr("methods.la.search.CHOICES", replace(CHOICES, vertices_up_to=100))
     wall = running_bond(10, 8, 0.2, 0.65)
     live = np.zeros_like(wall.live)
     live[wall.centroid[:, 1].argmax(), 1] = -1.0
@@ -120,18 +122,31 @@ def test_what_rests_on_a_moving_block_moves() -> None:
     assert not moves[wall.fixed].any()
 
 
-def test_search_of_the_part_that_collapses_gives_a_state_of_the_whole_wall(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_search_of_the_part_that_collapses_gives_states_of_the_whole_wall() -> None:
     problem = make_problem(running_bond(14, 7, 0.175, 0.65))
-    newton = NewtonMatrix(problem)
-    associated = solve_associated(problem, newton)
-    assert associated.state is not None
-    monkeypatch.setattr("methods.la.large.MOST_INTERFACES", 100)
-    found = LargeSearch()
-    large_search(found, problem, newton, 0, associated.state.velocities)
-    assert len(found.states) == 1
-    state = found.states[0]
-    assert state.multiplier <= associated.state.multiplier
-    assert max(residuals(problem, state).values()) <= 1e-10
+    search = Search(problem, NewtonMatrix(problem), budget=Budget(Limits(descents=0)))
+    explore(search, [ArcPaths(least=100)])
+    states = search.record.states
+    assert states
+    for state in states:
+        assert state.multiplier <= search.associated.greatest
+        assert max(residuals(problem, state).values()) <= 1e-10
+
+
+@pytest.mark.parametrize("starts", [0, 2])
+def test_settings_mean_the_same_where_the_interior_point_solves_the_programmes(
+    starts: int, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Above so many interfaces; `starts` and `failures` were read on smaller walls only."""
+    monkeypatch.setattr("methods.la.search.CHOICES", replace(CHOICES, vertices_up_to=50))
+    answer = LimitAnalysis().solve(
+        running_bond(10, 5, 0.175, 0.65), SearchSettings(effort="quick", starts=starts, failures=3)
+    )
+    assert answer.finding == Finding.COLLAPSES
+    assert answer.multiplier is not None
+    assert answer.multiplier <= 0.557416  # of the prototypes, with vertices
+    count = {row["source"]: row["states"] for row in answer.details["sources"]}
+    assert (count.get("random starts", 0) > 0) is (starts > 0)
 
 
 @pytest.mark.slow

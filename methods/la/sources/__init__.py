@@ -1,0 +1,55 @@
+"""The sources of collapse states in the order in which a search tries them, and how it does."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+from methods.la.search import Search
+from methods.la.sources.arcs import ArcPaths
+from methods.la.sources.blocks import DrawnMechanisms, JoinedBlocks, SingleBlocks
+from methods.la.sources.ladder import FrictionLadder
+from methods.la.sources.paths import CentralPath, LaggedFriction, NearAssociated, RandomStarts, SmootherJoints
+from methods.la.sources.source import Source
+from methods.la.sources.springs import CentralForces, LittleSelfStress, SafeForces
+
+__all__ = ["SOURCES", "Source", "explore"]
+
+SOURCES: tuple[Source, ...] = (
+    SmootherJoints(),
+    CentralPath(most=1000),
+    SafeForces(least=1001, most=6000),
+    NearAssociated(),
+    RandomStarts(),
+    FrictionLadder(),
+    ArcPaths(),
+    LaggedFriction(),
+    CentralPath(anyway=False),
+    LittleSelfStress(),
+    SingleBlocks(),
+    DrawnMechanisms(),
+    SafeForces(),
+    CentralForces(),
+    JoinedBlocks(),
+)
+"""The soonest state first, then lower ones; what is for walls on which nothing is known stands behind the others."""
+
+
+def explore(search: Search, sources: Sequence[Source] = SOURCES) -> None:
+    """Try the sources in order, and descend from the lowest states of each; the record of the search has what came.
+
+    Raises:
+        OutOfTime: the time given is over; the record has what was found so far.
+    """
+    if search.solve_associated().outcome == "unbounded":
+        limits = search.budget.limits
+        search.budget.limits = replace(limits, kinks=limits.unbounded_kinks)
+    for source in sources:
+        if not source.applies(search.problem):
+            continue
+        with search.record.trying(source.name, search.budget.spent) as tried:
+            for state in source.states(search):
+                search.note(state)
+                tried.states.append(state)
+            for end in search.descend_from(tried.states):
+                tried.ends.append(end)

@@ -1,0 +1,107 @@
+"""States at the ends of paths by arc length in the part of a large wall that the associated mechanism moves."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from contextlib import suppress
+from dataclasses import dataclass
+from typing import ClassVar
+
+import numpy as np
+
+from methods.la.arc import ArcPath
+from methods.la.feasible_pair import feasible_pair
+from methods.la.path_programmes import EXACTNESS, cheapest_mechanism, exact_state
+from methods.la.problem import Problem
+from methods.la.region import Region, in_whole, moving_region
+from methods.la.search import Search
+from methods.la.state import CollapseState
+from methods.la.unloaded import smoothed
+from methods.numerics.failures import NumericalFailure
+
+
+@dataclass(frozen=True)
+class Lead:
+    """How a path by arc length begins, and how far it is followed.
+
+    Attributes:
+        smooth: factor on the friction of the joints that the dead load leaves unloaded.
+        gap: relative gap of the associated path at which the forces of its start are taken.
+        spread: of the weights about their mean.
+        gaps: of the path at which its mechanism is tried.
+        most_steps: Newton steps from one of them to the next.
+    """
+
+    smooth: float
+    gap: float
+    spread: float
+    gaps: tuple[float, ...]
+    most_steps: int
+
+
+NEAR = (10.0, (1e-6, 1e-8), 600)
+FAR = (np.inf, (1e-8, 1e-9, 1e-10), 2000)
+
+
+@dataclass(frozen=True)
+class ArcPaths:
+    """Paths of zero-dilatancy flow followed past their folds, one mechanism and one programme each.
+
+    Attributes:
+        least: interfaces from which they are followed.
+        near: leads near the central path, which end low but do not always arrive.
+        far: leads with the weights of their start, tried where no other led to a state, and from `many` blocks on.
+        many: moving blocks on which a path near the central one folds a thousand times and more.
+    """
+
+    name: ClassVar[str] = "paths by arc length"
+    least: int = 1001
+    near: tuple[Lead, ...] = (Lead(0.3, 1e-2, *NEAR), Lead(0.45, 1e-2, *NEAR), Lead(0.3, 1e-3, *NEAR))
+    far: tuple[Lead, ...] = (Lead(0.15, 1e-2, *FAR), Lead(0.3, 1e-3, *FAR), Lead(0.0, 1e-2, *FAR))
+    many: int = 2000
+
+    def applies(self, problem: Problem) -> bool:
+        """On walls too large for descents."""
+        return problem.n_interfaces >= self.least
+
+    def states(self, search: Search) -> Iterator[CollapseState]:
+        """One state a lead that arrives; none where no associated mechanism tells the part that moves."""
+        if search.associated.state is None:
+            return
+        region = moving_region(search.problem, search.associated.state.velocities)
+        far_only = region.problem.n_velocities // 3 > self.many
+        for lead in self.far if far_only else self.near + self.far:
+            known = search.record.known
+            if (known and lead in self.far and not far_only) or not search.budget.steps_left(known):
+                return
+            with suppress(NumericalFailure):  # A matrix singular to rounding ends one lead, not the search.
+                state = _end_of(lead, search, region)
+                if state is not None:
+                    yield state
+
+
+def _end_of(lead: Lead, search: Search, region: Region) -> CollapseState | None:
+    """The state that one path by arc length leads to."""
+    problem, part = search.problem, region.problem
+    blocks = part.n_velocities // 3
+    guide = smoothed(part, lead.smooth) or part
+    start, steps = feasible_pair(guide, region.newton, lead.gap)
+    search.budget.stepped(steps, blocks)
+    if start is None:
+        return None
+    arc = ArcPath(guide, region.newton, start, lead.spread)
+    for gap in lead.gaps:
+        path = arc.follow(gap, lead.most_steps)
+        search.budget.stepped(path.iterations, blocks)
+        if not path.converged:
+            return None
+        mechanism = cheapest_mechanism(guide, region.newton, path.point.slack, np.random.default_rng(search.seed))
+        state, steps = exact_state(part, region.newton, mechanism, EXACTNESS.shares[:1])
+        search.budget.stepped(mechanism.iterations + steps, blocks)
+        if state is None:
+            continue
+        state, steps = exact_state(problem, search.newton, in_whole(problem, region, mechanism))
+        search.stepped(steps)
+        if state is not None:
+            return state
+    return None

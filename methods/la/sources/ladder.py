@@ -1,0 +1,59 @@
+"""Continuation in friction: mechanisms found at lower friction are carried up a ladder to the friction of the wall.
+
+The mechanisms of zero-dilatancy flow do not depend on friction, only the forces that fit them do. At high friction
+the low collapse states have small basins; at lower friction the same mechanisms are found at once.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
+from typing import ClassVar
+
+import numpy as np
+
+from harness.model.assembly import FloatArray
+from methods.la.problem import Problem
+from methods.la.search import Search
+from methods.la.state import CollapseState
+
+
+@dataclass(frozen=True)
+class FrictionLadder:
+    """Rungs of lower friction, each with its own path and what the rung before knew.
+
+    Attributes:
+        pool: mechanisms carried from one rung to the next.
+        rough: friction above which the rungs are shares of this instead: much higher, most starts end at self-stress.
+        rough_rungs: friction of the rungs added for joints that are rougher still.
+    """
+
+    name: ClassVar[str] = "friction ladder"
+    pool: int = 24
+    rough: float = 1.0
+    rough_rungs: tuple[float, ...] = (1.0, 1.5, 2.25)
+
+    def applies(self, problem: Problem) -> bool:
+        """On every wall; the budget says how many rungs there are."""
+        return True
+
+    def states(self, search: Search) -> Iterator[CollapseState]:
+        """States of the mechanisms that were lowest on the last rung."""
+        below: Search | None = None
+        for friction in self._rungs(search):
+            if not search.budget.steps_left(search.record.known):
+                break
+            rung = search.at_friction(replace(search.problem, friction=friction))
+            states = [rung.interior()]
+            if below is not None:
+                states += rung.adopt(below, self.pool)
+            rung.descend_from(state for state in states if state is not None)
+            below = rung
+        if below is not None:
+            yield from search.adopt(below, self.pool)
+
+    def _rungs(self, search: Search) -> list[FloatArray]:
+        friction = search.problem.friction
+        greatest = float(friction.max(initial=0.0))
+        rungs = [factor * np.minimum(friction, self.rough) for factor in search.budget.limits.ladder]
+        return rungs + [np.minimum(friction, most) for most in self.rough_rungs if most < greatest]

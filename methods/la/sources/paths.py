@@ -1,0 +1,168 @@
+"""States at the ends of central paths: with smoother unloaded joints, of the wall itself, from random starts."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import ClassVar
+
+from methods.la.lagged import lagged_mechanism
+from methods.la.path_programmes import exact_state
+from methods.la.problem import Problem
+from methods.la.search import Search
+from methods.la.state import CollapseState
+from methods.la.unloaded import smoothed
+from methods.numerics.failures import NumericalFailure
+
+
+@dataclass(frozen=True)
+class SmootherJoints:
+    """The central path of the wall whose unloaded joints have a part of their friction; it ends low at any size.
+
+    Attributes:
+        factors: on that friction, tried in order.
+        pool: mechanisms of the smoother wall that are tried on the wall itself.
+        most: interfaces above which Newton's path of the whole wall stalls at folds.
+        all_up_to: interfaces up to which every factor is tried, instead of the first that leads to a state.
+    """
+
+    name: ClassVar[str] = "smoother unloaded joints"
+    factors: tuple[float, ...] = (0.3, 0.5, 0.0)
+    pool: int = 24
+    most: int = 6000
+    all_up_to: int = 2000
+
+    def applies(self, problem: Problem) -> bool:
+        """On walls on which Newton's path arrives, with joints that the dead load does not press."""
+        return problem.n_interfaces <= self.most and bool(problem.unloaded_joints.any())
+
+    def states(self, search: Search) -> Iterator[CollapseState]:
+        """One state a factor, or more where none is known and only forces of the smoother wall lead to one."""
+        for factor in self.factors:
+            if search.record.known and search.problem.n_interfaces > self.all_up_to:
+                return
+            guide = smoothed(search.problem, factor)
+            if guide is not None:
+                yield from self._states_of(search, search.at_friction(guide))
+
+    def _states_of(self, search: Search, smooth: Search) -> Iterator[CollapseState]:
+        end = smooth.path_end()
+        if end is None:
+            return
+        state = search.nearest_state(end.point.slack, end.point.rates)
+        if state is not None:
+            yield state
+        elif not search.record.known and smooth.nearest_state(end.point.slack, end.point.rates) is not None:
+            yield from search.adopt(smooth, self.pool)
+
+
+@dataclass(frozen=True)
+class CentralPath:
+    """The central path of the wall itself.
+
+    Attributes:
+        most: interfaces above which it is not followed: above 6,000 Newton's path stalls at folds.
+        anyway: whether it is followed though a state is known.
+    """
+
+    name: ClassVar[str] = "central path"
+    most: int = 6000
+    anyway: bool = True
+
+    def applies(self, problem: Problem) -> bool:
+        """On walls on which Newton's path arrives."""
+        return problem.n_interfaces <= self.most
+
+    def states(self, search: Search) -> Iterator[CollapseState]:
+        """One state."""
+        if self.anyway or not search.record.known:
+            state = search.interior()
+            if state is not None:
+                yield state
+
+
+@dataclass(frozen=True)
+class NearAssociated:
+    """The mechanism without dilatancy nearest to the forces of the associated one.
+
+    Attributes:
+        up_to: interfaces up to which it is tried; above it led to high states only, and is tried where none is known.
+        most: interfaces above which it is not tried at all.
+    """
+
+    name: ClassVar[str] = "associated forces"
+    up_to: int = 400
+    most: int = 1000
+
+    def applies(self, problem: Problem) -> bool:
+        """Where vertices of the mechanism are quick to find."""
+        return problem.n_interfaces <= self.most
+
+    def states(self, search: Search) -> Iterator[CollapseState]:
+        """One state."""
+        associated = search.associated.state
+        if associated is None or (search.problem.n_interfaces > self.up_to and search.record.known):
+            return
+        state = search.nearest_state(search.problem.slacks(associated.forces))
+        if state is not None:
+            yield state
+
+
+@dataclass(frozen=True)
+class RandomStarts:
+    """Central paths from random starts, as many as the budget says.
+
+    Attributes:
+        spread: forces and rates of a start are off by factors of e to this power at most.
+    """
+
+    name: ClassVar[str] = "random starts"
+    spread: float = 2.0
+
+    def applies(self, problem: Problem) -> bool:
+        """On every wall."""
+        return True
+
+    def states(self, search: Search) -> Iterator[CollapseState]:
+        """One state a start that leads to one."""
+        for _ in range(search.budget.limits.starts):
+            state = search.interior(self.spread)
+            if state is not None:
+                yield state
+
+
+@dataclass(frozen=True)
+class LaggedFriction:
+    """Paths with friction bounds that lag behind, where Newton's path stalls (`methods.la.lagged`).
+
+    Attributes:
+        attempts: Newton steps with lagged bounds and how fast the bounds follow, tried until one leads to a state.
+        least, most: interfaces between which one is tried though a state is known.
+        above: interfaces above which none is tried: the paths stall.
+    """
+
+    name: ClassVar[str] = "lagged friction bounds"
+    attempts: tuple[tuple[int, float], ...] = ((100, 0.6), (80, 0.3), (120, 0.15))
+    least: int = 400
+    most: int = 1000
+    above: int = 6000
+
+    def applies(self, problem: Problem) -> bool:
+        """On joints that slide without lifting."""
+        return problem.n_interfaces <= self.above and not problem.dilates
+
+    def states(self, search: Search) -> Iterator[CollapseState]:
+        """One state at most."""
+        anyway = self.least < search.problem.n_interfaces <= self.most
+        if search.record.known and not anyway:
+            return
+        for steps, follow in self.attempts[:1] if search.record.known else self.attempts:
+            try:
+                path, spent = lagged_mechanism(search.problem, search.newton, steps, follow)
+            except NumericalFailure:
+                continue
+            state, more = exact_state(search.problem, search.newton, path)
+            search.stepped(spent + more)
+            if state is not None:
+                yield state
+                return

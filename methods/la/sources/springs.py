@@ -1,0 +1,328 @@
+"""Collapse states at the ends of the paths of springs, from contact forces that they carry as they stand.
+
+The live load changes along the equilibrium path of the wall (`methods.springs`) until a mechanism moves without any
+change of force: an exact collapse state under zero dilatancy, whatever the stiffness of the springs. Where a path goes
+depends on the self-stress it starts with.
+
+The forces of gravity on a wall without any, random vertices of statics of least weighted compression, and mixtures of
+both with central forces lead to low states of walls of irregular blocks; so do friction histories that are committed on
+the way from gravity. Central paths end high there: they keep all the self-stress that friction allows.
+
+On the largest walls a point on the associated path somewhat before its end has forces within yield by a margin; with
+the joints smooth that the dead load leaves unloaded, they lead to low states too. Where no forces fit the mechanisms
+that the central path ends at, this path has both from the start.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from contextlib import suppress
+from dataclasses import dataclass, field, replace
+from functools import partial
+from typing import ClassVar
+
+import numpy as np
+
+from harness.model.assembly import FloatArray
+from methods.la.gravity import SPRINGS, Gravity, gravity_of
+from methods.la.interior_point import PathSettings, follow_path, start_point
+from methods.la.problem import Problem
+from methods.la.record import LOWER
+from methods.la.search import Search
+from methods.la.state import CollapseState, moving_contacts
+from methods.la.unloaded import smoothed
+from methods.springs.continuation import Tracer
+from methods.springs.equilibrium import doubled, first_step
+from methods.springs.factor import SingularTangent, make_factor
+from methods.springs.follow import follow
+from methods.springs.jump import JUMPS
+from methods.springs.path_record import PathEnd, PathRecord
+from methods.springs.plateau import finish
+from methods.springs.preload import preloaded
+from methods.springs.settings import GapSettings
+from methods.springs.wall_model import build_model
+
+
+@dataclass(frozen=True)
+class Springs:
+    """How paths of springs are followed.
+
+    Attributes:
+        certificate: residual of a mechanism at which a path ends.
+        most_kinks: changes of state per gap point after which one is given up.
+        ratios: kt / kn of further paths from the same kind of forces, in turn; the first is that of `fe`.
+        right: sine of the angle by which right-angled joints may be off.
+    """
+
+    certificate: float = 1e-12
+    most_kinks: int = 5
+    ratios: tuple[float, ...] = (SPRINGS.stiffness_ratio, 5.0, 50.0)
+    right: float = 1e-6
+
+
+PATHS = Springs()
+
+
+@dataclass(frozen=True)
+class Beginning:
+    """The beginning of a path, the jumps tried where it turns down, and the multiplier between two commits."""
+
+    tracer: Tracer
+    jumps: int = 0
+    interval: float = np.inf
+
+
+Start = Callable[[], Beginning | None]
+"""Makes the beginning of a path where that is possible. Raises SingularTangent."""
+
+
+@dataclass(frozen=True)
+class CommittedHistories:
+    """Paths from gravity on which the friction history is committed, as in `fe`'s histories.
+
+    Attributes:
+        ratios: kt / kn, one path each.
+        share: of the least multiplier known between two commits.
+    """
+
+    ratios: tuple[float, ...] = (0.5, 0.2, 0.05)
+    share: float = 2e-3
+
+    def starts(self, search: Search) -> Iterator[Start]:
+        """The beginnings of the paths."""
+        for ratio in self.ratios:
+            yield partial(self._from_gravity, search, ratio)
+
+    def _from_gravity(self, search: Search, ratio: float) -> Beginning | None:
+        """The path with kt/kn = ratio; None without equilibrium, or where no multiplier is known to measure commits."""
+        least = _scale(search)
+        gravity = gravity_of(search.problem, ratio)
+        return _from_gravity(gravity, least, self.share * least) if 0.0 < least < np.inf else None
+
+
+@dataclass(frozen=True)
+class LittleSelfStress:
+    """Paths from forces with little self-stress: gravity's, then vertices or mixtures of statics.
+
+    On walls of many interfaces those of gravity with committed histories come between. No other forces that fit its
+    mechanism made any of 611 such states on walls of irregular blocks lower.
+
+    Attributes:
+        most: interfaces above which the path of gravity may jump, which may take thousands of factorisations.
+        vertices_up_to: interfaces up to which paths start from pure vertices. Above, none is begun on walls of
+            right-angled joints where gravity leads above what is known: on none of ten walls of courses, nor of 25 of
+            rectangular stones of many sizes, did one lead to anything lower. Gravity is no such sign where joints have
+            many directions.
+        vertex: shares of a vertex, of gravity's forces and of central ones up to there.
+        mixtures: above, in turn. Pure vertices have many forces at zero or at the limit of friction, and on walls of
+            hundreds of blocks their paths seldom end; a tenth of central forces takes them off their limits.
+        heavy: power of the exponential weights on compression: a few joints are to carry next to nothing.
+    """
+
+    name: ClassVar[str] = "springs with little self-stress"
+    most: int = 2000
+    vertices_up_to: int = 200
+    committed: CommittedHistories = CommittedHistories()
+    vertex: tuple[tuple[float, float, float], ...] = ((1.0, 0.0, 0.0),)
+    mixtures: tuple[tuple[float, float, float], ...] = (
+        (0.9, 0.0, 0.1),
+        (0.7, 0.0, 0.3),
+        (0.24, 0.7, 0.06),
+        (0.48, 0.4, 0.12),
+    )
+    heavy: int = 3
+
+    def applies(self, problem: Problem) -> bool:
+        """On joints that slide without lifting, as springs do."""
+        return problem.n_interfaces <= self.most and not problem.dilates
+
+    def states(self, search: Search) -> Iterator[CollapseState]:
+        """One state a path that ends, until the kinks are spent."""
+        problem = search.problem
+        for k, state in ends(search, self._starts(search)):
+            yield state
+            above = k == 0 and state.multiplier > search.record.least + LOWER
+            if above and problem.n_interfaces > self.vertices_up_to and _right_angled(problem):
+                return
+
+    def _starts(self, search: Search) -> Iterator[Start]:
+        yield partial(_from_gravity, search.gravity, search.problem.unit_multiplier)
+        if search.problem.n_interfaces > self.vertices_up_to:
+            yield from self.committed.starts(search)
+        for k in range(2 * search.problem.n_interfaces):
+            yield partial(self._from_mixture, search, k)
+
+    def _from_mixture(self, search: Search, k: int) -> Beginning | None:
+        """The path from the k-th mixture of a random vertex of statics, gravity's and central forces.
+
+        Returns:
+            None where one of them is missing.
+        """
+        interfaces = search.problem.n_interfaces
+        mixtures = self.vertex if interfaces <= self.vertices_up_to else self.mixtures
+        share, own, middle = mixtures[k % len(mixtures)]
+        own_forces = search.gravity.forces if own else None
+        central = search.central_forces if middle else None
+        if (own and own_forces is None) or (middle and central is None):
+            return None
+        weights = search.generator.exponential(size=(interfaces, 2)) ** self.heavy
+        search.budget.spent.programmes += 1
+        vertex = search.static.lightest(weights)
+        if vertex is None:
+            return None
+        forces = share * vertex
+        if own_forces is not None:
+            forces += own * own_forces
+        if central is not None:
+            forces += middle * central
+        return _from_forces(search.problem, forces, 0.0, PATHS.ratios[k % len(PATHS.ratios)])
+
+
+@dataclass(frozen=True)
+class SafeForces:
+    """The path from forces somewhat before the end of the associated one, where no state is known yet.
+
+    Attributes:
+        least, most: interfaces between which it is tried at this place of the order.
+        left: where the associated path is left; full steps meet the equilibrium at a gap of half a percent or so.
+    """
+
+    name: ClassVar[str] = "springs from safe forces"
+    least: int = 0
+    most: float = np.inf
+    left: PathSettings = field(default_factory=lambda: PathSettings(dilatancy=1.0, gap=0.1, residual=1e-7))
+
+    def applies(self, problem: Problem) -> bool:
+        """On joints that slide without lifting, as springs do."""
+        return self.least <= problem.n_interfaces <= self.most and not problem.dilates
+
+    def states(self, search: Search) -> Iterator[CollapseState]:
+        """One state at most; none where statics allows any load."""
+        if not (search.record.known or search.associated.outcome == "unbounded"):
+            yield from (state for _, state in ends(search, iter([partial(self._start, search)])))
+
+    def _start(self, search: Search) -> Beginning | None:
+        """From the wall with smooth unloaded joints, if it has any."""
+        guide = smoothed(search.problem, 0.0) or search.problem
+        safe = follow_path(guide, search.newton, start_point(guide), self.left)
+        search.stepped(safe.iterations)
+        if not safe.converged:
+            return None
+        forces = guide.forces_of_slacks(safe.point.slack)
+        return _from_forces(search.problem, forces, safe.point.multiplier, PATHS.ratios[0])
+
+
+@dataclass(frozen=True)
+class CentralForces:
+    """Paths from forces well within yield under the dead load, and gravity's, where nothing else led to a state.
+
+    Attributes:
+        shares: of the least multiplier known between two commits, one path each.
+        gravity_above: interfaces above which gravity's committed histories are tried here, as nowhere else.
+    """
+
+    name: ClassVar[str] = "springs from central forces"
+    shares: tuple[float, ...] = (3e-3, 1e-3)
+    gravity_above: int = 2000
+    committed: CommittedHistories = CommittedHistories()
+
+    def applies(self, problem: Problem) -> bool:
+        """On joints that slide without lifting, as springs do."""
+        return not problem.dilates
+
+    def states(self, search: Search) -> Iterator[CollapseState]:
+        """One state a path that ends; none where statics allows any load."""
+        if not (search.record.known or search.associated.outcome == "unbounded"):
+            yield from (state for _, state in ends(search, self._starts(search)))
+
+    def _starts(self, search: Search) -> Iterator[Start]:
+        first, *others = PATHS.ratios
+        yield partial(_from_central_forces, search, first)
+        if search.problem.n_interfaces > self.gravity_above:
+            yield from self.committed.starts(search)
+        for share in self.shares:
+            yield partial(_from_central_forces, search, first, share)
+        for ratio in others:
+            yield partial(_from_central_forces, search, ratio)
+
+
+def ends(search: Search, starts: Iterator[Start]) -> Iterator[tuple[int, CollapseState]]:
+    """The number of each start whose path ends in a collapse state, and the state, while there are kinks left."""
+    for k, start in enumerate(starts):
+        if not search.budget.kinks_left(search.record.known):
+            return
+        state = None
+        with suppress(SingularTangent):
+            beginning = start()
+            state = None if beginning is None else _collapse_state(search, beginning)
+        if state is not None:
+            yield k, state
+
+
+def _right_angled(problem: Problem) -> bool:
+    """Whether all joints are parallel or at right angles to each other."""
+    assembly = problem.assembly
+    first = assembly.tangent[0]
+    off = np.minimum(abs(assembly.tangent @ first), abs(assembly.normal @ first))
+    return bool(off.max() < PATHS.right)
+
+
+def _from_gravity(gravity: Gravity, scale: float, interval: float = np.inf) -> Beginning | None:
+    """The path from the forces that gravity causes in a wall without self-stress; None if there are none.
+
+    Args:
+        gravity: what the dead load does; scale: a multiplier of the order of collapse.
+        interval: multiplier between two commits of the history.
+    """
+    if not gravity.equilibrium.found:
+        return None
+    model, factor = gravity.model, gravity.factor
+    first = first_step(model, factor, gravity.equilibrium, scale)
+    if not first.found:
+        return None
+    if interval == np.inf:
+        for further in doubled(model, factor, first):
+            first = further
+    tracer = Tracer.from_rest(model, factor, first, PATHS.certificate)
+    return Beginning(tracer, JUMPS, interval)
+
+
+def _scale(search: Search) -> float:
+    """The least multiplier known, or else the greatest that there may be."""
+    return min(search.record.least, search.associated.greatest) * search.problem.unit_multiplier
+
+
+def _from_central_forces(search: Search, ratio: float, share: float = np.inf) -> Beginning | None:
+    """The path from forces well within yield under the dead load, with commits as from gravity if any."""
+    forces = search.central_forces
+    if forces is None:
+        return None
+    beginning = _from_forces(search.problem, forces, 0.0, ratio)
+    return beginning if share == np.inf else replace(beginning, jumps=JUMPS, interval=share * _scale(search))
+
+
+def _from_forces(problem: Problem, forces: FloatArray, multiplier: float, ratio: float) -> Beginning:
+    """The path from scaled forces (m, 3) in equilibrium with a scaled multiplier. Raises SingularTangent."""
+    model = build_model(problem.assembly, GapSettings(stiffness_ratio=ratio))
+    start = multiplier * problem.unit_multiplier, problem.to_forces(forces)
+    return Beginning(preloaded(model, make_factor(model), *start, PATHS.certificate))
+
+
+def _collapse_state(search: Search, beginning: Beginning) -> CollapseState | None:
+    """The collapse state at the end of a path; None also below a multiplier of zero."""
+    problem, record, model = search.problem, PathRecord(), beginning.tracer.model
+    most = PATHS.most_kinks * model.n_points
+    try:
+        way = follow(beginning.tracer, record, most, beginning.interval, jumps=beginning.jumps)
+    finally:
+        search.budget.spent.kinks += record.events
+    last = way.tracer
+    found = finish(model, last.present(), last.kept) if way.end in (PathEnd.PLATEAU, PathEnd.BREAKDOWN) else None
+    if found is None or found.multiplier < 0.0:
+        return None
+    velocities = problem.from_mechanism(found.mechanism)
+    velocities *= problem.live_work / float(problem.live @ velocities)
+    moving = moving_contacts(problem.rates_of_velocities(velocities, False))
+    return CollapseState(
+        found.forces / problem.unit_force, found.multiplier / problem.unit_multiplier, velocities, moving
+    )
