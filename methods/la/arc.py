@@ -21,26 +21,37 @@ from methods.la.newton_step import Direction, NewtonStep, Point
 from methods.la.problem import Problem
 from methods.numerics.failures import NumericalFailure, SingularMatrix
 
-STRIDE = 4.0
-"""Largest relative change of a slack or rate that a step along the tangent aims at."""
-SHORTEST = 2.0**-8
-"""Stride below which it is not halved again."""
-FAR = 4.0
-"""Largest logarithm of y g / (tau w) at which a step goes along the path; beyond, it only leads back to it."""
-ASTRAY = 0.5
-"""Root mean square of the relative changes back to the path beyond which a step only leads back."""
-PATIENCE = 8
-"""Steps back in turn after which the path is taken up again with a shorter stride."""
-SHORT = 0.9
-"""Part of the way to the boundary that a step goes."""
-GONE = 10.0
-"""Relative gap above which the path has turned away for good."""
-TRIAL = 200
-"""Steps after which a path must have left its beginning; many that have not are closed."""
-LEFT = 0.3
-"""Root mean square of the changes of the logarithms of slacks and rates that this asks for."""
-RESIDUAL = 1e-3
-"""Scaled equilibrium and compatibility residuals at which a stretch of the path may stop."""
+
+@dataclass(frozen=True)
+class Stepping:
+    """How the path is followed.
+
+    Attributes:
+        stride, shortest: largest relative change of a slack or rate that a step along the tangent aims at, and that
+            below which it is not halved again.
+        far: largest logarithm of y g / (tau w) at which a step goes along the path; beyond, it only leads back to it.
+        astray: root mean square of the relative changes back to the path beyond which a step only leads back.
+        patience: steps back in turn after which the path is taken up again with a shorter stride.
+        to_boundary: part of the way to the boundary that a step goes.
+        gone: relative gap above which the path has turned away for good.
+        trial, left: steps after which a path must have left its beginning, and the root mean square of the changes of
+            the logarithms of slacks and rates that this asks for; many that have not are closed.
+        residual: scaled equilibrium and compatibility residuals at which a stretch of the path may stop.
+    """
+
+    stride: float = 4.0
+    shortest: float = 2.0**-8
+    far: float = 4.0
+    astray: float = 0.5
+    patience: int = 8
+    to_boundary: float = 0.9
+    gone: float = 10.0
+    trial: int = 200
+    left: float = 0.3
+    residual: float = 1e-3
+
+
+STEPPING = Stepping()
 
 
 @dataclass(frozen=True)
@@ -70,12 +81,20 @@ class ArcPath:
         newton: its Newton matrix.
         start: a point with positive slacks and rates.
         spread: how many times greater or less than the mean a weight may be; beyond, the path passes beside the start.
+        stepping: how it is followed.
     """
 
-    def __init__(self, problem: Problem, newton: NewtonMatrix, start: Point, spread: float = np.inf) -> None:
-        self._problem, self._newton = problem, newton
+    def __init__(
+        self,
+        problem: Problem,
+        newton: NewtonMatrix,
+        start: Point,
+        spread: float = np.inf,
+        stepping: Stepping = STEPPING,
+    ) -> None:
+        self._problem, self._newton, self._stepping = problem, newton, stepping
         self._tight = close_tight(problem)
-        self._stride = STRIDE
+        self._stride = self._stepping.stride
         product = np.where(self._tight, 1.0, start.slack * start.rates)
         self._weights = np.clip(product / product[~self._tight].mean(), 1.0 / spread, spread)
         self._here = _Place(start, float((product / self._weights)[~self._tight].mean()))
@@ -105,9 +124,13 @@ class ArcPath:
             history.append(point.multiplier)
             present = float((point.slack * point.rates).sum()) / self._problem.live_work
             statics, kinematics = float(abs(step.statics).max()), float(abs(step.kinematics).max())
-            converged = present <= gap and max(statics, kinematics) <= RESIDUAL
+            converged = present <= gap and max(statics, kinematics) <= self._stepping.residual
             result = PathResult(point, converged, iteration, present, statics, kinematics, history)
-            if converged or present > GONE or (self._steps == TRIAL and not self._has_left()):
+            if (
+                converged
+                or present > self._stepping.gone
+                or (self._steps == self._stepping.trial and not self._has_left())
+            ):
                 break
             self._go_on(step)
             self._steps += 1
@@ -120,11 +143,11 @@ class ArcPath:
         way = self._way(step)
         if not (way.on_path or self._again):
             self._astray += 1
-            if self._astray <= PATIENCE or not self._take_up_again():
+            if self._astray <= self._stepping.patience or not self._take_up_again():
                 self._advance(step, way, 0.0)
             return
         if not self._again and self._astray <= 1:
-            self._stride = min(STRIDE, 2.0 * self._stride)
+            self._stride = min(self._stepping.stride, 2.0 * self._stride)
         if self._begun is None:
             self._begun = self._here.point, step.orientation()
         self._good, self._astray, self._again = self._here, 0, False
@@ -138,11 +161,11 @@ class ArcPath:
         before, now = self._begun[0], self._here.point
         pairs = ((before.slack, now.slack), (before.rates, now.rates))
         change = [np.log(new[~self._tight] / old[~self._tight]) for old, new in pairs]
-        return float(np.sqrt((np.concatenate(change) ** 2).mean())) > LEFT
+        return float(np.sqrt((np.concatenate(change) ** 2).mean())) > self._stepping.left
 
     def _take_up_again(self) -> bool:
         """Return to the last good point with half the stride, if there is one and the stride can be halved."""
-        if self._good is None or self._stride <= SHORTEST:
+        if self._good is None or self._stride <= self._stepping.shortest:
             return False
         self._here, self._stride = self._good, 0.5 * self._stride
         self._astray, self._again = 0, True
@@ -150,7 +173,7 @@ class ArcPath:
 
     def _advance(self, step: NewtonStep, way: _Way, stride: float) -> None:
         change, growth = way.back.plus(way.growth + stride, way.tangent), way.growth + stride
-        length = min(step_lengths(self._here.point, change, self._tight, SHORT, 0.0))
+        length = min(step_lengths(self._here.point, change, self._tight, self._stepping.to_boundary, 0.0))
         self._here = _Place(step.advance(change, length, length), self._here.tau * float(np.exp(length * growth)))
 
     def _way(self, step: NewtonStep) -> _Way:
@@ -163,7 +186,7 @@ class ArcPath:
         growth = -float((along * across).mean()) / (square + 1.0)
         astray = float(np.sqrt(((across + growth * along) ** 2).mean()))
         product = np.where(self._tight, target, point.slack * point.rates)
-        on_path = astray <= ASTRAY and float(abs(np.log(product / target)).max()) <= FAR
+        on_path = astray <= self._stepping.astray and float(abs(np.log(product / target)).max()) <= self._stepping.far
         return _Way(back, tangent, growth, float(abs(along).max()), on_path)
 
 

@@ -19,12 +19,23 @@ from methods.numerics.linear_programme import INFINITY, Programme
 from methods.numerics.statics import rows_of_blocks, shear_limits, within_yield
 from methods.numerics.vertex import Vertex
 
-SIMPLEX_INTERFACES = 400
-"""Interfaces above which the interior point with crossover is quicker than the simplex method."""
-COST = 1e4
-"""Cost of the multiplier: speeds of the dual mechanism are of this order, far above what HiGHS rounds off."""
-UNEVEN = 1e3
-"""Ratio of loads of two blocks from which forces and equilibrium are measured in units of their own."""
+
+@dataclass(frozen=True)
+class ExactVertices:
+    """How programmes over forces are put to HiGHS.
+
+    Attributes:
+        simplex_up_to: interfaces above which the interior point with crossover is quicker than the simplex method.
+        cost: of the multiplier: speeds of the dual mechanism are of this order, far above what HiGHS rounds off.
+        uneven: ratio of loads of two blocks from which forces and equilibrium are measured in units of their own.
+    """
+
+    simplex_up_to: int = 400
+    cost: float = 1e4
+    uneven: float = 1e3
+
+
+VERTICES = ExactVertices()
 
 
 @dataclass(frozen=True)
@@ -83,7 +94,7 @@ class ForceProgramme:
         lower = np.tile([0.0, 0.0, -INFINITY], m)
         upper = np.where(np.column_stack([tight[:, :2], np.zeros(m, dtype=bool)]).ravel(), 0.0, INFINITY)
         limits = (np.zeros(2 * m), np.where(tight[:, 2:].ravel(), 0.0, INFINITY))
-        cost = COST * self.problem.live_work * (-1.0 if greatest else 1.0)
+        cost = VERTICES.cost * self.problem.live_work * (-1.0 if greatest else 1.0)
         solved = self._solved((lower, upper), limits, cost, -INFINITY if greatest else 0.0, solver)
         if isinstance(solved, str):
             return solved
@@ -117,7 +128,7 @@ class ForceProgramme:
             matrix = self._with_limits(self.problem.law(False).dilatancy)
         column = (np.column_stack([lower, least]).ravel(), np.column_stack([np.full((m, 2), INFINITY), most]).ravel())
         within = (limits, np.full(2 * m, INFINITY))
-        solved = self._solved(column, within, -COST * self.problem.live_work, -INFINITY, "simplex", matrix)
+        solved = self._solved(column, within, -VERTICES.cost * self.problem.live_work, -INFINITY, "simplex", matrix)
         return solved if isinstance(solved, str) else float(solved[0].value[-1])
 
     def _solved(
@@ -140,7 +151,7 @@ class ForceProgramme:
             (np.append(-self._dead, limits[0]), np.append(-self._dead, limits[1])),
         )
         programme.highs.setOptionValue("small_matrix_value", 1e-12)
-        automatic = "simplex" if m <= SIMPLEX_INTERFACES else "ipm"
+        automatic = "simplex" if m <= VERTICES.simplex_up_to else "ipm"
         programme.highs.setOptionValue("solver", automatic if solver == "auto" else solver)
         status, _, _ = programme.run()
         if status != "optimal":
@@ -179,7 +190,7 @@ def units_of(problem: Problem) -> Units | None:
     if not np.any(size > 0.0):
         return None
     size = np.maximum(size, float(size[size > 0.0].min()))
-    if size.max() < UNEVEN * size.min():
+    if size.max() < VERTICES.uneven * size.min():
         return None
     found = ForceProgramme(replace(problem, live=-problem.dead)).extreme(greatest=False)
     assembly = problem.assembly

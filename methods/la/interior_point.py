@@ -20,12 +20,32 @@ from methods.la.newton_step import Direction, NewtonStep, Point
 from methods.la.problem import Problem
 from methods.numerics.failures import NumericalFailure, SingularMatrix
 
-MIDDLE = 0.995
-"""Part of the way to the boundary that a step goes."""
-CORRECTORS = 3
-"""Corrections of a step for centrality, each one more solution with the factors of the step."""
-AHEAD = 0.3
-"""How much longer a step a correction aims at."""
+
+@dataclass(frozen=True)
+class Centring:
+    """How a step is made longer and kept central.
+
+    Attributes:
+        to_boundary: part of the way to the boundary that a step goes.
+        correctors: corrections for centrality, each one more solution with the factors of the step.
+        ahead, worth: how much longer a step a correction aims at, and the share of that which it must gain.
+        long, blocked: length from which a step needs no correction, and below which one that mostly centres is tried.
+        spread: times greater or less than the mean that a correction leaves a product, and clips its targets at.
+        least: least share of the mean product that a step aims at; halved: that of one that mostly centres.
+    """
+
+    to_boundary: float = 0.995
+    correctors: int = 3
+    ahead: float = 0.3
+    worth: float = 0.1
+    long: float = 0.9
+    blocked: float = 0.1
+    spread: float = 10.0
+    least: float = 1e-6
+    halved: float = 0.5
+
+
+CENTRING = Centring()
 
 
 @dataclass(frozen=True)
@@ -151,17 +171,17 @@ def _centred_step(
     primal, dual = step_lengths(point, predictor, tight, 1.0, dilatancy)
     ahead = (point.slack + primal * predictor.slack) * (point.rates + dual * predictor.rates)
     mean_ahead = float(np.where(tight, 0.0, ahead).sum()) / pairs
-    centring = float(np.clip((mean_ahead / mean) ** 3, 1e-6, 1.0))
+    centring = float(np.clip((mean_ahead / mean) ** 3, CENTRING.least, 1.0))
     second_order = predictor.slack * predictor.rates * min(primal, dual)
-    target = np.clip(centring * mean - second_order, -10.0 * mean, 10.0 * mean)
+    target = np.clip(centring * mean - second_order, -CENTRING.spread * mean, CENTRING.spread * mean)
     corrector, target, lengths = _longer_step(step, point, target, centring * mean, tight, dilatancy)
-    if min(lengths) < 0.1:
-        safe = np.clip(0.5 * mean, 0.1 * product, None)
+    if min(lengths) < CENTRING.blocked:
+        safe = np.clip(CENTRING.halved * mean, product / CENTRING.spread, None)
         centred = step.direction(safe)
-        if min(step_lengths(point, centred, tight, MIDDLE, dilatancy)) > min(lengths):
+        if min(step_lengths(point, centred, tight, CENTRING.to_boundary, dilatancy)) > min(lengths):
             corrector, target = centred, safe
     corrector = step.refined(corrector, target)
-    return step.advance(corrector, *step_lengths(point, corrector, tight, MIDDLE, dilatancy))
+    return step.advance(corrector, *step_lengths(point, corrector, tight, CENTRING.to_boundary, dilatancy))
 
 
 def _longer_step(
@@ -172,16 +192,18 @@ def _longer_step(
     Correctors bring the products of a longer step back to the middle (Gondzio 1996), while they lengthen it.
     """
     change = step.direction(target)
-    primal, dual = step_lengths(point, change, tight, MIDDLE, dilatancy)
-    for _ in range(CORRECTORS):
-        if min(primal, dual) > 0.9:
+    primal, dual = step_lengths(point, change, tight, CENTRING.to_boundary, dilatancy)
+    for _ in range(CENTRING.correctors):
+        if min(primal, dual) > CENTRING.long:
             break
-        reach = (min(1.0, primal + AHEAD), min(1.0, dual + AHEAD))
+        reach = (min(1.0, primal + CENTRING.ahead), min(1.0, dual + CENTRING.ahead))
         product = (point.slack + reach[0] * change.slack) * (point.rates + reach[1] * change.rates)
-        shift = np.clip(np.clip(product, 0.1 * mean, 10.0 * mean) - product, -10.0 * mean, None)
+        shift = np.clip(
+            np.clip(product, mean / CENTRING.spread, CENTRING.spread * mean) - product, -CENTRING.spread * mean, None
+        )
         other = step.direction(target + shift)
-        lengths = step_lengths(point, other, tight, MIDDLE, dilatancy)
-        if sum(lengths) < primal + dual + 0.1 * AHEAD:
+        lengths = step_lengths(point, other, tight, CENTRING.to_boundary, dilatancy)
+        if sum(lengths) < primal + dual + CENTRING.worth * CENTRING.ahead:
             break
         change, target, (primal, dual) = other, target + shift, lengths
     return change, target, (primal, dual)

@@ -9,7 +9,7 @@ the moving contacts.
 
 from __future__ import annotations
 
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -21,16 +21,32 @@ from methods.la.newton_step import NewtonStep, Point
 from methods.la.problem import Problem
 from methods.numerics.failures import NumericalFailure
 
-LEAST_BOUND = 1e-4
-"""Least friction bound, in mean block weights, where a joint carries nothing."""
-SHORTEST = 1e-4
-"""Length of a step below which the path is stuck."""
-FALL = 0.8
-"""Factor on y o g in a step that is not blocked."""
-START_GAP = 1e-2
-"""Relative gap of the associated path at which the bounds take over."""
-END_GAP = 1e-6
-"""Relative gap at which y o g falls no further."""
+
+@dataclass(frozen=True)
+class Lagging:
+    """How the bounds lag behind.
+
+    Attributes:
+        least_bound: least friction bound, in mean block weights, where a joint carries nothing.
+        shortest: length of a step below which the path is stuck.
+        free, fall: length of a step from which it counts as not blocked, and factor on y o g in one.
+        start_gap, end_gap: relative gaps of the associated path at which the bounds take over, and at which y o g falls
+            no further.
+        to_boundary: part of the way to the boundary that a step goes.
+        clipped: times the mean product that the second-order term may be.
+    """
+
+    least_bound: float = 1e-4
+    shortest: float = 1e-4
+    free: float = 0.3
+    fall: float = 0.8
+    start_gap: float = 1e-2
+    end_gap: float = 1e-6
+    to_boundary: float = 0.95
+    clipped: float = 5.0
+
+
+LAGGING = Lagging()
 SHARP = PathSettings(dilatancy=1.0, gap=1e-17, residual=1e-3, max_iterations=150, patience=5)
 """Rates of contacts that do not move must vanish against forces of any size, hence the small gap."""
 
@@ -53,12 +69,12 @@ def lagged_mechanism(problem: Problem, newton: NewtonMatrix, steps: int, follow:
     Raises:
         SingularMatrix: a Newton matrix is singular to rounding.
     """
-    settings = PathSettings(dilatancy=1.0, gap=START_GAP, residual=1e-3)
+    settings = PathSettings(dilatancy=1.0, gap=LAGGING.start_gap, residual=1e-3)
     start = follow_path(problem, newton, start_point(problem), settings)
     point, bound = start.point, _strength(problem, start.point)
     tight = close_tight(problem)
     mean = float((point.slack * point.rates).mean())
-    least = END_GAP * problem.live_work / point.slack.size
+    least = LAGGING.end_gap * problem.live_work / point.slack.size
     taken = 0
     for _ in range(steps):
         held = with_bounds(problem, bound)
@@ -70,17 +86,17 @@ def lagged_mechanism(problem: Problem, newton: NewtonMatrix, steps: int, follow:
         wanted = bound + follow * (_strength(problem, point) - bound)
         point, length = _step(step, point, wanted - bound, mean)
         bound = 0.5 * point.slack[:, 2:].sum(axis=1)
-        if length < SHORTEST:
+        if length < LAGGING.shortest:
             break
-        if length > 0.3:
-            mean = max(FALL * mean, least)
+        if length > LAGGING.free:
+            mean = max(LAGGING.fall * mean, least)
     held = with_bounds(problem, bound)
     sharp = follow_path(held, newton, start_point(held), SHARP)
     return sharp, start.iterations + taken + sharp.iterations
 
 
 def _strength(problem: Problem, point: Point) -> FloatArray:
-    return np.asarray(np.maximum(problem.friction * point.slack[:, :2].sum(axis=1), LEAST_BOUND))
+    return np.asarray(np.maximum(problem.friction * point.slack[:, :2].sum(axis=1), LAGGING.least_bound))
 
 
 def _step(step: NewtonStep, point: Point, shift: FloatArray, mean: float) -> tuple[Point, float]:
@@ -92,8 +108,8 @@ def _step(step: NewtonStep, point: Point, shift: FloatArray, mean: float) -> tup
     lengths = step_lengths(point, replace(predictor, slack=predictor.slack + grown), step.tight, 1.0, 1.0)
     with np.errstate(over="ignore"):  # A product without bound is clipped below like any large one.
         second = (predictor.slack + grown) * predictor.rates * min(lengths)
-    target = target - np.clip(second, -5.0 * mean, 5.0 * mean)
+    target = target - np.clip(second, -LAGGING.clipped * mean, LAGGING.clipped * mean)
     corrector = step.refined(step.direction(target), target)
     corrector = replace(corrector, slack=corrector.slack + grown)
-    primal, dual = step_lengths(point, corrector, step.tight, 0.95, 1.0)
+    primal, dual = step_lengths(point, corrector, step.tight, LAGGING.to_boundary, 1.0)
     return step.advance(corrector, primal, dual), min(primal, dual)

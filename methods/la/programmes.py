@@ -16,10 +16,22 @@ from harness.model.joint_law import block_diagonal
 from methods.la.problem import Problem
 from methods.numerics.linear_programme import INFINITY, Programme
 
-SIMPLEX_INTERFACES = 800
-"""Interfaces up to which the simplex method is the quicker way to a vertex of a static programme."""
-DEVEX_INTERFACES = 200
-"""Interfaces above which Devex pricing finds the vertex of a static programme sooner than steepest edge."""
+
+@dataclass(frozen=True)
+class StaticSolver:
+    """How HiGHS solves static programmes.
+
+    Attributes:
+        simplex_up_to: interfaces up to which the simplex method is the quicker way to a vertex; above, its interior
+            point with crossover.
+        devex_above: interfaces above which Devex pricing finds the vertex sooner than steepest edge.
+    """
+
+    simplex_up_to: int = 800
+    devex_above: int = 200
+
+
+STATIC = StaticSolver()
 
 
 @dataclass(frozen=True)
@@ -45,7 +57,7 @@ class StaticProgramme:
     Columns are (n1, n2, y3) an interface and lambda, with s = y3 - mu (n1 + n2) and y4 = 2 mu (n1 + n2) - y3.
     """
 
-    def __init__(self, problem: Problem, solver: str = "simplex") -> None:
+    def __init__(self, problem: Problem) -> None:
         self.problem = problem
         m, mu = problem.n_interfaces, problem.friction
         base = 3 * np.arange(m)
@@ -67,8 +79,8 @@ class StaticProgramme:
             (np.append(self._free[0], -INFINITY), np.append(self._free[1], INFINITY)),
             (np.append(-problem.dead, np.zeros(m)), np.append(-problem.dead, np.full(m, INFINITY))),
         )
-        self._programme.highs.setOptionValue("solver", solver)
-        if m > DEVEX_INTERFACES:
+        self._programme.highs.setOptionValue("solver", "simplex" if m <= STATIC.simplex_up_to else "ipm")
+        if m > STATIC.devex_above:
             self._programme.highs.setOptionValue("simplex_dual_edge_weight_strategy", 1)
 
     def solve(self, tight: BoolArray | None = None, greatest: bool = False) -> StaticSolution | str:

@@ -28,16 +28,26 @@ from methods.numerics.linear_programme import INFINITY
 
 CLOSE = WINDOWS.closed
 """Relative distance below the least multiplier known within which no other is sought."""
-COMPLEMENTARY = 1e-9
-"""Work of slacks on rates, in mean block weights, that is rounding."""
-AGREES = 1e-7
-"""Difference of two scaled multipliers that linear programmes leave."""
 
 
-LEAVES = 100
-"""Leaves of a tree that does not come to an end, which are bounded to rounding: 15 ms each on 16 interfaces."""
-PER_LEAF = 3
-"""Programmes that a leaf may take to be bounded to rounding."""
+@dataclass(frozen=True)
+class Tree:
+    """What the tree takes for rounding, and how much of one that does not end is proved.
+
+    Attributes:
+        complementary: work of slacks on rates, in mean block weights, that is rounding.
+        agrees: difference of two scaled multipliers that linear programmes leave.
+        leaves: of a tree that does not come to an end, which are bounded to rounding: 15 ms each on 16 interfaces.
+        per_leaf: programmes that a leaf may take for that.
+    """
+
+    complementary: float = 1e-9
+    agrees: float = 1e-7
+    leaves: int = 100
+    per_leaf: int = 3
+
+
+TREE = Tree()
 
 
 @dataclass(frozen=True)
@@ -62,7 +72,7 @@ class Proof:
         return self.lower_bound >= _below(self.state.multiplier)
 
 
-def prove(search: Search, known: CollapseState, most: int, leaves: int = LEAVES) -> Proof:
+def prove(search: Search, known: CollapseState, most: int, leaves: int = TREE.leaves) -> Proof:
     """The least collapse state and the bound that a tree of `most` nodes proves, as far as the budget goes.
 
     A tree that does not come to an end is cut back to its first divisions, so that its bound is computed to rounding
@@ -80,8 +90,8 @@ def prove(search: Search, known: CollapseState, most: int, leaves: int = LEAVES)
     tree.add(nothing, nothing, 0.0)
     while tree.open and len(tree.parts) < most and search.budget.programmes and tree.open[0][0] < tree.limit:
         tree.divide()
-    ended = tree.bound() >= tree.limit and search.budget.programmes >= PER_LEAF * len(tree.leaves())
-    affordable = search.budget.programmes // PER_LEAF
+    ended = tree.bound() >= tree.limit and search.budget.programmes >= TREE.per_leaf * len(tree.leaves())
+    affordable = search.budget.programmes // TREE.per_leaf
     divisions = tree.divisions if ended else min(tree.divisions, max(min(leaves, affordable) - 1, 0))
     bound = min(tree.bound(divisions), tree.limit)
     if not ended:
@@ -184,12 +194,12 @@ class _Tree:
         if mechanism is None:
             return False
         work = np.where(part.tight | part.still, 0.0, slack * mechanism.rates)
-        if work.sum() > COMPLEMENTARY:
+        if work.sum() > TREE.complementary:
             row, column = np.unravel_index(int(work.argmax()), work.shape)
             part.contact = (int(row), int(column))
             return True
         state = search.state_of(mechanism.velocities, mechanism.rates)
-        if state is not None and state.multiplier <= statics.multiplier + AGREES:
+        if state is not None and state.multiplier <= statics.multiplier + TREE.agrees:
             part.bound = np.inf
         if state is not None and state.multiplier < self.known.multiplier:
             self.known = state
@@ -205,7 +215,7 @@ def _bounded_to_rounding(search: Search, parts: list[_Part], limit: float) -> bo
     units = units_of(problem)
     programme = ForceProgramme(problem, units)
     for part in parts:
-        search.budget.spent.programmes += PER_LEAF
+        search.budget.spent.programmes += TREE.per_leaf
         if not _bounded(problem, programme, units, part, limit):
             return False
     return True

@@ -23,7 +23,7 @@ from methods.la.newton_matrix import NewtonMatrix
 from methods.la.newton_step import Point
 from methods.la.path_programmes import EXACTNESS, cheapest_mechanism, exact_state, state_of_mechanism
 from methods.la.problem import Problem
-from methods.la.programmes import SIMPLEX_INTERFACES, KinematicProgramme, StaticProgramme
+from methods.la.programmes import KinematicProgramme, StaticProgramme
 from methods.la.record import LOWER, Record
 from methods.la.standing import standing_forces
 from methods.la.state import CollapseState, moving_contacts, residuals, tight_contacts
@@ -96,7 +96,7 @@ class Search:
     @cached_property
     def static(self) -> StaticProgramme:
         """The programme of the forces that fit a mechanism."""
-        return StaticProgramme(self.problem, "simplex" if self.problem.n_interfaces <= SIMPLEX_INTERFACES else "ipm")
+        return StaticProgramme(self.problem)
 
     @cached_property
     def kinematic(self) -> KinematicProgramme:

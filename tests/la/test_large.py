@@ -10,7 +10,7 @@ from scipy.linalg import block_diag
 
 from harness.model.method import Finding
 from methods.la.adapter import AssociatedLimitAnalysis, LimitAnalysis
-from methods.la.arc import RESIDUAL, ArcPath
+from methods.la.arc import STEPPING, ArcPath, Stepping
 from methods.la.associated import END
 from methods.la.budget import Budget, Limits
 from methods.la.exact import close_tight
@@ -41,17 +41,15 @@ def test_path_by_arc_length_leads_from_its_beginning_to_complementarity() -> Non
     assert end.converged
     assert end.gap <= 1e-6 < middle.gap <= 1e-2
     # What the search asks of a path before it reads a mechanism from it; the state itself is made exact afterwards.
-    assert max(end.statics, end.kinematics) <= RESIDUAL
+    assert max(end.statics, end.kinematics) <= STEPPING.residual
 
 
-def test_path_that_stays_beside_its_beginning_is_given_up(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_path_that_stays_beside_its_beginning_is_given_up() -> None:
     problem = make_problem(running_bond(28, 16, 0.175, 0.65))
     newton = NewtonMatrix(problem)
     start, _ = feasible_pair(problem, newton, 1e-2)
     assert start is not None
-    monkeypatch.setattr("methods.la.arc.TRIAL", 5)
-    monkeypatch.setattr("methods.la.arc.LEFT", 1e3)
-    end = ArcPath(problem, newton, start).follow(1e-6, 500)
+    end = ArcPath(problem, newton, start, stepping=Stepping(trial=5, left=1e3)).follow(1e-6, 500)
     assert not end.converged
     assert end.iterations == 5
 
