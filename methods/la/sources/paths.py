@@ -27,7 +27,7 @@ class SmootherJoints:
     """
 
     name: ClassVar[str] = "smoother unloaded joints"
-    factors: tuple[float, ...] = (0.3, 0.5, 0.0)
+    factors: tuple[float, ...] = (0.3, 0.6, 0.0)
     pool: int = 24
     most: int = 6000
     all_up_to: int = 2000

@@ -1,0 +1,104 @@
+"""One list of sources, one budget, one record: what a search spends and found, and by way of which source."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import pytest
+
+from methods.la.adapter import LimitAnalysis
+from methods.la.budget import Budget, Limits, Sizes
+from methods.la.newton_matrix import NewtonMatrix
+from methods.la.problem import make_problem
+from methods.la.proof import prove
+from methods.la.search import Search
+from methods.la.settings import SearchSettings
+from methods.la.sources import SOURCES, explore
+from methods.la.sources.paths import CentralPath
+from tests.la.bodies import column, running_bond
+
+
+def search_of(wall: Any, **limits: Any) -> Search:
+    problem = make_problem(wall)
+    return Search(problem, NewtonMatrix(problem), budget=Budget(Limits(**limits)))
+
+
+def test_result_tells_which_source_found_the_least_state_and_what_it_took() -> None:
+    answer = LimitAnalysis().solve(running_bond(6, 3, 0.2, 0.85), SearchSettings())
+    sources, improvements = answer.details["sources"], answer.details["improvements"]
+    assert {row["source"] for row in sources} <= {source.name for source in SOURCES}
+    assert improvements[-1]["multiplier"] == pytest.approx(answer.multiplier, rel=1e-9)
+    assert min(row["least"] for row in sources if row["least"] is not None) == pytest.approx(answer.multiplier)
+    for counted in ("newton_steps", "kinks", "programmes"):
+        # The associated programme and the proof are no sources.
+        assert 0 < sum(row[counted] for row in sources) <= answer.details[counted]
+        assert [row[counted] for row in improvements] == sorted(row[counted] for row in improvements)
+
+
+def test_answer_is_not_above_what_one_source_alone_leads_to() -> None:
+    wall = running_bond(6, 3, 0.2, 1.0)
+    whole = LimitAnalysis().solve(wall, SearchSettings())
+    for source in SOURCES:
+        search = search_of(wall, kinks=200, ladder=(0.75,), mechanisms=5)
+        explore(search, [source])
+        assert whole.multiplier is not None
+        assert search.problem.to_multiplier(search.record.least) >= whole.multiplier - 1e-9
+
+
+def test_descents_end_where_the_programmes_are_spent() -> None:
+    search = search_of(running_bond(10, 5, 0.175, 0.65), failures=1000, draws=1000, programmes=20)
+    explore(search, [CentralPath()])
+    # One draw is a mechanism and the forces that fit it; the one that meets the limit is finished.
+    assert 20 <= search.budget.spent.programmes <= 21
+    assert search.record.known
+
+
+def test_proof_draws_from_the_budget_and_ends_with_what_it_has() -> None:
+    wall = column([0.5, 0.4, 0.6], [0.3, 0.5, 0.2], 0.55)
+    bounds = []
+    for programmes in (0, 10, 30, 100, 1000):
+        search = search_of(wall, programmes=programmes)
+        known = search.interior()
+        assert known is not None
+        before = search.budget.spent.programmes
+        proof = prove(search, known, 1000)
+        # Four programmes a node at most, and three a leaf, beyond the limit only for what was begun.
+        assert search.budget.spent.programmes <= max(before, programmes) + 8
+        bounds.append(proof.lower_bound)
+        assert proof.lower_bound <= proof.state.multiplier
+    assert bounds == sorted(bounds)
+    assert bounds[0] == 0.0
+    assert proof.complete
+
+
+def test_tree_that_does_not_end_proves_what_fewer_leaves_do() -> None:
+    wall = running_bond(2, 2, 0.2, 0.65)
+    search = search_of(wall)
+    known = search.interior()
+    assert known is not None
+    few, many = (prove(search, known, 400, leaves) for leaves in (3, 60))
+    assert not many.complete
+    assert len(few.leaves) <= 3
+    assert len(many.leaves) <= 60
+    assert few.lower_bound <= many.lower_bound <= known.multiplier
+
+
+@pytest.mark.parametrize("routine", ["methods.la.state.exact_forces", "methods.la.search.follow_path"])
+def test_fault_in_a_routine_is_not_taken_for_a_failure_of_numerics(
+    routine: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def broken(*_: Any, **__: Any) -> Any:
+        raise NotImplementedError
+
+    monkeypatch.setattr(routine, broken)
+    with pytest.raises(NotImplementedError):
+        LimitAnalysis().solve(running_bond(6, 3, 0.2, 0.65), SearchSettings(effort="quick"))
+
+
+def test_larger_walls_are_given_no_more_draws() -> None:
+    walls = [make_problem(running_bond(courses, 5, 0.175, 0.65)) for courses in (4, 10, 14, 40)]
+    for effort in ("quick", "normal"):
+        limits = [Sizes().limits(effort, problem) for problem in walls]
+        for counted in ("starts", "descents", "mechanisms", "nodes"):
+            counts = [getattr(limit, counted) for limit in limits]
+            assert counts == sorted(counts, reverse=True)
