@@ -44,10 +44,15 @@ def translated(assembly: Assembly) -> Assembly:
     return _mapped(assembly, np.eye(2), assembly.length_scale * np.array([7.3, -4.1]), 1.0, False)
 
 
+def turned(assembly: Assembly, angle: float) -> Assembly:
+    """The whole problem, loads included, turned by an angle [rad]."""
+    c, s = np.cos(angle), np.sin(angle)
+    return _mapped(assembly, np.array([[c, -s], [s, c]]), np.zeros(2), 1.0, False)
+
+
 def rotated(assembly: Assembly) -> Assembly:
     """The whole problem, loads included, turned by 0.7 rad."""
-    c, s = np.cos(0.7), np.sin(0.7)
-    return _mapped(assembly, np.array([[c, -s], [s, c]]), np.zeros(2), 1.0, False)
+    return turned(assembly, 0.7)
 
 
 def scaled(assembly: Assembly) -> Assembly:

@@ -5,10 +5,11 @@ from __future__ import annotations
 import json
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 from harness.engine.judge import answered
-from harness.engine.symmetry import VIEWS
+from harness.engine.symmetry import VIEWS, renumbered, turned
 from harness.model.assembly import Assembly
 from harness.model.build import build
 from harness.model.method import Finding, load_method
@@ -58,6 +59,16 @@ def test_associated_maximum_of_hundreds_of_joints_is_accepted(courses: int, bric
 def test_springs_reach_the_plateau_in_every_view(method: str, name: str, multiplier: float, view: str):
     holds(method, read(name), multiplier)
     holds(method, VIEWS[view](read(name)), multiplier)
+
+
+@pytest.mark.parametrize("seed", range(10))
+@pytest.mark.parametrize(("name", "multiplier"), [("zero-1-8", 0.45), ("dovetail-1-21", 1.0)])
+def test_springs_reach_the_plateau_in_any_numbering_at_any_angle(name: str, multiplier: float, seed: int):
+    # A block without weight and one that balances on an edge: the path hung on the rounding of a pivot that is zero.
+    angle = np.random.default_rng(seed).uniform(0.0, 2.0 * np.pi)
+    wall = renumbered(turned(read(name), angle), seed)
+    holds("fe", wall, multiplier)
+    holds("fe-newton", wall, multiplier)
 
 
 @pytest.mark.parametrize("name", ["leaning-live-01", "press-cube-049", "stack-smooth", "p01-overhang-6-mu010"])
