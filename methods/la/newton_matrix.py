@@ -175,6 +175,8 @@ class Factor:
 
     def determinant_sign(self) -> float:
         """The sign of the determinant of K."""
+        from scipy.sparse.linalg import SuperLU
+
         if isinstance(self._factors, SuperLU):
             negative = np.count_nonzero(self._factors.U.diagonal() < 0.0)
             odd = negative + sum(map(_exchanges, (self._factors.perm_r, self._factors.perm_c)))
