@@ -68,19 +68,19 @@ def build(wall: Wall, name: str = "wall") -> Built:
     fixed = np.array([block.fixed for block in blocks], dtype=bool)
     raise_faults(support_faults(fixed))
     weight = np.array(of_each(lambda block: weight_of(block, wall), blocks))
-    centroids = np.array([geometry.centroid(polygon) for polygon in polygons])
+    centroids = geometry.centroids(polygons)
 
-    size = geometry.typical_size([polygon for polygon, still in zip(polygons, fixed, strict=True) if not still])
-    joints_found = find_joints(wall.interfaces, polygons, names, fixed, size)
+    shapes = geometry.shapes_of(polygons)
+    size = geometry.typical_size(shapes[~fixed])
+    joints_found = find_joints(wall.interfaces, polygons, names, fixed, shapes, size)
     interfaces = joints_found.interfaces
     block_a, block_b, face1, face2 = faces_of(interfaces, index, fixed)
     check_held(names, fixed, block_a, block_b, joints_found)
     trusted = joints_found.trusted
     normal = normals_of(polygons, centroids, block_a, block_b, face1, face2, interfaces, trusted=trusted, size=size)
-    joints = tuple(
-        interface.joint or _inclination(start, end)
-        for interface, start, end in zip(interfaces, face1, face2, strict=True)
-    )
+    across, up = np.abs(face2 - face1).T
+    inclined = np.where(across >= up, "bed", "head").tolist()
+    joints = tuple(interface.joint or name for interface, name in zip(interfaces, inclined, strict=True))
     friction, dilatancy = _law(wall, interfaces, joints, blocks, index)
     end1, end2 = _set_in(interfaces, wall.contact_inset, face1, face2)
     assembly = Assembly(
@@ -129,7 +129,8 @@ def typical_block_size(wall: Wall) -> float:
     Raises:
         InputError: a block is no polygon.
     """
-    return geometry.typical_size(polygons_of([block for block in blocks_of_wall(wall) if not block.fixed]))
+    free = polygons_of([block for block in blocks_of_wall(wall) if not block.fixed])
+    return geometry.typical_size(geometry.shapes_of(free))
 
 
 def blocks_of_wall(wall: Wall) -> list[Block]:
@@ -211,11 +212,6 @@ def weight_of(block: Block, wall: Wall) -> float:
     area -= sum(polygon_area(np.array(hole, dtype=float)) for hole in block.holes)
     per_area = float(unit_weight) * area * thickness_of(block, wall)
     return per_area if wall.units.unit_weight is None else per_area * wall.units.unit_weight_factor
-
-
-def _inclination(start: FloatArray, end: FloatArray) -> str:
-    dx, dy = abs(end - start)
-    return "bed" if dx >= dy else "head"
 
 
 def _law(

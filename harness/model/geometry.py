@@ -26,15 +26,22 @@ def following(vertices: FloatArray) -> FloatArray:
     return np.concatenate([vertices[1:], vertices[:1]])
 
 
-def centroid(polygon: FloatArray) -> FloatArray:
-    """Centroid (2,) of a counter-clockwise polygon (k, 2) [length], computed about its first vertex."""
-    shifted = polygon - polygon[0]
-    x, y = shifted[:, 0], shifted[:, 1]
-    x1, y1 = following(x), following(y)
-    cross = x * y1 - x1 * y
-    doubled_area = cross.sum()
-    local = np.array([((x + x1) * cross).sum(), ((y + y1) * cross).sum()]) / (3.0 * doubled_area)
-    return np.asarray(polygon[0] + local)
+def centroids(polygons: Sequence[FloatArray]) -> FloatArray:
+    """Centroids (n, 2) of counter-clockwise polygons [length], each computed about its first vertex.
+
+    Those of as many vertices are computed together: one by one they take a tenth of the time of a wall's expansion.
+    """
+    sizes = np.array([len(polygon) for polygon in polygons])
+    found = np.empty((len(polygons), 2))
+    for size in np.unique(sizes):
+        same = np.flatnonzero(sizes == size)
+        outlines = np.stack([polygons[k] for k in same])
+        x, y = np.ascontiguousarray((outlines - outlines[:, :1]).transpose(2, 0, 1))
+        x1, y1 = np.roll(x, -1, axis=1), np.roll(y, -1, axis=1)
+        cross = x * y1 - x1 * y
+        moments = np.stack([((x + x1) * cross).sum(axis=1), ((y + y1) * cross).sum(axis=1)], axis=1)
+        found[same] = outlines[:, 0] + moments / (3.0 * cross.sum(axis=1))[:, None]
+    return found
 
 
 def polygon_faults(polygons: Sequence[FloatArray], elements: Sequence[str]) -> list[InputError]:
@@ -67,10 +74,9 @@ def _fault_of(shape: shapely.Polygon, element: str, *, doubled: bool) -> InputEr
     return InputError("its polygon has no area", "Give at least three vertices that are not on one line", element)
 
 
-def typical_size(polygons: Sequence[FloatArray]) -> float:
-    """Median over the polygons of the square root of the area [length]."""
-    areas = shapely.area(shapes_of(polygons))
-    return float(np.median(np.sqrt(areas)))
+def typical_size(shapes: np.ndarray) -> float:
+    """Median over blocks (n,), as `shapes_of` gives them, of the square root of the area [length]."""
+    return float(np.median(np.sqrt(shapely.area(shapes))))
 
 
 def distances(polygons: Sequence[FloatArray], which: IntArray, points: FloatArray) -> FloatArray:
@@ -95,11 +101,8 @@ def _closed(rings: Sequence[FloatArray]) -> np.ndarray:
     return np.asarray(shapely.linearrings(np.concatenate(list(rings))[vertex], indices=owner))
 
 
-def overlaps(
-    polygons: Sequence[FloatArray], names: Sequence[str], fixed: BoolArray, tolerance: float
-) -> list[InputError]:
+def overlaps(shapes: np.ndarray, names: Sequence[str], fixed: BoolArray, tolerance: float) -> list[InputError]:
     """Pairs of blocks that share area beyond what the tolerance [length] explains, the worst first."""
-    shapes = shapes_of(polygons)
     perimeter = shapely.length(shapes)
     # No pair shares more than all blocks together, and their union is found in n log n, where pairs are many.
     if shapely.area(shapes).sum() - shapely.union_all(shapes).area <= tolerance * perimeter.min():
@@ -128,13 +131,13 @@ def _overlap(one: shapely.Geometry, other: shapely.Geometry, names: tuple[str, s
     )
 
 
-def check_overlaps(polygons: Sequence[FloatArray], names: Sequence[str], fixed: BoolArray, tolerance: float) -> None:
+def check_overlaps(shapes: np.ndarray, names: Sequence[str], fixed: BoolArray, tolerance: float) -> None:
     """Refuse blocks that share area beyond what the tolerance explains.
 
     Raises:
         InputError: naming the worst pair, and how many more there are.
     """
-    found = overlaps(polygons, names, fixed, tolerance)
+    found = overlaps(shapes, names, fixed, tolerance)
     if len(found) > 1:
         found[0].remedy += f"; {len(found) - 1} more pair(s) overlap, and `drystone validate` lists all of them"
     raise_faults(found[:1])

@@ -148,13 +148,14 @@ def _lying(
     if fixed.all() or not fixed.any():
         return [], []
     asked = wall.interfaces
-    size = geometry.typical_size([polygon for polygon, still in zip(polygons, fixed, strict=True) if not still])
+    shapes = geometry.shapes_of(polygons)
+    size = geometry.typical_size(shapes[~fixed])
     limits = limits_of(Detection() if isinstance(asked, list) else asked, size)
-    faults = geometry.overlaps(polygons, names, fixed, limits.overlap)
+    faults = geometry.overlaps(shapes, names, fixed, limits.overlap)
     joints = Joints(asked) if isinstance(asked, list) else joints_of(asked, polygons, names, fixed, limits)
     if isinstance(asked, Detection):
         try:
-            check_gap(polygons, names, limits.gap)
+            check_gap(shapes, names, limits.gap)
         except InputError as error:
             faults.append(error)
     index = {name: k for k, name in enumerate(names)}

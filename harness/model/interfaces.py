@@ -53,18 +53,19 @@ def find_joints(
     polygons: tuple[FloatArray, ...],
     names: tuple[str, ...],
     fixed: BoolArray,
+    shapes: np.ndarray,
     size: float,
 ) -> Joints:
-    """The interfaces that were asked for: found, found and given, or given.
+    """The interfaces that were asked for: found, found and given, or given; `shapes` (n,) are those of the polygons.
 
     Raises:
         InputError: blocks overlap, or a gap is allowed that is as wide as a block.
     """
     limits = limits_of(Detection() if isinstance(asked, list) else asked, size)
-    geometry.check_overlaps(polygons, names, fixed, limits.overlap)
+    geometry.check_overlaps(shapes, names, fixed, limits.overlap)
     if isinstance(asked, list):
         return Joints(asked)
-    check_gap(polygons, names, limits.gap)
+    check_gap(shapes, names, limits.gap)
     return joints_of(asked, polygons, names, fixed, limits)
 
 

@@ -158,7 +158,8 @@ def _size_slips(wall: Wall, blocks: list[Block], assembly: Assembly) -> list[str
             shown = f"{metres / 1000.0:.3g} km" if metres > 1000.0 else f"{metres:.3g} m"
             given = f"{extent:g} {wall.units.length}" + ("" if wall.units_declared else ", no units being declared")
             sentences.append(f"the wall is {shown} across ({given}): the unit of length?")
-    sizes = np.array([float(np.max(np.ptp(polygon, axis=0))) for polygon in free])
+    begins = np.cumsum([0, *(len(polygon) for polygon in free[:-1])])
+    sizes = (np.maximum.reduceat(points, begins) - np.minimum.reduceat(points, begins)).max(axis=1)
     small = np.flatnonzero(sizes < SMALL_BLOCK * extent)
     if len(small):
         names = [name for name, still in zip(assembly.block_ids, assembly.fixed, strict=True) if not still]

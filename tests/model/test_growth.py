@@ -8,6 +8,7 @@ import shapely
 
 from harness.model.build import blocks_of_wall, polygons_of
 from harness.model.contacts import edges_of
+from harness.model.geometry import centroids
 from harness.model.wall import Wall
 
 PATTERNS = {
@@ -60,3 +61,25 @@ def test_no_face_beside_another_is_missed(seed: int) -> None:
     wanted = set(zip(i[beside].tolist(), j[beside].tolist(), strict=True))
     assert len(wanted) > 100
     assert wanted <= found
+
+
+@pytest.mark.parametrize("closer", [1e-3, 0.2, 0.5])
+def test_a_closer_look_sees_what_a_look_of_its_own_would(closer: float) -> None:
+    rng = np.random.default_rng(1)
+    low = rng.uniform(0, 8, (60, 2))
+    boxes = [shapely.get_coordinates(shapely.box(*corner, *(corner + 1.0)))[:-1] for corner in low]
+    wide, own = edges_of(boxes), edges_of(boxes)
+    seen = set(zip(*(part.tolist() for part in wide.near(0.6)), strict=True))
+    kept = set(zip(*(part.tolist() for part in wide.near(closer)), strict=True))
+    assert kept == set(zip(*(part.tolist() for part in own.near(closer)), strict=True))
+    assert kept < seen
+
+
+def test_centroids_of_outlines_of_many_sizes_are_those_of_shapely() -> None:
+    rng = np.random.default_rng(2)
+    outlines = []
+    for size in rng.integers(3, 12, 50):
+        angle = np.sort(rng.uniform(0, 2 * np.pi, size))
+        outlines.append(1e3 + np.stack([np.cos(angle), np.sin(angle)], axis=1))
+    by_shapely = [shapely.Polygon(outline - 1e3).centroid.coords[0] for outline in outlines]
+    assert centroids(outlines) == pytest.approx(np.array(by_shapely) + 1e3, abs=1e-9)
