@@ -35,7 +35,7 @@ def centroids(polygons: Sequence[FloatArray]) -> FloatArray:
     found = np.empty((len(polygons), 2))
     for size in np.unique(sizes):
         same = np.flatnonzero(sizes == size)
-        outlines = np.stack([polygons[k] for k in same])
+        outlines = np.stack([polygons[k] for k in same.tolist()])
         x, y = np.ascontiguousarray((outlines - outlines[:, :1]).transpose(2, 0, 1))
         x1, y1 = np.roll(x, -1, axis=1), np.roll(y, -1, axis=1)
         cross = x * y1 - x1 * y
