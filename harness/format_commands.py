@@ -14,13 +14,18 @@ from harness import terminal
 from harness.engine import compare as comparing
 from harness.engine.plan import Limits, Run, check_methods, find_cases
 from harness.engine.store import open_store
+from harness.given_settings import settings_of
 from harness.model import inspection
 from harness.model.errors import InputError
-from harness.model.method import Finding, Status
+from harness.model.load_steps import NAME as LOAD_STEPS
+from harness.model.method import Finding, Status, load_method
 from harness.model.reading import wall_json
 from harness.model.units import LengthUnit
 from harness.model.wall import Wall
 from harness.options import cases_option, catching, say, say_json, store_option, warn
+
+KEPT = 50
+"""Load steps of a series, unless a setting says otherwise: two seconds of a film."""
 
 
 @click.command("import")
@@ -74,14 +79,20 @@ def _write(text: str, output: Path | None) -> None:
 @click.argument("case")
 @click.option("--method", help="Whose answer goes along; the wall alone if absent.")
 @click.option("-o", "--output", type=click.Path(path_type=Path), required=True, help="Its ending says the format.")
+@click.option(
+    "--set", "settings", multiple=True, metavar="NAME=VALUE", help="A setting of the method; may be repeated."
+)
 @store_option
 @cases_option
 @catching
-def export(case: str, method: str | None, output: Path, store: Path, folders: tuple[Path, ...]) -> None:
+def export(
+    case: str, method: str | None, output: Path, settings: tuple[str, ...], store: Path, folders: tuple[Path, ...]
+) -> None:
     """Write CASE (an id, a WALL.json or a drawing) for other programs, with the answer of a method.
 
     \b
-    .vtu, .pvd   ParaView: blocks, joints, velocities, forces, states; a series in which the mechanism grows
+    .vtu         ParaView: blocks, joints, velocities, forces, states
+    .pvd         a series of these: the collapse of de-tilt, the load steps of fe, or a mechanism that grows
     .dxf, .svg   the wall and the mechanism, in layers
     .geojson     blocks and joints with their numbers
     .csv         a row a vertex
@@ -91,14 +102,13 @@ def export(case: str, method: str | None, output: Path, store: Path, folders: tu
     from harness.formats.exporting import writer_of
 
     write = writer_of(output)
-    if method is not None:
-        check_methods((method,))
+    chosen = {} if method is None else _settings(method, settings, output)
     (found,) = find_cases([case], None, folders)
     warn(found)
     result = None
     if method is not None:
         with open_store(store) as opened, terminal.progress(1, quiet=True) as told:
-            (result,) = comparing.execute([Run(found, method, {}, Limits())], opened, 1, told=told)
+            (result,) = comparing.execute([Run(found, method, chosen, Limits())], opened, 1, told=told)
         if result.status is not Status.OK or result.finding is Finding.NONE:
             raise InputError(f"{result.method} has no answer to write: {result.sentence}", element=found.id)
         say(f"drystone: {found.id}: {result.sentence}", err=True)
@@ -107,6 +117,15 @@ def export(case: str, method: str | None, output: Path, store: Path, folders: tu
     except ImportError as error:
         raise InputError(f"the package {error.name} is not installed", f"pip install {error.name}") from None
     say(str(output))
+
+
+def _settings(method: str, given: tuple[str, ...], output: Path) -> dict[str, Any]:
+    """Settings of the method that answers; for a series with those that make it keep one, if it can."""
+    check_methods((method,))
+    chosen = settings_of(method, given)
+    if output.suffix.lower() == ".pvd" and LOAD_STEPS in load_method(method).Settings.model_fields:
+        return {LOAD_STEPS: KEPT} | chosen
+    return chosen
 
 
 class Kinds(click.Group):

@@ -8,129 +8,14 @@ import json
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
-from xml.sax.saxutils import quoteattr
 
 import numpy as np
 
-from harness.model.assembly import Assembly, FloatArray
+from harness.formats.paraview import moved, write_pvd, write_vtu
 from harness.model.build import Built
-from harness.model.displaced import carried, released
 from harness.model.errors import InputError, did_you_mean
 from harness.model.result import Result, vertex_velocities
 from harness.model.rings import rings_of
-
-STATES = {"stick": 0, "slip": 1, "rock": 2, "open": 3}
-"""Numbers of the states of joints in fields."""
-SHOWN = 0.3
-"""The fastest vertex of a drawn mechanism is moved by this part of the typical size of a block."""
-STEPS = 20
-"""Files of a series that moves the mechanism from nothing to what is drawn."""
-
-
-def _velocities(assembly: Assembly, result: Result | None) -> list[FloatArray]:
-    """Velocities (k, 2) of the vertices of every block, zero without a mechanism."""
-    if result is None or result.mechanism is None:
-        return [np.zeros_like(polygon) for polygon in assembly.polygons]
-    motions = np.asarray(result.mechanism, float)
-    return [
-        vertex_velocities(polygon, centroid, motion)
-        for polygon, centroid, motion in zip(assembly.polygons, assembly.centroid, motions, strict=True)
-    ]
-
-
-def moved(assembly: Assembly, result: Result | None, part: float = 1.0) -> list[FloatArray]:
-    """Polygons of the blocks displaced along the mechanism, as far as it is drawn."""
-    scale = part * SHOWN * assembly.length_scale
-    return [p + scale * v for p, v in zip(assembly.polygons, _velocities(assembly, result), strict=True)]
-
-
-def write_vtu(built: Built, result: Result | None, path: Path) -> None:
-    """Blocks as polygons and joints as lines, for ParaView: velocity, displacement, forces and states."""
-    displacement = [SHOWN * built.assembly.length_scale * v for v in _velocities(built.assembly, result)]
-    _mesh(built.assembly, result, displacement).write(path, file_format="vtu", binary=True)
-
-
-def _mesh(assembly: Assembly, result: Result | None, displacement: list[FloatArray]) -> Any:
-    """The mesh of a wall with its answer and displacements (k, 2) of the vertices of every block [length]."""
-    import meshio
-
-    polygons, joints = assembly.polygons, np.stack([assembly.face1, assembly.face2], axis=1)
-    starts = np.cumsum([0, *(len(polygon) for polygon in polygons)])
-    points = np.concatenate([*polygons, joints.reshape(-1, 2)])
-    velocity = np.concatenate([*_velocities(assembly, result), np.zeros((2 * len(joints), 2))])
-    order = sorted(range(len(polygons)), key=lambda i: (len(polygons[i]), i))
-    cells: list[tuple[str, Any]] = []
-    for size in sorted({len(polygon) for polygon in polygons}):
-        mine = [i for i in order if len(polygons[i]) == size]
-        kind = {3: "triangle", 4: "quad"}.get(size, "polygon")
-        cells.append((kind, np.array([np.arange(starts[i], starts[i] + size) for i in mine])))
-    lines = starts[-1] + np.arange(2 * len(joints)).reshape(-1, 2)
-    groups = [len(cell) for _, cell in cells]
-    forces = np.zeros((len(joints), 3)) if result is None or result.forces is None else np.asarray(result.forces, float)
-    states = (
-        np.full(len(joints), -1)
-        if result is None or result.states is None
-        else np.array([STATES[state] for state in result.states])
-    )
-    fields: dict[str, tuple[Any, Any]] = {
-        "number": (np.array(order), np.arange(len(joints))),
-        "is_joint": (np.zeros(len(order), int), np.ones(len(joints), int)),
-        "fixed": (assembly.fixed[order].astype(int), np.zeros(len(joints), int)),
-        "weight": (assembly.weight[order], np.zeros(len(joints))),
-        "n1": (np.zeros(len(order)), forces[:, 0]),
-        "n2": (np.zeros(len(order)), forces[:, 1]),
-        "s": (np.zeros(len(order)), forces[:, 2]),
-        "state": (np.full(len(order), -1), states),
-        "friction": (np.zeros(len(order)), assembly.friction),
-    }
-    if len(lines):
-        cells.append(("line", lines))
-    ends = np.cumsum(groups)[:-1]
-    data = {
-        name: [*np.split(np.asarray(blocks), ends), *([np.asarray(mine)] if len(lines) else [])]
-        for name, (blocks, mine) in fields.items()
-    }
-    flat = np.zeros((len(points), 1))
-    across = np.hstack([velocity, flat])
-    shift = np.hstack([np.concatenate([*displacement, np.zeros((2 * len(joints), 2))]), flat])
-    return meshio.Mesh(
-        np.hstack([points, flat]),
-        cells,
-        point_data={"velocity": across, "displacement": shift},
-        cell_data=data,
-    )
-
-
-def write_pvd(built: Built, result: Result | None, path: Path) -> None:
-    """A series of VTU files beside a .pvd, one a step.
-
-    A collapse that was followed is the series of its states in its time [sqrt(length scale / gravity)]; else the
-    mechanism grows, and the time is the part of what is drawn.
-    """
-    assembly = built.assembly
-    rows = []
-    for step, (time, displacement) in enumerate(_steps(assembly, result)):
-        name = f"{path.stem}-{step:03d}.vtu"
-        _mesh(assembly, result, displacement).write(path.with_name(name), file_format="vtu", binary=True)
-        rows.append(f'    <DataSet timestep="{time:.9g}" part="0" file={quoteattr(name)}/>')
-    text = '<?xml version="1.0"?>\n<VTKFile type="Collection" version="0.1">\n  <Collection>\n'
-    path.write_text(text + "\n".join(rows) + "\n  </Collection>\n</VTKFile>\n", encoding="utf-8")
-
-
-def _steps(assembly: Assembly, result: Result | None) -> list[tuple[float, list[FloatArray]]]:
-    """Times and displacements (k, 2) of the vertices of every block [length]."""
-    followed = None if result is None else released(result, assembly.n_blocks)
-    if result is None or followed is None:
-        velocities = [SHOWN * assembly.length_scale * v for v in _velocities(assembly, result)]
-        parts = [step / STEPS for step in range(STEPS + 1)]
-        return [(part, [part * v for v in velocities]) for part in parts]
-    times = result.path.get("time", [])
-    if len(times) != len(followed):
-        times = list(range(len(followed)))
-    return [
-        (float(time), [p - q for p, q in zip(carried(assembly, places), assembly.polygons, strict=True)])
-        for time, places in zip(times, followed, strict=True)
-    ]
 
 
 def write_dxf(built: Built, result: Result | None, path: Path) -> None:

@@ -9,6 +9,7 @@ from typing import Any, ClassVar
 import numpy as np
 
 from harness.model.assembly import Assembly
+from harness.model.load_steps import NAME
 from harness.model.method import Answer, Finding, Settings, Status, Traits
 from methods.fe.answers import (
     bracket_answer,
@@ -88,7 +89,7 @@ class GapSprings:
         limits = [settings.max_events or FEWEST_EVENTS + count * model.n_points for count in EVENTS_A_POINT]
         limit = limits[model.assembly.n_free > LARGE_ABOVE]
         for step in chosen_histories(model, settings):
-            result = trace_history(model, factor, start, Plan(step, scale, limit))
+            result = trace_history(model, factor, start, Plan(step, scale, limit, load_steps=settings.load_steps))
             results.append(result)
             start = result.raised or start
             if result.end in (PathEnd.UNBOUNDED, PathEnd.TIME):
@@ -99,7 +100,7 @@ class GapSprings:
             elif result.state is not None:
                 scale = abs(result.state.multiplier) or 1.0
                 limit = min(limit, LOST_ABOVE[0] + LOST_ABOVE[1] * result.record.events)
-        answer = collapse_answer(model, results, factor.factorisations)
+        answer = collapse_answer(model, results, factor.factorisations, settings.load_steps)
         lost = results and all(r.state is None and r.end is PathEnd.BREAKDOWN for r in results)
         if lost and model.assembly.n_free <= LARGE_ABOVE:
             return _by_displacement_control(model, factor, gravity, answer)
@@ -118,7 +119,7 @@ def _by_displacement_control(model: WallModel, factor: Factor, gravity: Equilibr
     if result.state is None:
         return lost
     sentence = f"{result.sentence}; the exact path was lost ({lost.sentence})"
-    details = lost.details | {"displacement_control": True}
+    details = {k: v for k, v in lost.details.items() if k != NAME} | {"displacement_control": True}
     return single_state_answer(model, result.state, sentence, result.record, details, result.iterations)
 
 

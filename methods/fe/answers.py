@@ -11,6 +11,7 @@ from harness.model.errors import first_few
 from harness.model.method import Answer, Finding, Status
 from methods.fe.convex_steps import SETTLED, ConvexResult
 from methods.fe.histories import HistoryResult
+from methods.fe.load_steps import load_steps
 from methods.springs.newton import FALLING, Equilibrium
 from methods.springs.path_record import PathEnd, PathRecord
 from methods.springs.plateau import CollapseState
@@ -73,8 +74,12 @@ def standing_answer(forces: FloatArray, iterations: int, details: dict[str, Any]
     )
 
 
-def collapse_answer(model: WallModel, results: list[HistoryResult], factorisations: int) -> Answer:
-    """The answer from the histories: the plateau of the first that reached one, with the spread."""
+def collapse_answer(model: WallModel, results: list[HistoryResult], factorisations: int, most_steps: int = 0) -> Answer:
+    """The answer from the histories: the plateau of the first that reached one, with the spread.
+
+    Args:
+        most_steps: load steps of its path in the details, 0 for none.
+    """
     reached = [r for r in results if r.state is not None]
     details: dict[str, Any] = {
         "histories": [
@@ -100,6 +105,9 @@ def collapse_answer(model: WallModel, results: list[HistoryResult], factorisatio
         "events": sum(r.record.events for r in results),
     }
     iterations = int(details["events"])
+    if most_steps and results:
+        shown = (reached or results)[0].record.steps
+        details |= load_steps(model, shown, most_steps).as_details() if shown else {}
     if not reached:
         if results and results[0].end == PathEnd.UNBOUNDED:
             details["path_status"] = "unbounded"

@@ -22,7 +22,7 @@ from methods.springs.factor import Factor, SingularTangent
 from methods.springs.follow import follow
 from methods.springs.gap_law import OPEN, SLIP_PLUS
 from methods.springs.newton import Equilibrium
-from methods.springs.path_record import PathEnd, PathRecord
+from methods.springs.path_record import LoadStep, PathEnd, PathRecord
 from methods.springs.plateau import CollapseState, finish
 from methods.springs.slow_motion import SlowMotion
 from methods.springs.wall_model import WallModel
@@ -59,6 +59,7 @@ class Plan:
         max_events: changes of state after which the history is given up.
         committed_up_to: multiplier above which it is no longer committed.
         disturbance: random initial shear that the start has, in weights of a block.
+        load_steps: points of the path that are kept whole.
     """
 
     step: float
@@ -66,6 +67,7 @@ class Plan:
     max_events: int
     committed_up_to: float = np.inf
     disturbance: float = 0.0
+    load_steps: int = 0
 
 
 @dataclass(frozen=True)
@@ -138,6 +140,7 @@ def _raised(model: WallModel, factor: Factor, gravity: Equilibrium, plan: Plan, 
         SingularTangent: the path cannot be taken up where the wall is at rest.
     """
     rest = gravity
+    record.keep(partial(_load_step, model, gravity))
     for rest in SlowMotion(model, factor, gravity, True).raise_load(plan.scale):
         _note(record, model, rest)
         record.peak = rest.multiplier
@@ -162,7 +165,7 @@ def _trace(model: WallModel, factor: Factor, start: Equilibrium, plan: Plan) -> 
 
 def _as_far_as_possible(trace: Callable[[PathRecord], HistoryResult], plan: Plan) -> HistoryResult:
     """What a trace into a record leads to, or how far the record came where the time is over or the path is lost."""
-    record = PathRecord()
+    record = PathRecord(most=plan.load_steps)
     try:
         return trace(record)
     except OutOfTime:
@@ -187,6 +190,7 @@ def _trace_in_time(
         _note(record, model, start)
         record.peak = start.multiplier
         return _resumed(model, factor, start, plan, record)
+    record.keep(partial(_load_step, model, start))
     first = first_step(model, factor, start, plan.scale)
     if not first.found:
         least = f"{first.multiplier:.2g} times the live load, the least step tried"
@@ -205,6 +209,7 @@ def _followed(tracer: Tracer, plan: Plan, record: PathRecord) -> HistoryResult:
     interval = plan.step * scale or np.inf
     way = follow(tracer, record, plan.max_events, interval, ASTRAY * scale, committed_up_to=plan.committed_up_to)
     tracer, end = way.tracer, way.end
+    record.keep(tracer.load_step, always=True)
     state = (
         finish(model, tracer.present(), tracer.kept)
         if end in (PathEnd.PLATEAU, PathEnd.BREAKDOWN, PathEnd.EVENTS)
@@ -238,6 +243,13 @@ def _note(record: PathRecord, model: WallModel, rest: Equilibrium) -> None:
     """Add an equilibrium to the record."""
     slipping = int(np.count_nonzero(rest.state >= SLIP_PLUS))
     record.add(rest.multiplier, float(model.live @ rest.u), slipping, int(np.count_nonzero(rest.state == OPEN)))
+    record.keep(partial(_load_step, model, rest))
+
+
+def _load_step(model: WallModel, rest: Equilibrium) -> LoadStep:
+    """An equilibrium, kept whole."""
+    opening, slip = model.strains(rest.u)
+    return LoadStep(rest.multiplier, rest.u, opening, model.kt * slip + rest.history, rest.state)
 
 
 def with_initial_shear(model: WallModel, gravity: Equilibrium, share: float, seed: int) -> WallModel:

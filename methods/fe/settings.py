@@ -19,11 +19,14 @@ class GapSpringsSettings(GapSettings):
         friction_cap: friction coefficients above this are lowered to it while the path is traced; the final state is
             checked with the true ones, and traced again with them if it does not hold. Coefficients such as 1000,
             which stand for "no sliding", would otherwise make the path stiff for nothing.
+        load_steps: points of the path, from the dead load to the plateau, that the answer keeps with displacements,
+            contact forces and states of joints (`details["load_steps"]`); spread evenly over the changes of state.
     """
 
     histories: tuple[float, ...] | None = None
     max_events: int | None = Field(None, ge=1)
     friction_cap: float = Field(2.0, gt=0.0)
+    load_steps: int = Field(0, ge=0, le=1000)
 
 
 class NewtonSettings(GapSettings):

@@ -19,7 +19,7 @@ from methods.springs.factor import Change, Factor, SingularTangent
 from methods.springs.gap_law import OPEN, SLIP_PLUS, STICK, gap_forces
 from methods.springs.kinks import advance, coming_kinks, live_rate, next_kink, strain_rates
 from methods.springs.newton import Equilibrium
-from methods.springs.path_record import PathEnd, PathRecord, Snapshot
+from methods.springs.path_record import LoadStep, PathEnd, PathRecord, Snapshot
 from methods.springs.plateau import CERTIFICATE, worst_residual
 from methods.springs.tolerances import (
     DRIFT,
@@ -99,6 +99,10 @@ class Tracer:
     def present(self) -> Snapshot:
         """The point and the velocity along the present piece."""
         return Snapshot(self.multiplier, self.opening, self.trial, self.state, self.direction.velocity)
+
+    def load_step(self) -> LoadStep:
+        """The point, kept whole."""
+        return LoadStep(self.multiplier, self.u.copy(), self.opening.copy(), self.trial.copy(), self.state.copy())
 
     def may_commit(self) -> bool:
         """Whether a commit changes anything, and the factor is that of the tangent itself."""
@@ -264,6 +268,7 @@ class Tracer:
             record.first_limit = record.peak
         if record.events % note == 0:
             record.add(self.multiplier, live_rate(self.model.live, self.u), self.n_slip, self.n_open)
+        record.keep(self.load_step)
 
     def _flip(self, point: int, new: int) -> None:
         """Change one state, and turn onto the next piece."""

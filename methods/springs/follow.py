@@ -81,4 +81,5 @@ def _committed(tracer: Tracer, interval: float, record: PathRecord) -> Tracer | 
         return None
     record.peak = max(record.peak, after.multiplier)
     record.add(after.multiplier, float(tracer.model.live @ after.u), after.n_slip, after.n_open)
+    record.keep(after.load_step)
     return successor(after, tracer)

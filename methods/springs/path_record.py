@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass, field
 from enum import StrEnum
 
@@ -23,9 +24,24 @@ class PathEnd(StrEnum):
     TIME = "time"
 
 
+@dataclass(frozen=True, eq=False)
+class LoadStep:
+    """A point of the path: multiplier, displacements u (N,), gaps g and tau (P,) and states (P,)."""
+
+    multiplier: float
+    u: FloatArray
+    opening: FloatArray
+    trial: FloatArray
+    state: IntArray
+
+
 @dataclass
 class PathRecord:
-    """Multiplier against live displacement, with the limit points passed."""
+    """Multiplier against live displacement, with the limit points passed.
+
+    Attributes:
+        steps: points kept whole, spread evenly over those met; most: up to twice as many are, 0: none.
+    """
 
     multiplier: list[float] = field(default_factory=list)
     displacement: list[float] = field(default_factory=list)
@@ -34,6 +50,19 @@ class PathRecord:
     peak: float = -np.inf
     first_limit: float | None = None
     events: int = 0
+    most: int = 0
+    steps: list[LoadStep] = field(default_factory=list)
+    _met: int = field(default=0, init=False)
+    _every: int = field(default=1, init=False)
+
+    def keep(self, step: Callable[[], LoadStep], always: bool = False) -> None:
+        """Keep a point whole if it is its turn, or `always`; where there are too many, every second one goes."""
+        if self.most and (always or self._met % self._every == 0):
+            self.steps.append(step())
+            if len(self.steps) > 2 * self.most:
+                del self.steps[1::2]
+                self._every *= 2
+        self._met += 1
 
     def add(self, multiplier: float, displacement: float, slipping: int, n_open: int) -> None:
         """Append one point of the path."""

@@ -1,0 +1,45 @@
+"""The load steps that an answer of the springs keeps: displacements, contact forces and states along its path."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from harness.model.assembly import IntArray
+from harness.model.load_steps import STATES, LoadSteps
+from methods.springs.gap_law import OPEN, SLIP_MINUS, SLIP_PLUS, gap_forces
+from methods.springs.path_record import LoadStep
+from methods.springs.wall_model import WallModel
+
+
+def load_steps(model: WallModel, steps: list[LoadStep], most: int) -> LoadSteps:
+    """At most so many of the steps of a path (one at least), evenly picked, the first and the last among them."""
+    pick = np.unique(np.linspace(0, len(steps) - 1, min(len(steps), most)).astype(int))
+    kept = [steps[-1]] if most == 1 else [steps[k] for k in pick]
+    normal, shear = np.empty(model.n_points), np.empty(model.n_points)
+    forces = []
+    for step in kept:
+        gap_forces(step.opening, step.trial, model.kn, model.mu, step.state, normal, shear)
+        forces.append(model.end_forces(normal, shear))
+    return LoadSteps(
+        model.assembly.block_ids,
+        np.array([step.multiplier for step in kept]),
+        np.array([model.block_displacements(step.u) for step in kept]),
+        np.array(forces),
+        np.array([joint_states(model, step.state) for step in kept]),
+    )
+
+
+def joint_states(model: WallModel, state: IntArray) -> IntArray:
+    """(m,) places in `STATES` of the interfaces whose gap points are in the given states (P,)."""
+    m = model.assembly.n_interfaces
+
+    def every(holds: np.ndarray) -> np.ndarray:
+        return np.asarray(np.bincount(model.interface, ~holds, m) == 0)
+
+    open_ = state == OPEN
+    slides = (state == SLIP_PLUS) | (state == SLIP_MINUS)
+    end = (model.position == 0.0) | (model.position == 1.0)
+    names = np.where(every(slides | open_), STATES.index("slip"), STATES.index("stick"))
+    names[~every(~(open_ & end))] = STATES.index("rock")
+    names[every(open_)] = STATES.index("open")
+    return np.asarray(names, dtype=np.int64)
