@@ -8,7 +8,7 @@ they have (Jansen, Roos, Terlaky and Vial 1996), from a far smaller gap than tha
 
 from __future__ import annotations
 
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -19,12 +19,23 @@ from methods.la.newton_matrix import NewtonMatrix
 from methods.la.newton_step import Point
 from methods.la.problem import Problem
 
-FEASIBLE = 1e-6
-"""Scaled equilibrium and compatibility residuals of the pair."""
-EARLY = 1e-2
-"""Relative gap of the kinematic programme at which its path is left; full steps may end below it."""
-LEAST_COST = 1e-9
-"""Least cost of a rate, so that none is free to grow."""
+
+@dataclass(frozen=True)
+class Pair:
+    """How exact the pair is, and where its paths are left.
+
+    Attributes:
+        feasible: scaled equilibrium and compatibility residuals.
+        early: relative gap of the kinematic programme at which its path is left; full steps may end below it.
+        least_cost: least cost of a rate, so that none is free to grow.
+    """
+
+    feasible: float = 1e-6
+    early: float = 1e-2
+    least_cost: float = 1e-9
+
+
+PAIR = Pair()
 
 
 def feasible_pair(problem: Problem, newton: NewtonMatrix, gap: float) -> tuple[Point | None, int]:
@@ -35,14 +46,14 @@ def feasible_pair(problem: Problem, newton: NewtonMatrix, gap: float) -> tuple[P
         newton: its Newton matrix.
         gap: relative gap of the associated path at which its forces are taken; full steps may end below it.
     """
-    settings = PathSettings(dilatancy=1.0, gap=gap, residual=FEASIBLE)
+    settings = PathSettings(dilatancy=1.0, gap=gap, residual=PAIR.feasible)
     forces = follow_path(problem, newton, start_point(problem), settings)
     if not forces.converged:
         return None, forces.iterations
     slack = forces.point.slack
-    cost = slack / float(np.median(slack)) + LEAST_COST
+    cost = slack / float(np.median(slack)) + PAIR.least_cost
     programme = kinematic_programme(problem, np.where(close_tight(problem), 0.0, cost))
-    settings = PathSettings(dilatancy=1.0, gap=EARLY, residual=FEASIBLE)
+    settings = PathSettings(dilatancy=1.0, gap=PAIR.early, residual=PAIR.feasible)
     mechanism = follow_path(programme, newton, start_point(programme), settings)
     steps = forces.iterations + mechanism.iterations
     if not mechanism.converged:

@@ -11,7 +11,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from harness.model.assembly import BoolArray, FloatArray
-from methods.la.exact import RIGID
+from methods.la.exact import WEIGHTS
 from methods.la.flexibility import Compliance
 from methods.la.newton_matrix import NewtonMatrix
 from methods.la.problem import Problem
@@ -66,7 +66,7 @@ class NewtonStep:
         if not (np.all(point.slack[~tight] > 0.0) and np.all(point.rates[~tight] > 0.0)):
             raise FloatingPointError("the iterate left the interior")
         self.slack = np.where(tight, 1.0, point.slack)
-        self.weight = np.where(tight, RIGID, np.maximum(point.rates / self.slack, SOFTEST))
+        self.weight = np.where(tight, WEIGHTS.rigid, np.maximum(point.rates / self.slack, SOFTEST))
         self.compliance = Compliance(problem.friction, self.weight, problem.lift(dilatancy))
         self.statics = problem.imbalance(problem.forces_of_slacks(point.slack), point.multiplier)
         self.kinematics = problem.strains(point.velocities) - problem.strains_of_rates(point.rates, dilatancy)

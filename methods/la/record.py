@@ -82,6 +82,13 @@ class Record:
         finally:
             tried.seconds, tried.work = time.process_time() - began, spent.since(before)
 
+    def _by_name(self) -> dict[str, list[Tried]]:
+        """What was tried, of sources that stand at several places of the order together."""
+        groups: dict[str, list[Tried]] = {}
+        for tried in self.tried:
+            groups.setdefault(tried.source, []).append(tried)
+        return groups
+
     def note(self, state: CollapseState, work: Work) -> None:
         """Keep a state if none known is lower."""
         if state.multiplier < self.least - LOWER:
@@ -97,17 +104,7 @@ class Record:
     def details(self, unit: float) -> dict[str, Any]:
         """What each source that was begun led to and took, and which of them found what was the least known."""
         return {
-            "sources": [
-                {
-                    "source": tried.source,
-                    "states": len(tried.states),
-                    "least": min((state.multiplier * unit for state in tried.states + tried.ends), default=None),
-                    "cpu_seconds": tried.seconds,
-                    **_counts(tried.work),
-                }
-                for tried in self.tried
-                if tried.states or tried.work != Work()
-            ],
+            "sources": [_row(name, group, unit) for name, group in self._by_name().items() if _begun(group)],
             "improvements": [
                 {
                     "source": found.source,
@@ -118,6 +115,21 @@ class Record:
                 for found in self.improvements
             ],
         }
+
+
+def _begun(group: list[Tried]) -> bool:
+    return any(tried.states or tried.work != Work() for tried in group)
+
+
+def _row(name: str, group: list[Tried], unit: float) -> dict[str, Any]:
+    counts = [_counts(tried.work) for tried in group]
+    return {
+        "source": name,
+        "states": sum(len(tried.states) for tried in group),
+        "least": min((s.multiplier * unit for tried in group for s in tried.states + tried.ends), default=None),
+        "cpu_seconds": sum(tried.seconds for tried in group),
+        **{counted: sum(count[counted] for count in counts) for counted in counts[0]},
+    }
 
 
 def _counts(work: Work) -> dict[str, int]:

@@ -16,10 +16,21 @@ from methods.la.newton_matrix import NewtonMatrix
 from methods.la.newton_step import Point
 from methods.la.problem import Problem, make_problem
 
-MOVES = 1e-4
-"""Speed relative to the fastest block from which a block belongs to the part."""
-BED = 0.5
-"""Part of the normal of a joint along the dead load from which one of its blocks rests on the other."""
+
+@dataclass(frozen=True)
+class Part:
+    """What belongs to the part.
+
+    Attributes:
+        moves: speed relative to the fastest block from which a block belongs to it.
+        bed: part of the normal of a joint along the dead load from which one of its blocks rests on the other.
+    """
+
+    moves: float = 1e-4
+    bed: float = 0.5
+
+
+PART = Part()
 
 
 @dataclass(frozen=True, eq=False)
@@ -39,7 +50,7 @@ def moving_region(problem: Problem, velocities: FloatArray) -> Region:
     assembly = problem.assembly
     motion = problem.to_mechanism(velocities) * np.array([1.0, 1.0, problem.unit_length])
     speed = abs(motion).max(axis=1)
-    fixed = ~with_all_above(assembly, speed > MOVES * speed.max())
+    fixed = ~with_all_above(assembly, speed > PART.moves * speed.max())
     kept = ~(fixed[assembly.block_a] & fixed[assembly.block_b])
     by_interface = ("block_a", "block_b", "end1", "end2", "face1", "face2", "normal", "friction", "dilatancy")
     part = replace(
@@ -58,8 +69,8 @@ def with_all_above(assembly: Assembly, moves: BoolArray) -> BoolArray:
     """The moving blocks (n,) and those that rest on them, directly or not."""
     down = assembly.dead[:, :2].sum(axis=0)
     rests = assembly.normal @ down / (np.linalg.norm(down) or 1.0)
-    lower = np.concatenate([assembly.block_a[rests < -BED], assembly.block_b[rests > BED]])
-    upper = np.concatenate([assembly.block_b[rests < -BED], assembly.block_a[rests > BED]])
+    lower = np.concatenate([assembly.block_a[rests < -PART.bed], assembly.block_b[rests > PART.bed]])
+    upper = np.concatenate([assembly.block_b[rests < -PART.bed], assembly.block_a[rests > PART.bed]])
     moves, count = moves & ~assembly.fixed, -1
     while moves.sum() != count:
         count = moves.sum()

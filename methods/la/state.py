@@ -13,14 +13,25 @@ from methods.la.newton_matrix import NewtonMatrix
 from methods.la.problem import Problem
 from methods.numerics.failures import NumericalFailure
 
-MOVING = 1e-11
-"""Rates below this, relative to the largest, are rounding."""
-LIGHTEST = 1e-13
-"""Share of the largest force from which forces of a block count."""
-SLOWEST = 1e-2
-"""Share of the fastest speed from which those of a block count."""
-TIGHT = 1e-8
-"""Slacks below this, in mean block weights, are rounding."""
+
+@dataclass(frozen=True)
+class Rounding:
+    """What counts as zero in states, and from what size on a block counts.
+
+    Attributes:
+        moving: rates below this, relative to the largest, are rounding.
+        tight: slacks below this, in mean block weights, are rounding.
+        lightest: share of the largest force from which forces of a block count.
+        slowest: share of the fastest speed from which those of a block count.
+    """
+
+    moving: float = 1e-11
+    tight: float = 1e-8
+    lightest: float = 1e-13
+    slowest: float = 1e-2
+
+
+ROUNDING = Rounding()
 
 
 @dataclass(frozen=True, eq=False)
@@ -75,9 +86,9 @@ def local_residuals(problem: Problem, state: CollapseState) -> tuple[FloatArray,
     tension = np.maximum(-problem.slacks(state.forces).min(axis=1), 0.0)
     closing = np.maximum(-rates[:, :2].min(axis=1), 0.0)
     return (
-        _share(abs(balance).max(axis=1), size, LIGHTEST),
-        _share(tension, np.where(np.isfinite(lesser), lesser, 0.0), LIGHTEST),
-        _share(closing, faster, SLOWEST),
+        _share(abs(balance).max(axis=1), size, ROUNDING.lightest),
+        _share(tension, np.where(np.isfinite(lesser), lesser, 0.0), ROUNDING.lightest),
+        _share(closing, faster, ROUNDING.slowest),
     )
 
 
@@ -89,12 +100,12 @@ def _share(value: FloatArray, of: FloatArray, least: float) -> FloatArray:
 
 def moving_contacts(rates: FloatArray) -> BoolArray:
     """(m, 4) rates that are more than rounding."""
-    return rates > MOVING * float(rates.max(initial=0.0))
+    return rates > ROUNDING.moving * float(rates.max(initial=0.0))
 
 
 def tight_contacts(problem: Problem, forces: FloatArray) -> BoolArray:
     """(m, 4) slacks that are no more than rounding."""
-    return problem.slacks(forces) <= TIGHT
+    return problem.slacks(forces) <= ROUNDING.tight
 
 
 def polished(

@@ -14,7 +14,7 @@ from methods.la.arc import STEPPING, ArcPath, Stepping
 from methods.la.associated import END
 from methods.la.budget import Budget, Limits
 from methods.la.exact import close_tight
-from methods.la.feasible_pair import FEASIBLE, feasible_pair
+from methods.la.feasible_pair import PAIR, feasible_pair
 from methods.la.interior_point import PathSettings, follow_path, start_point
 from methods.la.least import least_of
 from methods.la.newton_matrix import NewtonMatrix
@@ -64,8 +64,8 @@ def test_path_begins_with_forces_and_mechanism_of_the_true_wall() -> None:
     assert np.all(pair.rates > 0.0)
     assert problem.live @ pair.velocities == pytest.approx(problem.live_work, rel=1e-9)
     # In mean weights of a block, and for velocities of order one.
-    assert abs(problem.imbalance(problem.forces_of_slacks(pair.slack), pair.multiplier)).max() <= FEASIBLE
-    assert abs(problem.strains(pair.velocities) - problem.strains_of_rates(pair.rates, 0.0)).max() <= FEASIBLE
+    assert abs(problem.imbalance(problem.forces_of_slacks(pair.slack), pair.multiplier)).max() <= PAIR.feasible
+    assert abs(problem.strains(pair.velocities) - problem.strains_of_rates(pair.rates, 0.0)).max() <= PAIR.feasible
 
 
 @pytest.mark.parametrize(("courses", "bricks"), [(6, 3), (14, 16)])

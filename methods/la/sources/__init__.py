@@ -16,9 +16,10 @@ from methods.la.sources.springs import CentralForces, LittleSelfStress, SafeForc
 __all__ = ["SOURCES", "Source", "explore"]
 
 SOURCES: tuple[Source, ...] = (
-    SmootherJoints(),
-    CentralPath(most=1000),
+    SmootherJoints(factors=(0.3,)),
     SafeForces(least=1001, most=6000),
+    SmootherJoints(factors=(0.6, 0.0)),
+    CentralPath(most=1000),
     NearAssociated(),
     RandomStarts(),
     FrictionLadder(),
