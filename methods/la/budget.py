@@ -24,6 +24,8 @@ class Limits:
         ladder: factors on friction of the rungs.
         mechanisms: drawn without regard to forces.
         nodes: of the tree that may prove the least state.
+        leaves: of a tree that does not come to an end, which are bounded to rounding: 8 ms each on 10 interfaces. The
+            first hundred prove a bound on walls of three blocks; 2x2 bricks need 600 for one of .03 where .65 is known.
         programmes: linear ones in all, those of the proof among them.
         block_steps: Newton steps times blocks after which no further path is begun once a state is known.
         kinks: on all paths of springs after which no further one is begun; twice as many while no state is known.
@@ -37,6 +39,7 @@ class Limits:
     ladder: tuple[float, ...] = ()
     mechanisms: int = 0
     nodes: int = 0
+    leaves: int = 100
     programmes: int = 50_000
     block_steps: float = 1e6
     kinks: int = 6_000
@@ -80,7 +83,7 @@ class Sizes:
             return Limits(0, 8, 200, descents, nodes=min(nodes, 100), kinks=300, unbounded_kinks=300)
         if effort == "deep":
             drawn, nodes = (1000 if blocks <= self.some_blocks else 50), (20000 if interfaces <= 2 * most else 0)
-            return Limits(20, 40, 200, 8, self.fine_ladder, drawn, nodes, 1_000_000, 1e7, 100_000, 100_000)
+            return Limits(20, 40, 200, 8, self.fine_ladder, drawn, nodes, nodes, 1_000_000, 1e7, 100_000, 100_000)
         if blocks <= self.few_blocks:
             return Limits(3, 12, 200, 3, self.ladder, 60, nodes)
         if blocks <= self.some_blocks:
