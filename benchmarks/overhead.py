@@ -77,6 +77,7 @@ def _command(folder: Path, *words: str, repeats: int = 3) -> float:
         program = "from harness.cli import main; main()"
         command = [sys.executable, "-c", program, *words]
         environment = os.environ | {"PYTHONPATH": str(Path(__file__).resolve().parents[1])}
+        environment.pop("PYTHONDONTWRITEBYTECODE", None)  # with it every command compiles all that it imports again
         subprocess.run(command, cwd=folder, env=environment, capture_output=True, check=False)
         with suppress(ChildProcessError):
             while True:

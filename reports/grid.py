@@ -110,7 +110,7 @@ class Cell:
 
 
 def grids(run: ComparisonRun) -> list[Study]:
-    """A study for every kind of wall of which at least two proportions and two frictions are in the comparison."""
+    """A study for every kind of wall of which at least two proportions, frictions and methods are in the comparison."""
     groups: dict[str, list[Cell]] = defaultdict(list)
     titles: dict[str, str] = {}
     for number, item in enumerate(run.cases):
@@ -125,7 +125,8 @@ def grids(run: ComparisonRun) -> list[Study]:
 
 
 def _is_grid(cells: list[Cell]) -> bool:
-    return len({cell.proportion for cell in cells}) > 1 and len({cell.friction for cell in cells}) > 1
+    walls = len({cell.proportion for cell in cells}) > 1 and len({cell.friction for cell in cells}) > 1
+    return walls and len({name for cell in cells for name in cell.values}) > 1
 
 
 def _cell(number: int, item: CaseResults) -> Cell | None:
