@@ -146,17 +146,21 @@ class Search:
         return end
 
     def _climb(self) -> None:
-        """Load steps until a state is not held, or the cap is."""
+        """Load steps until a state moves, or the cap is held; twice as large after each that could not be told.
+
+        So an upper end is shown before it is narrowed, and is the answer where the time is over.
+        """
         cap = self.settings.load_cap * self.unit
-        multiplier = 0.0
-        while not self._spent():
+        multiplier, growth = 0.0, 1.0
+        while not self._spent() and multiplier < cap:
             step = max(self.settings.load_step * self.unit, self.settings.load_growth * multiplier)
-            multiplier = min(multiplier + step, cap)
-            if self._try(multiplier).state is not State.HELD:
+            multiplier = min(multiplier + growth * step, cap)
+            state = self._try(multiplier).state
+            if state is State.MOVING:
                 return
-            if multiplier >= cap:
-                self.found.capped = True
-                return
+            if state is State.UNDECIDED:
+                growth *= 2.0
+            self.found.capped = state is State.HELD and multiplier >= cap
 
     def _narrow(self) -> None:
         """Bisect until the bracket is not loose: again above what turned out to be held beyond an undecided hold."""
