@@ -34,6 +34,8 @@ STILL = 1e-6
 """Rates below this share of the fastest are none, where several mechanisms move at once."""
 LANDINGS = 10
 """Changes of states allowed while the last piece is solved for."""
+IDLE = 1e-12
+"""Work of the live load on a mechanism, as a share of the sum of its terms' sizes, up to which it is rounding."""
 NOT_UNIQUE = "the plateau is not unique: more than one mechanism moves at once"
 
 
@@ -244,7 +246,8 @@ def check(assembly: Assembly, multiplier: float, forces: FloatArray, mechanism: 
     balance = (matrix.T @ forces.ravel() + dead + multiplier * live) / lengths
     rates = (matrix @ velocity).reshape(-1, 3)
     power = float(live @ velocity)
-    speed = min(float(np.abs(velocity * lengths).max()), max(power, 0.0) / (largest(live / lengths) or 1.0)) or 1.0
+    power = power if power > IDLE * float(abs(live) @ abs(velocity)) else 0.0
+    speed = min(float(np.abs(velocity * lengths).max()), power / (largest(live / lengths) or 1.0)) or 1.0
     total = forces[:, 0] + forces[:, 1]
     slack = assembly.friction * total - np.abs(forces[:, 2])
     size = max(assembly.load_unit, abs(multiplier))
