@@ -2,8 +2,8 @@
 
 They are relative to what acts where they arise (F = sum of the magnitudes of load and contact forces on a block,
 r = its largest radius; each independent component's mechanism scaled so that its fastest vertex has speed 1, or so that
-its live work is that of its largest live load at speed 1, whichever makes it larger: a block that moves fast and does
-no work hides nothing):
+its live work is that of the largest live load that does any, along the motion of its block at speed 1, whichever makes
+it larger: a block that moves fast and does no work hides nothing, and the load of one at rest is beside the point):
 
 supports            fastest vertex of a fixed block, to the fastest of the wall
 equilibrium         out-of-balance force or moment/r of a free block / F of that block
@@ -33,7 +33,8 @@ from harness.model.result import fastest_vertex, relative_velocities
 AT_REST = 1e-12
 """A component slower than this beside the fastest of the wall is taken as at rest: rounding of its speeds."""
 
-
+NO_WORK = 1e-12
+"""Share of all live work up to which that of a block is rounding of its rest: one of 1e12 weights moved by 1e-48."""
 UNLOADED = 1e-6
 """Share of the largest sum of its component by which a block without load is measured at least.
 
@@ -189,12 +190,20 @@ def collapse_residuals(
     return residuals | {"live_work": max(works, default=0.0)}
 
 
+def _largest_working(assembly: Assembly, mechanism: FloatArray) -> float:
+    """The largest live load of a block that does work [force], by its share along the motion (n, 3) of that block."""
+    speed = np.hypot(*mechanism[:, :2].T) + abs(mechanism[:, 2]) * assembly.radius
+    work = abs((assembly.live * mechanism).sum(axis=1))
+    does = work > NO_WORK * work.sum()
+    return float((work[does] / speed[does]).max(initial=0.0))
+
+
 def _mechanism_residuals(
     assembly: Assembly, forces: FloatArray, scale: FloatArray, multiplier: float, mechanism: FloatArray, flow: str
 ) -> dict[str, float]:
     """Residuals of the mechanism of one component, of fastest vertex 1; `scale` (m,) is what acts at its interfaces."""
     live_work = power(assembly.live, mechanism)
-    largest = float((np.hypot(*assembly.live[:, :2].T) + abs(assembly.live[:, 2]) / assembly.radius).max())
+    largest = _largest_working(assembly, mechanism)
     if 0.0 < live_work < largest:
         mechanism, live_work = mechanism * (largest / live_work), largest
     opening, slip = relative_velocities(assembly, mechanism)

@@ -16,7 +16,6 @@ from scipy.sparse.linalg import SuperLU
 
 from harness.model.assembly import Assembly, BoolArray, FloatArray, IntArray
 from methods.numerics.failures import SingularMatrix, sparse_lu
-from methods.numerics.vectors import largest
 from methods.springs.factor import SingularTangent
 from methods.springs.gap_law import STICK, classify, gap_forces
 from methods.springs.path_record import Snapshot
@@ -229,11 +228,11 @@ def _with_column(matrix: sp.csc_matrix, k: int, column: FloatArray) -> sp.csc_ma
 def check(assembly: Assembly, multiplier: float, forces: FloatArray, mechanism: FloatArray) -> CollapseState:
     """Measure how exactly forces and mechanism form a non-associated collapse state (zero dilatancy).
 
-    Forces are relative to a mean block weight, rates to the fastest block, or to one on which the largest live load of
-    a block would do all the work there is: rounding of an idle motion is no mechanism. Complementarity is the work of
-    contact forces on the motion they ought to have none in, slip with its friction among it, as a share of the work of
-    the live load at max(load unit, |multiplier|). What both presses (or lacks friction) and moves counts by the
-    smaller of force and rate.
+    Forces are relative to a mean block weight, rates to the fastest block, or to as much of it as the live load's work
+    is of the sum of its terms: rounding of an idle motion is no mechanism. Complementarity is the work of contact
+    forces on the motion they ought to have none in, slip with its friction among it, as a share of the work of the live
+    load at max(load unit, |multiplier|). What both presses (or lacks friction) and moves counts by the smaller of force
+    and rate.
 
     Args:
         multiplier: of the live load; forces: (m, 3) end forces [force]; mechanism: (n, 3) block velocities.
@@ -246,8 +245,9 @@ def check(assembly: Assembly, multiplier: float, forces: FloatArray, mechanism: 
     balance = (matrix.T @ forces.ravel() + dead + multiplier * live) / lengths
     rates = (matrix @ velocity).reshape(-1, 3)
     power = float(live @ velocity)
-    power = power if power > IDLE * float(abs(live) @ abs(velocity)) else 0.0
-    speed = min(float(np.abs(velocity * lengths).max()), power / (largest(live / lengths) or 1.0)) or 1.0
+    share = power / (float(abs(live) @ abs(velocity)) or 1.0)
+    power = power if share > IDLE else 0.0
+    speed = float(np.abs(velocity * lengths).max()) * min(1.0, max(share, IDLE)) or 1.0
     total = forces[:, 0] + forces[:, 1]
     slack = assembly.friction * total - np.abs(forces[:, 2])
     size = max(assembly.load_unit, abs(multiplier))

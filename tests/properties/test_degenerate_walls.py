@@ -70,6 +70,15 @@ def test_two_hundred_walls_of_weights_that_differ_by_up_to_1e12():
     hold_to_exact(range(200))
 
 
+@pytest.mark.parametrize("seed", [7, 27])
+def test_light_block_that_moves_is_not_judged_by_the_load_of_heavy_ones_at_rest(seed: int):
+    # Rounding of its speed, 1e-16, was multiplied by the ratio of their live loads to its own, 1e9 and 1e12.
+    result, judgement = answered(load_method("la-associated"), uneven_wall(seed))
+    assert judgement.accepted, judgement.sentence
+    assert judgement.residuals["interpenetration"] < 1e-12
+    assert result.multiplier is not None
+
+
 def beside_any_weight(assembly: Assembly, method: str) -> None:
     alone, _ = answered(load_method(method), assembly)
     for share in (1e-12, 1.0, 1e12):
