@@ -47,7 +47,7 @@ class DampedHolds:
             return make(assembly, blocks, joints, settings.iterations, tuning)
 
         try:
-            return solve_by_holds(assembly, settings, engine)
+            return solve_by_holds(assembly, settings, engine, self.tolerance)
         except CannotModel as error:
             return Answer(Status.REFUSED, Finding.NONE, str(error))
 
@@ -87,7 +87,7 @@ class MujocoHolds:
             return MujocoWall(assembly, blocks, joints, settings.iterations, tuning, soft[tuning], ratio)
 
         try:
-            return solve_by_holds(assembly, settings, engine, [tuning for tuning, _ in candidates])
+            return solve_by_holds(assembly, settings, engine, self.tolerance, [tuning for tuning, _ in candidates])
         except CannotModel as error:
             return Answer(Status.REFUSED, Finding.NONE, str(error))
         except SolverFailed as error:

@@ -26,7 +26,11 @@ EngineMaker = Callable[[IntArray, IntArray, Tuning], Engine]
 
 
 def solve_by_holds(
-    assembly: Assembly, settings: HoldSettings, make_engine: EngineMaker, candidates: list[Tuning] | None = None
+    assembly: Assembly,
+    settings: HoldSettings,
+    make_engine: EngineMaker,
+    tolerance: float,
+    candidates: list[Tuning] | None = None,
 ) -> Answer:
     """Bracket the collapse multiplier in every insertion order and put the findings together.
 
@@ -34,6 +38,7 @@ def solve_by_holds(
         assembly: the wall.
         settings: settings of the holds.
         make_engine: makes the engine.
+        tolerance: residual of contact forces that the judge accepts of the method.
         candidates: tunings to try in turn; None: those of `methods.de.courses.tunings`.
 
     Where the time is over what is shown by then is the answer (`methods.de.stopped`).
@@ -62,7 +67,7 @@ def solve_by_holds(
         return _with_state(answer, make_engine(blocks, joints, tuning), settings, best)
     except OutOfTime:
         found = [search.found for search in known.counted()]
-        return stopped_answer(assembly, known, describe(assembly, found))
+        return stopped_answer(assembly, known, tolerance, describe(assembly, found))
 
 
 def _of_tuning(tuning: Tuning) -> dict[str, Any]:

@@ -50,11 +50,15 @@ class Stood:
     forces: FloatArray
 
 
-def highest_shown(assembly: Assembly, searches: list[Search]) -> Stood | None:
-    """The highest state held whose contact forces are in balance to the residual of a held state; None if none is.
+def highest_shown(assembly: Assembly, searches: list[Search], tolerance: float) -> Stood | None:
+    """The highest state held whose contact forces are in balance as far as the judge asks; None if none is.
 
     Near collapse a state that is held may be followed further before its forces balance block by block; one below it,
     which came to rest sooner, then shows the lower end.
+
+    Args:
+        assembly: the wall; searches: of it.
+        tolerance: what the judge lets be left out of balance on a block, as a share of what acts on it.
     """
     states = [(multiplier, k) for k, search in enumerate(searches) for multiplier, _ in search.states]
     for multiplier, k in sorted(states, key=lambda item: (-item[0], item[1])):
@@ -63,20 +67,20 @@ def highest_shown(assembly: Assembly, searches: list[Search]) -> Stood | None:
         search.engine.load(multiplier)
         forces = search.engine.contact_forces()
         left = out_of_balance(assembly, forces, assembly.dead + multiplier * assembly.live)
-        if float(left.max(initial=0.0)) <= search.settings.held_residual:
+        if float(left.max(initial=0.0)) <= tolerance:
             return Stood(search, multiplier, forces)
     return None
 
 
-def stopped_answer(assembly: Assembly, known: Known, details: dict[str, Any]) -> Answer:
+def stopped_answer(assembly: Assembly, known: Known, tolerance: float, details: dict[str, Any]) -> Answer:
     """What was shown when the time was over.
 
     Args:
-        assembly: the wall; known: what its searches found; details: of the answer.
+        assembly: the wall; known: what its searches found; tolerance: as for `highest_shown`; details: of the answer.
     """
     counted = known.counted()
     found = [search.found for search in counted]
-    stood = highest_shown(assembly, counted)
+    stood = highest_shown(assembly, counted, tolerance)
     if stood is None:
         answer = _without_rest(known)
     else:

@@ -46,21 +46,20 @@ def within_yield(forces: FloatArray, friction: FloatArray) -> FloatArray:
 def out_of_balance(assembly: Assembly, forces: FloatArray, load: FloatArray) -> FloatArray:
     """(n_free,) largest force or moment left over on each free block, as a share of all that acts on it.
 
-    Moments count divided by the length scale. A block on which nothing acts is in balance.
+    Moments count divided by the radius of the block. A block on which nothing acts is in balance.
 
     Args:
         assembly: the wall.
         forces: (m, 3) contact forces (n1, n2, s) [force].
         load: (n, 3) loads on the blocks [force, force, moment].
     """
-    column = np.tile([1.0, 1.0, 1.0 / (assembly.length_scale or 1.0)], assembly.n_free)
-    own = load[assembly.free].ravel()
-    left = abs(column * (assembly.kinematic_matrix.T @ forces.ravel() + own)).reshape(-1, 3).max(axis=1)
-    acting = abs(load[:, :2]).sum(axis=1) + abs(load[:, 2]) / (assembly.length_scale or 1.0)
+    left = (assembly.kinematic_matrix.T @ forces.ravel() + load[assembly.free].ravel()).reshape(-1, 3)
+    left[:, 2] /= assembly.radius[assembly.free]
+    acting = np.hypot(load[:, 0], load[:, 1]) + abs(load[:, 2]) / assembly.radius
     for side in (assembly.block_a, assembly.block_b):
         np.add.at(acting, side, abs(forces).sum(axis=1))
-    all_of_it = acting[assembly.free]
-    share: FloatArray = left / np.where(all_of_it > 0.0, all_of_it, 1.0)
+    own = acting[assembly.free]
+    share: FloatArray = abs(left).max(axis=1) / np.where(own > 0.0, own, 1.0)
     return share
 
 

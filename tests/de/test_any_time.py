@@ -101,7 +101,7 @@ def test_state_that_is_not_in_balance_shows_nothing(monkeypatch: pytest.MonkeyPa
     answer, _ = solved("de")
     assert 0.2 < answer.forces_multiplier <= 0.3
     assert answer.bracket[0] == answer.forces_multiplier
-    assert highest_shown(WALL, []) is None
+    assert highest_shown(WALL, [], 1e-6) is None
 
 
 @pytest.mark.parametrize("looks", [60, 200])

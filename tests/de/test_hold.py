@@ -101,8 +101,8 @@ def test_a_wall_falls_only_where_it_moves_with_every_tuning(quick):
         return StripSpace(wall if tuning == holds else falling, blocks, joints, settings.iterations, tuning)
 
     for candidates in ([holds, falls], [falls, holds]):
-        answer = solve_by_holds(wall, settings, engine, candidates)
+        answer = solve_by_holds(wall, settings, engine, 1e-6, candidates)
         # Out of work after the dead load, the bracket is not found: that is all there is to say.
         found = (Status.OK, Finding.COLLAPSES) if quick else (Status.NOT_CONVERGED, Finding.NONE)
         assert (answer.status, answer.finding) == found
-    assert solve_by_holds(falling, settings, engine, [falls]).finding is Finding.FALLS
+    assert solve_by_holds(falling, settings, engine, 1e-6, [falls]).finding is Finding.FALLS
