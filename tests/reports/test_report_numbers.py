@@ -312,6 +312,14 @@ def test_walls_of_one_proportion_make_no_grid():
     assert grid.grids(ComparisonRun("", "", "", items)) == []
 
 
+@pytest.mark.parametrize("methods", [("la-associated",), ("la", "la-associated"), ("fe-qp", "la-associated")])
+def test_a_grid_of_fewer_than_two_main_methods_says_nothing_of_agreement(methods: tuple[str, ...]):
+    kinds = [(length, friction) for length in (0.4, 0.6) for friction in (0.5, 0.8)]
+    cases = [samples.bond(f"wall-{k}", length=length, friction=mu) for k, (length, mu) in enumerate(kinds)]
+    items = [CaseResults(case, [samples.solved(case, name, 0.5) for name in methods]) for case in cases]
+    assert grid.grids(ComparisonRun("", "", "", items)) == []
+
+
 def test_paper_section_tells_what_uneven_blocks_cost():
     case = samples.bond("wall-21")
     item = CaseResults(case, [samples.solved(case, "la", 0.5)])
