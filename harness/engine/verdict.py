@@ -8,6 +8,7 @@ import numpy as np
 
 from harness.model.case import Reference, ReferenceType
 from harness.model.comparison import CaseResults, Gate
+from harness.model.displaced import DisplacedState
 from harness.model.method import Finding, Status
 from harness.model.result import Comparison, Result, Verdict
 
@@ -111,16 +112,17 @@ def theory_gates(results: CaseResults) -> list[Gate]:
     def below(name: str, statement: str, lower: Result, upper: Result | None) -> None:
         if upper is None:
             return
-        value = lower.bracket[0] if lower.traits.brackets and lower.bracket is not None else lower.multiplier
-        if value is None or upper.multiplier is None:
+        value = lower.multiplier if lower.bracket is None else lower.bracket[0]
+        limit = upper.multiplier if upper.bracket is None else upper.bracket[1]
+        if value is None or limit is None:
             return
-        slack = BOUND_TOLERANCE * max(1.0, abs(upper.multiplier))
+        slack = (BOUND_TOLERANCE + lower.traits.held_accuracy) * max(1.0, abs(limit))
         gates.append(
             Gate(
                 name=name,
                 statement=statement,
-                passed=value <= upper.multiplier + slack,
-                sentence=f"{lower.method} {value:.9g}, {upper.method} {upper.multiplier:.9g}",
+                passed=value <= limit + slack,
+                sentence=f"{lower.method} {value:.9g}, {upper.method} {limit:.9g}",
             )
         )
 
@@ -128,7 +130,7 @@ def theory_gates(results: CaseResults) -> list[Gate]:
     least = next((item for item in usable.values() if _is_the_least_known(item)), None)
     for method in sorted(usable):
         result = usable[method]
-        if result.traits.bounds_above:
+        if result.traits.bounds_above or DisplacedState.of(result.details) is not None:
             continue
         if result.traits.brackets:
             statement = "a held state is in equilibrium within yield, so it lies below the associated maximum"

@@ -16,7 +16,7 @@ import scipy.linalg
 
 from harness.model.assembly import FloatArray, IntArray
 from methods.bound.equations import Equations
-from methods.bound.slack_bounds import SlackBounds
+from methods.bound.slack_bounds import EVERY, Case, SlackBounds
 from methods.bound.tuning import ROUNDING
 
 
@@ -32,18 +32,20 @@ class Relaxation:
         lower, upper: (a, c) bounds of the scaled products; -inf and inf where a product is not used.
         row_scale, column_scale: (a,), (c,) factors that make rows of A and B unit vectors.
         n_rows: 4m + 3, rows that are not local.
-        free: (f,) contacts; unloadable: (q,) interfaces; normal: (m,) least normal forces.
+        free: (f,) contacts; unloadable: (q,) interfaces that slip either way; normal: (m,) least normal forces.
     """
 
-    def __init__(self, equations: Equations, low: float, high: float, bounds: SlackBounds) -> None:
-        self.equations, self.low, self.high, self.bounds = equations, low, high, bounds
+    def __init__(self, equations: Equations, low: float, high: float, bounds: SlackBounds, case: Case = EVERY) -> None:
+        self.equations, self.low, self.high, self.bounds, self.case = equations, low, high, bounds, case
         m = equations.n_interfaces
-        still = bounds.least > ROUNDING.margin
+        positive = bounds.least > ROUNDING.margin
         self.normal = bounds.normal_least
-        loaded = (self.normal > ROUNDING.margin) | still.reshape(-1, 4)[:, 2:].any(axis=1)
+        loaded = (self.normal > ROUNDING.margin) | positive.reshape(-1, 4)[:, 2:].any(axis=1)
         self.loaded: IntArray = np.flatnonzero(loaded)
-        self.unloadable: IntArray = np.flatnonzero(~loaded)
-        may = ~still.reshape(-1, 4)
+        held = np.zeros(4 * m, dtype=bool)
+        held[list(case.still)] = True
+        may = ~(positive | held).reshape(-1, 4)
+        self.unloadable: IntArray = np.flatnonzero(~loaded & may[:, 2:].all(axis=1))
         may[self.unloadable, 2:] = False
         self.free: IntArray = np.flatnonzero(may.ravel())
         self.unit_row, self.multiplier_row, self.n_rows = 4 * m, 4 * m + 1, 4 * m + 3
@@ -60,7 +62,8 @@ class Relaxation:
     def _static_rows(self) -> FloatArray:
         equations, m, q = self.equations, self.equations.n_interfaces, self.unloadable
         balance = np.hstack([equations.kinematic.T.toarray(), equations.live[:, None], equations.dead[:, None]])
-        self.statics = scipy.linalg.null_space(balance)
+        tight = equations.slack[sorted(self.case.tight)]
+        self.statics = scipy.linalg.null_space(np.vstack([balance, np.pad(tight, ((0, 0), (0, 2)))]))
         forces, multiplier, unit = self.statics[: 3 * m], self.statics[3 * m], self.statics[3 * m + 1]
         window = [unit, multiplier - self.low * unit, self.high * unit - multiplier]
         difference = equations.friction[q, None] * (forces[3 * q] - forces[3 * q + 1])

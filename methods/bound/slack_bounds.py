@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 import scipy.sparse as sp
@@ -11,6 +11,25 @@ from harness.model.assembly import FloatArray
 from methods.bound.equations import Equations
 from methods.bound.tuning import ROUNDING
 from methods.numerics.linear_programme import INFINITY, Programme
+
+
+@dataclass(frozen=True)
+class Case:
+    """Collapse states of some contacts without slack and some without a rate; in every state a contact is one of both.
+
+    Attributes:
+        tight: contacts 4 p + k whose slack is zero; still: whose rate is zero.
+    """
+
+    tight: frozenset[int] = frozenset()
+    still: frozenset[int] = frozenset()
+
+    def halves(self, contact: int) -> tuple[Case, Case]:
+        """The two cases of a contact, which hold every state of this one."""
+        return replace(self, tight=self.tight | {contact}), replace(self, still=self.still | {contact})
+
+
+EVERY = Case()
 
 
 @dataclass(frozen=True, eq=False)
@@ -49,8 +68,11 @@ class SlackProgramme:
             sp.csc_matrix(sp.vstack([statics, yields])), np.zeros(7 * m + 1), (lower, upper), (right, right)
         )
 
-    def window(self, low: float, high: float) -> None:
-        """Keep multipliers within a window from now on."""
+    def window(self, low: float, high: float, case: Case = EVERY) -> None:
+        """Keep multipliers within a window, and the tight slacks of a case at zero, from now on."""
+        greatest = np.full(4 * self._m, INFINITY)
+        greatest[list(case.tight)] = 0.0
+        self._programme.set_columns(3 * self._m, np.zeros(4 * self._m), greatest)
         self._programme.set_columns(7 * self._m, np.array([low]), np.array([high]))
 
     def least(self, slacks: FloatArray) -> tuple[str, float, FloatArray]:
@@ -59,10 +81,19 @@ class SlackProgramme:
         status, value, dual = self._programme.run()
         return status, float(slacks @ value[3 * self._m : 7 * self._m]), dual[: self._n]
 
-    def bounds(self, low: float, high: float) -> SlackBounds | None:
+    def multiplier(self) -> float:
+        """The least multiplier of the window and the case; inf if no forces within yield exist there."""
+        self._programme.set_costs(0, np.append(np.zeros(7 * self._m), 1.0))
+        status, value, _ = self._programme.run()
+        self._programme.set_costs(7 * self._m, np.zeros(1))
+        if status != "optimal":
+            return np.inf if status == "infeasible" else 0.0
+        return float(value[-1])
+
+    def bounds(self, low: float, high: float, case: Case = EVERY) -> SlackBounds | None:
         """Bounds of all slacks for multipliers from `low` to `high`; None if no forces within yield exist there."""
         m = self._m
-        self.window(low, high)
+        self.window(low, high, case)
         slacks = np.eye(4 * m)
         normals = slacks.reshape(m, 4, 4 * m)[:, :2].sum(axis=1)
         found = [self._all(weights) for weights in (slacks, normals, -normals)]
@@ -72,12 +103,13 @@ class SlackProgramme:
         by_normal = np.maximum(-normal_greatest, 0.0) + ROUNDING.margin
         by_slip = np.zeros(m)
         np.multiply(2.0 * self._friction, by_normal, out=by_slip, where=self._friction > 0.0)
-        greatest = np.column_stack([by_normal, by_normal, by_slip, by_slip])
+        greatest = np.column_stack([by_normal, by_normal, by_slip, by_slip]).ravel()
+        greatest[list(case.tight)] = 0.0
         return SlackBounds(
             np.maximum(least - ROUNDING.margin, 0.0),
             np.maximum(normal_least - ROUNDING.margin, 0.0),
             by_normal,
-            greatest.ravel(),
+            greatest,
             still,
             lower,
             upper,

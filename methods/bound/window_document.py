@@ -12,13 +12,13 @@ import numpy as np
 import scipy.linalg
 
 from harness.model.assembly import FloatArray, IntArray
-from methods.bound.bracket import WindowProof
 from methods.bound.equations import Equations
 from methods.bound.exact_wall import CertificateError, ExactWall
 from methods.bound.relaxation import Relaxation
 from methods.bound.slack_bounds import SlackProgramme
 from methods.bound.tuning import PRECISION, ROUNDING
 from methods.bound.verify_window import WindowLimits
+from methods.bound.window_search import WindowProof
 
 
 @dataclass(frozen=True, eq=False)

@@ -60,6 +60,8 @@ class MujocoHolds:
     title: ClassVar[str] = "distinct elements (MuJoCo, damped holds)"
     tolerance: ClassVar[float] = 1e-4
     traits: ClassVar[Traits] = Traits(
+        # Three times the most that a held state lay above the associated maximum on 45 random walls: contacts give way.
+        held_accuracy=5e-4,
         caption="between held and moving, in MuJoCo",
         brackets=True,
         moves_no_lower=True,

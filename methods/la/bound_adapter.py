@@ -9,11 +9,11 @@ from typing import Any, ClassVar
 
 from harness.model.assembly import Assembly
 from harness.model.method import Answer, Finding, Settings, Status, Traits
-from methods.bound.bracket import Bracket
 from methods.bound.exact_wall import CertificateError
 from methods.bound.same_wall import require_same_wall
 from methods.bound.tuning import PRECISION, WINDOWS
 from methods.bound.verify import verify
+from methods.bound.window_search import Bracket
 from methods.la.certify import certificate
 from methods.la.family import LimitAnalysisFamily
 from methods.la.least import SAME, least_known

@@ -8,11 +8,12 @@ from typing import Any
 import numpy as np
 
 from harness.model.assembly import FloatArray
-from methods.bound.bracket import Bracket, bracket
+from methods.bound.bracket import bracket
 from methods.bound.equations import Equations
 from methods.bound.exact_wall import CertificateError, ExactWall
 from methods.bound.verify import check_state, digest
 from methods.bound.window_document import Certifier, Scales
+from methods.bound.window_search import Bracket
 from methods.la.certify import Fractions, exact_state, wall_document
 from methods.la.problem import Problem
 from methods.la.state import moving_contacts

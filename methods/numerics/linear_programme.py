@@ -63,6 +63,14 @@ class Programme:
         self._row[0][index], self._row[1][index] = lower, upper
         self.highs.changeRowsBounds(len(index), index, lower, upper)
 
+    def set_row(self, row: int, weights: FloatArray) -> None:
+        """New coefficients (columns,) of one row."""
+        rows = self._matrix.tolil()
+        rows[row] = weights
+        self._matrix = rows.tocsc()
+        for column, weight in enumerate(weights.tolist()):
+            self.highs.changeCoeff(row, column, weight)
+
     def set_costs(self, first: int, cost: FloatArray) -> None:
         """New costs of consecutive columns from `first`."""
         index = np.arange(first, first + len(cost), dtype=np.int32)

@@ -3,19 +3,22 @@
 from __future__ import annotations
 
 import itertools
+import time
 
 import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from benchmarks.bounds import small_wall
 from harness.model.assembly import Assembly
-from methods.bound.bracket import bracket
+from methods.bound.bracket import bracket, branched
 from methods.bound.relaxation import Relaxation
 from methods.bound.slack_bounds import SlackProgramme
+from methods.bound.window_search import Bracket, WindowSearch
 from methods.la.bound_adapter import BoundedLimitAnalysis
 from methods.la.newton_matrix import NewtonMatrix
-from methods.la.problem import make_problem
+from methods.la.problem import Problem, make_problem
 from methods.la.search import Search
 from methods.la.settings import BoundSettings
 from methods.la.window_certificate import equations_of
@@ -36,6 +39,50 @@ def test_the_bound_passes_no_mechanism_of_all(blocks: list[tuple[float, float]],
     least = least_by_enumeration(wall) / problem.unit_multiplier
     found = bracket(equations_of(problem), above * least, 0.3)
     # Enumeration and bound both come from linear programmes with tolerances of 1e-7 and less.
+    assert found.lower <= least * (1.0 + 1e-6)
+
+
+def in_cases(problem: Problem, upper: float, seconds: float) -> Bracket:
+    """The bracket of one window and, from there, of cases of contacts only."""
+    equations, until = equations_of(problem), time.process_time() + seconds
+    root = WindowSearch(equations, SlackProgramme(equations), Bracket(0.0, upper), until)
+    root.window()
+    return branched(root)
+
+
+@settings(max_examples=8, deadline=None, derandomize=True)
+@given(
+    st.lists(st.tuples(st.floats(0.2, 1.5), st.floats(0.1, 1.0)), min_size=1, max_size=2),
+    st.floats(0.1, 1.5),
+    st.floats(1.0, 1.3),
+)
+def test_the_bound_by_cases_passes_no_mechanism_of_all(
+    blocks: list[tuple[float, float]], friction: float, above: float
+) -> None:
+    wall = column([width for width, _ in blocks], [height for _, height in blocks], friction)
+    problem = make_problem(wall)
+    least = least_by_enumeration(wall) / problem.unit_multiplier
+    assert in_cases(problem, above * least, 0.3).lower <= least * (1.0 + 1e-6)
+
+
+IRREGULAR = 0.20764497636585685
+"""Least multiplier of the irregular wall of seed 10, at which windows alone stall .2 % below."""
+
+
+@pytest.mark.slow
+def test_cases_close_the_bracket_of_an_irregular_wall() -> None:
+    problem = make_problem(small_wall(10))
+    found = in_cases(problem, IRREGULAR / problem.unit_multiplier, 60.0)
+    assert found.closed
+    assert found.branches > 0
+
+
+def test_no_case_loses_a_state() -> None:
+    # From an upper end that is no state, a bound that lost the state in one of the cases would pass it.
+    problem = make_problem(small_wall(10))
+    least = IRREGULAR / problem.unit_multiplier
+    found = in_cases(problem, 1.05 * least, 3.0)
+    assert found.branches > 0
     assert found.lower <= least * (1.0 + 1e-6)
 
 

@@ -11,6 +11,7 @@ import time
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import psutil
 import pytest
 
@@ -21,6 +22,7 @@ from harness.engine.store import Store, open_store
 from harness.engine.verdict import compare, theory_gates
 from harness.model.case import Reference
 from harness.model.comparison import CaseResults, ComparisonRun
+from harness.model.displaced import DisplacedState
 from harness.model.errors import InputError
 from harness.model.method import Finding, Status, Traits
 from harness.model.result import Judgement, Result, Verdict
@@ -123,6 +125,18 @@ def test_theory_gates_hold_and_break():
     assert gates(associated, result("de", 0.62, bracket=(0.61, 0.63)))["de-held-below-associated"] is False
     rejected = result("fe", 0.9, judge=Judgement(accepted=False))
     assert "fe-below-associated" not in gates(associated, rejected)
+
+
+def test_a_bracket_breaks_a_gate_with_the_end_that_is_shown_only():
+    associated = result("la-associated", 0.6)
+    assert gates(associated, result("fe-qp", 0.6001, bracket=(0.5998, 0.6004)))["fe-qp-below-associated"] is True
+    assert gates(result("la", 0.6), result("fe-qp", 0.5999, bracket=(0.5996, 0.6002)))["la-below-fe-qp"] is True
+    assert gates(result("la", 0.61), result("fe-qp", 0.5999, bracket=(0.5996, 0.6002)))["la-below-fe-qp"] is False
+
+
+def test_no_gate_of_the_wall_as_drawn_holds_for_a_state_that_has_moved_far():
+    moved = result("de-closed", 0.7, bracket=(0.69, 0.71), details=DisplacedState(*[np.zeros(0)] * 6).as_details())
+    assert gates(result("la-associated", 0.6), moved) == {}
 
 
 def test_no_method_may_hold_a_wall_that_has_no_equilibrium():

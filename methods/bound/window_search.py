@@ -1,0 +1,236 @@
+"""Windows on the multiplier one after another, each with its relaxation, until the bound meets the state."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from harness.model.assembly import FloatArray
+from methods.bound.dual import DualBound
+from methods.bound.equations import Equations
+from methods.bound.halpern import Splitting, carried_over
+from methods.bound.rate_bounds import RateProgramme
+from methods.bound.relaxation import Relaxation
+from methods.bound.slack_bounds import EVERY, Case, SlackBounds, SlackProgramme
+from methods.bound.tuning import ROUNDING, STEPS, WINDOWS
+
+
+@dataclass(frozen=True, eq=False)
+class WindowProof:
+    """What proves the bound of one window, in floats.
+
+    Attributes:
+        relaxation: of the window.
+        size, multiplier: multipliers of its products that bound the size of mechanisms, and the multiplier.
+        greatest: size of mechanisms that they leave; bound: multiplier below which they leave no collapse state.
+    """
+
+    relaxation: Relaxation
+    size: FloatArray
+    multiplier: FloatArray
+    greatest: float
+    bound: float
+
+
+@dataclass
+class Bracket:
+    """What is known of the least multiplier.
+
+    Attributes:
+        lower: no collapse state has a smaller multiplier, to rounding; upper: multiplier of a collapse state.
+        windows: lower ends of the windows, in order.
+        iterations: of the splitting.
+        proofs: of the windows, in order.
+        branches: contacts at which windows that had no more to give were divided; not covered by `proofs`.
+    """
+
+    lower: float
+    upper: float
+    windows: list[float] = field(default_factory=list)
+    iterations: int = 0
+    proofs: list[WindowProof] = field(default_factory=list)
+    branches: int = 0
+
+    @property
+    def closed(self) -> bool:
+        """Whether both ends agree to `Windows.closed`."""
+        return self.lower >= self.upper * (1.0 - WINDOWS.closed)
+
+
+Certify = Callable[[WindowProof, float], float]
+"""What exact arithmetic leaves of the bound of a window, and how much of it is needed."""
+
+
+class WindowSearch:
+    """The windows of one bracket, with what each hands to the next.
+
+    In a case of contacts that are tight or still, virtual work decides more of them before the relaxation is built.
+    """
+
+    def __init__(
+        self,
+        equations: Equations,
+        slacks: SlackProgramme,
+        found: Bracket,
+        until: float,
+        certify: Certify | None = None,
+        case: Case = EVERY,
+    ) -> None:
+        self.equations, self.found, self.until, self.case = equations, found, until, case
+        self._slacks, self._certify = slacks, certify
+        self._rates: RateProgramme | None = None
+        self._began = time.process_time()
+        self._runs: dict[str, Splitting] = {}
+        self._relaxation: Relaxation | None = None
+        self._slow = False
+        self._size = np.inf
+        self._size_products: FloatArray | None = None
+
+    def part(self, case: Case) -> WindowSearch:
+        """The search of a part of the states of this one, which begins where this one is."""
+        known = Bracket(self.found.lower, self.found.upper)
+        part = WindowSearch(self.equations, self._slacks, known, self.until, None, case)
+        part._runs = dict(self._runs)
+        part._rates = self._rates or RateProgramme(self.equations)
+        return part
+
+    def undecided(self) -> int | None:
+        """The contact whose slack and rate do most work in the present iterate; None if all are decided."""
+        run = self._runs["multiplier"]
+        relaxation, m = run.relaxation, self.equations.n_interfaces
+        slack, rate = np.zeros(4 * m), np.zeros(4 * m)
+        if run.iterate.size:
+            products = relaxation.project(run.iterate) / relaxation.row_scale[:, None] / relaxation.column_scale
+            motion = products[relaxation.unit_row]
+            slip = motion[relaxation.lift_column + 1 :]
+            slack, rate[relaxation.free] = products[: 4 * m, relaxation.work_column], motion[: len(relaxation.free)]
+            rate[4 * relaxation.unloadable + 2], rate[4 * relaxation.unloadable + 3] = slip, -slip
+        decided = (relaxation.bounds.least > ROUNDING.margin) | (relaxation.bounds.greatest <= ROUNDING.margin)
+        decided[list(self.case.tight | self.case.still)] = True
+        work = np.where(decided, -np.inf, np.maximum(slack, 0.0) * np.maximum(rate, 0.0))
+        return None if decided.all() else int(work.argmax())
+
+    def window(self) -> bool:
+        """Bound the multipliers of one window, or go on with the last one; whether another may gain more."""
+        found, last = self.found, self._relaxation is not None and self._is_last(self._relaxation)
+        unfinished = self._relaxation is not None and not np.isfinite(self._size)
+        if not last and not unfinished and not self._build():
+            found.lower = found.upper
+            return False
+        before = found.lower
+        if not np.isfinite(self._size):
+            self._bound_size()
+        if not np.isfinite(self._size):
+            return self._rates is None
+        stalled = self._bound_multiplier()
+        if self._certify is not None and found.lower > before:
+            needed = found.lower - WINDOWS.below * (found.upper - found.lower)
+            found.lower = min(found.lower, max(before, self._certify(found.proofs[-1], needed)))
+        if self._slow and found.lower - before < WINDOWS.gain * (found.upper - before):
+            return False
+        return found.lower - before > 1e-3 * (found.upper - before) or not (stalled and last)
+
+    def _is_last(self, relaxation: Relaxation) -> bool:
+        return self.found.upper - relaxation.low < WINDOWS.narrow * self.found.upper
+
+    def _build(self) -> bool:
+        """Build the relaxation of the present bracket; False if no forces within yield exist in it."""
+        found, high = self.found, self.found.upper * (1.0 + WINDOWS.above)
+        bounds = self._slacks.bounds(found.lower, high, self.case)
+        if bounds is not None and self._rates is not None:
+            bounds = self._tightened(self._rates, high, bounds)
+        low = found.lower
+        if bounds is None or found.closed:
+            return False
+        new = Relaxation(self.equations, low, high, bounds, self.case)
+        costs: dict[str, FloatArray] = {"size": new.size_cost(), "multiplier": new.multiplier_cost()}
+        for name, cost in costs.items():
+            run = Splitting(new, cost, STEPS[name].first, STEPS[name].least)
+            before = self._runs.get(name)
+            if before is not None and before.iterate.size:
+                run.step = before.step
+                run.iterate = carried_over(new, before.relaxation, before.iterate, run.step)
+            self._runs[name] = run
+        self._relaxation, self._size = new, np.inf
+        found.windows.append(low)
+        return True
+
+    def _tightened(self, rates: RateProgramme, high: float, bounds: SlackBounds) -> SlackBounds | None:
+        """Decide contacts by virtual work and raise the bound by statics and by virtual work alone."""
+        found: SlackBounds | None = bounds
+        while found is not None:
+            before = self.case
+            decided = rates.decided(high, found, before)
+            if decided is None:
+                return None
+            self.case = decided
+            self._slacks.window(self.found.lower, high, decided)
+            least = max(self._slacks.multiplier(), rates.multiplier()) - ROUNDING.programme
+            self.found.lower = min(max(self.found.lower, least), self.found.upper)
+            if decided.tight == before.tight or self.found.closed:
+                return found
+            found = self._slacks.bounds(self.found.lower, high, decided)
+        return None
+
+    def _bound_size(self) -> None:
+        """Bound the size of this window's mechanisms, to within `Windows.size` times the relaxation's own value."""
+        spent = time.process_time() - self._began
+
+        def stop(bound: DualBound | None, primal: float) -> bool:
+            if bound is None:
+                return False
+            size = bound.greatest_size()
+            if size < self._size:
+                self._size, self._size_products = size, bound.products
+            return self._size < WINDOWS.size * max(abs(bound.value), 1e-9)
+
+        self._run("size", max(5.0, 0.25 * spent), stop)
+
+    def _bound_multiplier(self) -> bool:
+        """Bound the multipliers of this window; whether the relaxation has no more to give."""
+        found, relaxation = self.found, self._runs["multiplier"].relaxation
+        start, last = found.lower, self._is_last(relaxation)
+        run = self._runs["multiplier"]
+        agreeing, mark, since = 0, found.upper - found.lower, run.iterations
+        patience = WINDOWS.patience if self._rates is None else WINDOWS.patience_of_parts
+        self._slow = False
+
+        def stop(bound: DualBound | None, primal: float) -> bool:
+            nonlocal agreeing, mark, since
+            if found.upper - found.lower < (1.0 - WINDOWS.gain) * mark:
+                mark, since = found.upper - found.lower, run.iterations
+            self._slow = run.iterations - since > max(patience, WINDOWS.share * run.iterations)
+            if bound is None or self._slow:
+                return self._slow
+            before, gap = found.lower, found.upper - found.lower
+            self._keep(relaxation, bound)
+            gained = found.lower > start + WINDOWS.gain * (found.upper - start)
+            fast = found.lower > before + WINDOWS.gain * gap
+            if found.lower >= found.upper * (1.0 - WINDOWS.finished) or (gained and not fast and not last):
+                return True
+            close = 0.05 * (found.upper - found.lower)
+            ends = (relaxation.low + primal - found.lower, primal - bound.value)
+            agreeing += found.lower > start and max(map(abs, ends)) < close
+            return agreeing >= 5
+
+        self._run("multiplier", np.inf, stop)
+        return agreeing >= 5
+
+    def _keep(self, relaxation: Relaxation, bound: DualBound) -> None:
+        """Raise the bound to what the dual of this window proves, and keep the dual."""
+        found, lower = self.found, relaxation.low + bound.of(self._size)
+        if lower <= found.lower or self._size_products is None:
+            return
+        if found.proofs and found.proofs[-1].relaxation is relaxation:
+            found.proofs.pop()
+        found.proofs.append(WindowProof(relaxation, self._size_products, bound.products, self._size, lower))
+        found.lower = min(lower, found.upper)
+
+    def _run(self, name: str, seconds: float, stop: Callable[[DualBound | None, float], bool]) -> None:
+        run, before = self._runs[name], self._runs[name].iterations
+        run.run(min(self.until, time.process_time() + seconds), stop)
+        self.found.iterations += run.iterations - before
+        run.step = max(run.step, STEPS[name].later)
