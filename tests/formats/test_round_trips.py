@@ -31,6 +31,7 @@ from harness.model.method import load_method
 from harness.model.result import Result, result_of
 from harness.model.wall import Wall
 
+DATA = Path(__file__).parents[1] / "data"
 WALL = flemish(length=1.0, height=0.45)
 SAID = Mapping(units="m", friction=0.6, unit_weight=20.0, thickness=0.25, live=(1.0, 0.0))
 
@@ -219,6 +220,19 @@ def test_blocks_in_a_graph_are_read_as_compas_writes_them(tmp_path: Path) -> Non
     assert assembly.fixed.tolist() == [True, False, False]
     assert assembly.n_interfaces == 2
     assert assembly.weight[1:] == pytest.approx([20.0 * 0.25 * 2.0, 20.0 * 0.25 * size**2])
+
+
+@pytest.mark.parametrize("name", ["compas_assembly", "compas_dem-contacts", "compas_dem-placed"])
+def test_files_that_packages_of_compas_wrote_are_read_with_their_supports(name: str) -> None:
+    """Three courses written by compas_assembly 0.7.1 and compas_dem 0.6.0: as drawn, with contacts, with placed boxes."""
+    wall = import_drawing(DATA / "compas" / f"{name}.json", SAID).wall
+    assembly = build(wall).assembly
+    assert assembly.fixed.tolist() == [True, False, False, False, False]
+    # Two stones on the ground beside each other, two above: three beds of half a stone or more, and head joints.
+    assert sorted(assembly.joint).count("head") == 2
+    method = load_method("la-associated")
+    # All of it slides on the ground, whose friction is .6.
+    assert method.solve(assembly, method.Settings()).multiplier == pytest.approx(0.6, abs=1e-9)
 
 
 @pytest.mark.parametrize("suffix", [".npz", ".mat"])
