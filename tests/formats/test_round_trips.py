@@ -224,7 +224,7 @@ def test_blocks_in_a_graph_are_read_as_compas_writes_them(tmp_path: Path) -> Non
 
 @pytest.mark.parametrize("name", ["compas_assembly", "compas_dem-contacts", "compas_dem-placed"])
 def test_files_that_packages_of_compas_wrote_are_read_with_their_supports(name: str) -> None:
-    """Three courses written by compas_assembly 0.7.1 and compas_dem 0.6.0: as drawn, with contacts, with placed boxes."""
+    """Three courses by compas_assembly 0.7.1 and compas_dem 0.6.0: as drawn, with contacts, with placed boxes."""
     wall = import_drawing(DATA / "compas" / f"{name}.json", SAID).wall
     assembly = build(wall).assembly
     assert assembly.fixed.tolist() == [True, False, False, False, False]
