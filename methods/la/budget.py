@@ -22,7 +22,6 @@ class Limits:
         failures, draws: draws without a lower value that end a descent, and draws of one at most.
         descents: lowest states of each source, and of each rung, that are descended from.
         ladder: factors on friction of the rungs.
-        mechanisms: drawn without regard to forces.
         nodes: of the tree that may prove the least state.
         leaves: of a tree that does not come to an end, which are bounded to rounding: 8 ms each on 10 interfaces. The
             first hundred prove a bound on walls of three blocks; 2x2 bricks need 600 for one of .03 where .65 is known.
@@ -37,7 +36,6 @@ class Limits:
     draws: int = 200
     descents: int = 1
     ladder: tuple[float, ...] = ()
-    mechanisms: int = 0
     nodes: int = 0
     leaves: int = 100
     programmes: int = 50_000
@@ -56,8 +54,8 @@ class Sizes:
     """The sizes at which the budget of normal effort changes, so that the time grows slowly, and what it is there.
 
     Attributes:
-        few_blocks, some_blocks, many_blocks: up to the first everything is tried, up to the second a third of it; up to
-            the last one random start is left.
+        few_blocks, some_blocks: up to the first the whole ladder and three descents a source are tried, up to the next
+            half the rungs and one; above, no rungs but those of rough joints, and longer descents.
         descended: interfaces up to which states are descended from; above, a draw takes a second and more.
         provable, provable_ring: interfaces up to which a proof is tried, and those of walls with at most two more
             interfaces than blocks. With more, hardly any tree of 1,500 nodes comes to an end.
@@ -66,7 +64,6 @@ class Sizes:
 
     few_blocks: int = 30
     some_blocks: int = 60
-    many_blocks: int = 150
     descended: int = 1000
     provable: int = 16
     provable_ring: int = 30
@@ -82,14 +79,14 @@ class Sizes:
         if effort == "quick":
             return Limits(0, 8, 200, descents, nodes=min(nodes, 100), kinks=300, unbounded_kinks=300)
         if effort == "deep":
-            drawn, nodes = (1000 if blocks <= self.some_blocks else 50), (20000 if interfaces <= 2 * most else 0)
-            return Limits(20, 40, 200, 8, self.fine_ladder, drawn, nodes, nodes, 1_000_000, 1e7, 100_000, 100_000)
+            nodes = 20000 if interfaces <= 2 * most else 0
+            return Limits(20, 40, 200, 8, self.fine_ladder, nodes, nodes, 1_000_000, 1e7, 100_000, 100_000)
         if blocks <= self.few_blocks:
-            return Limits(3, 12, 200, 3, self.ladder, 60, nodes)
+            return Limits(0, 12, 200, 3, self.ladder, nodes)
         if blocks <= self.some_blocks:
-            return Limits(1, 12, 200, 1, self.ladder[::2], 20, nodes)
+            return Limits(0, 12, 200, 1, self.ladder[::2], nodes)
         if descents:
-            return Limits(int(blocks <= self.many_blocks), 40, kinks=20_000, unbounded_kinks=20_000)
+            return Limits(0, 40, kinks=20_000, unbounded_kinks=20_000)
         return Limits(0, 40, descents=0, kinks=60_000, unbounded_kinks=1)
 
 

@@ -15,6 +15,8 @@ from methods.la.search import Search
 from methods.la.settings import SearchSettings
 from methods.la.sources import SOURCES, explore
 from methods.la.sources.paths import CentralPath
+from methods.la.sources.springs import LittleSelfStress
+from methods.numerics.failures import SingularMatrix
 from tests.la.bodies import column, running_bond
 
 
@@ -39,7 +41,7 @@ def test_answer_is_not_above_what_one_source_alone_leads_to() -> None:
     wall = running_bond(6, 3, 0.2, 1.0)
     whole = LimitAnalysis().solve(wall, SearchSettings())
     for source in SOURCES:
-        search = search_of(wall, kinks=200, ladder=(0.75,), mechanisms=5)
+        search = search_of(wall, kinks=200, ladder=(0.75,), starts=1)
         explore(search, [source])
         assert whole.multiplier is not None
         assert search.problem.to_multiplier(search.record.least) >= whole.multiplier - 1e-9
@@ -95,10 +97,22 @@ def test_fault_in_a_routine_is_not_taken_for_a_failure_of_numerics(
         LimitAnalysis().solve(running_bond(6, 3, 0.2, 0.65), SearchSettings(effort="quick"))
 
 
+def test_singular_matrix_ends_one_source_and_not_the_search(monkeypatch: pytest.MonkeyPatch) -> None:
+    def singular(*_: Any, **__: Any) -> Any:
+        raise SingularMatrix("made up")
+
+    monkeypatch.setattr("methods.la.search.follow_path", singular)
+    answer = LimitAnalysis().solve(running_bond(6, 3, 0.2, 0.65), SearchSettings(effort="quick"))
+    assert answer.multiplier is not None
+    found = {row["source"]: row["states"] for row in answer.details["sources"]}
+    assert found[LittleSelfStress.name] >= 1
+    assert CentralPath.name not in found
+
+
 def test_larger_walls_are_given_no_more_draws() -> None:
     walls = [make_problem(running_bond(courses, 5, 0.175, 0.65)) for courses in (4, 10, 14, 40)]
     for effort in ("quick", "normal"):
         limits = [Sizes().limits(effort, problem) for problem in walls]
-        for counted in ("starts", "descents", "mechanisms", "nodes"):
+        for counted in ("starts", "descents", "nodes"):
             counts = [getattr(limit, counted) for limit in limits]
             assert counts == sorted(counts, reverse=True)

@@ -3,15 +3,17 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from contextlib import suppress
 from dataclasses import replace
 
 from methods.la.search import Search
 from methods.la.sources.arcs import ArcPaths
-from methods.la.sources.blocks import DrawnMechanisms, JoinedBlocks, SingleBlocks
+from methods.la.sources.blocks import JoinedBlocks, SingleBlocks
 from methods.la.sources.ladder import FrictionLadder
-from methods.la.sources.paths import CentralPath, LaggedFriction, NearAssociated, RandomStarts, SmootherJoints
+from methods.la.sources.paths import CentralPath, LaggedFriction, RandomStarts, SmootherJoints
 from methods.la.sources.source import Source
 from methods.la.sources.springs import CentralForces, LittleSelfStress, SafeForces
+from methods.numerics.failures import SingularMatrix
 
 __all__ = ["SOURCES", "Source", "explore"]
 
@@ -20,7 +22,6 @@ SOURCES: tuple[Source, ...] = (
     SafeForces(least=1001, most=6000),
     SmootherJoints(factors=(0.6, 0.0)),
     CentralPath(most=1000),
-    NearAssociated(),
     RandomStarts(),
     FrictionLadder(),
     ArcPaths(),
@@ -28,7 +29,6 @@ SOURCES: tuple[Source, ...] = (
     CentralPath(anyway=False),
     LittleSelfStress(),
     SingleBlocks(),
-    DrawnMechanisms(),
     SafeForces(),
     CentralForces(),
     JoinedBlocks(),
@@ -49,8 +49,9 @@ def explore(search: Search, sources: Sequence[Source] = SOURCES) -> None:
         if not source.applies(search.problem):
             continue
         with search.record.trying(source.name, search.budget.spent) as tried:
-            for state in source.states(search):
-                search.note(state)
-                tried.states.append(state)
+            with suppress(SingularMatrix):  # It ends one source, not the search.
+                for state in source.states(search):
+                    search.note(state)
+                    tried.states.append(state)
             for end in search.descend_from(tried.states):
                 tried.ends.append(end)

@@ -17,7 +17,7 @@ from methods.la.region import Region, in_whole, moving_region
 from methods.la.search import Search
 from methods.la.state import CollapseState
 from methods.la.unloaded import smoothed
-from methods.numerics.failures import NumericalFailure
+from methods.numerics.failures import SingularMatrix
 
 
 @dataclass(frozen=True)
@@ -74,7 +74,7 @@ class ArcPaths:
             known = search.record.known
             if (known and lead in self.far and not far_only) or not search.budget.steps_left(known):
                 return
-            with suppress(NumericalFailure):  # A matrix singular to rounding ends one lead, not the search.
+            with suppress(SingularMatrix):  # It ends one lead, not the search.
                 state = _end_of(lead, search, region)
                 if state is not None:
                     yield state

@@ -1,12 +1,10 @@
-"""States sought from mechanisms: of single blocks, drawn from all there are, and of all moving blocks as one body."""
+"""States sought from mechanisms: of single blocks, and of all moving blocks as one body."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import ClassVar
-
-import numpy as np
 
 from methods.la.mechanisms import motions_of
 from methods.la.problem import Problem
@@ -41,35 +39,6 @@ class SingleBlocks:
                 state = search.state_of(velocities, problem.rates_of_velocities(velocities, False))
                 if state is not None:
                     yield state
-
-
-@dataclass(frozen=True)
-class DrawnMechanisms:
-    """Extreme mechanisms drawn without regard to forces, as many as the budget says.
-
-    Attributes:
-        heavy: power of the exponential costs of rates: a mechanism moves in the few contacts that cost next to nothing.
-    """
-
-    name: ClassVar[str] = "drawn mechanisms"
-    heavy: int = 6
-
-    def applies(self, problem: Problem) -> bool:
-        """On joints that slide without lifting."""
-        return not problem.dilates
-
-    def states(self, search: Search) -> Iterator[CollapseState]:
-        """One state a mechanism that forces fit."""
-        shape = (search.problem.n_interfaces, 4)
-        for _ in range(min(search.budget.limits.mechanisms, search.budget.programmes)):
-            search.budget.spent.programmes += 1
-            cost = search.generator.exponential(size=shape) ** self.heavy
-            mechanism = search.kinematic.solve(np.ones(shape, dtype=bool), cost)
-            if mechanism is None:
-                return
-            state = search.state_of(mechanism.velocities, mechanism.rates)
-            if state is not None:
-                yield state
 
 
 @dataclass(frozen=True)

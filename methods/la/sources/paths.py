@@ -12,7 +12,7 @@ from methods.la.problem import Problem
 from methods.la.search import Search
 from methods.la.state import CollapseState
 from methods.la.unloaded import smoothed
-from methods.numerics.failures import NumericalFailure
+from methods.numerics.failures import SingularMatrix
 
 
 @dataclass(frozen=True)
@@ -82,33 +82,6 @@ class CentralPath:
 
 
 @dataclass(frozen=True)
-class NearAssociated:
-    """The mechanism without dilatancy nearest to the forces of the associated one.
-
-    Attributes:
-        up_to: interfaces up to which it is tried; above it led to high states only, and is tried where none is known.
-        most: interfaces above which it is not tried at all.
-    """
-
-    name: ClassVar[str] = "associated forces"
-    up_to: int = 400
-    most: int = 1000
-
-    def applies(self, problem: Problem) -> bool:
-        """Where vertices of the mechanism are quick to find."""
-        return problem.n_interfaces <= self.most
-
-    def states(self, search: Search) -> Iterator[CollapseState]:
-        """One state."""
-        associated = search.associated.state
-        if associated is None or (search.problem.n_interfaces > self.up_to and search.record.known):
-            return
-        state = search.nearest_state(search.problem.slacks(associated.forces))
-        if state is not None:
-            yield state
-
-
-@dataclass(frozen=True)
 class RandomStarts:
     """Central paths from random starts, as many as the budget says.
 
@@ -133,33 +106,29 @@ class RandomStarts:
 
 @dataclass(frozen=True)
 class LaggedFriction:
-    """Paths with friction bounds that lag behind, where Newton's path stalls (`methods.la.lagged`).
+    """Paths with friction bounds that lag behind, where nothing else led to a state (`methods.la.lagged`).
 
     Attributes:
         attempts: Newton steps with lagged bounds and how fast the bounds follow, tried until one leads to a state.
-        least, most: interfaces between which one is tried though a state is known.
-        above: interfaces above which none is tried: the paths stall.
+        most: interfaces above which none is tried: the paths stall.
     """
 
     name: ClassVar[str] = "lagged friction bounds"
-    attempts: tuple[tuple[int, float], ...] = ((100, 0.6), (80, 0.3), (120, 0.15))
-    least: int = 400
-    most: int = 1000
-    above: int = 6000
+    attempts: tuple[tuple[int, float], ...] = ((80, 0.3), (120, 0.15), (100, 0.6))
+    most: int = 6000
 
     def applies(self, problem: Problem) -> bool:
         """On joints that slide without lifting."""
-        return problem.n_interfaces <= self.above and not problem.dilates
+        return problem.n_interfaces <= self.most and not problem.dilates
 
     def states(self, search: Search) -> Iterator[CollapseState]:
         """One state at most."""
-        anyway = self.least < search.problem.n_interfaces <= self.most
-        if search.record.known and not anyway:
+        if search.record.known:
             return
-        for steps, follow in self.attempts[:1] if search.record.known else self.attempts:
+        for steps, follow in self.attempts:
             try:
                 path, spent = lagged_mechanism(search.problem, search.newton, steps, follow)
-            except NumericalFailure:
+            except SingularMatrix:
                 continue
             state, more = exact_state(search.problem, search.newton, path)
             search.stepped(spent + more)
