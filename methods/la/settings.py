@@ -37,8 +37,8 @@ class SearchSettings(Settings):
 
     Attributes:
         seed: of all random draws.
-        effort: "quick" one start; "normal" a few starts and continuation in friction, less of both on large walls;
-            "deep" many of each whatever the size.
+        effort: "quick" few paths and descents; "normal" continuation in friction too, less of it on large walls; "deep"
+            much of everything, and random starts, whatever the size.
         starts: random interior starts; None as `effort` says.
         ladder: factors on friction for the continuation, in order; None as `effort` says, empty for none.
         failures: draws without success that end a ray descent; None as `effort` says.
