@@ -50,6 +50,14 @@ def multiplier(value: float | None, known: int | None = None) -> str:
     return plain(value, max(1, min(5, known + 1 + math.floor(math.log10(abs(value))))))
 
 
+def at_point(text: str) -> tuple[str, str] | None:
+    """What stands before the decimal point, and the rest from the point on; None of anything but a plain number."""
+    whole, point, rest = text.partition(".")
+    if not whole.removeprefix("−").isdigit() or (point and not rest.isdigit()):
+        return None
+    return whole, point + rest
+
+
 def interval(pair: tuple[float, float] | list[float] | None) -> str:
     """Both ends of a bracket, or a dash."""
     return NOTHING if pair is None else f"[{plain(pair[0])}, {plain(pair[1])}]"

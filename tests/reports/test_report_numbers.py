@@ -32,6 +32,21 @@ def test_plain_numbers_have_sensible_digits(value: float, text: str):
 
 
 @pytest.mark.parametrize(
+    ("text", "parts"),
+    [
+        ("0.47619", ("0", ".47619")),
+        ("−11.306", ("−11", ".306")),
+        ("12", ("12", "")),
+        ("[0.41, 0.54]", None),
+        ("3.20×10⁻¹⁶", None),
+        ("–", None),
+    ],
+)
+def test_plain_numbers_are_parted_at_the_point_and_nothing_else_is(text: str, parts: tuple[str, str] | None):
+    assert numbers.at_point(text) == parts
+
+
+@pytest.mark.parametrize(
     ("value", "text"),
     [(6.7e-5, "67 µs"), (0.057, "57 ms"), (0.9996, "1 s"), (12.34, "12.3 s"), (600.0, "10 min"), (7300.0, "2.03 h")],
 )
