@@ -221,7 +221,9 @@ class MujocoWall:
         Raises:
             SolverFailed: the blocks were thrown apart.
         """
-        self._mujoco.mj_step(self._model, self._data, nstep=steps)
+        # One call a step, so that the alarm of a time limit is heard between them: walls take 5 ms for each.
+        for _ in range(steps):
+            self._mujoco.mj_step(self._model, self._data)
         self.steps += steps
         if self._was_reset() or not float(np.abs(self._data.qvel).max(initial=0.0)) * self._drag < EXPLODED:
             raise SolverFailed("MuJoCo's contact solver did not converge: blocks were thrown apart")

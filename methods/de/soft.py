@@ -197,7 +197,12 @@ class DeformableJoints:
     def _with_joints(self, assembly: Assembly, settings: SoftSettings, stiffness: float, round_by: float) -> Answer:
         """The answer with joints of one stiffness [force/length^2], corners rounded by so much where nothing is set."""
         rounding = settings.rounding or round_by
-        wall = SoftWall(assembly, stiffness, settings.shear_ratio, rounding)
+        try:
+            wall = SoftWall(assembly, stiffness, settings.shear_ratio, rounding)
+        except OutOfTime:
+            sentence = f"whether the dead load is held was not decided: {STOPPED}"
+            details = {"stopped_by_limit": True, "lean": None}
+            return Answer(Status.NOT_CONVERGED, Finding.NONE, sentence, details=details)
         holds = Holds(wall, settings)
         joints = _described(wall, stiffness, settings.shear_ratio)
         try:

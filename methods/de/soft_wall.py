@@ -26,6 +26,8 @@ from methods.numerics.compiled import compiled
 
 TIME_STEP = 0.5
 """Time step; with masses of a quarter of the stiffness around a block the fastest oscillation takes 4.4."""
+HEARD = 20
+"""Time steps made in one call: at 6,000 interfaces 20 take some 10 ms, and what a call costs is far less."""
 DAMPING = 0.8
 """Force of the damping as a share of the force out of balance (Cundall 1987)."""
 
@@ -155,7 +157,11 @@ class SoftWall:
         wall = self.assembly
         self.steps += steps
         moving = self.places, self._velocity, self.shear
-        worst = _advance(*moving, self.contacts, wall.centroid, self._loads, self._mass, wall.length_scale, steps)
+        worst = 0.0
+        # One call a few steps, so that the alarm of a time limit is heard between them.
+        for done in range(0, steps, HEARD):
+            some = min(HEARD, steps - done)
+            worst = _advance(*moving, self.contacts, wall.centroid, self._loads, self._mass, wall.length_scale, some)
         return float(worst) / self._unit
 
     def state(self) -> DisplacedState:
