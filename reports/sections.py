@@ -30,6 +30,7 @@ class Panel:
         mechanism, forces: whether there is something to draw.
         flow: what the mechanism is, for the caption.
         states: how many interfaces move in which way, in words.
+        origin: which source of a search found it, and when; or nothing.
         beside: joints drawn as open that carry force, and why; or nothing.
         forces_are: what the forces are, for the caption.
         still: the mechanism for pages without scripts; empty for large walls.
@@ -41,6 +42,7 @@ class Panel:
     forces: bool
     flow: str
     states: str
+    origin: str
     beside: str
     forces_are: str
     still: Markup
@@ -114,6 +116,7 @@ def case_section(
                 forces=result.forces is not None and fields == "all",
                 flow=FLOW.get(result.flow, result.flow),
                 states=_states(item.case, result),
+                origin=origin(result),
                 beside=_forces_beside(item.case, result) if fields == "all" else "",
                 forces_are=_forces_are(result),
                 still=_still(item.case, result, fields),
@@ -181,6 +184,17 @@ def _still(case: Case, result: Result, fields: str) -> Markup:
     if result.mechanism is None or fields == "none" or case.assembly.n_blocks > STILL_BLOCKS:
         return Markup("")
     return mechanisms_svg(case, result)
+
+
+def origin(result: Result) -> str:
+    """Which source of a search found the state, and when, of methods whose details keep their `improvements`."""
+    improvements = result.details.get("improvements")
+    last = improvements[-1] if isinstance(improvements, list) and improvements else None
+    if not isinstance(last, dict) or not isinstance(last.get("source"), str):
+        return ""
+    spent = last.get("cpu_seconds")
+    after = f" after {numbers.seconds(float(spent))} of CPU time" if isinstance(spent, int | float) else ""
+    return f"found by “{last['source']}”{after}"
 
 
 def _forces_are(result: Result) -> str:

@@ -11,7 +11,20 @@ from harness.model.comparison import CaseResults, ComparisonRun
 from harness.model.displaced import carried, released
 from harness.model.method import Status
 from harness.model.result import Verdict
-from reports import agreement, charts, curves, drawing, families, grid, numbers, paper, shapes, studies, tables
+from reports import (
+    agreement,
+    charts,
+    curves,
+    drawing,
+    families,
+    grid,
+    numbers,
+    paper,
+    sections,
+    shapes,
+    studies,
+    tables,
+)
 from tests.reports import samples
 
 
@@ -348,3 +361,11 @@ def test_paper_section_tells_what_uneven_blocks_cost():
     assert told is not None
     assert untold is not None
     assert (told.imperfection, untold.imperfection) == ("It falls by 15 %.", "")
+
+
+def test_the_source_of_a_search_that_found_the_state_is_told_and_nothing_where_none_is_recorded():
+    found = {"source": "central path", "multiplier": 0.5, "cpu_seconds": 0.025}
+    sought = samples.solved(samples.block(), "la", 0.5, details={"improvements": [{**found, "source": "other"}, found]})
+    assert sections.origin(sought) == "found by “central path” after 25 ms of CPU time"
+    for details in ({}, {"improvements": []}, {"improvements": "many"}, {"improvements": [3]}):
+        assert sections.origin(samples.solved(samples.block(), "la", 0.5, details=details)) == ""
