@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -187,12 +188,17 @@ def _still(case: Case, result: Result, fields: str) -> Markup:
 
 
 def origin(result: Result) -> str:
-    """Which source of a search found the state, and when, of methods whose details keep their `improvements`."""
+    """Which source of a search found the state, and when, of methods whose details keep their `improvements`.
+
+    Nothing of a state that is lower than the last of these, as one that a proof came across.
+    """
     improvements = result.details.get("improvements")
     last = improvements[-1] if isinstance(improvements, list) and improvements else None
-    if not isinstance(last, dict) or not isinstance(last.get("source"), str):
+    if not isinstance(last, dict) or not isinstance(last.get("source"), str) or result.multiplier is None:
         return ""
-    spent = last.get("cpu_seconds")
+    value, spent = last.get("multiplier"), last.get("cpu_seconds")
+    if not isinstance(value, int | float) or not math.isclose(value, result.multiplier, rel_tol=1e-7, abs_tol=1e-9):
+        return ""
     after = f" after {numbers.seconds(float(spent))} of CPU time" if isinstance(spent, int | float) else ""
     return f"found by “{last['source']}”{after}"
 

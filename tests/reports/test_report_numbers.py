@@ -367,5 +367,6 @@ def test_the_source_of_a_search_that_found_the_state_is_told_and_nothing_where_n
     found = {"source": "central path", "multiplier": 0.5, "cpu_seconds": 0.025}
     sought = samples.solved(samples.block(), "la", 0.5, details={"improvements": [{**found, "source": "other"}, found]})
     assert sections.origin(sought) == "found by “central path” after 25 ms of CPU time"
-    for details in ({}, {"improvements": []}, {"improvements": "many"}, {"improvements": [3]}):
+    higher = {"improvements": [{**found, "multiplier": 0.6}]}
+    for details in ({}, {"improvements": []}, {"improvements": "many"}, {"improvements": [3]}, higher):
         assert sections.origin(samples.solved(samples.block(), "la", 0.5, details=details)) == ""
