@@ -26,7 +26,7 @@ def command_pages(folder: Path) -> None:
 
 def columns_page(folder: Path) -> None:
     """The columns of tables of results."""
-    from reports.columns import RESULTS
+    from harness.model.columns import RESULTS
 
     parts = ["# Columns of results", "", "Of results.csv, results.parquet and `to_pandas()`.", ""]
     parts += ["| column | type | unit | meaning |", "|---|---|---|---|"]

@@ -13,10 +13,11 @@ from importlib.util import find_spec
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from harness.model import columns
 from harness.model.comparison import CaseResults, ComparisonRun
 from harness.model.result import Result
 from harness.model.writing import write_whole
-from reports import charts, columns, shapes, words
+from reports import charts, shapes, words
 from reports.curves import curves
 from reports.studies import studies
 from reports.tables import reference_of, worst_residual

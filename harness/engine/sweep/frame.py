@@ -11,31 +11,32 @@ from pathlib import Path
 import pandas as pd
 
 from harness.engine.sweep.running import Row
+from harness.model.columns import BY_NAME
 
-COLUMNS: dict[str, tuple[str, str]] = {
-    "number": ("int64", "1"),
-    "case": ("string", ""),
-    "draw": ("Int64", "1"),
-    "method": ("string", ""),
-    "family": ("string", ""),
-    "status": ("string", ""),
-    "finding": ("string", ""),
-    "multiplier": ("float64", "1 (of the live load)"),
-    "bracket_low": ("float64", "1 (of the live load)"),
-    "bracket_high": ("float64", "1 (of the live load)"),
-    "judge_accepted": ("boolean", ""),
-    "judge_worst_residual": ("float64", "1 (relative)"),
-    "cpu_seconds": ("float64", "s"),
-    "wall_seconds": ("float64", "s"),
-    "peak_memory_bytes": ("Int64", "byte"),
-    "blocks": ("Int64", "1"),
-    "interfaces": ("Int64", "1"),
-    "iterations": ("Int64", "1"),
-    "started": ("string", "ISO 8601, UTC"),
-    "key": ("string", ""),
-    "sentence": ("string", ""),
-}
-"""Columns of every study: type in pandas and unit. What the study varies comes after `case`."""
+COLUMNS = (
+    "number",
+    "case",
+    "draw",
+    "method",
+    "family",
+    "status",
+    "finding",
+    "multiplier",
+    "bracket_low",
+    "bracket_high",
+    "judge_accepted",
+    "judge_worst_residual",
+    "cpu_seconds",
+    "wall_seconds",
+    "peak_memory_bytes",
+    "blocks",
+    "interfaces",
+    "iterations",
+    "started",
+    "key",
+    "sentence",
+)
+"""Columns of every study, as `harness.model.columns` declares them. What the study varies comes after `case`."""
 
 UNITS = {
     "friction": "1 (tangent of the angle of friction)",
@@ -62,9 +63,10 @@ def tidy(rows: Iterable[Row], varied: Sequence[str]) -> pd.DataFrame:
     names[2:2] = varied
     ordered: list[Row] = sorted(rows, key=_number)
     table = pd.DataFrame(ordered, columns=names)
-    table = table.astype({name: kind for name, (kind, _) in COLUMNS.items()})
-    table.attrs["units"] = {name: COLUMNS[name][1] if name in COLUMNS else UNITS.get(name, "as in the wall's file")
-                            for name in names}  # fmt: skip
+    # Numbers without a value are NaN here, as statistics take them.
+    table = table.astype({name: BY_NAME[name].dtype.replace("Float64", "float64") for name in COLUMNS})
+    declared = {name: BY_NAME[name].unit for name in COLUMNS}
+    table.attrs["units"] = {name: declared.get(name, UNITS.get(name, "as in the wall's file")) for name in names}
     return table
 
 

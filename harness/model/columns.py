@@ -1,4 +1,4 @@
-"""The columns of results, declared once: for CSV, Parquet, pandas and the docs."""
+"""The columns of results, declared once: for CSV, Parquet, pandas, tables of studies and the docs."""
 
 from __future__ import annotations
 
@@ -53,5 +53,12 @@ RESULTS: tuple[ResultColumn, ...] = (
 )
 """Columns of results.csv, results.parquet and `Comparison.to_pandas`, in their order."""
 
+NUMBERED = (
+    ResultColumn("number", "Int64", "1", "of the run in its study"),
+    ResultColumn("draw", "Int64", "1", "of a distribution; missing on a grid"),
+)
+"""What tables of studies have besides."""
+
+BY_NAME = {column.name: column for column in (*RESULTS, *NUMBERED)}
 TYPES = {column.name: column.dtype for column in RESULTS}
 UNITS = {column.name: column.unit for column in RESULTS if column.unit}
