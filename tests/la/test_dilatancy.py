@@ -11,6 +11,7 @@ import pytest
 from harness.engine.judge import judge
 from harness.model.assembly import Assembly
 from harness.model.build import build
+from harness.model.case import case_folders, read_case, shipped_cases
 from harness.model.errors import InputError
 from harness.model.joint_law import JointLaw
 from harness.model.method import Answer, Finding, check_takes, load_method, method_names, traits_of
@@ -64,6 +65,22 @@ def test_dilatancy_of_the_friction_gives_the_associated_maximum(courses: int, br
         assert answer.multiplier <= greatest * (1.0 + SAME)
         if share == 1.0:
             assert answer.multiplier == pytest.approx(greatest, rel=SAME)
+
+
+@pytest.mark.slow
+def test_dilatancy_of_the_friction_gives_the_associated_maximum_of_every_library_wall():
+    held = 0
+    for folder in case_folders([shipped_cases()]).values():
+        wall = read_case(folder).assembly
+        if wall.n_interfaces > 300 or not wall.has_live_load:
+            continue
+        greatest = answer_of("la-associated", wall)
+        if greatest.finding is Finding.COLLAPSES:
+            assert greatest.multiplier is not None
+            answer = answer_of("la", dilatant(wall, 1.0), effort="quick")
+            assert answer.multiplier == pytest.approx(greatest.multiplier, rel=SAME, abs=SAME), folder.name
+            held += 1
+    assert held > 40
 
 
 def test_proof_closes_where_statics_and_flow_are_dual():
