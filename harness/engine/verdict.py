@@ -183,7 +183,7 @@ def _unique(results: CaseResults, usable: dict[str, Result]) -> tuple[Result | N
     collapses = [result for result in usable.values() if result.finding is Finding.COLLAPSES]
     proved = next((result for result in collapses if result.details.get("proved_least")), None)
     if proved is not None:
-        return proved, f"that of {proved.method} is proved"
+        return proved, f"{proved.method} shows that there is none lower"
     least = next((result for result in collapses if result.traits.seeks_least and result.is_main), None)
     bounding = next((result for result in collapses if result.traits.bounds_above), None)
     if least is None or bounding is None or least.multiplier is None or bounding.multiplier is None:

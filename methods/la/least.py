@@ -212,7 +212,9 @@ def _sentence(search: Search, best: CollapseState, proof: Proof) -> str:
     least = search.problem.to_multiplier(best.multiplier)
     if proof.complete:
         nodes = f"{proof.nodes} node{'s' if proof.nodes != 1 else ''}"
-        return f"The least collapse multiplier is {least:.7g}, proved by branch and bound ({nodes}), to rounding."
+        return (
+            f"The least collapse multiplier is {least:.7g}: branch and bound ({nodes}) leaves none below, to rounding."
+        )
     source = search.record.improvements[-1].source
     descent = "" if search.budget.limits.descents else ", without descent because of the size of the wall"
     return (
