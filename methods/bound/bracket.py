@@ -5,6 +5,7 @@ from __future__ import annotations
 import time
 
 from methods.bound.equations import Equations
+from methods.bound.rate_bounds import RateProgramme
 from methods.bound.slack_bounds import SlackProgramme
 from methods.bound.window_search import Bracket, Certify, WindowSearch
 
@@ -34,10 +35,13 @@ def branched(root: WindowSearch) -> Bracket:
 
     In a collapse state a contact has no slack or no rate, so the least bound of both parts is one of the whole.
     """
-    found, leaves = root.found, [root]
+    found, leaves, rates = root.found, [root], RateProgramme(root.equations)
     while not found.closed and time.process_time() < root.until:
         leaf = min(leaves, key=lambda each: each.found.lower)
-        more = leaf is not root and leaf.window()
+        more, before = False, leaf.found.iterations
+        if leaf is not root:
+            more = leaf.window()
+            found.iterations += leaf.found.iterations - before
         if leaf.found.closed:
             leaf.found.lower = leaf.found.upper
         elif not more and time.process_time() < root.until:
@@ -45,8 +49,7 @@ def branched(root: WindowSearch) -> Bracket:
             if contact is None:
                 break
             leaves.remove(leaf)
-            leaves += [leaf.part(case) for case in leaf.case.halves(contact)]
+            leaves += [leaf.part(case, rates) for case in leaf.case.halves(contact)]
             found.branches += 1
         found.lower = max(found.lower, min(each.found.lower for each in leaves))
-        found.iterations = max(found.iterations, sum(each.found.iterations for each in leaves))
     return found

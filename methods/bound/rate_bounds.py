@@ -27,10 +27,13 @@ class RateProgramme:
         lift = sp.csc_matrix(np.ones(n + 4 * m)[None, :])
         lower = np.concatenate([np.full(n, -INFINITY), np.zeros(4 * m)])
         right = np.append(np.zeros(3 * m), equations.n_blocks)
-        self._matrix, self._column = sp.csc_matrix(sp.vstack([strains, work, lift])), lower
-        self._row = np.append(right, 0.0), np.append(right, INFINITY)
         self._lift = np.zeros(n + 4 * m)
-        self._programme = Programme(self._matrix, np.zeros(n + 4 * m), (lower, np.full(n + 4 * m, INFINITY)), self._row)
+        self._programme = Programme(
+            sp.csc_matrix(sp.vstack([strains, work, lift])),
+            np.zeros(n + 4 * m),
+            (lower, np.full(n + 4 * m, INFINITY)),
+            (np.append(right, 0.0), np.append(right, INFINITY)),
+        )
 
     def multiplier(self) -> float:
         """The least multiplier that virtual work leaves to mechanisms of the last window and case; inf without any."""

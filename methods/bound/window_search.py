@@ -89,12 +89,15 @@ class WindowSearch:
         self._size = np.inf
         self._size_products: FloatArray | None = None
 
-    def part(self, case: Case) -> WindowSearch:
-        """The search of a part of the states of this one, which begins where this one is."""
+    def part(self, case: Case, rates: RateProgramme) -> WindowSearch:
+        """The search of a part of the states of this one, which begins where this one is.
+
+        Args:
+            case: what is decided in the part; rates: the programme that decides more, which all parts share.
+        """
         known = Bracket(self.found.lower, self.found.upper)
         part = WindowSearch(self.equations, self._slacks, known, self.until, None, case)
-        part._runs = dict(self._runs)
-        part._rates = self._rates or RateProgramme(self.equations)
+        part._runs, part._rates = dict(self._runs), rates
         return part
 
     def undecided(self) -> int | None:
@@ -191,9 +194,9 @@ class WindowSearch:
 
     def _bound_multiplier(self) -> bool:
         """Bound the multipliers of this window; whether the relaxation has no more to give."""
-        found, relaxation = self.found, self._runs["multiplier"].relaxation
+        found, run = self.found, self._runs["multiplier"]
+        relaxation = run.relaxation
         start, last = found.lower, self._is_last(relaxation)
-        run = self._runs["multiplier"]
         agreeing, mark, since = 0, found.upper - found.lower, run.iterations
         patience = WINDOWS.patience if self._rates is None else WINDOWS.patience_of_parts
         self._slow = False
