@@ -13,6 +13,7 @@ from typing import Protocol
 
 import numpy as np
 import scipy.linalg as sla
+import scipy.sparse as sp
 from scipy.sparse.linalg import SuperLU
 
 from harness.model.assembly import FloatArray, IntArray
@@ -131,9 +132,7 @@ class DenseFactor:
         self.count = 0
         self.factorisations += 1
         self.footed = footing
-        matrix = self.model.tangent(state, shift).toarray()
-        if footing:
-            matrix[np.diag_indices_from(matrix)] += self.model.footing
+        matrix = self.model.tangent(state, shift, footing).toarray()
         for pin in pins:
             matrix[pin, pin] += 1.0
         lu, pivots, info = sla.lapack.dgetrf(matrix, overwrite_a=True)
@@ -206,9 +205,9 @@ class SparseFactor:
         self.footed = footing
         self._exchanged = None
         self._foreseen.clear()
-        added = shift * self.model.inertia + (self.model.footing if footing else 0.0)
+        added = self.model.added(shift, footing)
         if careful or not self._factorise_blocks(state, added, pins):
-            self._exchanged = self._with_row_exchanges(state, added, pins)
+            self._exchanged = self._with_row_exchanges(self.model.tangent(state, shift, footing), added, pins)
         self.careful = self._exchanged is not None
 
     def _factorise_blocks(self, state: IntArray, added: FloatArray, pins: Sequence[int]) -> bool:
@@ -225,11 +224,8 @@ class SparseFactor:
         """Whether every pivot (N,) is beyond rounding, be it by what was added to the tangent."""
         return bool((abs(pivots) >= SOFTEST * np.where(added == 0.0, self.model.footing, 0.0)).all())
 
-    def _with_row_exchanges(self, state: IntArray, added: FloatArray, pins: Sequence[int]) -> SuperLU:
+    def _with_row_exchanges(self, matrix: sp.csc_matrix, added: FloatArray, pins: Sequence[int]) -> SuperLU:
         options = {"SymmetricMode": True}
-        matrix = self.model.tangent(state)
-        if added.any():
-            matrix.setdiag(matrix.diagonal() + added)
         for pin in pins:
             matrix[pin, pin] += 1.0
         try:

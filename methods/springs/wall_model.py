@@ -128,13 +128,17 @@ class WallModel:
         )
         return out
 
-    def tangent(self, state: IntArray, shift: float = 0.0) -> sp.csc_matrix:
-        """The sparse tangent (N, N) in the given states, with `shift` times the inertia added to its diagonal."""
+    def added(self, shift: float, footing: bool) -> FloatArray:
+        """What the diagonal (N,) of the tangent is given: `shift` times the inertia, and the footing if asked."""
+        return shift * self.inertia + (self.footing if footing else 0.0)
+
+    def tangent(self, state: IntArray, shift: float = 0.0, footing: bool = False) -> sp.csc_matrix:
+        """The sparse tangent (N, N) in the given states, with what is `added` to its diagonal."""
         values = np.zeros(len(self.row_index))
         add_tangent(self.slot, self.rows, self.interface, self.position, self.kn, self.kt, self.mu, state, values)
         matrix = sp.csc_matrix((values, self.row_index, self.column_start), shape=(self.n_unknowns, self.n_unknowns))
-        if shift:
-            matrix.setdiag(matrix.diagonal() + shift * self.inertia)
+        if shift or footing:
+            matrix.setdiag(matrix.diagonal() + self.added(shift, footing))
         return matrix
 
     def change(self, point: int, old: int, new: int) -> tuple[IntArray, FloatArray, FloatArray]:
