@@ -82,16 +82,12 @@ def _with_state(answer: Answer, engine: Engine, settings: HoldSettings, best: Br
         forces=forces,
         forces_multiplier=best.held,
         details=answer.details | {"residual_of_forces": residual},
-        path=_way(best),
+        path=best.path,
     )
     if answer.finding is Finding.COLLAPSES:
         answer.mechanism, answer.flow = mechanism_at(engine, settings, best), "approximate"
     answer.iterations += engine.steps
     return answer
-
-
-def _way(best: Bracket) -> dict[str, list[float]]:
-    return {"multiplier": [t[0] for t in best.trials], "residual": [t[1] for t in best.trials]}
 
 
 def first_bracket(

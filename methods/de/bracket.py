@@ -56,6 +56,11 @@ class Bracket:
     trials: list[tuple[float, float]] = field(default_factory=list)
 
     @property
+    def path(self) -> dict[str, list[float]]:
+        """Multipliers and residuals of the holds in order, as answers give them."""
+        return {"multiplier": [t[0] for t in self.trials], "residual": [t[1] for t in self.trials]}
+
+    @property
     def middle(self) -> float | None:
         """Middle of [held, moving]; zero where nothing is held."""
         if self.held is None or self.moving is None:

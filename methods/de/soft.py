@@ -7,7 +7,7 @@ softer joints and larger rounds take from it is the finding.
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Any, ClassVar
 
 import numpy as np
@@ -21,7 +21,7 @@ from methods.de.hold import Hold, State, Watch
 from methods.de.loading import REACH, raise_until_it_falls
 from methods.de.motion import Proof, by_travel
 from methods.de.soft_wall import SoftWall
-from methods.de.stopped import STOPPED
+from methods.de.stopped import STOPPED, undecided, unmoved
 from methods.numerics.statics import with_proof
 
 BRACKET_MEANING = "[highest multiplier at which it came to rest, lowest at which it fell]"
@@ -200,9 +200,7 @@ class DeformableJoints:
         try:
             wall = SoftWall(assembly, stiffness, settings.shear_ratio, rounding)
         except OutOfTime:
-            sentence = f"whether the dead load is held was not decided: {STOPPED}"
-            details = {"stopped_by_limit": True, "lean": None}
-            return Answer(Status.NOT_CONVERGED, Finding.NONE, sentence, details=details)
+            return replace(undecided(), details={"stopped_by_limit": True, "lean": None})
         holds = Holds(wall, settings)
         joints = _described(wall, stiffness, settings.shear_ratio)
         try:
@@ -280,12 +278,10 @@ def _stopped(holds: Holds, joints: str) -> Answer:
     """What is shown when the time is over: the highest rest, and the fall above it if there is one."""
     details = {"stopped_by_limit": True}
     if not holds.path["multiplier"]:
-        sentence = f"whether the dead load is held was not decided, with {joints}: {STOPPED}"
-        return Answer(Status.NOT_CONVERGED, Finding.NONE, sentence, details=details)
+        return replace(undecided(f", with {joints}"), details=details)
     stood, fell = holds.path["multiplier"][-1], holds.fell
     if fell is None or fell <= stood:
-        sentence = f"stands at {stood:.6g}, with {joints}; no motion was shown: {STOPPED}"
-        return Answer(Status.NOT_CONVERGED, Finding.NONE, sentence, details=details)
+        return replace(unmoved(stood, f", with {joints}"), details=details)
     sentence = (
         f"came to rest at {stood:.6g} and fell at {fell:.6g}, with {joints}; {STOPPED}, and the multiplier is no more "
         "than the middle of what is known so far"

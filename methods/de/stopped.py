@@ -17,6 +17,16 @@ BRACKET_MEANING = (
 )
 
 
+def undecided(how: str = "") -> Answer:
+    """Not even the dead load was held, or moved the wall; `how` tells what the wall was given, after a comma."""
+    return Answer(Status.NOT_CONVERGED, Finding.NONE, f"whether the dead load is held was not decided{how}: {STOPPED}")
+
+
+def unmoved(stood: float, how: str = "") -> Answer:
+    """The wall stands at a multiplier, and nothing moved it above; `how` as in `undecided`."""
+    return Answer(Status.NOT_CONVERGED, Finding.NONE, f"stands at {stood:.6g}{how}; no motion was shown: {STOPPED}")
+
+
 @dataclass(eq=False)
 class Known:
     """What the searches of a wall have found at any time.
@@ -86,8 +96,7 @@ def stopped_answer(assembly: Assembly, known: Known, tolerance: float, details: 
     else:
         answer = _with_rest(assembly, known, found, stood)
         answer.forces, answer.forces_multiplier = stood.forces, stood.multiplier
-        trials = stood.search.found.trials
-        answer.path = {"multiplier": [t[0] for t in trials], "residual": [t[1] for t in trials]}
+        answer.path = stood.search.found.path
     answer.iterations = sum(search.engine.steps for search in known.searches)
     answer.details = details | {"stopped_by_limit": True}
     return answer
@@ -101,8 +110,7 @@ def _without_rest(known: Known) -> Answer:
         answer = Answer(Status.OK, Finding.FALLS, sentence, mechanism=moved[0].velocity)
         answer.flow = "approximate"
         return answer
-    sentence = f"whether the dead load is held was not decided: {STOPPED}"
-    return Answer(Status.NOT_CONVERGED, Finding.NONE, sentence)
+    return undecided()
 
 
 def _with_rest(assembly: Assembly, known: Known, found: list[Bracket], stood: Stood) -> Answer:
@@ -112,8 +120,7 @@ def _with_rest(assembly: Assembly, known: Known, found: list[Bracket], stood: St
     low = min([stood.multiplier, *(b.held for b in known.finished if b.held is not None)])
     moving = [b for b in found if b.moving is not None and b.moving > low]
     if not moving:
-        sentence = f"stands at {stood.multiplier:.6g}; no motion was shown: {STOPPED}"
-        return Answer(Status.NOT_CONVERGED, Finding.NONE, sentence)
+        return unmoved(stood.multiplier)
     best = (max if known.finished else min)(moving, key=lambda b: b.moving or 0.0)
     assert best.moving is not None
     middle = 0.0 if best.nothing else 0.5 * (low + best.moving)
