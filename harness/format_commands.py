@@ -22,7 +22,7 @@ from harness.model.method import Finding, Status, load_method
 from harness.model.reading import wall_json
 from harness.model.units import LengthUnit
 from harness.model.wall import Wall
-from harness.options import cases_option, catching, say, say_json, store_option, warn
+from harness.options import cases_option, catching, say, say_json, settings_option, store_option, warn
 
 KEPT = 50
 """Load steps of a series, unless a setting says otherwise: two seconds of a film."""
@@ -79,9 +79,7 @@ def _write(text: str, output: Path | None) -> None:
 @click.argument("case")
 @click.option("--method", help="Whose answer goes along; the wall alone if absent.")
 @click.option("-o", "--output", type=click.Path(path_type=Path), required=True, help="Its ending says the format.")
-@click.option(
-    "--set", "settings", multiple=True, metavar="NAME=VALUE", help="A setting of the method; may be repeated."
-)
+@settings_option
 @store_option
 @cases_option
 @catching

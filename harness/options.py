@@ -96,6 +96,9 @@ def say_json(text: str) -> None:
     )
 
 
+settings_option = click.option(
+    "--set", "settings", multiple=True, metavar="NAME=VALUE", help="A setting of the method; may be repeated."
+)
 json_flag = click.option("--json", "as_json", is_flag=True, help="One JSON document on standard output.")
 store_option = click.option("--store", type=click.Path(path_type=Path), default=STORE, show_default=True)
 cases_option = click.option(

@@ -13,15 +13,22 @@ from harness import terminal
 from harness.engine.plan import check_methods, find_cases
 from harness.given_settings import settings_of
 from harness.model.method import Status
-from harness.options import cases_option, catching, json_flag, memory_option, print_json, seconds_option, warn
+from harness.options import (
+    cases_option,
+    catching,
+    json_flag,
+    memory_option,
+    print_json,
+    seconds_option,
+    settings_option,
+    warn,
+)
 
 
 @click.command()
 @click.argument("method")
 @click.argument("case")
-@click.option(
-    "--set", "settings", multiple=True, metavar="NAME=VALUE", help="A setting of the method; may be repeated."
-)
+@settings_option
 @click.option("--fields", is_flag=True, help="With --json: contact forces, mechanism, states and path too.")
 @json_flag
 @cases_option

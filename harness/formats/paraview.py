@@ -70,13 +70,13 @@ def write_vtu(built: Built, result: Result | None, path: Path) -> None:
 def _frame(assembly: Assembly, result: Result | None, time: float, displacement: list[FloatArray]) -> Frame:
     """The frame of a wall with the forces and states of its answer."""
     m = assembly.n_interfaces
-    given = result is not None and result.forces is not None
+    given = None if result is None else result.forces
     known = None if result is None else result.states
     return Frame(
         time=time,
         multiplier=np.nan if result is None or result.forces_multiplier is None else result.forces_multiplier,
         displacement=displacement,
-        forces=np.asarray(result.forces, float) if result is not None and given else np.zeros((m, 3)),
+        forces=np.zeros((m, 3)) if given is None else np.asarray(given, float),
         states=np.full(m, UNKNOWN) if known is None else np.array([STATES.index(state) for state in known]),
     )
 
