@@ -15,7 +15,7 @@ from methods.numerics.failures import NumericalFailure
 
 
 @dataclass(frozen=True)
-class Rounding:
+class Negligible:
     """What counts as zero in states, and from what size on a block counts.
 
     Attributes:
@@ -31,7 +31,7 @@ class Rounding:
     slowest: float = 1e-2
 
 
-ROUNDING = Rounding()
+NEGLIGIBLE = Negligible()
 
 
 @dataclass(frozen=True, eq=False)
@@ -86,9 +86,9 @@ def local_residuals(problem: Problem, state: CollapseState) -> tuple[FloatArray,
     tension = np.maximum(-problem.slacks(state.forces).min(axis=1), 0.0)
     closing = np.maximum(-rates[:, :2].min(axis=1), 0.0)
     return (
-        _share(abs(balance).max(axis=1), size, ROUNDING.lightest),
-        _share(tension, np.where(np.isfinite(lesser), lesser, 0.0), ROUNDING.lightest),
-        _share(closing, faster, ROUNDING.slowest),
+        _share(abs(balance).max(axis=1), size, NEGLIGIBLE.lightest),
+        _share(tension, np.where(np.isfinite(lesser), lesser, 0.0), NEGLIGIBLE.lightest),
+        _share(closing, faster, NEGLIGIBLE.slowest),
     )
 
 
@@ -100,12 +100,12 @@ def _share(value: FloatArray, of: FloatArray, least: float) -> FloatArray:
 
 def moving_contacts(rates: FloatArray) -> BoolArray:
     """(m, 4) rates that are more than rounding."""
-    return rates > ROUNDING.moving * float(rates.max(initial=0.0))
+    return rates > NEGLIGIBLE.moving * float(rates.max(initial=0.0))
 
 
 def tight_contacts(problem: Problem, forces: FloatArray) -> BoolArray:
     """(m, 4) slacks that are no more than rounding."""
-    return problem.slacks(forces) <= ROUNDING.tight
+    return problem.slacks(forces) <= NEGLIGIBLE.tight
 
 
 def polished(
