@@ -122,29 +122,38 @@ def test_killing_children_under_way_loses_and_doubles_no_run():
     tasks = [task("la-associated") for _ in range(300)]
     jobs = [Job(number, "made-up", each) for number, each in enumerate(tasks)]
     numbers = []
+    before = children()
     with closing(LocalExecutor(2).map(jobs, ["la-associated"])) as ended:
         for number, measured in ended:
             assert measured.result.status is Status.OK
             numbers.append(number)
             if len(numbers) in (20, 60, 100):
-                kill_children()
+                for process in started_since(before):
+                    with suppress(psutil.Error):
+                        process.kill()
     assert sorted(numbers) == list(range(300))
 
 
-def kill_children() -> None:
-    for process in psutil.Process().children(recursive=True):
+def children() -> set[psutil.Process]:
+    """Processes below this one: the browser or the command process of other tests among them."""
+    return set(psutil.Process().children(recursive=True))
+
+
+def started_since(before: set[psutil.Process]) -> list[psutil.Process]:
+    """Processes that make runs, of those that were started since: the leaves but for the tracker of resources."""
+    found = []
+    for process in children() - before:
         with suppress(psutil.Error):
             if not process.children() and "resource_tracker" not in " ".join(process.cmdline()):
-                process.kill()
+                found.append(process)
+    return found
 
 
 def test_closing_the_results_ends_every_process():
-    before = set(psutil.Process().children(recursive=True))  # a browser that other tests opened, for one
+    before = children()
     jobs = [Job(0, "a", task("dummy")), Job(1, "b", task("dummy", does="hang"))]
     with closing(LocalExecutor(2).map(jobs, ["dummy"])) as ended:
         assert next(ended)[0] == 0
-        running = set(psutil.Process().children(recursive=True)) - before
-        leaves = [process for process in running if not process.children()]
-        started = [process for process in leaves if "resource_tracker" not in " ".join(process.cmdline())]
+        started = started_since(before)
     assert started
     assert not psutil.wait_procs(started, timeout=10.0)[1]
