@@ -27,11 +27,11 @@ check: $(READY)  ## the reference regression, quick tier
 	$(RUN)/drystone check
 
 bench: $(READY)  ## measured values and CPU seconds of every method, beside the figures to beat
-	$(RUN)/python -m benchmarks.overhead --full
-	$(RUN)/python -m methods.la.bench
-	$(RUN)/python -m methods.fe.bench
-	$(RUN)/python -m methods.de.bench small de
-	$(RUN)/python -m methods.de.bench small de-soft
+	$(RUN)/python -m benchmarks overhead --full
+	$(RUN)/python -m benchmarks limit_analysis
+	$(RUN)/python -m benchmarks finite_elements
+	$(RUN)/python -m benchmarks distinct_elements small de
+	$(RUN)/python -m benchmarks distinct_elements small de-soft
 
 lint: $(READY)  ## style, types and the layer contract
 	$(BIN)/ruff check .

@@ -1,6 +1,6 @@
 """Irregular walls of 6 to 12 blocks: how many brackets of the least multiplier close, and are certified, in a time.
 
-Run as `python -m benchmarks.bounds [count [seconds [first]]]`, with OPENBLAS_NUM_THREADS=1. A line a wall: seed,
+Run as `python -m benchmarks bounds [count [seconds [first]]]`. A line a wall: seed,
 blocks, interfaces, least state known, bound to rounding and how far it is below, relatively, certified bound and how
 far, CPU seconds of search and bound, contacts at which windows were divided.
 """
@@ -14,14 +14,14 @@ from fractions import Fraction
 
 import numpy as np
 
+from benchmarks.walls import irregular_wall
 from harness.model.assembly import Assembly
 from harness.model.method import Finding
 from methods.bound.tuning import WINDOWS
 from methods.la.adapter import LimitAnalysis
-from methods.la.irregular_walls import irregular_wall
-from methods.la.problem import make_problem
-from methods.la.settings import SearchSettings
-from methods.la.window_certificate import certified_bracket
+from methods.la.certify.window_certificate import certified_bracket
+from methods.la.core.problem import make_problem
+from methods.la.core.search_settings import SearchSettings
 
 
 def small_wall(seed: int) -> Assembly:

@@ -1,6 +1,6 @@
 """What each source of collapse states gains: on how many walls it reached the least known, and reached it alone.
 
-Run as `python -m benchmarks.la_sources [COUNT [LEAST MOST]]`, with OPENBLAS_NUM_THREADS=1: the library's walls with a
+Run as `python -m benchmarks la_sources [COUNT [LEAST MOST]]`: the library's walls with a
 live load and up to 1,000 interfaces, COUNT (40) coursed and COUNT irregular random walls; with LEAST and MOST COUNT
 irregular walls of so many courses and columns alone. A source counts as reaching a value with the descents from it.
 """
@@ -14,12 +14,11 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
+from benchmarks.walls import drawn, random_wall
 from harness.model.assembly import Assembly
 from harness.model.case import read_case
-from methods.fe.random_walls import random_wall
 from methods.la.adapter import LimitAnalysis
-from methods.la.irregular_walls import drawn
-from methods.la.settings import SearchSettings
+from methods.la.core.search_settings import SearchSettings
 
 CASES = Path(__file__).parents[1] / "cases"
 SAME = 1e-7
@@ -52,7 +51,7 @@ def walls(count: int, sizes: list[int]) -> Iterator[Assembly]:
         yield drawn(seed)
 
 
-def main(arguments: Sequence[str] | None = None) -> None:
+def main(arguments: Sequence[str] | None = None) -> int:
     """Print the table."""
     count, *sizes = [int(word) for word in (sys.argv[1:] if arguments is None else arguments)] or [40]
     gains: dict[str, Gain] = defaultdict(Gain)
@@ -79,7 +78,8 @@ def main(arguments: Sequence[str] | None = None) -> None:
         print(
             f"| {source} | {gain.begun} | {gain.led} | {gain.reached} | {gain.alone} | {gain.seconds:.1f} |", flush=True
         )
+    return 0
 
 
 if __name__ == "__main__":
-    main()
+    sys.exit(main())

@@ -1,4 +1,4 @@
-"""What the harness costs beside its methods: `python -m benchmarks.overhead [--full]`.
+"""What the harness costs beside its methods: `python -m benchmarks overhead [--full]`.
 
 Figures are CPU seconds of everything a command starts, so that a busy machine does not change them. `--full` also makes
 the suite, its report and 10,000 runs (about a quarter of an hour on two cores).

@@ -1,4 +1,4 @@
-"""Thin arches and slender walls whose one multiplier is known: `python -m benchmarks.slender [--methods de,de-soft]`.
+"""Thin arches and slender walls whose one multiplier is known: `python -m benchmarks slender [--methods de,de-soft]`.
 
 The associated maximum, a linear programme, is the only multiplier, because nothing slides in its mechanism; limit
 analysis finds nothing below it (of arches it is asked with `--least`, because that takes most of the time). Forces pass
@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import argparse
 from collections import Counter
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -147,7 +147,7 @@ def verdict(known: Known, result: Result, accuracy: float) -> str:
     return "soft" if low and result.details.get("soft_joints") else "wrong"
 
 
-def main() -> int:
+def main(arguments: Sequence[str] | None = None) -> int:
     """Print every answer that is not right, and how many there are of each; 1 if one is wrong."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--methods", default="de,de-soft,de-mujoco")
@@ -158,7 +158,7 @@ def main() -> int:
     parser.add_argument("--least", action="store_true", help="ask limit analysis of arches too")
     parser.add_argument("--orders", type=int, help="body orders of methods that have them")
     parser.add_argument("--jobs", type=int, default=1)
-    given = parser.parse_args()
+    given = parser.parse_args(arguments)
     pin()
     wrong = 0
     for kind in given.kinds.split(","):

@@ -31,7 +31,7 @@ def bound(wall: Path, output: Path, nodes: int, seconds: float, effort: Literal[
     compressed. Exit code 1: none was found, and nothing is written.
     """
     from methods.la.bound_adapter import find_certificate
-    from methods.la.settings import SearchSettings
+    from methods.la.core.search_settings import SearchSettings
 
     built = read_wall(wall)
     for sentence in built.warnings:

@@ -8,15 +8,15 @@ import numpy as np
 
 from harness.model.assembly import Assembly, IntArray
 from harness.model.method import Answer, Finding, OutOfTime, Settings, Status, Traits
-from methods.de.answer import solve_by_holds
-from methods.de.courses import Tuning
-from methods.de.engine import Engine
-from methods.de.mujoco_wall import MujocoWall, SolverFailed, load_mujoco, mujoco_tunings
-from methods.de.release import ReleaseSettings, release
-from methods.de.settings import MujocoSettings, SweepSettings
-from methods.de.space import StripSpace
-from methods.de.strips import CannotModel
-from methods.de.sweeps import SweptWall
+from methods.de.engines.courses import Tuning
+from methods.de.engines.engine import Engine
+from methods.de.engines.mujoco_wall import MujocoWall, SolverFailed, load_mujoco, mujoco_tunings
+from methods.de.engines.space import StripSpace
+from methods.de.engines.strips import CannotModel
+from methods.de.engines.sweeps import SweptWall
+from methods.de.hold_settings import MujocoSettings, SweepSettings
+from methods.de.holds.answer import solve_by_holds
+from methods.de.holds.release import ReleaseSettings, release
 from methods.numerics.statics import analysed
 
 
@@ -37,7 +37,7 @@ class DampedHolds:
     Settings: ClassVar[type[Settings]] = SweepSettings
 
     def solve(self, assembly: Assembly, settings: SweepSettings) -> Answer:
-        """Bracket of the collapse multiplier over body orders; see `methods.de.answer`."""
+        """Bracket of the collapse multiplier over body orders; see `methods.de.holds.answer`."""
 
         return analysed(assembly, lambda part: self._of_component(part, settings))
 
@@ -72,7 +72,7 @@ class MujocoHolds:
     Settings: ClassVar[type[Settings]] = MujocoSettings
 
     def solve(self, assembly: Assembly, settings: MujocoSettings) -> Answer:
-        """Bracket of the collapse multiplier over body orders; see `methods.de.answer`.
+        """Bracket of the collapse multiplier over body orders; see `methods.de.holds.answer`.
 
         Raises:
             InputError: mujoco is not installed.

@@ -15,10 +15,10 @@ from pydantic import Field
 
 from harness.model.assembly import Assembly
 from harness.model.method import Answer, Finding, Settings, Status, Traits, load_method
-from methods.de.gapped import GappedWall, load_gapped
+from methods.de.holds.loading import REACH
 from methods.de.imperfect import BRACKET_MEANING, UnevenSettings
-from methods.de.loading import REACH
-from methods.de.uneven import load_uneven, settle_uneven
+from methods.de.uneven.gapped import GappedWall, load_gapped
+from methods.de.uneven.settled_contacts import load_uneven, settle_uneven
 
 
 class ClosedSettings(UnevenSettings):

@@ -9,8 +9,8 @@ from pydantic import Field
 from harness.model.assembly import Assembly
 from harness.model.method import Answer, Finding, Settings, Status, Traits
 from harness.model.rings import rings_of
-from methods.de.defects import Faces
-from methods.de.uneven import Loading, load_uneven
+from methods.de.uneven.defects import Faces
+from methods.de.uneven.settled_contacts import Loading, load_uneven
 
 BRACKET_MEANING = "[highest multiplier at which it came to rest, lowest at which it fell]"
 

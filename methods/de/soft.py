@@ -15,13 +15,13 @@ from pydantic import Field
 
 from harness.model.assembly import Assembly, FloatArray
 from harness.model.method import Answer, Finding, OutOfTime, Settings, Status, Traits
-from methods.de.bracket import LOOSE
-from methods.de.courses import courses, number_of_courses
-from methods.de.hold import Hold, State, Watch
-from methods.de.loading import REACH, raise_until_it_falls
-from methods.de.motion import Proof, by_travel
-from methods.de.soft_wall import SoftWall
-from methods.de.stopped import STOPPED, undecided, unmoved
+from methods.de.engines.courses import courses, number_of_courses
+from methods.de.engines.soft_wall import SoftWall
+from methods.de.holds.hold import Hold, State, Watch
+from methods.de.holds.loading import REACH, raise_until_it_falls
+from methods.de.holds.motion import MotionProof, by_travel
+from methods.de.holds.order_bracket import LOOSE
+from methods.de.holds.stopped import STOPPED, undecided, unmoved
 from methods.numerics.statics import with_proof
 
 BRACKET_MEANING = "[highest multiplier at which it came to rest, lowest at which it fell]"
@@ -56,7 +56,7 @@ class SoftSettings(Settings):
             multiplier where that is less.
         held_residual: largest force out of balance of a wall at rest, as a part of the mean dead load of a block.
         reach: a wall falls when a block has moved by this many length scales under one load, the loads doing work; or
-            earlier, where `methods.de.motion` shows it.
+            earlier, where `methods.de.holds.motion` shows it.
         hold_steps: most time steps under one load on a wall of up to 7 courses; higher walls get more, with the square
             of the courses, and all ten times as many under the dead load alone.
         relaxations: a wall on its way to rest is followed for so many of its own relaxation times, at most for so many
@@ -100,7 +100,7 @@ class Holds:
     settings: SoftSettings
     rest: tuple[FloatArray, FloatArray] = field(init=False)
     motion: FloatArray | None = None
-    proof: Proof | None = None
+    proof: MotionProof | None = None
     fell: float | None = None
     undecided: list[float] = field(default_factory=list)
     path: dict[str, list[float]] = field(default_factory=lambda: {"multiplier": [], "live_displacement": []})
@@ -136,7 +136,7 @@ class Holds:
     def _settled(self, looks: int) -> Hold:
         """What the wall does under its load within so many looks, or within twenty times its own slowest relaxation.
 
-        `methods.de.motion` says whether it moves: asked at each doubling of the looks, where a block has come far
+        `methods.de.holds.motion` says whether it moves: asked at each doubling of the looks, where a block has come far
         beyond what any had moved until then, and at the end.
         """
         wall, settings = self.wall, self.settings

@@ -11,7 +11,10 @@ import numpy as np
 from harness.model.assembly import Assembly
 from harness.model.load_steps import NAME
 from harness.model.method import Answer, Finding, Settings, Status, Traits
-from methods.fe.answers import (
+from methods.fe.convex_steps import bracket_collapse
+from methods.fe.histories import LARGE_ABOVE, HistoryResult, Plan, trace_history, with_initial_shear
+from methods.fe.incremental import march
+from methods.fe.path_answers import (
     bracket_answer,
     collapse_answer,
     compact,
@@ -21,16 +24,13 @@ from methods.fe.answers import (
     standing_answer,
     stands,
 )
-from methods.fe.convex_steps import bracket_collapse
-from methods.fe.histories import LARGE_ABOVE, HistoryResult, Plan, trace_history, with_initial_shear
-from methods.fe.incremental import march
-from methods.fe.settings import ConvexSettings, GapSpringsSettings, NewtonSettings
+from methods.fe.path_settings import ConvexSettings, GapSpringsSettings, NewtonSettings
 from methods.numerics.statics import analysed
-from methods.springs.equilibrium import equilibrium, gravity_state
-from methods.springs.factor import Factor, make_factor
-from methods.springs.newton import Equilibrium
-from methods.springs.path_record import PathEnd
-from methods.springs.wall_model import WallModel, build_model
+from methods.springs.model.factor import Factor, make_factor
+from methods.springs.model.wall_model import WallModel, build_model
+from methods.springs.path.path_record import PathEnd
+from methods.springs.rest.equilibrium import equilibrium, gravity_state
+from methods.springs.rest.newton import Equilibrium
 from methods.springs.warm_up import load_kernels
 
 load_kernels()

@@ -22,8 +22,8 @@ import scipy.sparse as sp
 
 from harness.model.assembly import FloatArray
 from methods.numerics.vectors import largest
-from methods.springs.path_record import PathRecord
-from methods.springs.wall_model import WallModel, load_scale
+from methods.springs.model.wall_model import WallModel, load_scale
+from methods.springs.path.path_record import PathRecord
 
 FAR = 100.0
 """First steps beyond which forces are no longer kept while no step fails: OSQP's accuracy is relative to the load."""

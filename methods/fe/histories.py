@@ -16,16 +16,16 @@ import numpy as np
 from harness.model.assembly import FloatArray
 from harness.model.errors import first_few
 from harness.model.method import OutOfTime
-from methods.springs.continuation import Tracer
-from methods.springs.equilibrium import doubled, equilibrium, first_step
-from methods.springs.factor import Factor, SingularTangent
-from methods.springs.follow import follow
-from methods.springs.gap_law import OPEN, SLIP_PLUS
-from methods.springs.newton import Equilibrium
-from methods.springs.path_record import LoadStep, PathEnd, PathRecord
-from methods.springs.plateau import CollapseState, finish
-from methods.springs.slow_motion import SlowMotion
-from methods.springs.wall_model import WallModel
+from methods.springs.model.factor import Factor, SingularTangent
+from methods.springs.model.gap_law import OPEN, SLIP_PLUS
+from methods.springs.model.wall_model import WallModel
+from methods.springs.path.continuation import Tracer
+from methods.springs.path.follow import follow
+from methods.springs.path.path_record import LoadStep, PathEnd, PathRecord
+from methods.springs.path.plateau import PlateauState, finish
+from methods.springs.rest.equilibrium import doubled, equilibrium, first_step
+from methods.springs.rest.newton import Equilibrium
+from methods.springs.rest.slow_motion import SlowMotion
 
 DISTURBANCES = (1e-9, 1e-7, 1e-5)
 """Random initial shears, in weights of a block, tried in turn where exact ties lead a path astray."""
@@ -85,7 +85,7 @@ class HistoryResult:
     end: PathEnd
     sentence: str
     record: PathRecord
-    state: CollapseState | None
+    state: PlateauState | None
     commits: int
     residual: float
     raised: Equilibrium | None = None
@@ -99,7 +99,7 @@ def trace_history(model: WallModel, factor: Factor, start: Equilibrium, plan: Pl
     a path without commits astray it is traced again with the initial shears disturbed by 1e-9, 1e-7 and 1e-5 of a
     block's weight: data nobody knows, and the end is an exact collapse state all the same. Where a path without
     commits has not ended after so many events, the load is raised in finite steps instead
-    (`methods.springs.slow_motion`), and the path goes on from there.
+    (`methods.springs.rest.slow_motion`), and the path goes on from there.
 
     Args:
         model: the wall; factor: its tangent; start: equilibrium under the dead load, or at the rest.

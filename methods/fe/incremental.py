@@ -16,11 +16,11 @@ from dataclasses import dataclass
 import numpy as np
 
 from harness.model.assembly import FloatArray, IntArray
-from methods.springs.factor import Factor, SingularTangent
-from methods.springs.newton import Equilibrium, newton, settled
-from methods.springs.path_record import PathRecord, Snapshot
-from methods.springs.plateau import CollapseState, finish
-from methods.springs.wall_model import WallModel, load_scale
+from methods.springs.model.factor import Factor, SingularTangent
+from methods.springs.model.wall_model import WallModel, load_scale
+from methods.springs.path.path_record import PathRecord, Snapshot
+from methods.springs.path.plateau import PlateauState, finish
+from methods.springs.rest.newton import Equilibrium, newton, settled
 
 FIRST_PUSH, LEAST_PUSH = 0.02, 1e-6
 """First step of displacement control, as a share of the way under load control; the shortest as a share of that."""
@@ -46,14 +46,14 @@ class IncrementalResult:
 
     load_control: float
     record: PathRecord
-    state: CollapseState | None
+    state: PlateauState | None
     sentence: str
     iterations: int
     unbounded: bool = False
 
 
 @dataclass(frozen=True)
-class Point:
+class StepPoint:
     """Displacements u (N,), the multiplier and the states (P,) of the gaps in equilibrium."""
 
     u: FloatArray
@@ -71,7 +71,7 @@ def march(
         displacement_steps: steps of displacement control, each 1.5 times the last that converged.
     """
     record = PathRecord()
-    point, step, iterations, cut = Point(gravity.u, 0.0, gravity.state), first_step, 0, 0
+    point, step, iterations, cut = StepPoint(gravity.u, 0.0, gravity.state), first_step, 0, 0
     while cut <= cuts and point.multiplier < 1e6 * first_step:
         answer = newton(model, factor, point.u, point.multiplier + step, model.history, 25)
         iterations += answer.iterations
@@ -79,7 +79,7 @@ def march(
             step *= 0.5
             cut += 1
             continue
-        point = Point(answer.u, point.multiplier + step, answer.state)
+        point = StepPoint(answer.u, point.multiplier + step, answer.state)
         record.add(point.multiplier, float(model.live @ point.u), 0, 0)
         if cut == 0:
             step *= 1.5
@@ -103,8 +103,8 @@ def march(
 
 
 def _displacement_control(
-    model: WallModel, factor: Factor, point: Point, travel: FloatArray, steps: int, record: PathRecord
-) -> tuple[CollapseState | None, float, int]:
+    model: WallModel, factor: Factor, point: StepPoint, travel: FloatArray, steps: int, record: PathRecord
+) -> tuple[PlateauState | None, float, int]:
     """The collapse state that displacement control leads to, or None; the last multiplier; Newton iterations.
 
     Args:
@@ -149,8 +149,8 @@ def _farthest(motion: FloatArray) -> FloatArray:
 
 
 def _controlled(
-    model: WallModel, factor: Factor, point: Point, control: FloatArray, goal: float
-) -> tuple[Point | None, int]:
+    model: WallModel, factor: Factor, point: StepPoint, control: FloatArray, goal: float
+) -> tuple[StepPoint | None, int]:
     """Equilibrium at a prescribed displacement control'u = goal, None where Newton finds none; and its iterations."""
     u, multiplier, state = point.u, point.multiplier, point.state
     scale, share = load_scale(model, multiplier), 1.0
@@ -173,14 +173,14 @@ def _controlled(
         if settled(model, u + step, model.history, state, landed, scale):
             u, multiplier = u + step, multiplier + rise
             if np.abs(model.residual(u, multiplier, model.history, state)).max() < 1e-8 * scale:
-                return Point(u, multiplier, state), count + 1
+                return StepPoint(u, multiplier, state), count + 1
             continue
         u, multiplier = u + share * step, multiplier + share * rise
         state = landed if share == 1.0 else model.states(u, model.history)
     return None, MOST_ITERATIONS
 
 
-def _collapse(model: WallModel, point: Point, direction: FloatArray) -> CollapseState | None:
+def _collapse(model: WallModel, point: StepPoint, direction: FloatArray) -> PlateauState | None:
     """The collapse state of a wall that moves at constant multiplier, or None when it fails its check."""
     opening, slip = model.strains(point.u)
     velocity = direction / np.abs(direction).max()

@@ -6,9 +6,9 @@ import numpy as np
 
 from harness.model.assembly import IntArray
 from harness.model.load_steps import STATES, LoadSteps
-from methods.springs.gap_law import OPEN, SLIP_MINUS, SLIP_PLUS, gap_forces
-from methods.springs.path_record import LoadStep
-from methods.springs.wall_model import WallModel
+from methods.springs.model.gap_law import OPEN, SLIP_MINUS, SLIP_PLUS, gap_forces
+from methods.springs.model.wall_model import WallModel
+from methods.springs.path.path_record import LoadStep
 
 
 def load_steps(model: WallModel, steps: list[LoadStep], most: int) -> LoadSteps:

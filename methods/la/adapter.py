@@ -7,12 +7,12 @@ from typing import Any, ClassVar
 from harness.model.assembly import Assembly
 from harness.model.method import Answer, Settings, Traits
 from methods.la.associated_adapter import AssociatedLimitAnalysis, AssociatedLimitAnalysisCvxpy
-from methods.la.extra_adapters import FromFiniteElements, PaperProgramme, TrescaSequence
+from methods.la.core.newton_matrix import NewtonMatrix
+from methods.la.core.problem import Problem
+from methods.la.core.search_settings import SearchSettings
 from methods.la.family import LimitAnalysisFamily
 from methods.la.least import least_known
-from methods.la.newton_matrix import NewtonMatrix
-from methods.la.problem import Problem
-from methods.la.settings import SearchSettings
+from methods.la.literature.literature_adapters import FromFiniteElements, PaperProgramme, TrescaSequence
 from methods.springs.warm_up import load_kernels
 
 __all__ = [

@@ -14,13 +14,13 @@ from methods.bound.same_wall import require_same_wall
 from methods.bound.tuning import PRECISION, WINDOWS
 from methods.bound.verify import verify
 from methods.bound.window_search import Bracket
-from methods.la.certify import certificate
+from methods.la.certify.tree_certificate import certificate
+from methods.la.certify.window_certificate import certified_bracket
+from methods.la.core.newton_matrix import NewtonMatrix
+from methods.la.core.problem import Problem, make_problem
+from methods.la.core.search_settings import BoundSettings, SearchSettings
 from methods.la.family import LimitAnalysisFamily
 from methods.la.least import SAME, least_known
-from methods.la.newton_matrix import NewtonMatrix
-from methods.la.problem import Problem, make_problem
-from methods.la.settings import BoundSettings, SearchSettings
-from methods.la.window_certificate import certified_bracket
 from methods.numerics.statics import analysed
 from methods.springs.warm_up import load_kernels
 

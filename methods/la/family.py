@@ -7,9 +7,9 @@ from typing import Any, ClassVar
 
 from harness.model.assembly import Assembly
 from harness.model.method import Answer
-from methods.la.answers import dead_load_answer
-from methods.la.newton_matrix import NewtonMatrix
-from methods.la.problem import Problem, make_problem
+from methods.la.core.newton_matrix import NewtonMatrix
+from methods.la.core.problem import Problem, make_problem
+from methods.la.state_answers import dead_load_answer
 from methods.numerics.statics import analysed
 
 

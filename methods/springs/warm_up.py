@@ -6,17 +6,17 @@ from functools import cache
 
 import numpy as np
 
-from methods.springs.continuation import Tracer
-from methods.springs.equilibrium import first_step, gravity_state
-from methods.springs.exact_rates import exact_gap_rates
-from methods.springs.factor import SparseFactor
-from methods.springs.gap_law import STICK, neighbour_states
-from methods.springs.kinks import live_rate, strain_rates
-from methods.springs.path_record import PathRecord
+from methods.springs.model.exact_rates import exact_gap_rates
+from methods.springs.model.factor import SparseFactor
+from methods.springs.model.gap_law import STICK, neighbour_states
+from methods.springs.model.spring_settings import GapSettings
+from methods.springs.model.wall_model import build_model
+from methods.springs.path.continuation import Tracer
+from methods.springs.path.kinks import live_rate, strain_rates
+from methods.springs.path.path_record import PathRecord
+from methods.springs.path.plateau import finish
 from methods.springs.patterns import block_on_halves
-from methods.springs.plateau import finish
-from methods.springs.settings import GapSettings
-from methods.springs.wall_model import build_model
+from methods.springs.rest.equilibrium import first_step, gravity_state
 
 
 @cache

@@ -18,11 +18,11 @@ from methods.bound.relaxation import Relaxation
 from methods.bound.slack_bounds import SlackProgramme
 from methods.bound.window_search import Bracket, WindowSearch
 from methods.la.bound_adapter import BoundedLimitAnalysis
-from methods.la.newton_matrix import NewtonMatrix
-from methods.la.problem import Problem, make_problem
-from methods.la.search import Search
-from methods.la.settings import BoundSettings
-from methods.la.window_certificate import equations_of
+from methods.la.certify.window_certificate import equations_of
+from methods.la.core.newton_matrix import NewtonMatrix
+from methods.la.core.problem import Problem, make_problem
+from methods.la.core.search_settings import BoundSettings
+from methods.la.sources.search import Search
 from tests.enumeration import least_by_enumeration
 from tests.la.bodies import column, running_bond
 from tests.walls import assembly

@@ -9,7 +9,7 @@ import numpy as np
 from harness.model.assembly import Assembly
 from harness.model.method import Answer
 from methods.de.adapter import DampedHolds
-from methods.de.settings import SweepSettings
+from methods.de.hold_settings import SweepSettings
 
 
 def run(wall: Assembly, **settings: Any) -> Answer:

@@ -15,10 +15,10 @@ from harness.model.components import analysed_apart
 from harness.model.method import Answer, Finding, OutOfTime, Status, load_method
 from harness.model.result import result_of
 from harness.model.wall import Wall
-from methods.de import answer as de_answer
-from methods.de.soft_wall import SoftWall
-from methods.de.stopped import highest_shown
-from methods.de.sweeps import SweptWall
+from methods.de.engines.soft_wall import SoftWall
+from methods.de.engines.sweeps import SweptWall
+from methods.de.holds import answer as de_answer
+from methods.de.holds.stopped import highest_shown
 from tests.walls import assembly, running_bond, stack
 
 WALL = assembly(running_bond(6, 3), 0.65)
@@ -72,7 +72,7 @@ def test_lower_end_that_was_shown_is_named_where_no_motion_was(monkeypatch: pyte
 def test_without_a_rest_nothing_is_said(name: str, monkeypatch: pytest.MonkeyPatch):
     if name == "de-mujoco":
         pytest.importorskip("mujoco")
-        from methods.de.mujoco_wall import MujocoWall as engine
+        from methods.de.engines.mujoco_wall import MujocoWall as engine
     else:
         engine = {"de": SweptWall, "de-soft": SoftWall}[name]
     stopped_after(1, monkeypatch, engine)

@@ -13,8 +13,8 @@ from harness.model.displaced import DisplacedState
 from harness.model.method import Finding, Status, load_method
 from harness.model.result import result_of
 from methods.de.closed import ClosedContacts, ClosedSettings
-from methods.de.edges import FacingEdges
-from methods.de.uneven import settle_uneven
+from methods.de.engines.edges import FacingEdges
+from methods.de.uneven.settled_contacts import settle_uneven
 from tests.walls import assembly, running_bond, stack
 
 

@@ -246,7 +246,7 @@ def test_an_interface_without_length_is_refused_by_name():
 def test_wall_of_105_bricks_has_the_multiplier_with_unloaded_head_joints():
     wall = assembly(running_bond(10, 10, 0.4, 0.175))
     answer = run(wall)
-    # Greatest multiplier of the linear programme whose head joints carry nothing (methods.de.bench).
+    # Greatest multiplier of the linear programme whose head joints carry nothing (benchmarks.distinct_elements).
     assert answer.multiplier == pytest.approx(0.562957, rel=5e-3)
     assert answer.details["spread"] < 0.01
     assert unbalanced(wall, answer) < 1e-5

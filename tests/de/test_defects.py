@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from methods.de.defects import closed_contacts, crown, cut_corners, lose_contacts, restrict
+from methods.de.uneven.defects import closed_contacts, crown, cut_corners, lose_contacts, restrict
 from tests.de.answers import run
 from tests.walls import assembly, running_bond, stack
 

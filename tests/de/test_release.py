@@ -7,8 +7,8 @@ import pytest
 
 from harness.model.method import Finding
 from methods.de.adapter import ReleasedCollapse
-from methods.de.bodies import convex_parts
-from methods.de.release import ReleaseSettings, even_frames, release
+from methods.de.engines.bodies import convex_parts
+from methods.de.holds.release import ReleaseSettings, even_frames, release
 from tests.walls import assembly, running_bond, stack
 
 

@@ -12,7 +12,7 @@ from harness.engine.residuals import displaced_residuals
 from harness.model.displaced import DisplacedState
 from harness.model.method import Finding, Status
 from harness.model.result import result_of
-from methods.de.loading import raise_until_it_falls
+from methods.de.holds.loading import raise_until_it_falls
 from methods.de.soft import DeformableJoints, SoftSettings
 from tests.walls import assembly, running_bond, stack
 

@@ -5,9 +5,9 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from methods.de.courses import courses, insertion_orders, tunings
-from methods.de.space import polygon_gyration
-from methods.de.strips import CannotModel, build_strips, colour_strips
+from methods.de.engines.courses import courses, insertion_orders, tunings
+from methods.de.engines.space import polygon_gyration
+from methods.de.engines.strips import CannotModel, build_strips, colour_strips
 from tests.walls import assembly, running_bond, stack
 
 

@@ -5,10 +5,10 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from methods.de.courses import courses, insertion_orders, tunings
-from methods.de.settings import HoldSettings
-from methods.de.space import StripSpace
-from methods.de.sweeps import SweptWall
+from methods.de.engines.courses import courses, insertion_orders, tunings
+from methods.de.engines.space import StripSpace
+from methods.de.engines.sweeps import SweptWall
+from methods.de.hold_settings import HoldSettings
 from tests.de.answers import run, unbalanced, unyielding
 from tests.walls import assembly, running_bond, stack
 

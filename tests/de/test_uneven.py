@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from harness.model.method import Finding
-from methods.de.uneven import load_uneven, settle_uneven, uneven_blocks
+from methods.de.uneven.settled_contacts import load_uneven, settle_uneven, uneven_blocks
 from tests.de.answers import run, unbalanced
 from tests.walls import assembly, running_bond, stack
 

@@ -10,6 +10,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from benchmarks.walls import irregular_wall, random_wall
 from harness.engine.isolate import run_isolated
 from harness.engine.judge import answered
 from harness.engine.worker import Task
@@ -18,15 +19,13 @@ from harness.model.build import build
 from harness.model.method import Answer, Finding, Status, load_method
 from harness.model.reading import parse_wall
 from methods.fe.adapter import GapSprings
-from methods.fe.random_walls import random_wall
-from methods.fe.settings import GapSpringsSettings
-from methods.la.irregular_walls import irregular_wall
-from methods.springs.equilibrium import gravity_state
-from methods.springs.factor import make_factor
-from methods.springs.newton import newton
+from methods.fe.path_settings import GapSpringsSettings
+from methods.springs.model.factor import make_factor
+from methods.springs.model.wall_model import build_model
+from methods.springs.path.plateau import check
 from methods.springs.patterns import block_on_halves, running_bond
-from methods.springs.plateau import check
-from methods.springs.wall_model import build_model
+from methods.springs.rest.equilibrium import gravity_state
+from methods.springs.rest.newton import newton
 from tests.walls import wall_data
 
 CASES = Path(__file__).parents[2] / "cases"

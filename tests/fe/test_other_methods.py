@@ -7,13 +7,13 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from benchmarks.sensitivity import main
 from harness.model.assembly import Assembly
 from harness.model.build import build
 from harness.model.method import Finding, Status
 from harness.model.wall import Wall
 from methods.fe.adapter import ConvexSteps, GapSprings, IncrementalNewton
-from methods.fe.sensitivity import main
-from methods.fe.settings import ConvexSettings, GapSpringsSettings, NewtonSettings
+from methods.fe.path_settings import ConvexSettings, GapSpringsSettings, NewtonSettings
 from methods.springs.patterns import block_on_halves, running_bond
 
 

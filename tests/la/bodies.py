@@ -8,7 +8,8 @@ from dataclasses import replace
 import numpy as np
 
 from harness.model.assembly import Assembly
-from methods.la.bench import running_bond
+from tests.walls import assembly
+from tests.walls import running_bond as bond_of
 
 __all__ = ["block_on_halves", "column", "running_bond", "with_friction"]
 
@@ -69,3 +70,8 @@ def column(widths: list[float], heights: list[float], friction: float, halves: i
 def with_friction(wall: Assembly, friction: float | np.ndarray) -> Assembly:
     """The wall with another friction on all its interfaces."""
     return replace(wall, friction=np.broadcast_to(friction, wall.friction.shape).astype(float).copy())
+
+
+def running_bond(courses: int, bricks: int, height: float, friction: float) -> Assembly:
+    """A wall of blocks 0.4 long in running bond, pushed sideways; odd courses start with half blocks."""
+    return assembly(bond_of(courses, bricks, height=height) | {"start": "half"}, friction)

@@ -55,7 +55,7 @@ def test_no_source_ends_a_search_without_what_is_known(source: Any, monkeypatch:
 
 def test_without_a_state_the_time_is_over(monkeypatch: pytest.MonkeyPatch):
     method = load_method("la")
-    monkeypatch.setattr("methods.la.search.solve_associated", out_of_time)
+    monkeypatch.setattr("methods.la.sources.search.solve_associated", out_of_time)
     with pytest.raises(OutOfTime):
         method.solve(assembly(running_bond(6, 3), 0.65), method.Settings())
 

@@ -15,7 +15,7 @@ from hypothesis import strategies as st
 from harness.model.assembly import Assembly
 from harness.model.method import Finding, Status
 from methods.la.adapter import AssociatedLimitAnalysis, LimitAnalysis
-from methods.la.settings import AssociatedSettings, SearchSettings
+from methods.la.core.search_settings import AssociatedSettings, SearchSettings
 from tests.enumeration import least_by_enumeration
 from tests.la.bodies import column
 

@@ -15,8 +15,8 @@ from harness.model.case import read_case
 from harness.model.method import Finding, Status
 from harness.model.wall import Wall
 from methods.la.adapter import AssociatedLimitAnalysis, FromFiniteElements, LimitAnalysis
-from methods.la.extra_adapters import TrescaSequence
-from methods.la.settings import AssociatedSettings, FromFeSettings, SearchSettings
+from methods.la.core.search_settings import AssociatedSettings, FromFeSettings, SearchSettings
+from methods.la.literature.literature_adapters import TrescaSequence
 from tests.la.bodies import column, running_bond
 from tests.walls import assembly, stack, wedge
 

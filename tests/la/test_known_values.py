@@ -13,7 +13,13 @@ from methods.la.adapter import (
     PaperProgramme,
     TrescaSequence,
 )
-from methods.la.settings import AssociatedSettings, CvxpySettings, PaperSettings, SearchSettings, TrescaSettings
+from methods.la.core.search_settings import (
+    AssociatedSettings,
+    CvxpySettings,
+    PaperSettings,
+    SearchSettings,
+    TrescaSettings,
+)
 from tests.la.bodies import block_on_halves, column, running_bond
 
 

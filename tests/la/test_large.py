@@ -10,22 +10,22 @@ from scipy.linalg import block_diag
 
 from harness.model.method import Finding
 from methods.la.adapter import AssociatedLimitAnalysis, LimitAnalysis
-from methods.la.arc import STEPPING, ArcPath, Stepping
-from methods.la.associated import END
-from methods.la.budget import Budget, Limits
-from methods.la.exact import close_tight
-from methods.la.feasible_pair import PAIR, feasible_pair
-from methods.la.interior_point import PathSettings, follow_path, start_point
+from methods.la.core.exact import close_tight
+from methods.la.core.newton_matrix import NewtonMatrix
+from methods.la.core.problem import make_problem
+from methods.la.core.search_settings import AssociatedSettings, SearchSettings
+from methods.la.core.state import residuals
+from methods.la.interior.arc import STEPPING, ArcPath, Stepping
+from methods.la.interior.associated import END
+from methods.la.interior.feasible_pair import PAIR, feasible_pair
+from methods.la.interior.interior_point import PathSettings, follow_path, start_point
+from methods.la.interior.newton_step import NewtonStep, Point
+from methods.la.interior.region import with_all_above
 from methods.la.least import least_of
-from methods.la.newton_matrix import NewtonMatrix
-from methods.la.newton_step import NewtonStep, Point
-from methods.la.problem import make_problem
-from methods.la.region import with_all_above
-from methods.la.search import CHOICES, Search
-from methods.la.settings import AssociatedSettings, SearchSettings
 from methods.la.sources import explore
 from methods.la.sources.arcs import ArcPaths
-from methods.la.state import residuals
+from methods.la.sources.budget import Budget, Limits
+from methods.la.sources.search import CHOICES, Search
 from tests.la.bodies import running_bond
 
 
@@ -99,8 +99,8 @@ def test_path_to_a_tiny_gap_stays_in_equilibrium() -> None:
 
 def test_vertical_force_on_one_block_of_a_large_wall_is_unbounded(monkeypatch: pytest.MonkeyPatch) -> None:
     """The interior point meets no end there; forces that bear the live load alone tell."""
-    monkeypatch.setattr("methods.la.associated.END", replace(END, above=100))
-    monkeypatch.setattr("methods.la.search.CHOICES", replace(CHOICES, vertices_up_to=100))
+    monkeypatch.setattr("methods.la.interior.associated.END", replace(END, above=100))
+    monkeypatch.setattr("methods.la.sources.search.CHOICES", replace(CHOICES, vertices_up_to=100))
     wall = running_bond(10, 8, 0.2, 0.65)
     live = np.zeros_like(wall.live)
     live[wall.centroid[:, 1].argmax(), 1] = -1.0
@@ -136,7 +136,7 @@ def test_settings_mean_the_same_where_the_interior_point_solves_the_programmes(
     starts: int, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """Above so many interfaces; `starts` and `failures` were read on smaller walls only."""
-    monkeypatch.setattr("methods.la.search.CHOICES", replace(CHOICES, vertices_up_to=50))
+    monkeypatch.setattr("methods.la.sources.search.CHOICES", replace(CHOICES, vertices_up_to=50))
     answer = LimitAnalysis().solve(
         running_bond(10, 5, 0.175, 0.65), SearchSettings(effort="quick", starts=starts, failures=3)
     )

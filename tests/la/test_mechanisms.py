@@ -5,14 +5,14 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from benchmarks.walls import drawn
 from harness.model.assembly import Assembly, FloatArray
 from harness.model.build import build
 from harness.model.wall import Wall
 from methods.la.adapter import LimitAnalysis
-from methods.la.irregular_walls import drawn
-from methods.la.mechanisms import extreme_motions, least_of_block
-from methods.la.problem import make_problem
-from methods.la.settings import SearchSettings
+from methods.la.core.problem import make_problem
+from methods.la.core.search_settings import SearchSettings
+from methods.la.sources.mechanisms import extreme_motions, least_of_block
 from tests.la.bodies import column
 
 RIGHT, LEFT = np.array([1.0, 0.0, 0.0]), np.array([-1.0, 0.0, 0.0])

@@ -7,17 +7,17 @@ from itertools import islice
 
 import pytest
 
+from benchmarks.walls import drawn, irregular_wall
 from harness.model.assembly import Assembly
 from methods.la.adapter import LimitAnalysis
-from methods.la.budget import Budget, Limits
-from methods.la.irregular_walls import drawn, irregular_wall
-from methods.la.newton_matrix import NewtonMatrix
-from methods.la.problem import make_problem
-from methods.la.search import Search
-from methods.la.settings import SearchSettings
+from methods.la.core.newton_matrix import NewtonMatrix
+from methods.la.core.problem import make_problem
+from methods.la.core.search_settings import SearchSettings
+from methods.la.core.state import CollapseState, polished, residuals
 from methods.la.sources import SOURCES, Source, explore
+from methods.la.sources.budget import Budget, Limits
+from methods.la.sources.search import Search
 from methods.la.sources.springs import CentralForces, CommittedHistories, LittleSelfStress, SafeForces
-from methods.la.state import CollapseState, polished, residuals
 from tests.la.bodies import block_on_halves, running_bond
 
 WALLS = {

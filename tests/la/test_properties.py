@@ -13,8 +13,8 @@ from harness.engine.symmetry import VIEWS
 from harness.model.assembly import Assembly
 from harness.model.method import Finding, Status
 from methods.la.adapter import AssociatedLimitAnalysis, LimitAnalysis
-from methods.la.flexibility import Compliance
-from methods.la.settings import AssociatedSettings, SearchSettings
+from methods.la.core.flexibility import Compliance
+from methods.la.core.search_settings import AssociatedSettings, SearchSettings
 from tests.la.bodies import column, running_bond
 
 QUICK = SearchSettings(effort="quick")

@@ -7,14 +7,14 @@ from typing import Any
 import pytest
 
 from methods.la.adapter import LimitAnalysis
-from methods.la.budget import Budget, Limits, Sizes
-from methods.la.newton_matrix import NewtonMatrix
-from methods.la.problem import make_problem
-from methods.la.proof import prove
-from methods.la.search import Search
-from methods.la.settings import SearchSettings
+from methods.la.certify.proof import prove
+from methods.la.core.newton_matrix import NewtonMatrix
+from methods.la.core.problem import make_problem
+from methods.la.core.search_settings import SearchSettings
 from methods.la.sources import SOURCES, explore
+from methods.la.sources.budget import Budget, Limits, Sizes
 from methods.la.sources.paths import CentralPath
+from methods.la.sources.search import Search
 from methods.la.sources.springs import LittleSelfStress
 from methods.numerics.failures import SingularMatrix
 from tests.la.bodies import column, running_bond
@@ -85,7 +85,7 @@ def test_tree_that_does_not_end_proves_what_fewer_leaves_do() -> None:
     assert few.lower_bound <= many.lower_bound <= known.multiplier
 
 
-@pytest.mark.parametrize("routine", ["methods.la.state.exact_forces", "methods.la.search.follow_path"])
+@pytest.mark.parametrize("routine", ["methods.la.core.state.exact_forces", "methods.la.sources.search.follow_path"])
 def test_fault_in_a_routine_is_not_taken_for_a_failure_of_numerics(
     routine: str, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -101,7 +101,7 @@ def test_singular_matrix_ends_one_source_and_not_the_search(monkeypatch: pytest.
     def singular(*_: Any, **__: Any) -> Any:
         raise SingularMatrix("made up")
 
-    monkeypatch.setattr("methods.la.search.follow_path", singular)
+    monkeypatch.setattr("methods.la.sources.search.follow_path", singular)
     answer = LimitAnalysis().solve(running_bond(6, 3, 0.2, 0.65), SearchSettings(effort="quick"))
     assert answer.multiplier is not None
     found = {row["source"]: row["states"] for row in answer.details["sources"]}

@@ -9,11 +9,11 @@ import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
+from benchmarks.walls import irregular_wall
 from harness.engine.judge import answered
 from harness.engine.symmetry import VIEWS
 from harness.model.assembly import Assembly
 from harness.model.method import Finding, Status, load_method
-from methods.la.irregular_walls import irregular_wall
 from tests.walls import assembly
 
 BOUND = 1e-7

@@ -6,13 +6,13 @@ import numpy as np
 import pytest
 
 from harness.model.assembly import FloatArray, IntArray
-from methods.fe.settings import GapSpringsSettings
-from methods.springs.direction import Direction
-from methods.springs.factor import DenseFactor, SparseFactor
-from methods.springs.gap_law import OPEN, SLIP_PLUS, STICK, neighbour_states
+from methods.fe.path_settings import GapSpringsSettings
+from methods.springs.model.factor import DenseFactor, SparseFactor
+from methods.springs.model.gap_law import OPEN, SLIP_PLUS, STICK, neighbour_states
+from methods.springs.model.wall_model import WallModel, build_model
+from methods.springs.path.direction import PathDirection
+from methods.springs.path.tolerances import MOST
 from methods.springs.patterns import block_on_halves, running_bond
-from methods.springs.tolerances import MOST
-from methods.springs.wall_model import WallModel, build_model
 
 Kind = type[DenseFactor] | type[SparseFactor]
 EXTENT = 100.0
@@ -28,12 +28,12 @@ def sticking(model: WallModel) -> IntArray:
     return np.full(model.n_points, STICK)
 
 
-def defect(model: WallModel, state: IntArray, way: Direction) -> float:
+def defect(model: WallModel, state: IntArray, way: PathDirection) -> float:
     tangent = model.tangent(state).toarray()
     return float(np.abs(tangent @ (way.velocity + way.tail) - way.speed * model.live).max())
 
 
-def change(way: Direction, state: IntArray, point: int, new: int, look: bool = True) -> tuple[FloatArray, float]:
+def change(way: PathDirection, state: IntArray, point: int, new: int, look: bool = True) -> tuple[FloatArray, float]:
     """Turn at a change of state; the gradient b of its kink function in full length, and its rate before."""
     model = way.model
     old = int(state[point])
@@ -55,7 +55,7 @@ def test_each_piece_is_in_equilibrium_and_leads_on_into_the_new_cell(
     rough: WallModel, kind: Kind, shrink: float, pins: int, seed: int
 ) -> None:
     state, generator = sticking(rough), np.random.default_rng(seed)
-    way = Direction(rough, kind(rough))
+    way = PathDirection(rough, kind(rough))
     way.solve_anew(state, EXTENT)
     way.elastic *= shrink
     way.solve_anew(state, EXTENT)
@@ -73,7 +73,7 @@ def test_each_piece_is_in_equilibrium_and_leads_on_into_the_new_cell(
 def test_a_velocity_whose_sense_was_lost_to_rounding_gets_it_from_the_kink(rough: WallModel, shrink: float) -> None:
     """Where 1 - b'w nearly vanishes rounding may turn the estimate round; the new direction must not follow it."""
     state = sticking(rough)
-    way = Direction(rough, SparseFactor(rough))
+    way = PathDirection(rough, SparseFactor(rough))
     way.solve_anew(state, EXTENT)
     way.elastic *= shrink
     point, crossed = 3, (3, STICK, SLIP_PLUS)
@@ -93,7 +93,7 @@ def with_sticking(state: IntArray, point: int) -> IntArray:
 def test_where_the_tangent_is_singular_the_velocity_is_its_null_vector(kind: Kind) -> None:
     model = build_model(block_on_halves((0.6, 0.4)), GapSpringsSettings())
     state = sticking(model)
-    way = Direction(model, kind(model))
+    way = PathDirection(model, kind(model))
     way.solve_anew(state, EXTENT)
     for point in range(model.n_points):
         change(way, state, point, SLIP_PLUS)
@@ -108,7 +108,7 @@ def test_where_the_tangent_is_singular_the_velocity_is_its_null_vector(kind: Kin
 def test_a_motion_without_stiffness_is_pinned_before_a_soft_one(rough: WallModel, kind: Kind) -> None:
     """The brick at the upper right comes loose and slides freely where another motion is pinned already."""
     state = sticking(rough)
-    way = Direction(rough, kind(rough))
+    way = PathDirection(rough, kind(rough))
     way.solve_anew(state, EXTENT)
     way.elastic *= 1e-6
     way.solve_anew(state, EXTENT)

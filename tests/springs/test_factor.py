@@ -5,12 +5,12 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from methods.fe.settings import GapSpringsSettings
-from methods.springs import factor as factor_module
-from methods.springs.factor import DenseFactor, Factor, SingularTangent, SparseFactor, refactor_any
-from methods.springs.gap_law import OPEN, STICK, neighbour_states
+from methods.fe.path_settings import GapSpringsSettings
+from methods.springs.model import factor as factor_module
+from methods.springs.model.factor import DenseFactor, Factor, SingularTangent, SparseFactor, refactor_any
+from methods.springs.model.gap_law import OPEN, STICK, neighbour_states
+from methods.springs.model.wall_model import WallModel, build_model
 from methods.springs.patterns import running_bond
-from methods.springs.wall_model import WallModel, build_model
 
 
 @pytest.fixture(scope="module")

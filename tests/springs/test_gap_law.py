@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from methods.springs.gap_law import (
+from methods.springs.model.gap_law import (
     OPEN,
     SLIP_MINUS,
     SLIP_PLUS,

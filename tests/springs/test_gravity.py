@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import numpy as np
 
-from methods.la.irregular_walls import drawn
-from methods.springs.equilibrium import equilibrium, gravity_state
-from methods.springs.factor import make_factor
-from methods.springs.settings import GapSettings
-from methods.springs.wall_model import build_model
+from benchmarks.walls import drawn
+from methods.springs.model.factor import make_factor
+from methods.springs.model.spring_settings import GapSettings
+from methods.springs.model.wall_model import build_model
+from methods.springs.rest.equilibrium import equilibrium, gravity_state
 
 
 def test_wall_that_takes_long_to_come_to_rest_is_not_said_to_fall() -> None:

@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 from pydantic import ValidationError
 
-from methods.fe.settings import GapSpringsSettings
-from methods.springs.points import gap_points
+from methods.fe.path_settings import GapSpringsSettings
+from methods.springs.model.points import gap_points
 
 
 def test_gauss_points_are_refused_because_they_leave_the_ends_out() -> None:

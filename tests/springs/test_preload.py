@@ -4,14 +4,14 @@ from __future__ import annotations
 
 import numpy as np
 
-from methods.la.interior_point import PathSettings, follow_path, start_point
-from methods.la.newton_matrix import NewtonMatrix
-from methods.la.problem import make_problem
-from methods.springs.factor import make_factor
-from methods.springs.gap_law import gap_forces
-from methods.springs.preload import preloaded
-from methods.springs.settings import GapSettings
-from methods.springs.wall_model import build_model
+from methods.la.core.newton_matrix import NewtonMatrix
+from methods.la.core.problem import make_problem
+from methods.la.interior.interior_point import PathSettings, follow_path, start_point
+from methods.springs.model.factor import make_factor
+from methods.springs.model.gap_law import gap_forces
+from methods.springs.model.spring_settings import GapSettings
+from methods.springs.model.wall_model import build_model
+from methods.springs.path.preload import preloaded
 from tests.la.bodies import running_bond
 
 

@@ -7,14 +7,14 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from benchmarks.walls import drawn
 from harness.model.assembly import Assembly
-from methods.la.irregular_walls import drawn
-from methods.springs.factor import make_factor
-from methods.springs.newton import newton
+from methods.springs.model.factor import make_factor
+from methods.springs.model.spring_settings import GapSettings
+from methods.springs.model.wall_model import build_model
 from methods.springs.patterns import running_bond
-from methods.springs.settings import GapSettings
-from methods.springs.slow_motion import SlowMotion
-from methods.springs.wall_model import build_model
+from methods.springs.rest.newton import newton
+from methods.springs.rest.slow_motion import SlowMotion
 
 
 def standing(wall: Assembly, commits: bool = True) -> SlowMotion:

@@ -6,11 +6,11 @@ from collections.abc import Sequence
 from contextlib import suppress
 from dataclasses import replace
 
-from methods.la.search import Search
 from methods.la.sources.arcs import ArcPaths
 from methods.la.sources.blocks import JoinedBlocks, SingleBlocks
 from methods.la.sources.ladder import FrictionLadder
 from methods.la.sources.paths import CentralPath, LaggedFriction, RandomStarts, SmootherJoints
+from methods.la.sources.search import Search
 from methods.la.sources.source import Source
 from methods.la.sources.springs import CentralForces, LittleSelfStress, SafeForces
 from methods.numerics.failures import SingularMatrix

@@ -9,14 +9,14 @@ from typing import ClassVar
 
 import numpy as np
 
-from methods.la.arc import ArcPath
-from methods.la.feasible_pair import feasible_pair
-from methods.la.path_programmes import EXACTNESS, cheapest_mechanism, exact_state
-from methods.la.problem import Problem
-from methods.la.region import Region, in_whole, moving_region
-from methods.la.search import Search
-from methods.la.state import CollapseState
-from methods.la.unloaded import smoothed
+from methods.la.core.problem import Problem
+from methods.la.core.state import CollapseState
+from methods.la.interior.arc import ArcPath
+from methods.la.interior.feasible_pair import feasible_pair
+from methods.la.interior.path_programmes import EXACTNESS, cheapest_mechanism, exact_state
+from methods.la.interior.region import Region, in_whole, moving_region
+from methods.la.sources.search import Search
+from methods.la.sources.unloaded import smoothed
 from methods.numerics.failures import SingularMatrix
 
 

@@ -6,11 +6,11 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import ClassVar
 
-from methods.la.mechanisms import motions_of
-from methods.la.problem import Problem
-from methods.la.record import LOWER
-from methods.la.search import Search
-from methods.la.state import CollapseState
+from methods.la.core.problem import Problem
+from methods.la.core.state import CollapseState
+from methods.la.sources.mechanisms import motions_of
+from methods.la.sources.record import LOWER
+from methods.la.sources.search import Search
 
 
 @dataclass(frozen=True)

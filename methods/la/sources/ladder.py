@@ -13,9 +13,9 @@ from typing import ClassVar
 import numpy as np
 
 from harness.model.assembly import FloatArray
-from methods.la.problem import Problem
-from methods.la.search import Search
-from methods.la.state import CollapseState
+from methods.la.core.problem import Problem
+from methods.la.core.state import CollapseState
+from methods.la.sources.search import Search
 
 
 @dataclass(frozen=True)

@@ -6,12 +6,12 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import ClassVar
 
-from methods.la.lagged import lagged_mechanism
-from methods.la.path_programmes import exact_state
-from methods.la.problem import Problem
-from methods.la.search import Search
-from methods.la.state import CollapseState
-from methods.la.unloaded import smoothed
+from methods.la.core.problem import Problem
+from methods.la.core.state import CollapseState
+from methods.la.interior.lagged import lagged_mechanism
+from methods.la.interior.path_programmes import exact_state
+from methods.la.sources.search import Search
+from methods.la.sources.unloaded import smoothed
 from methods.numerics.failures import SingularMatrix
 
 
@@ -106,7 +106,7 @@ class RandomStarts:
 
 @dataclass(frozen=True)
 class LaggedFriction:
-    """Paths with friction bounds that lag behind, where nothing else led to a state (`methods.la.lagged`).
+    """Paths with friction bounds that lag behind, where nothing else led to a state (`methods.la.interior.lagged`).
 
     Attributes:
         attempts: Newton steps with lagged bounds and how fast the bounds follow, tried until one leads to a state.

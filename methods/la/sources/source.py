@@ -5,9 +5,9 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import Protocol
 
-from methods.la.problem import Problem
-from methods.la.search import Search
-from methods.la.state import CollapseState
+from methods.la.core.problem import Problem
+from methods.la.core.state import CollapseState
+from methods.la.sources.search import Search
 
 
 class Source(Protocol):

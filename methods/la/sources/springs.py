@@ -24,23 +24,23 @@ from typing import ClassVar
 import numpy as np
 
 from harness.model.assembly import FloatArray
-from methods.la.gravity import SPRINGS, Gravity, gravity_of
-from methods.la.interior_point import PathSettings, follow_path, start_point
-from methods.la.problem import Problem
-from methods.la.record import LOWER
-from methods.la.search import Search
-from methods.la.state import CollapseState, moving_contacts
-from methods.la.unloaded import smoothed
-from methods.springs.continuation import Tracer
-from methods.springs.equilibrium import doubled, first_step
-from methods.springs.factor import SingularTangent, make_factor
-from methods.springs.follow import follow
-from methods.springs.jump import JUMPS
-from methods.springs.path_record import PathEnd, PathRecord
-from methods.springs.plateau import finish
-from methods.springs.preload import preloaded
-from methods.springs.settings import GapSettings
-from methods.springs.wall_model import build_model
+from methods.la.core.problem import Problem
+from methods.la.core.state import CollapseState, moving_contacts
+from methods.la.interior.interior_point import PathSettings, follow_path, start_point
+from methods.la.sources.gravity import SPRINGS, Gravity, gravity_of
+from methods.la.sources.record import LOWER
+from methods.la.sources.search import Search
+from methods.la.sources.unloaded import smoothed
+from methods.springs.model.factor import SingularTangent, make_factor
+from methods.springs.model.spring_settings import GapSettings
+from methods.springs.model.wall_model import build_model
+from methods.springs.path.continuation import Tracer
+from methods.springs.path.follow import follow
+from methods.springs.path.jump import JUMPS
+from methods.springs.path.path_record import PathEnd, PathRecord
+from methods.springs.path.plateau import finish
+from methods.springs.path.preload import preloaded
+from methods.springs.rest.equilibrium import doubled, first_step
 
 
 @dataclass(frozen=True)

@@ -1,0 +1,37 @@
+"""Run a benchmark or a study of random walls: `python -m benchmarks NAME [ARGUMENTS]`; alone, it lists them.
+
+All run in one thread, whatever the environment says: their figures are CPU seconds.
+"""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Sequence
+from importlib import import_module
+from pathlib import Path
+from pkgutil import iter_modules
+
+from harness.engine.threads import pin
+
+NOT_RUN = {"__main__", "walls"}
+"""Modules of this folder that are no benchmarks."""
+
+
+def benchmarks() -> list[str]:
+    """Names of the benchmarks."""
+    return sorted({module.name for module in iter_modules([str(Path(__file__).parent)])} - NOT_RUN)
+
+
+def main(arguments: Sequence[str] | None = None) -> int:
+    """Run the benchmark named first with the arguments that follow; 2 if there is none of that name."""
+    given = list(sys.argv[1:] if arguments is None else arguments)
+    pin()
+    if given and given[0] in benchmarks():
+        return int(import_module(f"benchmarks.{given[0]}").main(given[1:]) or 0)
+    for name in benchmarks():
+        print(f"{name:<20} {(import_module(f'benchmarks.{name}').__doc__ or '').splitlines()[0]}")
+    return 2 if given else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

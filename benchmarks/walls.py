@@ -1,0 +1,92 @@
+"""Walls that benchmarks, studies and tests share: bonds, stacks, and walls that chance draws."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+from scipy.spatial import Voronoi
+
+from harness.model.assembly import Assembly
+from harness.model.build import build
+from harness.model.wall import Wall
+
+PUSH = {"live": {"body": [{"per_weight": [1, 0]}]}}
+WIDTH, HEIGHT = 3.0, 2.0
+"""Of an irregular wall."""
+
+
+def pushed(pattern: dict[str, Any], friction: float) -> Assembly:
+    """The assembly of a pattern pushed sideways by its weight."""
+    data = {"format": "wall/1", "unit_weight": 20.0, "friction": friction, "pattern": pattern, "loads": PUSH}
+    return build(Wall.model_validate(data)).assembly
+
+
+def stack(count: int, width: float, height: float, friction: float) -> Assembly:
+    """A stack of equal blocks."""
+    return pushed({"type": "stack", "width": width, "height": height, "count": count}, friction)
+
+
+def bond(count: int, bricks: int, friction: float, height: float = 0.175, length: float = 0.4) -> Assembly:
+    """A running bond that starts with half bricks."""
+    pattern = {"type": "running_bond", "block_length": length, "block_height": height, "count": count, "bricks": bricks}
+    return pushed(pattern, friction)
+
+
+def random_wall(seed: int) -> Assembly:
+    """The random coursed wall of this seed.
+
+    3 to 10 courses of 3 to 8 block lengths, blocks of 0.5 to 1.25 lengths, height 0.3 to 0.75 of the length, friction
+    0.3 to 1.1.
+    """
+    generator = np.random.default_rng(seed)
+    length = float(generator.integers(3, 9))
+    courses = []
+    for _ in range(int(generator.integers(3, 11))):
+        widths: list[float] = []
+        while length - sum(widths) > 0.0:
+            width = min(float(generator.choice([0.5, 0.75, 1.0, 1.25])), length - sum(widths))
+            widths.append(width)
+        courses.append(widths)
+    wall = {
+        "format": "wall/1",
+        "unit_weight": 20.0,
+        "friction": round(float(generator.uniform(0.3, 1.1)), 3),
+        "pattern": {
+            "type": "running_bond",
+            "block_length": 0.4,
+            "block_height": round(0.4 * float(generator.uniform(0.3, 0.75)), 3),
+            "courses": courses,
+        },
+        "loads": {"live": {"body": [{"per_weight": [1.0, 0.0]}]}},
+    }
+    return build(Wall.model_validate(wall), f"random wall {seed}").assembly
+
+
+def irregular_wall(seed: int, columns: int, courses: int, friction: float) -> Assembly:
+    """Voronoi cells of disturbed courses, pushed sideways, on a fixed block."""
+    row, column = np.divmod(np.arange(columns * courses), columns)
+    places = np.column_stack([column + 0.25 + 0.5 * (row % 2), row + 0.5])
+    places += np.random.default_rng(seed).uniform(-0.35, 0.35, places.shape)
+    seeds = np.clip(places / [columns, courses], 0.03, 0.97) * [WIDTH, HEIGHT]
+    images = [seeds * [-1, 1], seeds * [1, -1], [2 * WIDTH, 0] + seeds * [-1, 1], [0, 2 * HEIGHT] + seeds * [1, -1]]
+    cells = Voronoi(np.vstack([seeds, *images]))
+    corners = [cells.vertices[cells.regions[cells.point_region[k]]].round(9) for k in range(len(seeds))]
+    base = [[-1, -0.5], [WIDTH + 1, -0.5], [WIDTH + 1, 0], [-1, 0]]
+    blocks: list[dict[str, Any]] = [{"id": "base", "polygon": base, "fixed": True}]
+    blocks += [{"id": f"b{k}", "polygon": corner.tolist()} for k, corner in enumerate(corners)]
+    wall = {
+        "format": "wall/1",
+        "unit_weight": 20.0,
+        "friction": friction,
+        "blocks": blocks,
+        "loads": {"live": {"body": [{"per_weight": [1.0, 0.0]}]}},
+    }
+    return build(Wall.model_validate(wall), f"irregular wall {seed}").assembly
+
+
+def drawn(seed: int, least: int = 3, most: int = 8) -> Assembly:
+    """The wall of a seed: courses and columns from `least` to `most`, friction from 0.3 to 1.0."""
+    generator = np.random.default_rng([seed, 1])
+    columns, courses = (int(count) for count in generator.integers(least, most + 1, 2))
+    return irregular_wall(seed, columns, courses, round(float(generator.uniform(0.3, 1.0)), 3))

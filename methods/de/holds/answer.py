@@ -1,0 +1,223 @@
+"""From the brackets of several insertion orders to one answer that claims no more than they show."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+
+from harness.model.assembly import Assembly, IntArray
+from harness.model.method import Answer, Finding, OutOfTime, Status
+from methods.de.engines.courses import Tuning, courses, insertion_orders, tunings
+from methods.de.engines.engine import Engine
+from methods.de.hold_settings import HoldSettings
+from methods.de.holds.order_bracket import LOOSE, BracketSearch, OrderBracket, held_forces, mechanism_at
+from methods.de.holds.stopped import Known, stopped_answer
+
+BRACKET_MEANING = (
+    "[lowest multiplier held, highest multiplier moving] over the body orders: every order was held at or above the "
+    "lower end and moved at or below the upper end"
+)
+
+EngineMaker = Callable[[IntArray, IntArray, Tuning], Engine]
+"""From free blocks and interfaces in insertion order and a tuning to an engine that holds the wall."""
+
+
+def solve_by_holds(
+    assembly: Assembly,
+    settings: HoldSettings,
+    make_engine: EngineMaker,
+    tolerance: float,
+    candidates: list[Tuning] | None = None,
+) -> Answer:
+    """Bracket the collapse multiplier in every insertion order and put the findings together.
+
+    Args:
+        assembly: the wall.
+        settings: settings of the holds.
+        make_engine: makes the engine.
+        tolerance: residual of contact forces that the judge accepts of the method.
+        candidates: tunings to try in turn; None: those of `methods.de.engines.courses.tunings`.
+
+    Where the time is over what is shown by then is the answer (`methods.de.holds.stopped`).
+    """
+    if assembly.n_free == 0:
+        return Answer(Status.OK, Finding.STANDS, "every block is fixed: nothing can move")
+    unit = assembly.load_unit
+    course = courses(assembly)
+    orders = insertion_orders(assembly, course, settings.orders, settings.seed)
+    candidates = candidates or tunings(course, settings.mass_decay)
+    known = Known(len(orders))
+    try:
+        tuning, first = first_bracket(assembly, settings, make_engine, orders[0], candidates, known)
+        known.finished.append(first)
+        for name, blocks, joints in orders[1:]:
+            search = BracketSearch(make_engine(blocks, joints, tuning), settings, unit, name)
+            known.finished.append(known.searched(search, assembly.has_live_load))
+        brackets = known.finished
+        answer = _conclude(assembly, settings, brackets, unit)
+        answer.details = {**describe(assembly, brackets), **_of_tuning(tuning), **answer.details}
+        answer.iterations = sum(b.steps for b in brackets)
+        best = reporting(brackets)
+        if best is None:
+            return answer
+        _, blocks, joints = next(order for order in orders if order[0] == best.order)
+        return _with_state(answer, make_engine(blocks, joints, tuning), settings, best)
+    except OutOfTime:
+        found = [search.found for search in known.counted()]
+        return stopped_answer(assembly, known, tolerance, describe(assembly, found))
+
+
+def _of_tuning(tuning: Tuning) -> dict[str, Any]:
+    return {"mass_decay": tuning.mass_decay, "damping": tuning.damping}
+
+
+def _with_state(answer: Answer, engine: Engine, settings: HoldSettings, best: OrderBracket) -> Answer:
+    """The answer with the contact forces, the motion and the way of the order that is reported."""
+    forces, residual = held_forces(engine, settings, best)
+    answer = replace(
+        answer,
+        forces=forces,
+        forces_multiplier=best.held,
+        details=answer.details | {"residual_of_forces": residual},
+        path=best.path,
+    )
+    if answer.finding is Finding.COLLAPSES:
+        answer.mechanism, answer.flow = mechanism_at(engine, settings, best), "approximate"
+    answer.iterations += engine.steps
+    return answer
+
+
+def first_bracket(
+    assembly: Assembly,
+    settings: HoldSettings,
+    make_engine: EngineMaker,
+    order: tuple[str, IntArray, IntArray],
+    candidates: list[Tuning],
+    known: Known,
+) -> tuple[Tuning, OrderBracket]:
+    """The first order's bracket, and the tuning that gave it: the first that converges, else the one that got nearest.
+
+    The tunings decide only how fast a wall settles; a bracket of either is a bracket. A wall falls under its dead load
+    only where it moves with every tuning: what one of them holds, stands.
+    """
+    name, blocks, joints = order
+    tried: list[tuple[tuple[bool, float, bool, int], Tuning, OrderBracket]] = []
+    for k, tuning in enumerate(candidates):
+        search = BracketSearch(make_engine(blocks, joints, tuning), settings, assembly.load_unit, name)
+        found = known.searched(search, assembly.has_live_load)
+        if found.held is not None and found.told(assembly.has_live_load):
+            return tuning, found
+        width = 1.0 if found.width is None else found.width
+        tried.append(((found.held is None, width, found.moving is None, k), tuning, found))
+    _, tuning, found = min(tried, key=lambda item: item[0])
+    return tuning, found
+
+
+def reporting(brackets: list[OrderBracket]) -> OrderBracket | None:
+    """The order that is reported: the median of those that have a bracket, else the one held highest, else None."""
+    full = sorted((b for b in brackets if b.middle is not None), key=lambda b: (b.middle, b.order))
+    if full:
+        return full[(len(full) - 1) // 2]
+    held = [b for b in brackets if b.held is not None]
+    return max(held, key=lambda b: b.held or 0.0) if held else None
+
+
+def describe(assembly: Assembly, brackets: list[OrderBracket]) -> dict[str, Any]:
+    """What every order found, as JSON values."""
+    middles = [b.middle for b in brackets if b.middle is not None]
+    spread = (max(middles) - min(middles)) / float(np.mean(middles)) if middles and np.mean(middles) > 0 else None
+    return {
+        "orders": [
+            {
+                "order": b.order,
+                "held": b.held,
+                "moving": b.moving,
+                "proof": None if b.proof is None else str(b.proof),
+                "undecided": b.undecided,
+                "holds": b.holds,
+                "time_steps": b.steps,
+                "work_exhausted": b.exhausted,
+            }
+            for b in brackets
+        ],
+        "spread": spread,
+        "lowest_moving": min((b.moving for b in brackets if b.moving is not None), default=None),
+        "undecided": sum(len(b.undecided) for b in brackets),
+        "reporting_order": best.order if (best := reporting(brackets)) else None,
+        "contact_updates": sum(b.steps for b in brackets) * assembly.n_interfaces,
+    }
+
+
+def _conclude(assembly: Assembly, settings: HoldSettings, brackets: list[OrderBracket], unit: float) -> Answer:
+    """Status, finding and sentence; without forces and mechanism."""
+    fallen = [b for b in brackets if b.held is None]
+    if fallen:
+        return _at_zero(assembly, brackets, fallen)
+    if not assembly.has_live_load:
+        return Answer(Status.OK, Finding.STANDS, f"the dead load is held in all {len(brackets)} body orders")
+    if all(b.capped for b in brackets):
+        cap = settings.load_cap * unit
+        sentence = (
+            f"held up to the cap: the live load was raised to multiplier {cap:.6g}, {settings.load_cap:g} times the "
+            f"dead load, and held in all {len(brackets)} body orders; larger loads were not tried"
+        )
+        return Answer(Status.OK, Finding.UNBOUNDED, sentence, details={"cap": cap})
+    return _collapse(brackets)
+
+
+def _at_zero(assembly: Assembly, brackets: list[OrderBracket], fallen: list[OrderBracket]) -> Answer:
+    """Some order is not held under the dead load alone."""
+    moved = [b for b in fallen if b.moving is not None]
+    if len(moved) == len(brackets):
+        sentence = f"falls under its dead load: it moved in all {len(brackets)} body orders at multiplier 0"
+        answer = Answer(Status.OK, Finding.FALLS, sentence)
+        answer.mechanism, answer.flow = moved[0].velocity, "approximate"
+        return answer
+    sentence = (
+        f"whether the dead load is held is not decided: of {len(brackets)} body orders {len(brackets) - len(fallen)} "
+        f"held it, {len(moved)} moved and {len(fallen) - len(moved)} could not be told"
+    )
+    return Answer(Status.NOT_CONVERGED, Finding.NONE, sentence)
+
+
+def _collapse(brackets: list[OrderBracket]) -> Answer:
+    """Every order holds the dead load, and not all of them the load cap."""
+    best = reporting(brackets)
+    complete = [b for b in brackets if b.middle is not None]
+    if best is None or best.middle is None or not complete:
+        held = min(b.held or 0.0 for b in brackets)
+        sentence = f"no body order came to a state that moves: held up to multiplier {held:.6g}, then undecided"
+        return Answer(Status.NOT_CONVERGED, Finding.NONE, sentence)
+    low = min(b.held for b in brackets if b.held is not None)
+    high = max(b.moving for b in complete if b.moving is not None)
+    undecided = sum(len(b.undecided) for b in brackets)
+    sentence = (
+        f"collapses between {low:.6g} (held) and {high:.6g} (moving) over {len(brackets)} body orders; the multiplier "
+        f"{best.middle:.6g} is the middle of the median order's bracket [{best.held:.6g}, {best.moving:.6g}], not an "
+        "exact value"
+    )
+    if best.nothing:
+        sentence = (
+            f"collapses at 0: it stands without live load and moved at {best.moving:.3g}, the least that residuals "
+            f"tell from none; over {len(brackets)} body orders between {low:.6g} and {high:.6g}"
+        )
+    if undecided:
+        sentence += f"; {undecided} holds could not be told and are not counted as held"
+    status = Status.OK
+    # Beside a range that the orders leave open, what one of them leaves open is as small as it is to that range.
+    widest = max(0.0 if b.nothing else ((b.moving or 0.0) - (b.held or 0.0)) / high for b in complete)
+    if len(complete) < len(brackets) or widest > LOOSE:
+        status = Status.NOT_CONVERGED
+        sentence += f"; not converged: {len(brackets) - len(complete)} orders without a moving state, widest bracket "
+        sentence += f"{100 * widest:.2g} %"
+    return Answer(
+        status,
+        Finding.COLLAPSES,
+        sentence,
+        multiplier=best.middle,
+        bracket=(low, high),
+        bracket_meaning=BRACKET_MEANING,
+    )

@@ -1,0 +1,181 @@
+"""One damped hold: keep the load, let the wall settle, and judge whether it is held, moves, or cannot be told."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field, replace
+from enum import StrEnum
+
+import numpy as np
+
+from harness.model.assembly import FloatArray
+from methods.de.engines.engine import Engine, Measured
+from methods.de.hold_settings import HoldSettings
+from methods.de.holds.motion import Motion, MotionProof, Trend, by_power, by_virtual_work
+
+
+class State(StrEnum):
+    """What a hold showed."""
+
+    HELD = "held"
+    MOVING = "moving"
+    UNDECIDED = "undecided"
+
+
+@dataclass(frozen=True, eq=False)
+class Hold:
+    """The end of a hold.
+
+    Attributes:
+        state: held, moving or undecided.
+        residual: largest out-of-balance force at the end, as a part of the mean dead load of a block.
+        steps: time steps made.
+        velocity: (n, 3) velocity field at the end, its mean if unsteady, scaled as `Engine.velocity`.
+        proof: what shows that it moves; None unless it does.
+    """
+
+    state: State
+    residual: float
+    steps: int
+    velocity: FloatArray
+    proof: MotionProof | None = None
+
+
+@dataclass(eq=False)
+class Watch:
+    """What a hold shows from check to check.
+
+    Attributes:
+        held, moving: residuals below which a wall rests, and from which it may move.
+        velocities: (n, 3) velocity fields, lengths in length scales.
+        residuals: largest forces out of balance, as parts of the mean dead load of a block.
+        trend: when a motion counts as one that goes on.
+    """
+
+    held: float
+    moving: float
+    trend: Trend = field(default_factory=Trend)
+    velocities: list[FloatArray] = field(default_factory=list)
+    residuals: list[float] = field(default_factory=list)
+
+    def note(self, velocity: FloatArray, residual: float) -> None:
+        """Add a check."""
+        self.velocities.append(velocity)
+        self.residuals.append(residual)
+
+    @property
+    def rests(self) -> bool:
+        """Whether the residual was small enough at the last two checks."""
+        return len(self.residuals) > 1 and max(self.residuals[-2:]) < self.held
+
+    @property
+    def steady(self) -> bool:
+        """Whether the field has hardly changed over the last few checks, for the first time after as many others."""
+        count = self.trend.checks
+        if len(self.velocities) <= count or len(self.velocities) % count:
+            return False
+        last = self.velocities[-1]
+        change = max(float(np.abs(before - last).max(initial=0.0)) for before in self.velocities[-count - 1 : -1])
+        return change <= self.trend.steady * count * float(np.abs(last).max(initial=0.0))
+
+    @property
+    def doubled(self) -> bool:
+        """Whether there are as many checks as a power of two, from 16 on."""
+        count = len(self.residuals)
+        return count >= 16 and count & (count - 1) == 0
+
+    @property
+    def quarters(self) -> list[FloatArray]:
+        """Mean fields of the second, third and last quarter."""
+        part = len(self.velocities) // 4
+        return [np.mean(self.velocities[-k * part : len(self.velocities) - (k - 1) * part], axis=0) for k in (3, 2, 1)]
+
+    @property
+    def decay(self) -> float:
+        """Rate at which the residual falls towards rest, in logarithms a check; 0 where it does not do so evenly.
+
+        That is the slowest relaxation of the wall itself: contacts pass their forces on from block to block, and a
+        long chain of blocks takes many relaxation times of the damping for it.
+        """
+        part = len(self.residuals) // 4
+        if part < 2:
+            return 0.0
+        old, middle, new = (float(np.log(np.mean(self.residuals[-k * part :][:part]))) for k in (3, 2, 1))
+        return (middle - new) / part if 0.5 * (old - middle) <= middle - new and middle > new else 0.0
+
+    def over(self, usual: float, affordable: float, relaxations: float) -> bool:
+        """Whether the time of a hold is over.
+
+        Args:
+            usual: checks that a hold has.
+            affordable: checks that it has at most, on its way to rest.
+            relaxations: relaxation times of the wall for which it is then followed.
+        """
+        count = len(self.residuals)
+        if count < usual or count >= affordable:
+            return count >= usual
+        return not 0.0 < count * self.decay < relaxations
+
+    def motion(self, engine: Measured) -> Motion | None:
+        """The motion, where it is shown that the wall moves; else None."""
+        if len(self.velocities) < 8 or self.residuals[-1] <= self.moving:
+            return None
+        wall, load = engine.assembly, engine.assembly.dead + engine.multiplier * engine.assembly.live
+        quarters = self.quarters
+        last = self.velocities[-1] if self.steady else quarters[-1]
+        motion = by_virtual_work(wall, load, last * [wall.length_scale, wall.length_scale, 1.0])
+        if motion is None and self.trend.goes_on(quarters):
+            motion = by_power(wall, load, last * [wall.length_scale, wall.length_scale, 1.0], engine.contact_forces())
+        return None if motion is None else replace(motion, field=last)
+
+
+def hold(engine: Engine, settings: HoldSettings, patience: int = 1) -> Hold:
+    """Let the engine settle under its present load.
+
+    Held: the residual stays below `held_residual` at two checks in a row. Moving: `motion.py` shows it; this
+    is asked where the field is steady, at each doubling of the checks, and at the end. Undecided: neither, when
+    `hold_steps` relaxation times are over. That is the time of the damping, or of the wall on its way to rest where
+    that is longer (`Watch.decay`).
+
+    Args:
+        engine: the wall with its load.
+        settings: tolerances.
+        patience: factor on the longest time.
+    """
+    check = max(10, round(engine.relaxation / 3.0))
+    usual = patience * hold_limit(engine, settings) / check
+    start, watch = engine.steps, Watch(settings.held_residual, settings.moving_residual)
+    affordable = (watch.trend.followed * settings.work / max(engine.interfaces, 1) - engine.steps) / check
+    while True:
+        engine.advance(check)
+        velocity = engine.velocity()
+        watch.note(velocity, engine.unbalance(velocity))
+        residual = watch.residuals[-1]
+        if watch.rests:
+            return Hold(State.HELD, residual, engine.steps - start, velocity)
+        over = watch.over(usual, affordable, patience * settings.hold_steps)
+        if over or watch.steady or watch.doubled:
+            motion = watch.motion(engine)
+            if motion is not None:
+                return Hold(State.MOVING, residual, engine.steps - start, motion.field, motion.proof)
+        if over or not np.isfinite(residual):
+            return Hold(State.UNDECIDED, residual, engine.steps - start, velocity)
+
+
+def hold_limit(engine: Engine, settings: HoldSettings) -> int:
+    """Most time steps of one hold that does not come nearer to rest."""
+    return int(settings.hold_steps * max(engine.relaxation, 3.0 * engine.courses, 100.0))
+
+
+def settle(engine: Engine, settings: HoldSettings) -> float:
+    """Follow a held state until its residual is below `force_residual` or no longer falls; its last residual."""
+    check = max(10, round(engine.relaxation / 3.0))
+    best = residual = engine.unbalance(engine.velocity())
+    stale = 0
+    for _ in range(3 * settings.hold_steps):
+        if residual < settings.force_residual or stale == 6:
+            break
+        engine.advance(check)
+        residual = engine.unbalance(engine.velocity())
+        stale = 0 if residual < 0.9 * best else stale + 1
+        best = min(best, residual)
+    return residual

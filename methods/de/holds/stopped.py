@@ -1,0 +1,142 @@
+"""The answer of damped holds whose search was stopped by the time limit: what is shown by then, and no more."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import Any
+
+from harness.model.assembly import Assembly, FloatArray
+from harness.model.method import Answer, Finding, Status
+from methods.de.holds.order_bracket import BracketSearch, OrderBracket
+from methods.numerics.statics import out_of_balance
+
+STOPPED = "the search was stopped by the time limit"
+BRACKET_MEANING = (
+    "[multiplier held, multiplier moving], as far as the search had come: the body orders that were searched to the "
+    "end, or the first, were held at or above the lower end and moved at or below the upper end"
+)
+
+
+def undecided(how: str = "") -> Answer:
+    """Not even the dead load was held, or moved the wall; `how` tells what the wall was given, after a comma."""
+    return Answer(Status.NOT_CONVERGED, Finding.NONE, f"whether the dead load is held was not decided{how}: {STOPPED}")
+
+
+def unmoved(stood: float, how: str = "") -> Answer:
+    """The wall stands at a multiplier, and nothing moved it above; `how` as in `undecided`."""
+    return Answer(Status.NOT_CONVERGED, Finding.NONE, f"stands at {stood:.6g}{how}; no motion was shown: {STOPPED}")
+
+
+@dataclass(eq=False)
+class Known:
+    """What the searches of a wall have found at any time.
+
+    Attributes:
+        orders: how many insertion orders are asked for.
+        searches: every search that was begun, the one under way last.
+        finished: the brackets of the orders that were searched to the end.
+    """
+
+    orders: int
+    searches: list[BracketSearch] = field(default_factory=list)
+    finished: list[OrderBracket] = field(default_factory=list)
+
+    def searched(self, search: BracketSearch, ask_multiplier: bool) -> OrderBracket:
+        """Run a search whose findings are kept whatever stops it."""
+        self.searches.append(search)
+        return search.run(ask_multiplier)
+
+    def counted(self) -> list[BracketSearch]:
+        """The searches of the orders that were searched to the end; without any, all of the first order."""
+        return [search for search in self.searches if search.found in self.finished] or self.searches
+
+
+@dataclass(frozen=True, eq=False)
+class Stood:
+    """A state at rest whose contact forces (m, 3) [force] show that the wall bears this multiplier."""
+
+    search: BracketSearch
+    multiplier: float
+    forces: FloatArray
+
+
+def highest_shown(assembly: Assembly, searches: list[BracketSearch], tolerance: float) -> Stood | None:
+    """The highest state held whose contact forces are in balance as far as the judge asks; None if none is.
+
+    Near collapse a state that is held may be followed further before its forces balance block by block; one below it,
+    which came to rest sooner, then shows the lower end.
+
+    Args:
+        assembly: the wall; searches: of it.
+        tolerance: what the judge lets be left out of balance on a block, as a share of what acts on it.
+    """
+    states = [(multiplier, k) for k, search in enumerate(searches) for multiplier, _ in search.states]
+    for multiplier, k in sorted(states, key=lambda item: (-item[0], item[1])):
+        search = searches[k]
+        search.engine.restore(dict(search.states)[multiplier])
+        search.engine.load(multiplier)
+        forces = search.engine.contact_forces()
+        left = out_of_balance(assembly, forces, assembly.dead + multiplier * assembly.live)
+        if float(left.max(initial=0.0)) <= tolerance:
+            return Stood(search, multiplier, forces)
+    return None
+
+
+def stopped_answer(assembly: Assembly, known: Known, tolerance: float, details: dict[str, Any]) -> Answer:
+    """What was shown when the time was over.
+
+    Args:
+        assembly: the wall; known: what its searches found; tolerance: as for `highest_shown`; details: of the answer.
+    """
+    counted = known.counted()
+    found = [search.found for search in counted]
+    stood = highest_shown(assembly, counted, tolerance)
+    if stood is None:
+        answer = _without_rest(known)
+    else:
+        answer = _with_rest(assembly, known, found, stood)
+        answer.forces, answer.forces_multiplier = stood.forces, stood.multiplier
+        answer.path = stood.search.found.path
+    answer.iterations = sum(search.engine.steps for search in known.searches)
+    answer.details = details | {"stopped_by_limit": True}
+    return answer
+
+
+def _without_rest(known: Known) -> Answer:
+    """Nothing is shown to bear even the dead load."""
+    moved = [bracket for bracket in known.finished if bracket.held is None and bracket.moving is not None]
+    if moved and len(moved) == len(known.finished):
+        sentence = f"falls under its dead load: it moved at multiplier 0 in {_so_far(known)}; {STOPPED}"
+        answer = Answer(Status.OK, Finding.FALLS, sentence, mechanism=moved[0].velocity)
+        answer.flow = "approximate"
+        return answer
+    return undecided()
+
+
+def _with_rest(assembly: Assembly, known: Known, found: list[OrderBracket], stood: Stood) -> Answer:
+    """A state at rest is shown; the upper end is that of the motions above it, if there are any."""
+    if not assembly.has_live_load:
+        return Answer(Status.OK, Finding.STANDS, f"the dead load is held in {_so_far(known)}; {STOPPED}")
+    low = min([stood.multiplier, *(b.held for b in known.finished if b.held is not None)])
+    moving = [b for b in found if b.moving is not None and b.moving > low]
+    if not moving:
+        return unmoved(stood.multiplier)
+    best = (max if known.finished else min)(moving, key=lambda b: b.moving or 0.0)
+    assert best.moving is not None
+    middle = 0.0 if best.nothing else 0.5 * (low + best.moving)
+    sentence = (
+        f"collapses between {low:.6g} (held) and {best.moving:.6g} (moving) in {_so_far(known)}; {STOPPED}, and the "
+        f"multiplier {middle:.6g} is no more than the middle of what is known so far"
+    )
+    answer = Answer(
+        Status.OK, Finding.COLLAPSES, sentence, multiplier=middle, bracket=(low, best.moving), mechanism=best.velocity
+    )
+    answer.bracket_meaning, answer.flow = BRACKET_MEANING, "approximate"
+    return answer
+
+
+def _so_far(known: Known) -> str:
+    """How many orders were searched, in words."""
+    if known.finished:
+        return f"{len(known.finished)} of {known.orders} body orders"
+    return f"the first of {known.orders} body orders, not yet searched to its end"

@@ -1,0 +1,255 @@
+"""What the gap-spring methods say, put into the words of the harness."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from harness.model.assembly import FloatArray
+from harness.model.errors import first_few
+from harness.model.method import Answer, Finding, Status
+from methods.fe.convex_steps import SETTLED, ConvexResult
+from methods.fe.histories import HistoryResult
+from methods.fe.load_steps import load_steps
+from methods.springs.model.wall_model import WallModel
+from methods.springs.path.path_record import PathEnd, PathRecord
+from methods.springs.path.plateau import PlateauState
+from methods.springs.rest.newton import FALLING, Equilibrium
+
+PATH_POINTS = 300
+"""Points of the path that an answer keeps at most."""
+WIDE = 0.025
+"""Spread of the histories above which the sentence of an answer speaks of it."""
+
+
+def gravity_failure(model: WallModel, gravity: Equilibrium) -> Answer:
+    """The answer for a wall that falls under its dead load, or for a gravity step that did not end."""
+    if not np.any(gravity.rate):
+        return Answer(
+            Status.NOT_CONVERGED,
+            Finding.NONE,
+            "the equilibrium under the dead load was not found",
+            details={"path_status": "not_converged"},
+        )
+    return falling(model, gravity.rate, "the gap springs find no equilibrium", gravity.iterations)
+
+
+def falling(model: WallModel, rate: FloatArray, why: str, iterations: int) -> Answer:
+    """The answer for a wall that falls under its dead load along displacements (N,), which are approximate.
+
+    `methods.numerics.statics.with_proof` adds the dilatant mechanism that proves the fall.
+    """
+    motion = model.block_displacements(rate)
+    blocks = model.moving_blocks(motion, FALLING)
+    return Answer(
+        Status.OK,
+        Finding.FALLS,
+        f"the wall falls under its dead load: {why} for {first_few(blocks, 8)}",
+        mechanism=motion / np.abs(motion).max(),
+        flow="approximate",
+        iterations=iterations,
+        details={"path_status": "gravity_failure", "moving_blocks": blocks},
+    )
+
+
+def stands(model: WallModel, gravity: Equilibrium) -> Answer:
+    """The answer for a wall without live load that is in equilibrium under its dead load, with its gap forces."""
+    normal, shear = model.forces(gravity.u, gravity.history, gravity.state)
+    return standing_answer(
+        model.end_forces(normal, shear), gravity.iterations, {"path_status": "stands", "residual": gravity.residual}
+    )
+
+
+def standing_answer(forces: FloatArray, iterations: int, details: dict[str, Any]) -> Answer:
+    """The answer for a wall that stands by the contact forces (m, 3) under its dead load."""
+    return Answer(
+        Status.OK,
+        Finding.STANDS,
+        "the wall is in equilibrium under its dead load; no live load was asked about",
+        forces=forces,
+        forces_multiplier=0.0,
+        iterations=iterations,
+        details=details,
+    )
+
+
+def collapse_answer(model: WallModel, results: list[HistoryResult], factorisations: int, most_steps: int = 0) -> Answer:
+    """The answer from the histories: the plateau of the first that reached one, with the spread.
+
+    Args:
+        most_steps: load steps of its path in the details, 0 for none.
+    """
+    reached = [r for r in results if r.state is not None]
+    details: dict[str, Any] = {
+        "histories": [
+            {
+                "step": r.plan.step,
+                "end": r.end.value,
+                "sentence": r.sentence,
+                "plateau": r.state.multiplier if r.state else None,
+                "peak": r.record.peak if np.isfinite(r.record.peak) else None,
+                "first_limit": r.record.first_limit,
+                "events": r.record.events,
+                "commits": r.commits,
+                "path_residual": r.residual,
+                "committed_up_to": r.plan.committed_up_to if np.isfinite(r.plan.committed_up_to) else None,
+                "disturbance": r.plan.disturbance,
+                "raised_to": r.raised.multiplier if r.raised else None,
+                "residuals": r.state.residuals if r.state else None,
+            }
+            for r in results
+        ],
+        "gap_points": model.n_points,
+        "factorisations": factorisations,
+        "events": sum(r.record.events for r in results),
+    }
+    iterations = int(details["events"])
+    if most_steps and results:
+        shown = (reached or results)[0].record.steps
+        details |= load_steps(model, shown, most_steps).as_details() if shown else {}
+    if not reached:
+        if results and results[0].end == PathEnd.UNBOUNDED:
+            details["path_status"] = "unbounded"
+            return Answer(
+                Status.OK,
+                Finding.UNBOUNDED,
+                "the live load cannot make the wall collapse: the path goes on to any multiplier",
+                iterations=iterations,
+                details=details,
+            )
+        peaked = [r for r in results if r.end in (PathEnd.RUNS_DOWN, PathEnd.TURNED_DOWN)]
+        details["path_status"] = "peak_only" if peaked else "not_converged"
+        reason = results[0].sentence if results else "no history was asked for"
+        return Answer(
+            Status.NOT_CONVERGED,
+            Finding.NONE,
+            f"no plateau was reached: {reason}",
+            iterations=iterations,
+            path=compact(model, results[0].record) if results else {},
+            details=details,
+        )
+    best = reached[0]
+    assert best.state is not None
+    plateaus = [r.state.multiplier for r in reached if r.state is not None]
+    spread = (max(plateaus) - min(plateaus)) / max(abs(min(plateaus)), 1e-12)
+    details |= {
+        "path_status": "plateau",
+        "first_limit": best.record.first_limit if best.record.first_limit is not None else best.record.peak,
+        "peak": best.record.peak,
+        "plateau": best.state.multiplier,
+        "spread": spread if len(reached) > 1 else None,
+        "moving_blocks": model.moving_blocks(best.state.mechanism),
+        "residuals": best.state.residuals,
+        "work_multiplier": best.state.work_multiplier,
+    }
+    sentence = (
+        f"the wall collapses at {best.state.multiplier:.6g} times the live load (plateau; peak {best.record.peak:.6g})"
+    )
+    if best.raised is not None:
+        sentence += f"; up to {best.raised.multiplier:.4g} the load was raised in finite steps from rest to rest"
+    if spread > WIDE:
+        sentence += (
+            f"; friction histories that nobody can know differ by {100.0 * spread:.1f} %, "
+            f"from {min(plateaus):.6g} to {max(plateaus):.6g}"
+        )
+    if len(results) == 1:
+        sentence += "; one friction history, so the spread over histories was not measured"
+    lost = len(results) - len(reached)
+    if lost:
+        sentence += f"; {lost} of {len(results)} histories reached no plateau"
+    return Answer(
+        Status.OK,
+        Finding.COLLAPSES,
+        sentence,
+        multiplier=best.state.multiplier,
+        forces=best.state.forces,
+        mechanism=best.state.mechanism,
+        iterations=iterations,
+        path=compact(model, best.record),
+        details=details,
+    )
+
+
+def compact(model: WallModel, record: PathRecord) -> dict[str, list[float]]:
+    """At most `PATH_POINTS` points of a path, evenly picked, the last one kept."""
+    count = len(record.multiplier)
+    pick = np.unique(np.linspace(0, count - 1, min(count, PATH_POINTS)).astype(int)) if count else np.array([], int)
+    scale = model.displacement / (float(np.abs(model.live.reshape(-1, 3)[:, :2]).sum()) or 1.0)
+    return {
+        "multiplier": [record.multiplier[i] for i in pick],
+        "live_displacement": [record.displacement[i] * scale for i in pick],
+        "slipping_points": [float(record.slipping[i]) for i in pick],
+        "open_points": [float(record.open[i]) for i in pick],
+    }
+
+
+def bracket_answer(result: ConvexResult, forces: FloatArray, details: dict[str, Any]) -> Answer:
+    """The answer of steps that only know between which two of them the wall lost its equilibrium.
+
+    Args:
+        forces: end forces (m, 3) at `result.at`.
+    """
+    lower, upper = result.lower, result.upper
+    path = {"multiplier": list(result.record.multiplier)}
+    if upper is None:
+        return Answer(
+            Status.OK,
+            Finding.UNBOUNDED,
+            "every step of the live load found equilibrium",
+            forces=forces,
+            forces_multiplier=result.at,
+            iterations=result.programmes,
+            path=path,
+            details=details | {"path_status": "unbounded"},
+        )
+    if not (result.settles and result.fine):
+        doubt = (
+            f"friction limits that settle to {SETTLED:g} of the loads are not exact enough for so small a multiplier"
+            if result.settles
+            else f"at {upper:.6g} the friction limits do not settle, which is no proof of collapse"
+        )
+        return Answer(
+            Status.NOT_CONVERGED,
+            Finding.NONE,
+            f"equilibrium is found at {lower:.6g} times the live load; {doubt}",
+            iterations=result.programmes,
+            path=path,
+            details=details | {"path_status": "not_converged", "settled_at": lower},
+        )
+    return Answer(
+        Status.OK,
+        Finding.COLLAPSES,
+        f"equilibrium is found at {lower:.6g} times the live load and none at {upper:.6g}",
+        multiplier=0.5 * (lower + upper),
+        bracket=(lower, upper),
+        bracket_meaning="last step with equilibrium, first step without",
+        forces=forces,
+        forces_multiplier=result.at,
+        flow="approximate",
+        iterations=result.programmes,
+        path=path,
+        details=details | {"path_status": "bracket"},
+    )
+
+
+def single_state_answer(
+    model: WallModel, state: PlateauState, sentence: str, record: PathRecord, details: dict[str, Any], iterations: int
+) -> Answer:
+    """The answer of a method that ended in one checked collapse state."""
+    return Answer(
+        Status.OK,
+        Finding.COLLAPSES,
+        f"the wall collapses at {state.multiplier:.6g} times the live load: {sentence}",
+        multiplier=state.multiplier,
+        forces=state.forces,
+        mechanism=state.mechanism,
+        iterations=iterations,
+        path=compact(model, record),
+        details=details
+        | {
+            "path_status": "plateau",
+            "residuals": state.residuals,
+            "moving_blocks": model.moving_blocks(state.mechanism),
+        },
+    )

@@ -1,0 +1,71 @@
+"""A bracket of the least multiplier whose lower end a certificate proves window by window."""
+
+from __future__ import annotations
+
+from fractions import Fraction
+from typing import Any
+
+import numpy as np
+
+from harness.model.assembly import FloatArray
+from methods.bound.bracket import bracket
+from methods.bound.equations import Equations
+from methods.bound.exact_wall import CertificateError, ExactWall
+from methods.bound.verify import check_state, digest
+from methods.bound.window_document import Certifier, Scales
+from methods.bound.window_search import Bracket
+from methods.la.certify.tree_certificate import Fractions, exact_state, wall_document
+from methods.la.core.problem import Problem
+from methods.la.core.state import moving_contacts
+
+
+def equations_of(problem: Problem) -> Equations:
+    """The equations of a problem as the bound takes them."""
+    return Equations(problem.kinematic, problem.dead, problem.live, problem.friction)
+
+
+def certified_bracket(
+    problem: Problem, multiplier: float, mechanism: FloatArray, seconds: float
+) -> tuple[Bracket, dict[str, Any] | None]:
+    """The scaled bracket below a collapse state, and its certificate; None where nothing is proved.
+
+    The certificate holds the state where that exists in fractions.
+
+    Args:
+        problem: a wall of one component, which stands under its dead load.
+        multiplier: of the state, above zero.
+        mechanism: (n_blocks, 3) velocities of the state.
+        seconds: of CPU time.
+    """
+    equations, upper = equations_of(problem), multiplier / problem.unit_multiplier
+    document = wall_document(problem.assembly, problem.unit_force)
+    wall = ExactWall(document)
+    certifier = Certifier(wall, scales_of(problem), equations)
+    found = bracket(equations, upper, seconds, certify=certifier)
+    if not certifier.documents:
+        return found, None
+    exact = Fraction(multiplier)
+    try:
+        rates = problem.rates_of_velocities(problem.from_mechanism(mechanism), False)
+        exact, document["state"] = exact_state(Fractions(document), moving_contacts(rates).ravel())
+        check_state(wall, exact, document["state"])
+    except (ArithmeticError, CertificateError):
+        document.pop("state", None)
+    bound = min(certifier.bound, exact)
+    document |= {"multiplier": str(exact), "bound": _short(bound, exact), "windows": certifier.documents}
+    document["digest"] = digest(document)
+    return found, document
+
+
+def scales_of(problem: Problem) -> Scales:
+    """From the scaled wall to that of a certificate."""
+    assembly = problem.assembly
+    length = np.linalg.norm(assembly.end2 - assembly.end1, axis=1)
+    velocity = np.tile([1.0, 1.0, 1.0 / problem.unit_length], assembly.n_free)
+    return Scales(length, velocity, problem.unit_multiplier, problem.live_work)
+
+
+def _short(bound: Fraction, state: Fraction) -> str:
+    """A decimal fraction that is not above the bound."""
+    places = 10**12
+    return str(Fraction(bound.numerator * places // bound.denominator, places)) if bound != state else str(bound)

@@ -1,0 +1,143 @@
+"""Approximate collapse states made exact to rounding: forces on their active set, mechanisms on their contacts.
+
+Forces: y_k is set to zero where it is tight, and equilibrium restored by the smallest change relative to the other
+slacks. Mechanisms: strains are removed from all contacts that do not move, by the smallest change of velocities.
+Both are one factorisation of the matrix of the interior point with repeated refinement.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from harness.model.assembly import BoolArray, FloatArray
+from methods.la.core.flexibility import Compliance
+from methods.la.core.newton_matrix import NewtonMatrix
+from methods.la.core.problem import Problem
+from methods.numerics.failures import NoMechanism, SingularMatrix
+
+
+@dataclass(frozen=True)
+class Weights:
+    """Weights by which the factorisations hold what may not change.
+
+    Attributes:
+        rigid: weight of a slack that may not change.
+        penalty: stiffness of contacts that may not move, against a unit stiffness of the velocities; near-singular sets
+            need it.
+        diverged: velocities above this come from a matrix singular to rounding; their products would overflow.
+    """
+
+    rigid: float = 1e40
+    penalty: float = 1e13
+    diverged: float = 1e100
+
+
+WEIGHTS = Weights()
+
+
+def close_tight(problem: Problem, tight: BoolArray | None = None) -> BoolArray:
+    """Tight slacks (m, 4), by default none, with those that follow.
+
+    No normal force means no shear, both shear limits mean no force, no friction means no shear.
+    """
+    closed = np.zeros((problem.n_interfaces, 4), dtype=bool) if tight is None else tight.copy()
+    closed[problem.rigid_in_shear, 2:] = True
+    both = closed[:, 2] & closed[:, 3] & ~problem.rigid_in_shear
+    closed[both] = True
+    closed[closed[:, 0] & closed[:, 1]] = True
+    return closed
+
+
+def snap(problem: Problem, forces: FloatArray, tight: BoolArray) -> FloatArray:
+    """Forces (m, 3) with the tight slacks exactly zero and no slack negative."""
+    normal = np.where(tight[:, :2], 0.0, np.maximum(forces[:, :2], 0.0))
+    strength = problem.friction * normal.sum(axis=1)
+    shear = np.clip(forces[:, 2], -strength, strength)
+    shear = np.where(tight[:, 2], -strength, np.where(tight[:, 3], strength, shear))
+    return np.column_stack([normal, shear])
+
+
+def exact_forces(
+    problem: Problem,
+    newton: NewtonMatrix,
+    forces: FloatArray,
+    multiplier: float,
+    tight: BoolArray,
+    rounds: int = 6,
+    floor: float = 1e-9,
+) -> tuple[FloatArray, float]:
+    """Forces (m, 3) and multiplier in equilibrium to rounding with the tight slacks (m, 4) zero, near the given ones.
+
+    Args:
+        problem: the scaled wall.
+        newton: its Newton matrix.
+        forces: (m, 3) approximate forces.
+        multiplier: approximate multiplier.
+        tight: (m, 4) slacks to hold at zero.
+        rounds: refinements of each of two passes.
+        floor: least size of a slack in the measure of change, relative to the largest.
+
+    Raises:
+        SingularMatrix: the equilibrium matrix is singular to rounding.
+    """
+    tight = close_tight(problem, tight)
+    best: tuple[float, FloatArray, float] | None = None
+    for _ in range(2):
+        current = snap(problem, forces, tight)
+        slack = problem.slacks(current)
+        least = floor * max(float(slack.max(initial=0.0)), 1e-9)
+        weight = np.where(tight, WEIGHTS.rigid, 1.0 / np.maximum(slack, least) ** 2)
+        compliance = Compliance(problem.friction, weight, problem.friction)
+        factor = newton.factorise(compliance.matrices, 1e-13)
+        by_live = factor.solve(problem.live)
+        stiffness = float(problem.live @ by_live)
+        for _ in range(rounds):
+            residual = problem.imbalance(current, multiplier)
+            size = float(abs(residual).max())
+            if best is None or size < best[0]:
+                best = (size, current, multiplier)
+            velocity = factor.solve(residual)
+            change = -float(problem.live @ velocity) / stiffness if stiffness > 0.0 else 0.0
+            velocity = velocity + change * by_live
+            if not float(abs(velocity).max(initial=0.0)) < WEIGHTS.diverged:
+                break
+            shift = -compliance.forces(problem.strains(velocity))
+            current, multiplier = snap(problem, current + shift, tight), multiplier + change
+        forces = current
+    assert best is not None
+    return best[1], best[2]
+
+
+def exact_mechanism(
+    problem: Problem, newton: NewtonMatrix, velocities: FloatArray, moving: BoolArray, associated: bool
+) -> FloatArray:
+    """Velocities (3n,) whose strains vanish to rounding wherever no contact (m, 4) moves, near the given ones.
+
+    Raises:
+        SingularMatrix: the kinematic matrix is singular to rounding.
+        NoMechanism: no mechanism with live work moves in these contacts only.
+    """
+    still = np.column_stack([~moving[:, 0], ~moving[:, 1], ~(moving[:, 2] | moving[:, 3])]).astype(float)
+    transform = np.tile(np.eye(3), (problem.n_interfaces, 1, 1))
+    sense = np.where(moving[:, 2], 1.0, np.where(moving[:, 3], -1.0, 0.0)) * problem.law(associated).dilatancy
+    transform[:, 0, 2] = transform[:, 1, 2] = -sense
+    stiff = np.einsum("pki,pk,pkj->pij", transform, still, transform)
+    factor = newton.factorise(stiff * WEIGHTS.penalty, 0.0, shift=1.0)
+    least = np.inf
+    for _ in range(30):
+        if not float(abs(velocities).max(initial=0.0)) < WEIGHTS.diverged:
+            raise SingularMatrix("the kinematic matrix is singular to rounding")
+        strain = np.einsum("pij,pj->pi", stiff, problem.strains(velocities))
+        size = float(abs(strain).max(initial=0.0))
+        if size > 0.5 * least and size < 1e-14 * float(abs(velocities).max(initial=0.0)):
+            break
+        least = min(least, size)
+        velocities = velocities - factor.solve(WEIGHTS.penalty * np.asarray(problem.statics @ strain.ravel()))
+    if not float(abs(velocities).max(initial=0.0)) < WEIGHTS.diverged:
+        raise SingularMatrix("the kinematic matrix is singular to rounding")
+    work = float(problem.live @ velocities)
+    if work <= 1e-6 * problem.live_work:
+        raise NoMechanism("no mechanism with live work moves in these contacts only")
+    return velocities * (problem.live_work / work)

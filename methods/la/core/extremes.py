@@ -1,0 +1,220 @@
+"""Programmes over contact forces whose vertices are computed to rounding: extreme multipliers, falls, bounds.
+
+min or max lambda s.t. C' r + f0 + lambda fL = 0, S r >= 0, and its dual: a dilatant mechanism. Both sides are read from
+one vertex (`methods.numerics.vertex`), so that neither is nearer to the truth than the other. Forces are measured in
+units of their interface and equilibrium in units of its block, so that a light block beside a heavy one counts.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+import scipy.sparse as sp
+
+from harness.model.assembly import BoolArray, FloatArray
+from methods.la.core.problem import Problem
+from methods.la.core.programmes import KinematicSolution, StaticSolution
+from methods.numerics.linear_programme import INFINITY, Programme
+from methods.numerics.statics import rows_of_blocks, shear_limits, within_yield
+from methods.numerics.vertex import Vertex
+
+
+@dataclass(frozen=True)
+class ExactVertices:
+    """How programmes over forces are put to HiGHS.
+
+    Attributes:
+        simplex_up_to: interfaces above which the interior point with crossover is quicker than the simplex method.
+        cost: of the multiplier: speeds of the dual mechanism are of this order, far above what HiGHS rounds off.
+        uneven: ratio of loads of two blocks from which forces and equilibrium are measured in units of their own.
+    """
+
+    simplex_up_to: int = 400
+    cost: float = 1e4
+    uneven: float = 1e3
+
+
+VERTICES = ExactVertices()
+
+
+@dataclass(frozen=True)
+class ExtremeSolution:
+    """Forces of the greatest or least multiplier, and the dilatant mechanism dual to them: with or against the load."""
+
+    statics: StaticSolution
+    kinematics: KinematicSolution
+
+
+@dataclass(frozen=True, eq=False)
+class Units:
+    """What one unit of a programme is worth: forces of every interface (m,), equilibrium of every free block (n,)."""
+
+    interfaces: FloatArray
+    blocks: FloatArray
+
+
+class ForceProgramme:
+    """The programmes of one wall over its contact forces. Columns are (n1, n2, s) an interface and the multiplier.
+
+    Args:
+        problem: the scaled wall.
+        units: None measures all forces in mean block weights.
+        also: (3n,) a further load that may act at any multiple from zero on; its column stands before the multiplier's.
+    """
+
+    def __init__(self, problem: Problem, units: Units | None = None, also: FloatArray | None = None) -> None:
+        self.problem = problem
+        m, n = problem.n_interfaces, problem.n_velocities
+        self._units = units or Units(np.ones(m), np.ones(n // 3))
+        self._rows = np.repeat(1.0 / self._units.blocks, 3)
+        self._columns = np.repeat(self._units.interfaces, 3)
+        loads = problem.live[:, None] if also is None else np.column_stack([also, problem.live])
+        self._loads = loads.shape[1]
+        equilibrium = sp.hstack([problem.statics @ sp.diags(self._columns), sp.csr_matrix(loads)])
+        self._equilibrium = sp.diags(self._rows) @ equilibrium
+        self._matrix = self._with_limits(problem.friction)
+        self._dead = self._rows * problem.dead
+
+    def _with_limits(self, slope: FloatArray) -> sp.csc_matrix:
+        """The matrix of equilibrium and of shear within `slope` (m,) times compression."""
+        limits = sp.hstack([shear_limits(slope), sp.csr_matrix((2 * self.problem.n_interfaces, self._loads))])
+        return sp.csc_matrix(sp.vstack([self._equilibrium, limits]))
+
+    def extreme(self, greatest: bool, tight: BoolArray | None = None, solver: str = "auto") -> ExtremeSolution | str:
+        """The greatest or, from zero on, the least multiplier of statics; or how the programme ended without one.
+
+        Args:
+            greatest: which of the two.
+            tight: (m, 4) slacks held at zero.
+            solver: "simplex", "ipm" (with crossover) or "auto" (by size).
+        """
+        m = self.problem.n_interfaces
+        tight = np.zeros((m, 4), dtype=bool) if tight is None else tight
+        lower = np.tile([0.0, 0.0, -INFINITY], m)
+        upper = np.where(np.column_stack([tight[:, :2], np.zeros(m, dtype=bool)]).ravel(), 0.0, INFINITY)
+        limits = (np.zeros(2 * m), np.where(tight[:, 2:].ravel(), 0.0, INFINITY))
+        cost = VERTICES.cost * self.problem.live_work * (-1.0 if greatest else 1.0)
+        solved = self._solved((lower, upper), limits, cost, -INFINITY if greatest else 0.0, solver)
+        if isinstance(solved, str):
+            return solved
+        vertex, iterations = solved
+        forces = (vertex.value[: 3 * m] * self._columns).reshape(-1, 3)
+        velocities, rates = self._motion(vertex)
+        return ExtremeSolution(
+            StaticSolution(within_yield(forces, self.problem.friction), float(vertex.value[-1]), iterations),
+            KinematicSolution(velocities, rates),
+        )
+
+    def least_dead_work(self, still: BoolArray) -> float | str:
+        """The least -dead.u of mechanisms with unit live work, at rest in contacts `still` (m, 4).
+
+        Their slips lift by the joints' own dilatancy.
+
+        It is the greatest multiplier of forces that do no negative work on any of them: compression where a gap may
+        open, no shear where it may slip either way, any force where it is at rest. Where a slip lifts, shear up to
+        what the compression does as it is lifted.
+        """
+        m = self.problem.n_interfaces
+        lower = np.where(still[:, :2], -INFINITY, 0.0)
+        forward, backward = ~still[:, 2], ~still[:, 3]
+        least = np.where(forward, 0.0, -INFINITY)
+        most = np.where(backward, 0.0, INFINITY)
+        limits = np.full(2 * m, -INFINITY)
+        matrix = self._matrix
+        if self.problem.dilates:
+            least, most = np.full((2, m), INFINITY) * np.array([[-1.0], [1.0]])
+            limits = np.where(~still[:, 2:].ravel(), 0.0, -INFINITY)
+            matrix = self._with_limits(self.problem.law(False).dilatancy)
+        column = (np.column_stack([lower, least]).ravel(), np.column_stack([np.full((m, 2), INFINITY), most]).ravel())
+        within = (limits, np.full(2 * m, INFINITY))
+        solved = self._solved(column, within, -VERTICES.cost * self.problem.live_work, -INFINITY, "simplex", matrix)
+        return solved if isinstance(solved, str) else float(solved[0].value[-1])
+
+    def _solved(
+        self,
+        column: tuple[FloatArray, FloatArray],
+        limits: tuple[FloatArray, FloatArray],
+        cost: float,
+        least: float,
+        solver: str,
+        matrix: sp.csc_matrix | None = None,
+    ) -> tuple[Vertex, int] | str:
+        m, n = self.problem.n_interfaces, self.problem.n_velocities
+        programme = Programme(
+            self._matrix if matrix is None else matrix,
+            np.append(np.zeros(3 * m + self._loads - 1), cost),
+            (
+                np.concatenate([column[0], np.zeros(self._loads - 1), [least]]),
+                np.append(column[1], np.full(self._loads, INFINITY)),
+            ),
+            (np.append(-self._dead, limits[0]), np.append(-self._dead, limits[1])),
+        )
+        programme.highs.setOptionValue("small_matrix_value", 1e-12)
+        automatic = "simplex" if m <= VERTICES.simplex_up_to else "ipm"
+        programme.highs.setOptionValue("solver", automatic if solver == "auto" else solver)
+        status, _, _ = programme.run()
+        if status != "optimal":
+            return status
+        iterations = programme.iterations()
+        vertex = programme.vertex(rows_of_blocks(n // 3, m))
+        return (vertex, iterations) if vertex is not None and vertex.optimal else "unknown"
+
+    def _motion(self, vertex: Vertex) -> tuple[FloatArray, FloatArray]:
+        """Velocities (3n,) and rates (m, 4) dual to a vertex, scaled to the live work of the problem."""
+        n = self.problem.n_velocities
+        velocities = -vertex.dual[:n] * self._rows
+        own = 1.0 / self._units.interfaces[:, None]
+        slips = own * vertex.dual[n:].reshape(-1, 2) / np.maximum(self.problem.friction, 1.0)[:, None]
+        rates = np.column_stack([own * vertex.reduced[: 3 * self.problem.n_interfaces].reshape(-1, 3)[:, :2], slips])
+        work = abs(float(self.problem.live @ velocities))
+        scale = self.problem.live_work / work if work > 0.0 else 1.0
+        return scale * velocities, scale * rates
+
+
+def force_programme(problem: Problem) -> ForceProgramme:
+    """The programmes of a wall in units that suit the loads of its blocks."""
+    return ForceProgramme(problem, units_of(problem))
+
+
+def bears_no_load(problem: Problem, units: Units | None, tight: BoolArray) -> bool:
+    """Whether a mechanism to rounding proves that no forces with slacks `tight` (m, 4) at zero bear any multiplier."""
+    part = ForceProgramme(replace(problem, live=-problem.dead), units, also=problem.live)
+    found = part.extreme(greatest=False, tight=tight)
+    return not isinstance(found, str) and found.statics.multiplier > 0.5
+
+
+def units_of(problem: Problem) -> Units | None:
+    """Units of interfaces and blocks where loads differ much: what each carries of the dead load, or its own load."""
+    size = (abs(problem.dead) + abs(problem.live)).reshape(-1, 3).max(axis=1)
+    if not np.any(size > 0.0):
+        return None
+    size = np.maximum(size, float(size[size > 0.0].min()))
+    if size.max() < VERTICES.uneven * size.min():
+        return None
+    found = ForceProgramme(replace(problem, live=-problem.dead)).extreme(greatest=False)
+    assembly = problem.assembly
+    own = np.full(assembly.n_blocks, np.inf)
+    own[assembly.free] = size
+    carried = np.minimum(own[assembly.block_a], own[assembly.block_b])
+    if not isinstance(found, str):
+        carried = np.maximum(carried, abs(found.statics.forces).max(axis=1))
+    blocks = np.where(np.isfinite(own), own, 0.0)
+    for block in (assembly.block_a, assembly.block_b):
+        np.maximum.at(blocks, block, carried)
+    return Units(_power_of_two(carried), _power_of_two(blocks[assembly.free]))
+
+
+def _power_of_two(size: FloatArray) -> FloatArray:
+    return np.asarray(2.0 ** np.round(np.log2(size)), dtype=np.float64)
+
+
+def standing(problem: Problem) -> StaticSolution | KinematicSolution | str:
+    """Forces that carry the dead load within yield, or the dilatant mechanism that proves that none do; or the end.
+
+    The part of the dead load that need not be carried is least: zero or, because yield is a cone, all of it.
+    """
+    found = force_programme(replace(problem, live=-problem.dead)).extreme(greatest=False)
+    if isinstance(found, str):
+        return found
+    return found.statics if found.statics.multiplier < 0.5 else found.kinematics

@@ -1,0 +1,155 @@
+"""The two linear programmes of the search, kept in HiGHS so that a change of the active set starts from the last basis.
+
+Static: least (or greatest) multiplier under equilibrium and yield with some slacks held at zero. Kinematic: the
+mechanism of least cost among those that move only in given contacts; its vertices are extreme mechanisms.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+import scipy.sparse as sp
+
+from harness.model.assembly import BoolArray, FloatArray
+from harness.model.joint_law import block_diagonal
+from methods.la.core.problem import Problem
+from methods.numerics.linear_programme import INFINITY, Programme
+
+
+@dataclass(frozen=True)
+class StaticSolver:
+    """How HiGHS solves static programmes.
+
+    Attributes:
+        simplex_up_to: interfaces up to which the simplex method is the quicker way to a vertex; above, its interior
+            point with crossover.
+        devex_above: interfaces above which Devex pricing finds the vertex sooner than steepest edge.
+    """
+
+    simplex_up_to: int = 800
+    devex_above: int = 200
+
+
+STATIC = StaticSolver()
+
+
+@dataclass(frozen=True)
+class StaticSolution:
+    """Forces (m, 3) and multiplier, both scaled, and the simplex or interior iterations spent."""
+
+    forces: FloatArray
+    multiplier: float
+    iterations: int
+
+
+@dataclass(frozen=True)
+class KinematicSolution:
+    """Velocities (3n,) and rates (m, 4), scaled to the live work of the problem."""
+
+    velocities: FloatArray
+    rates: FloatArray
+
+
+class StaticProgramme:
+    """min lambda >= 0, or max lambda, s.t. C' r + f0 + lambda fL = 0, S r >= 0, (S r)_k = 0 for tight k.
+
+    Columns are (n1, n2, y3) an interface and lambda, with s = y3 - mu (n1 + n2) and y4 = 2 mu (n1 + n2) - y3.
+    """
+
+    def __init__(self, problem: Problem) -> None:
+        self.problem = problem
+        m, mu = problem.n_interfaces, problem.friction
+        base = 3 * np.arange(m)
+        shear_rows = np.concatenate([base + 2, base + 2, base + 2])
+        columns = np.concatenate([base, base + 1, base + 2])
+        normals = sp.diags(np.tile([1.0, 1.0, 0.0], m))
+        shear = sp.coo_matrix((np.concatenate([-mu, -mu, np.ones(m)]), (shear_rows, columns)), shape=(3 * m, 3 * m))
+        forces = (normals + shear).tocsr()
+        equilibrium = sp.hstack([problem.statics @ forces, sp.csr_matrix(problem.live[:, None])])
+        backward = sp.coo_matrix(
+            (np.concatenate([2 * mu, 2 * mu, -np.ones(m)]), (np.tile(np.arange(m), 3), columns)), shape=(m, 3 * m + 1)
+        )
+        self._forces = forces
+        self._free = (np.zeros(3 * m), np.full(3 * m, INFINITY))
+        cost = np.zeros(3 * m + 1)
+        self._programme = Programme(
+            sp.csc_matrix(sp.vstack([equilibrium, backward])),
+            cost,
+            (np.append(self._free[0], -INFINITY), np.append(self._free[1], INFINITY)),
+            (np.append(-problem.dead, np.zeros(m)), np.append(-problem.dead, np.full(m, INFINITY))),
+        )
+        self._programme.highs.setOptionValue("solver", "simplex" if m <= STATIC.simplex_up_to else "ipm")
+        if m > STATIC.devex_above:
+            self._programme.highs.setOptionValue("simplex_dual_edge_weight_strategy", 1)
+
+    def solve(self, tight: BoolArray | None = None, greatest: bool = False) -> StaticSolution | str:
+        """The solution, or "infeasible", "unbounded", "unknown".
+
+        Args:
+            tight: (m, 4) slacks held at zero.
+            greatest: maximise the multiplier instead of minimising it.
+        """
+        m = self.problem.n_interfaces
+        tight = np.zeros((m, 4), dtype=bool) if tight is None else tight
+        upper = np.where(tight[:, :3].ravel(), 0.0, INFINITY)
+        self._programme.set_columns(0, self._free[0], upper)
+        self._programme.set_rows(self.problem.n_velocities, np.zeros(m), np.where(tight[:, 3], 0.0, INFINITY))
+        self._programme.set_columns(3 * m, np.array([-INFINITY if greatest else 0.0]), np.array([INFINITY]))
+        self._programme.set_costs(3 * m, np.array([-1.0 if greatest else 1.0]))
+        status, value, _ = self._programme.run()
+        if status != "optimal":
+            return status
+        return StaticSolution(self._to_forces(value), float(value[-1]), self._programme.iterations())
+
+    def lightest(self, weights: FloatArray) -> FloatArray | None:
+        """Forces (m, 3) that carry the dead load with the least sum of weights (m, 2) times n1, n2; None if not found.
+
+        Such forces have little self-stress: what one joint does not need, it does not bear.
+        """
+        m = self.problem.n_interfaces
+        self._hold(0.0)
+        self._programme.set_costs(0, np.column_stack([weights, np.zeros(m)]).ravel())
+        status, value, _ = self._programme.run()
+        self._programme.set_costs(0, np.zeros(3 * m))
+        return self._to_forces(value) if status == "optimal" else None
+
+    def _hold(self, multiplier: float) -> None:
+        """Let no slack be held, but the multiplier, without cost."""
+        m = self.problem.n_interfaces
+        self._programme.set_columns(0, *self._free)
+        self._programme.set_rows(self.problem.n_velocities, np.zeros(m), np.full(m, INFINITY))
+        self._programme.set_columns(3 * m, np.array([multiplier]), np.array([multiplier]))
+        self._programme.set_costs(3 * m, np.array([0.0]))
+
+    def _to_forces(self, value: FloatArray) -> FloatArray:
+        """Forces (m, 3) of the columns."""
+        return np.asarray(self._forces @ np.maximum(value[:-1], 0.0)).reshape(-1, 3)
+
+
+class KinematicProgramme:
+    """min c.g s.t. C u = E g, fL.u = live work, g >= 0, g_k = 0 outside the allowed contacts."""
+
+    def __init__(self, problem: Problem, associated: bool = False) -> None:
+        self.problem = problem
+        m, n = problem.n_interfaces, problem.n_velocities
+        flow = block_diagonal(problem.law(associated).flow)
+        live = sp.hstack([sp.csr_matrix(problem.live[None, :]), sp.csr_matrix((1, 4 * m))])
+        right = np.append(np.zeros(3 * m), problem.live_work)
+        self._n = n
+        self._programme = Programme(
+            sp.csc_matrix(sp.vstack([sp.hstack([problem.kinematic, -flow]), live])),
+            np.zeros(n + 4 * m),
+            (np.append(np.full(n, -INFINITY), np.zeros(4 * m)), np.full(n + 4 * m, INFINITY)),
+            (right, right),
+        )
+
+    def solve(self, allowed: BoolArray, cost: FloatArray) -> KinematicSolution | None:
+        """The mechanism of least cost (m, 4) in the allowed contacts (m, 4), or None if there is none."""
+        upper = np.where(allowed.ravel(), INFINITY, 0.0)
+        self._programme.set_columns(self._n, np.zeros(len(upper)), upper)
+        self._programme.set_costs(self._n, cost.ravel())
+        status, value, _ = self._programme.run()
+        if status != "optimal":
+            return None
+        return KinematicSolution(value[: self._n], value[self._n :].reshape(-1, 4))

@@ -1,0 +1,196 @@
+"""The path of zero-dilatancy flow followed by its arc length, past the folds at which Newton's path stalls.
+
+The path goes through its start: y o g = tau w with the weights w that the start has. Where it folds, tau must rise
+before it falls again. The tangent d/d(log tau) still exists, and a Newton step across it leads back to the path (Keller
+1977). At a fold the determinant of the Newton system changes its sign, and so tells the sense of the path however
+sharply it bends. Lengths are relative changes of slacks and rates, so that contacts that fade weigh no less than
+others. Where steps across do not lead back, the path is taken up again at the last good point with half the stride.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from harness.model.assembly import BoolArray, FloatArray
+from methods.la.core.exact import close_tight
+from methods.la.core.newton_matrix import NewtonMatrix
+from methods.la.core.problem import Problem
+from methods.la.interior.interior_point import PathResult, step_lengths
+from methods.la.interior.newton_step import Direction, NewtonStep, Point
+from methods.numerics.failures import NumericalFailure, SingularMatrix
+
+
+@dataclass(frozen=True)
+class Stepping:
+    """How the path is followed.
+
+    Attributes:
+        stride, shortest: largest relative change of a slack or rate that a step along the tangent aims at, and that
+            below which it is not halved again.
+        far: largest logarithm of y g / (tau w) at which a step goes along the path; beyond, it only leads back to it.
+        astray: root mean square of the relative changes back to the path beyond which a step only leads back.
+        patience: steps back in turn after which the path is taken up again with a shorter stride.
+        to_boundary: part of the way to the boundary that a step goes.
+        gone: relative gap above which the path has turned away for good.
+        trial, left: steps after which a path must have left its beginning, and the root mean square of the changes of
+            the logarithms of slacks and rates that this asks for; many that have not are closed.
+        residual: scaled equilibrium and compatibility residuals at which a stretch of the path may stop.
+    """
+
+    stride: float = 4.0
+    shortest: float = 2.0**-8
+    far: float = 4.0
+    astray: float = 0.5
+    patience: int = 8
+    to_boundary: float = 0.9
+    gone: float = 10.0
+    trial: int = 200
+    left: float = 0.3
+    residual: float = 1e-3
+
+
+STEPPING = Stepping()
+
+
+@dataclass(frozen=True)
+class _Place:
+    """A point with its tau."""
+
+    point: Point
+    tau: float
+
+
+@dataclass(frozen=True)
+class _Way:
+    """How the path goes on from a place: across leads back to it, along is its tangent per unit of log tau."""
+
+    back: Direction
+    tangent: Direction
+    growth: float
+    steepest: float
+    on_path: bool
+
+
+class ArcPath:
+    """The path from a point on, followed in stretches; its sense is kept from one to the next.
+
+    Args:
+        problem: the scaled wall.
+        newton: its Newton matrix.
+        start: a point with positive slacks and rates.
+        spread: how many times greater or less than the mean a weight may be; beyond, the path passes beside the start.
+        stepping: how it is followed.
+    """
+
+    def __init__(
+        self,
+        problem: Problem,
+        newton: NewtonMatrix,
+        start: Point,
+        spread: float = np.inf,
+        stepping: Stepping = STEPPING,
+    ) -> None:
+        self._problem, self._newton, self._stepping = problem, newton, stepping
+        self._tight = close_tight(problem)
+        self._stride = self._stepping.stride
+        product = np.where(self._tight, 1.0, start.slack * start.rates)
+        self._weights = np.clip(product / product[~self._tight].mean(), 1.0 / spread, spread)
+        self._here = _Place(start, float((product / self._weights)[~self._tight].mean()))
+        self._good: _Place | None = None
+        self._begun: tuple[Point, float] | None = None
+        self._steps = 0
+        self._again = False
+        self._astray = 0
+
+    def follow(self, gap: float, max_iterations: int) -> PathResult:
+        """Follow the path until complementarity y.g is at most `gap` of the live work.
+
+        Args:
+            gap: at which it stops; max_iterations: Newton steps at most.
+
+        Raises:
+            SingularMatrix: the first Newton matrix is singular to rounding.
+        """
+        result: PathResult | None = None
+        history: list[float] = []
+        for iteration in range(max_iterations + 1):
+            point = self._here.point
+            try:
+                step = NewtonStep(self._problem, self._newton, point, 0.0, self._tight)
+            except (NumericalFailure, FloatingPointError):
+                break
+            history.append(point.multiplier)
+            present = float((point.slack * point.rates).sum()) / self._problem.live_work
+            statics, kinematics = float(abs(step.statics).max()), float(abs(step.kinematics).max())
+            converged = present <= gap and max(statics, kinematics) <= self._stepping.residual
+            result = PathResult(point, converged, iteration, present, statics, kinematics, history)
+            if (
+                converged
+                or present > self._stepping.gone
+                or (self._steps == self._stepping.trial and not self._has_left())
+            ):
+                break
+            self._go_on(step)
+            self._steps += 1
+        if result is None:
+            raise SingularMatrix("the path could not factorise its first system")
+        return result
+
+    def _go_on(self, step: NewtonStep) -> None:
+        """One step back to the path, or along it, or back to the last good point."""
+        way = self._way(step)
+        if not (way.on_path or self._again):
+            self._astray += 1
+            if self._astray <= self._stepping.patience or not self._take_up_again():
+                self._advance(step, way, 0.0)
+            return
+        if not self._again and self._astray <= 1:
+            self._stride = min(self._stepping.stride, 2.0 * self._stride)
+        if self._begun is None:
+            self._begun = self._here.point, step.orientation()
+        self._good, self._astray, self._again = self._here, 0, False
+        sense = -step.orientation() * self._begun[1]
+        self._advance(step, way, sense * min(self._stride / max(way.steepest, 1e-30), 1.0))
+
+    def _has_left(self) -> bool:
+        """Whether the path is far from where it began; one that has not been found yet is not."""
+        if self._begun is None:
+            return False
+        before, now = self._begun[0], self._here.point
+        pairs = ((before.slack, now.slack), (before.rates, now.rates))
+        change = [np.log(new[~self._tight] / old[~self._tight]) for old, new in pairs]
+        return float(np.sqrt((np.concatenate(change) ** 2).mean())) > self._stepping.left
+
+    def _take_up_again(self) -> bool:
+        """Return to the last good point with half the stride, if there is one and the stride can be halved."""
+        if self._good is None or self._stride <= self._stepping.shortest:
+            return False
+        self._here, self._stride = self._good, 0.5 * self._stride
+        self._astray, self._again = 0, True
+        return True
+
+    def _advance(self, step: NewtonStep, way: _Way, stride: float) -> None:
+        change, growth = way.back.plus(way.growth + stride, way.tangent), way.growth + stride
+        length = min(step_lengths(self._here.point, change, self._tight, self._stepping.to_boundary, 0.0))
+        self._here = _Place(step.advance(change, length, length), self._here.tau * float(np.exp(length * growth)))
+
+    def _way(self, step: NewtonStep) -> _Way:
+        point, tau = self._here.point, self._here.tau
+        target = tau * self._weights
+        back = step.direction(target)
+        tangent = step.direction(2.0 * target).plus(-1.0, back)
+        along, across = _relative(point, tangent, self._tight), _relative(point, back, self._tight)
+        square = float((along**2).mean())
+        growth = -float((along * across).mean()) / (square + 1.0)
+        astray = float(np.sqrt(((across + growth * along) ** 2).mean()))
+        product = np.where(self._tight, target, point.slack * point.rates)
+        on_path = astray <= self._stepping.astray and float(abs(np.log(product / target)).max()) <= self._stepping.far
+        return _Way(back, tangent, growth, float(abs(along).max()), on_path)
+
+
+def _relative(point: Point, change: Direction, tight: BoolArray) -> FloatArray:
+    """(2, m, 4) changes of slacks and rates relative to their size."""
+    slack, rates = np.where(tight, 1.0, point.slack), np.where(tight, 1.0, point.rates)
+    return np.where(tight, 0.0, np.stack([change.slack / slack, change.rates / rates]))

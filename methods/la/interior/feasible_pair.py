@@ -1,0 +1,70 @@
+"""Forces and a mechanism, each feasible with a margin: where the path of zero-dilatancy flow begins on a large wall.
+
+Forces well within yield come from the path of associated flow, some way before its end. The mechanism of zero-dilatancy
+flow that does least work on their slacks is a linear programme; its path is left early too, where every rate is still
+positive. Together they meet equilibrium and compatibility, but not y o g = tau: the path goes on with the weights that
+they have (Jansen, Roos, Terlaky and Vial 1996), from a far smaller gap than that at which the central path is single.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from harness.model.assembly import FloatArray
+from methods.la.core.exact import close_tight
+from methods.la.core.newton_matrix import NewtonMatrix
+from methods.la.core.problem import Problem
+from methods.la.interior.interior_point import PathSettings, follow_path, start_point
+from methods.la.interior.newton_step import Point
+
+
+@dataclass(frozen=True)
+class Pair:
+    """How exact the pair is, and where its paths are left.
+
+    Attributes:
+        feasible: scaled equilibrium and compatibility residuals.
+        early: relative gap of the kinematic programme at which its path is left; full steps may end below it.
+        least_cost: least cost of a rate, so that none is free to grow.
+    """
+
+    feasible: float = 1e-6
+    early: float = 1e-2
+    least_cost: float = 1e-9
+
+
+PAIR = Pair()
+
+
+def feasible_pair(problem: Problem, newton: NewtonMatrix, gap: float) -> tuple[Point | None, int]:
+    """The pair as one point, or None where either path does not get there, and the Newton steps spent.
+
+    Args:
+        problem: the scaled wall.
+        newton: its Newton matrix.
+        gap: relative gap of the associated path at which its forces are taken; full steps may end below it.
+    """
+    settings = PathSettings(dilatancy=1.0, gap=gap, residual=PAIR.feasible)
+    forces = follow_path(problem, newton, start_point(problem), settings)
+    if not forces.converged:
+        return None, forces.iterations
+    slack = forces.point.slack
+    cost = slack / float(np.median(slack)) + PAIR.least_cost
+    programme = kinematic_programme(problem, np.where(close_tight(problem), 0.0, cost))
+    settings = PathSettings(dilatancy=1.0, gap=PAIR.early, residual=PAIR.feasible)
+    mechanism = follow_path(programme, newton, start_point(programme), settings)
+    steps = forces.iterations + mechanism.iterations
+    if not mechanism.converged:
+        return None, steps
+    return Point(slack, forces.point.multiplier, mechanism.point.velocities, mechanism.point.rates), steps
+
+
+def kinematic_programme(problem: Problem, cost: FloatArray) -> Problem:
+    """The programme min c.g, C u = E g, fL.u = const for costs c (m, 4), as a problem of associated flow.
+
+    It is the dual of max lambda s.t. C' r + lambda fL = 0, E' r + c >= 0: the same wall without dead load, with
+    the dilatancy in place of the friction and with cohesion c.
+    """
+    return replace(problem, dead=np.zeros_like(problem.dead), friction=problem.law(False).dilatancy, cohesion=cost)

@@ -1,0 +1,225 @@
+"""Primal-dual interior point on the complementarity system of collapse, for associated and zero-dilatancy flow.
+
+Unknowns are slacks y = S r, multiplier, velocities u and rates g with C u = E g, C' r + f0 + lambda fL = 0,
+fL.u = const and y o g = tau, tau -> 0. Elimination of y and g leaves one sparse 3n x 3n system a step,
+K = C' (E diag(g/y) S)^-1 C bordered by fL. With E = S' this is the primal-dual method of linear programming
+(Mehrotra 1992); with zero dilatancy the same steps follow the central path of a nonsymmetric complementarity
+problem, which need not lead to its least multiplier.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from harness.model.assembly import BoolArray, FloatArray
+from methods.la.core.exact import close_tight
+from methods.la.core.newton_matrix import NewtonMatrix
+from methods.la.core.problem import Problem
+from methods.la.interior.newton_step import Direction, NewtonStep, Point
+from methods.numerics.failures import NumericalFailure, SingularMatrix
+
+
+@dataclass(frozen=True)
+class Centring:
+    """How a step is made longer and kept central.
+
+    Attributes:
+        to_boundary: part of the way to the boundary that a step goes.
+        correctors: corrections for centrality, each one more solution with the factors of the step.
+        ahead, worth: how much longer a step a correction aims at, and the share of that which it must gain.
+        long, blocked: length from which a step needs no correction, and below which one that mostly centres is tried.
+        spread: times greater or less than the mean that a correction leaves a product, and clips its targets at.
+        least: least share of the mean product that a step aims at; halved: that of one that mostly centres.
+    """
+
+    to_boundary: float = 0.995
+    correctors: int = 3
+    ahead: float = 0.3
+    worth: float = 0.1
+    long: float = 0.9
+    blocked: float = 0.1
+    spread: float = 10.0
+    least: float = 1e-6
+    halved: float = 0.5
+
+
+CENTRING = Centring()
+
+
+@dataclass(frozen=True)
+class PathSettings:
+    """How the central path is followed.
+
+    Attributes:
+        dilatancy: 1 for associated flow, the linear programme; 0 for sliding without dilatancy.
+        gap: complementarity y.g relative to the live work at which it stops.
+        residual: scaled equilibrium and compatibility residuals at which it stops.
+        max_iterations: Newton steps at most.
+        patience: steps without progress after which it gives the best point it had.
+        fade: None, or the relative gap below which dilatancy fades from one in proportion to the gap, to reach
+            zero-dilatancy flow from the well-behaved path of associated flow.
+        above: None, or a multiplier at which the path ends if the forces are in equilibrium.
+    """
+
+    dilatancy: float = 0.0
+    gap: float = 1e-10
+    residual: float = 1e-9
+    max_iterations: int = 200
+    patience: int = 12
+    fade: float | None = None
+    above: float | None = None
+
+
+@dataclass(frozen=True)
+class PathResult:
+    """Where the path ended. `converged` says whether gap and residuals were reached."""
+
+    point: Point
+    converged: bool
+    iterations: int
+    gap: float
+    statics: float
+    kinematics: float
+    history: list[float]
+
+
+def start_point(
+    problem: Problem,
+    spread: float = 0.0,
+    generator: np.random.Generator | None = None,
+    tight: BoolArray | None = None,
+) -> Point:
+    """A centred point off equilibrium: unit compression, no shear; `spread` > 0 randomises it by factors exp(+-).
+
+    Slacks of `tight` (m, 4) start at zero and stay there.
+    """
+    m = problem.n_interfaces
+    normal, tilt, target = np.ones((m, 2)), np.zeros(m), np.ones((m, 4))
+    if spread > 0.0 and generator is not None:
+        normal = np.exp(generator.uniform(-spread, spread, (m, 2)))
+        tilt = generator.uniform(-0.5, 0.5, m)
+        target = np.exp(generator.uniform(-spread, spread, (m, 4)))
+    tight = close_tight(problem) if tight is None else tight
+    normal = np.where(tight[:, :2], 0.0, normal)
+    tilt = np.where(tight[:, 2], -1.0, np.where(tight[:, 3], 1.0, tilt))
+    forces = np.column_stack([normal, tilt * problem.friction * normal.sum(axis=1)])
+    slack = np.where(tight, 0.0, problem.slacks(forces))
+    if problem.cohesion is not None:
+        slack = np.where(tight, 0.0, np.maximum(slack, 1e-3))
+    rates = np.where(tight, 0.0, target / np.where(tight, 1.0, slack))
+    return Point(slack, 0.0, np.zeros(problem.n_velocities), rates)
+
+
+def follow_path(
+    problem: Problem, newton: NewtonMatrix, start: Point, settings: PathSettings, tight: BoolArray | None = None
+) -> PathResult:
+    """Follow the central path from a strictly positive start to complementarity.
+
+    Args:
+        problem: the scaled wall.
+        newton: its Newton matrix.
+        start: a point with positive slacks and rates outside `tight`.
+        settings: flow, accuracy, limits.
+        tight: (m, 4) slacks held at zero, whose rates have no sign; closed as by `close_tight`.
+
+    Raises:
+        SingularMatrix: the first Newton matrix is singular to rounding.
+    """
+    point = start
+    tight = close_tight(problem) if tight is None else tight
+    pairs = max(int((~tight).sum()), 1)
+    history: list[float] = []
+    best: PathResult | None = None
+    best_merit, best_at = np.inf, 0
+    dilatancy = 1.0 if settings.fade is not None else settings.dilatancy
+    for iteration in range(settings.max_iterations + 1):
+        product = point.slack * np.where(tight, 0.0, point.rates)
+        gap = float(product.sum()) / problem.live_work
+        if settings.fade is not None:
+            dilatancy = min(dilatancy, gap / settings.fade) if gap > 1e-4 * settings.fade else 0.0
+        try:
+            step = NewtonStep(problem, newton, point, dilatancy, tight)
+        except (NumericalFailure, FloatingPointError):
+            break
+        statics, kinematics = float(abs(step.statics).max()), float(abs(step.kinematics).max())
+        history.append(point.multiplier)
+        residual = max(statics, kinematics, abs(step.work) / problem.live_work)
+        if settings.above is not None and point.multiplier >= settings.above and statics <= settings.residual:
+            return PathResult(point, True, iteration, gap, statics, kinematics, history)
+        merit = max(gap / settings.gap, residual / settings.residual)
+        if best is None or merit < best_merit:
+            if merit < 0.9 * best_merit:
+                best_at = iteration
+            best = PathResult(point, merit <= 1.0, iteration, gap, statics, kinematics, history)
+            best_merit = merit
+        if not product.any() or merit <= 1.0 or iteration - best_at > settings.patience or not np.isfinite(merit):
+            break
+        point = _centred_step(step, point, product, pairs, tight, dilatancy)
+    if best is None:
+        raise SingularMatrix("the interior point could not factorise its first system")
+    return best
+
+
+def _centred_step(
+    step: NewtonStep, point: Point, product: FloatArray, pairs: int, tight: BoolArray, dilatancy: float
+) -> Point:
+    """Mehrotra's predictor and corrector; where that is blocked, a step that mostly centres."""
+    mean = float(product.sum()) / pairs
+    predictor = step.direction(np.zeros(product.shape))
+    primal, dual = step_lengths(point, predictor, tight, 1.0, dilatancy)
+    ahead = (point.slack + primal * predictor.slack) * (point.rates + dual * predictor.rates)
+    mean_ahead = float(np.where(tight, 0.0, ahead).sum()) / pairs
+    centring = float(np.clip((mean_ahead / mean) ** 3, CENTRING.least, 1.0))
+    second_order = predictor.slack * predictor.rates * min(primal, dual)
+    target = np.clip(centring * mean - second_order, -CENTRING.spread * mean, CENTRING.spread * mean)
+    corrector, target, lengths = _longer_step(step, point, target, centring * mean, tight, dilatancy)
+    if min(lengths) < CENTRING.blocked:
+        safe = np.clip(CENTRING.halved * mean, product / CENTRING.spread, None)
+        centred = step.direction(safe)
+        if min(step_lengths(point, centred, tight, CENTRING.to_boundary, dilatancy)) > min(lengths):
+            corrector, target = centred, safe
+    corrector = step.refined(corrector, target)
+    return step.advance(corrector, *step_lengths(point, corrector, tight, CENTRING.to_boundary, dilatancy))
+
+
+def _longer_step(
+    step: NewtonStep, point: Point, target: FloatArray, mean: float, tight: BoolArray, dilatancy: float
+) -> tuple[Direction, FloatArray, tuple[float, float]]:
+    """The step to a target, its target and lengths.
+
+    Correctors bring the products of a longer step back to the middle (Gondzio 1996), while they lengthen it.
+    """
+    change = step.direction(target)
+    primal, dual = step_lengths(point, change, tight, CENTRING.to_boundary, dilatancy)
+    for _ in range(CENTRING.correctors):
+        if min(primal, dual) > CENTRING.long:
+            break
+        reach = (min(1.0, primal + CENTRING.ahead), min(1.0, dual + CENTRING.ahead))
+        product = (point.slack + reach[0] * change.slack) * (point.rates + reach[1] * change.rates)
+        shift = np.clip(
+            np.clip(product, mean / CENTRING.spread, CENTRING.spread * mean) - product, -CENTRING.spread * mean, None
+        )
+        other = step.direction(target + shift)
+        lengths = step_lengths(point, other, tight, CENTRING.to_boundary, dilatancy)
+        if sum(lengths) < primal + dual + CENTRING.worth * CENTRING.ahead:
+            break
+        change, target, (primal, dual) = other, target + shift, lengths
+    return change, target, (primal, dual)
+
+
+def step_lengths(
+    point: Point, change: Direction, tight: BoolArray, fraction: float, dilatancy: float
+) -> tuple[float, float]:
+    """Longest steps of slacks and of rates that stay inside; one length for both where flow is not associated."""
+    primal = min(1.0, fraction * _longest(point.slack, change.slack, tight))
+    dual = min(1.0, fraction * _longest(point.rates, change.rates, tight))
+    if dilatancy < 1.0:
+        primal = dual = min(primal, dual)
+    return primal, dual
+
+
+def _longest(value: FloatArray, change: FloatArray, tight: BoolArray) -> float:
+    steepest = -float((change / np.where(tight, np.inf, value)).min(initial=0.0))
+    return 1.0 / steepest if steepest > 0.0 else np.inf

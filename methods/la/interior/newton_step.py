@@ -1,0 +1,164 @@
+"""One Newton step of the interior point: residuals at a point, one factorisation, directions for any target.
+
+Slacks and rates are both kept as unknowns, and every small one of them is computed without cancellation: a slack
+that tends to zero from the compliance of its own pair, a rate that tends to zero from its complementarity.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from harness.model.assembly import BoolArray, FloatArray
+from methods.la.core.exact import WEIGHTS
+from methods.la.core.flexibility import Compliance
+from methods.la.core.newton_matrix import NewtonMatrix
+from methods.la.core.problem import Problem
+
+SOFTEST = 1e-25
+"""Least weight g/y in the matrix, far below what any path reaches, so that no stiffness overflows."""
+
+
+@dataclass
+class Point:
+    """An iterate, scaled: slacks y (m, 4), multiplier, velocities (3n,), rates g (m, 4)."""
+
+    slack: FloatArray
+    multiplier: float
+    velocities: FloatArray
+    rates: FloatArray
+
+
+@dataclass
+class Direction:
+    """A change of a point; of the forces (m, 3) too, from which it can be refined."""
+
+    forces: FloatArray
+    slack: FloatArray
+    multiplier: float
+    velocities: FloatArray
+    rates: FloatArray
+
+    def plus(self, factor: float, other: Direction) -> Direction:
+        """This change and `factor` times another."""
+        return Direction(
+            self.forces + factor * other.forces,
+            self.slack + factor * other.slack,
+            self.multiplier + factor * other.multiplier,
+            self.velocities + factor * other.velocities,
+            self.rates + factor * other.rates,
+        )
+
+
+class NewtonStep:
+    """The factorised Newton system at a point.
+
+    Raises:
+        FloatingPointError: a slack or rate is not positive.
+        SingularMatrix: the matrix is singular to rounding.
+    """
+
+    def __init__(
+        self, problem: Problem, newton: NewtonMatrix, point: Point, dilatancy: float, tight: BoolArray
+    ) -> None:
+        self.problem, self.point, self.dilatancy, self.tight = problem, point, dilatancy, tight
+        if not (np.all(point.slack[~tight] > 0.0) and np.all(point.rates[~tight] > 0.0)):
+            raise FloatingPointError("the iterate left the interior")
+        self.slack = np.where(tight, 1.0, point.slack)
+        self.weight = np.where(tight, WEIGHTS.rigid, np.maximum(point.rates / self.slack, SOFTEST))
+        self.compliance = Compliance(problem.friction, self.weight, problem.lift(dilatancy))
+        self.statics = problem.imbalance(problem.forces_of_slacks(point.slack), point.multiplier)
+        self.kinematics = problem.strains(point.velocities) - problem.strains_of_rates(point.rates, dilatancy)
+        self.work = problem.live_work - float(problem.live @ point.velocities)
+        self.factor = newton.factorise(self.compliance.matrices, 1e-15)
+        self.by_live = self.factor.solve(problem.live)
+        self.live_compliance = float(problem.live @ self.by_live)
+
+    def orientation(self) -> float:
+        """The sign of the determinant of the system, but for a sign common to all points of a path."""
+        return self.factor.determinant_sign() * float(np.sign(self.live_compliance))
+
+    def _bordered(self, load: FloatArray, work: float) -> tuple[FloatArray, float]:
+        by_load = self.factor.solve(load)
+        change = (work - float(self.problem.live @ by_load)) / self.live_compliance
+        return by_load + change * self.by_live, change
+
+    def direction(self, target: FloatArray) -> Direction:
+        """Newton direction towards y o g = target (m, 4)."""
+        problem, rate_shift = self.problem, self._rate_shift(target)
+        shift = problem.strains_of_rates(rate_shift, self.dilatancy) - self.kinematics
+        load = np.asarray(problem.statics @ self.compliance.forces(shift).ravel()) + self.statics
+        velocity, multiplier = self._bordered(load, self.work)
+        strain = problem.strains(velocity)
+        forces, slack = self.compliance.response(shift - strain)
+        return self._with_rates(rate_shift, forces, slack, multiplier, velocity, strain)
+
+    def refined(self, change: Direction, target: FloatArray) -> Direction:
+        """A direction towards y o g = target (m, 4) with less rounding.
+
+        The refinement adds to forces and slacks, instead of finding them anew from the velocities: the rounding of a
+        slip times the stiffness of the pressed ends beside it would be an imbalance that no refinement removes.
+        """
+        problem = self.problem
+        defect = self.statics + np.asarray(problem.statics @ change.forces.ravel()) + change.multiplier * problem.live
+        extra, more = self._bordered(defect, self.work - float(problem.live @ change.velocities))
+        velocity = change.velocities + extra
+        less_forces, less_slack = self.compliance.response(problem.strains(extra))
+        forces, slack = change.forces - less_forces, change.slack - less_slack
+        multiplier = change.multiplier + more
+        return self._with_rates(
+            self._rate_shift(target), forces, slack, multiplier, velocity, problem.strains(velocity)
+        )
+
+    def _rate_shift(self, target: FloatArray) -> FloatArray:
+        return np.where(self.tight, 0.0, target / self.slack - self.point.rates)
+
+    def _with_rates(
+        self,
+        rate_shift: FloatArray,
+        forces: FloatArray,
+        slack: FloatArray,
+        multiplier: float,
+        velocity: FloatArray,
+        strain: FloatArray,
+    ) -> Direction:
+        slack = np.where(self.tight, 0.0, slack)
+        return Direction(forces, slack, multiplier, velocity, self._rates(rate_shift, slack, strain + self.kinematics))
+
+    def _rates(self, shift: FloatArray, slack: FloatArray, strain: FloatArray) -> FloatArray:
+        """Changes of the rates: from the complementarity where that is accurate, else from compatibility E dg = strain.
+
+        Where w = g/y is large, w dy magnifies rounding; compatibility gives dg there without loss.
+        """
+        rate = shift - np.where(self.tight, 0.0, self.weight * slack)
+        forward, backward = rate[:, 2].copy(), rate[:, 3].copy()
+        stiff = np.maximum(self.weight[:, 2], self.weight[:, 3]) > 1.0
+        ahead = self.weight[:, 2] >= self.weight[:, 3]
+        rate[:, 2] = np.where(stiff & ahead, strain[:, 2] + backward, forward)
+        rate[:, 3] = np.where(stiff & ~ahead, forward - strain[:, 2], backward)
+        dilation = self.problem.lift(self.dilatancy) * (rate[:, 2] + rate[:, 3])
+        for end in (0, 1):
+            rate[:, end] = np.where(self.weight[:, end] > 1.0, strain[:, end] - dilation, rate[:, end])
+        return rate
+
+    def advance(self, change: Direction, primal: float, dual: float) -> Point:
+        """The point after a step; the larger shear slack is set from y3 + y4 = 2 mu N, so that no error builds up."""
+        point = self.point
+        slack = point.slack + primal * change.slack
+        if self.problem.cohesion is None:
+            self._agree(slack)
+        return Point(
+            np.where(self.tight, 0.0, slack),
+            point.multiplier + primal * change.multiplier,
+            point.velocities + dual * change.velocities,
+            point.rates + dual * change.rates,
+        )
+
+    def _agree(self, slack: FloatArray) -> None:
+        strength = 2.0 * self.problem.friction * (slack[:, 0] + slack[:, 1])
+        low = np.minimum(slack[:, 2], slack[:, 3])
+        first = slack[:, 2] <= slack[:, 3]
+        safe = strength > 2.0 * low
+        slack[:, 2] = np.where(safe & ~first, strength - low, slack[:, 2])
+        slack[:, 3] = np.where(safe & first, strength - low, slack[:, 3])

@@ -1,0 +1,150 @@
+"""What a search may spend, and what it has spent: one budget, from which all its sources draw.
+
+Work is counted in linear programmes, Newton steps times blocks, and kinks of paths of springs, never in seconds: a seed
+gives the same answer on every machine of the same arithmetic. The size of a wall decides how much there is of it, and
+nothing else.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field, replace
+
+from methods.la.core.problem import Problem
+from methods.la.core.search_settings import SearchSettings
+
+
+@dataclass(frozen=True)
+class Limits:
+    """How much is tried.
+
+    Attributes:
+        starts: random starts of the interior point.
+        failures, draws: draws without a lower value that end a descent, and draws of one at most.
+        descents: lowest states of each source, and of each rung, that are descended from.
+        ladder: factors on friction of the rungs.
+        nodes: of the tree that may prove the least state.
+        leaves: of a tree that does not come to an end, which are bounded to rounding: 8 ms each on 10 interfaces. The
+            first hundred prove a bound on walls of three blocks; 2x2 bricks need 600 for one of .03 where .65 is known.
+        programmes: linear ones in all, those of the proof among them.
+        block_steps: Newton steps times blocks after which no further path is begun once a state is known.
+        kinks: on all paths of springs after which no further one is begun; twice as many while no state is known.
+        unbounded_kinks: instead of those where statics allows any live load.
+    """
+
+    starts: int = 0
+    failures: int = 12
+    draws: int = 200
+    descents: int = 1
+    ladder: tuple[float, ...] = ()
+    nodes: int = 0
+    leaves: int = 100
+    programmes: int = 50_000
+    block_steps: float = 1e6
+    kinks: int = 9_000
+    unbounded_kinks: int = 9_000
+
+
+DOWN = (1.3, 1.15, 1.0, 0.9, 0.8, 0.7, 0.6, 0.5)
+UP = (0.55, 0.6, 0.65, 0.7, 0.75, 0.8, 0.85, 0.9, 0.95)
+"""Factors on friction of the ladder of `deep`, which first goes down from above that of the wall."""
+
+
+@dataclass(frozen=True)
+class Sizes:
+    """The sizes at which the budget of normal effort changes, so that the time grows slowly, and what it is there.
+
+    Attributes:
+        few_blocks, some_blocks: up to the first the whole ladder is tried, up to the next half of it, three descents a
+            source on both; above, no rungs but those of rough joints, and one longer descent. With one descent instead
+            of three and 6,000 kinks instead of 9,000 two walls of 44 blocks reach their least value with 3 seeds of 12
+            instead of 9.
+        descended: interfaces up to which states are descended from; above, a draw takes a second and more.
+        provable, provable_ring: interfaces up to which a proof is tried, and those of walls with at most two more
+            interfaces than blocks. With more, hardly any tree of 1,500 nodes comes to an end.
+        ladder, fine_ladder: factors on friction: mechanisms found at each are carried to the next.
+    """
+
+    few_blocks: int = 30
+    some_blocks: int = 60
+    descended: int = 1000
+    provable: int = 16
+    provable_ring: int = 30
+    ladder: tuple[float, ...] = (0.55, 0.65, 0.75, 0.85, 0.925)
+    fine_ladder: tuple[float, ...] = (*DOWN, *UP)
+
+    def limits(self, effort: str, problem: Problem) -> Limits:
+        """The limits of an effort ("quick", "normal" or "deep") on a wall."""
+        blocks, interfaces = problem.assembly.n_free, problem.n_interfaces
+        most = self.provable_ring if interfaces <= blocks + 2 else self.provable
+        nodes = 1500 if interfaces <= most else 0
+        descents = int(interfaces <= self.descended)
+        if effort == "quick":
+            return Limits(0, 8, 200, descents, nodes=min(nodes, 100), kinks=300, unbounded_kinks=300)
+        if effort == "deep":
+            nodes = 20000 if interfaces <= 2 * most else 0
+            return Limits(20, 40, 200, 8, self.fine_ladder, nodes, nodes, 1_000_000, 1e7, 100_000, 100_000)
+        if blocks <= self.few_blocks:
+            return Limits(0, 12, 200, 3, self.ladder, nodes)
+        if blocks <= self.some_blocks:
+            return Limits(0, 12, 200, 3, self.ladder[::2], nodes)
+        if descents:
+            return Limits(0, 40, kinks=20_000, unbounded_kinks=20_000)
+        return Limits(0, 40, descents=0, kinks=60_000, unbounded_kinks=1)
+
+
+SIZES = Sizes()
+
+
+def limits_of(settings: SearchSettings, problem: Problem) -> Limits:
+    """The limits that the settings ask for; what they leave open depends on the size of the wall.
+
+    Whoever asks for draws, starts or a ladder has them descended from at any size.
+    """
+    limits = SIZES.limits(settings.effort, problem)
+    asked = {name: value for name in ("starts", "failures", "ladder") if (value := getattr(settings, name)) is not None}
+    return replace(limits, descents=max(limits.descents, 1), **asked) if asked else limits
+
+
+@dataclass
+class Work:
+    """Work that was done: programmes, Newton steps, the same times blocks, kinks."""
+
+    programmes: int = 0
+    newton_steps: int = 0
+    block_steps: float = 0.0
+    kinks: int = 0
+
+    def since(self, before: Work) -> Work:
+        """What was done after `before`."""
+        return Work(
+            self.programmes - before.programmes,
+            self.newton_steps - before.newton_steps,
+            self.block_steps - before.block_steps,
+            self.kinks - before.kinks,
+        )
+
+
+@dataclass
+class Budget:
+    """The limits of a search, and what it and those of other friction that serve it have spent."""
+
+    limits: Limits = field(default_factory=Limits)
+    spent: Work = field(default_factory=Work)
+
+    def stepped(self, steps: int, blocks: int) -> None:
+        """Count Newton steps of a matrix of so many blocks."""
+        self.spent.newton_steps += steps
+        self.spent.block_steps += steps * blocks
+
+    @property
+    def programmes(self) -> int:
+        """Programmes left."""
+        return max(self.limits.programmes - self.spent.programmes, 0)
+
+    def steps_left(self, known: bool) -> bool:
+        """Whether a further path of Newton steps may begin; `known` says whether a state is known."""
+        return not known or self.spent.block_steps < self.limits.block_steps
+
+    def kinks_left(self, known: bool) -> bool:
+        """Whether a further path of springs may begin; `known` says whether a state is known."""
+        return self.spent.kinks < self.limits.kinks * (1 if known else 2)

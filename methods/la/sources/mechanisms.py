@@ -1,0 +1,88 @@
+"""The motions of one block among others, and the least multiplier at which its own equilibrium allows each.
+
+Interior paths, descent and paths of springs all begin with forces, and so with the joints that those press. A block
+that slides out alone from among others, which could press on it but need not, is seldom found from there. Its motions
+are few, though: those of one rigid body against joints without dilatancy are the extreme rays of a cone in three
+dimensions, and each is a mechanism whose least multiplier is one linear programme.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.optimize import linprog
+
+from harness.model.assembly import FloatArray
+from methods.la.core.problem import Problem, slack_matrix
+
+ROUNDING = 1e-9
+"""Rates and products of unit vectors up to this are zero to rounding."""
+
+
+def motions_of(problem: Problem, block: int) -> Iterator[tuple[FloatArray, float]]:
+    """Velocities (3n,) of the block's own motions, and the least scaled multiplier that its equilibrium allows each."""
+    own = slice(3 * block, 3 * block + 3)
+    columns = problem.kinematic[:, own].tocoo()
+    joints, row = np.unique(columns.row // 3, return_inverse=True)
+    strains = np.zeros((len(joints), 3, 3))
+    strains[row, columns.row % 3, columns.col] = columns.data
+    for motion in extreme_motions(strains, problem.live[own]):
+        velocities = np.zeros(problem.n_velocities)
+        velocities[own] = motion * (problem.live_work / float(problem.live[own] @ motion))
+        yield velocities, least_of_block(problem, block, joints, strains, motion)
+
+
+def extreme_motions(strains: FloatArray, live: FloatArray) -> FloatArray:
+    """(r, 3) unit motions of a rigid body that move in fewest of its contacts.
+
+    Args:
+        strains: (k, 3, 3) openings at both ends and slip of its joints, from its motion; no opening may be negative.
+        live: (3,) live load on the body, which is to do positive work.
+    """
+    rows = _distinct(strains.reshape(-1, 3))
+    first, second = np.triu_indices(len(rows), 1)
+    motions = _distinct(np.cross(rows[first], rows[second]))
+    work = motions @ live
+    doing = abs(work) > ROUNDING * np.linalg.norm(live)
+    motions = motions[doing] * np.sign(work[doing])[:, None]
+    rates = np.einsum("kij,rj->rki", strains, motions)
+    possible = (rates[:, :, :2] >= -ROUNDING).all(axis=(1, 2))
+    motions, rates = motions[possible], rates[possible].reshape(-1, 3 * len(strains))
+    moving = np.hstack([rates > ROUNDING, rates < -ROUNDING])
+    within = ~(moving[:, None] & ~moving[None]).any(axis=2)
+    return np.asarray(motions[~(within & ~within.T).any(axis=0)])
+
+
+def least_of_block(
+    problem: Problem, block: int, joints: NDArray[Any], strains: FloatArray, motion: FloatArray
+) -> float:
+    """The least scaled multiplier at which a moving block's joints balance its own loads; inf if they cannot.
+
+    Args:
+        joints: (k,) its interfaces; strains: (k, 3, 3) of them; motion: (3,) of the block.
+    """
+    own = slice(3 * block, 3 * block + 3)
+    rates = strains @ motion
+    slacks = np.pad(slack_matrix(problem.friction[joints]).toarray(), ((0, 0), (0, 1)))
+    moving = np.column_stack([rates, -rates[:, 2]]).ravel() > ROUNDING
+    solution = linprog(
+        np.eye(slacks.shape[1])[-1],
+        A_ub=-slacks,
+        b_ub=np.zeros(len(slacks)),
+        A_eq=np.vstack([slacks[moving], np.column_stack([strains.reshape(-1, 3).T, problem.live[own]])]),
+        b_eq=np.append(np.zeros(moving.sum()), -problem.dead[own]),
+        bounds=[(None, None)] * (slacks.shape[1] - 1) + [(0.0, None)],
+    )
+    return np.inf if solution.status != 0 or solution.x is None else float(solution.x[-1])
+
+
+def _distinct(vectors: FloatArray) -> FloatArray:
+    """Unit vectors (k, 3) along those that differ in more than length, sense and rounding."""
+    length = np.linalg.norm(vectors, axis=1)
+    unit = vectors[length > ROUNDING] / length[length > ROUNDING, None]
+    leading = np.take_along_axis(unit, (abs(unit) > ROUNDING).argmax(axis=1)[:, None], axis=1)
+    unit = unit * np.sign(leading)
+    return np.asarray(unit[np.unique(unit.round(8), axis=0, return_index=True)[1]])

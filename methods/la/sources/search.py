@@ -1,0 +1,276 @@
+"""The search for low collapse states: exact programme on a mechanism, ray descent, seeded restarts.
+
+Without loss of generality the mechanism is an extreme ray of {g >= 0, C u = E g}. For a mechanism that moves in the
+contacts J the best multiplier is the linear programme lambda(J) = min lambda s.t. equilibrium, S r >= 0, y_J = 0.
+Ray descent: at its solution draw another extreme mechanism among the contacts with y = 0, solve its programme, keep
+it if lower. Every draw comes from a seeded generator, and effort is counted in programmes, never in seconds.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass, field
+from functools import cached_property
+
+import numpy as np
+
+from harness.model.assembly import BoolArray, FloatArray
+from methods.la.core.newton_matrix import NewtonMatrix
+from methods.la.core.problem import Problem
+from methods.la.core.programmes import KinematicProgramme, StaticProgramme
+from methods.la.core.state import CollapseState, moving_contacts, residuals, tight_contacts
+from methods.la.interior.associated import AssociatedResult, solve_associated
+from methods.la.interior.interior_point import PathResult, PathSettings, follow_path, start_point
+from methods.la.interior.newton_step import Point
+from methods.la.interior.path_programmes import EXACTNESS, cheapest_mechanism, exact_state, state_of_mechanism
+from methods.la.interior.standing import standing_forces
+from methods.la.sources.budget import Budget
+from methods.la.sources.gravity import Gravity, gravity_of
+from methods.la.sources.record import LOWER, Record
+
+
+@dataclass(frozen=True)
+class Choices:
+    """How a search solves its programmes, and when it trusts them.
+
+    Attributes:
+        vertices_up_to: interfaces up to which the mechanism nearest to a path, and its state, are vertices of HiGHS;
+            above, the interior point solves both programmes, ten times sooner at 3,500.
+        once_above: interfaces above which nothing descends from a multiplier that a descent ended at.
+        gravity_up_to: interfaces up to which it is asked what falls without self-stress; above, that may take longer
+            than the search.
+        still: blocks slower than this share of the fastest count as still, when moving ones are joined.
+        widest_gap: relative gap at the end of a path above which its slacks tell no mechanism.
+        central: accuracy of the central path: its end only tells the mechanism.
+        nearly_zero, small: scaled slacks that count as zero when a mechanism is sought near them, first and then.
+    """
+
+    vertices_up_to: int = 1000
+    once_above: int = 400
+    gravity_up_to: int = 2000
+    still: float = 1e-9
+    widest_gap: float = 1e-2
+    central: PathSettings = field(default_factory=lambda: PathSettings(gap=1e-7, residual=1e-6))
+    nearly_zero: float = 1e-6
+    small: float = 1e-3
+
+
+CHOICES = Choices()
+
+
+class Search:
+    """Everything that a wall's search shares: programmes, known mechanisms, budget, record.
+
+    `known` holds the state of every mechanism tried, None where no forces fit it; `ends` the multipliers at which
+    descents ended; `associated` the programme of statics alone, once it is solved.
+
+    Args:
+        problem: the scaled wall; newton: its Newton matrix.
+        seed: of all draws.
+        budget: what may be spent.
+        parent: a search of the same wall at another friction, whose draws and budget this one shares.
+    """
+
+    def __init__(
+        self,
+        problem: Problem,
+        newton: NewtonMatrix,
+        seed: int = 0,
+        budget: Budget | None = None,
+        parent: Search | None = None,
+    ) -> None:
+        self.problem, self.newton = problem, newton
+        self.seed: int = seed if parent is None else parent.seed
+        self.parent = parent
+        self.generator: np.random.Generator = np.random.default_rng(seed) if parent is None else parent.generator
+        self.budget: Budget = (budget or Budget()) if parent is None else parent.budget
+        self.record = Record()
+        self.known: dict[bytes, CollapseState | None] = {}
+        self.ends: list[float] = []
+        self.associated = AssociatedResult("unknown")
+
+    def at_friction(self, problem: Problem) -> Search:
+        """A search of the same wall with other friction coefficients, which serves this one."""
+        return Search(problem, self.newton, parent=self)
+
+    @cached_property
+    def static(self) -> StaticProgramme:
+        """The programme of the forces that fit a mechanism."""
+        return StaticProgramme(self.problem)
+
+    @cached_property
+    def kinematic(self) -> KinematicProgramme:
+        """The programme of mechanisms, which friction does not change."""
+        return KinematicProgramme(self.problem) if self.parent is None else self.parent.kinematic
+
+    @cached_property
+    def gravity(self) -> Gravity:
+        """What the dead load does to the wall with springs in its joints and no self-stress in them."""
+        return gravity_of(self.problem)
+
+    @cached_property
+    def central_forces(self) -> FloatArray | None:
+        """Forces (m, 3) well within yield under the dead load; None if none are found."""
+        return standing_forces(self.problem, self.newton)
+
+    def finds_motion(self) -> bool:
+        """Whether the wall has any mechanism on which the live load does work, whatever its forces.
+
+        It is taken to have one where it is too large for a vertex.
+        """
+        if self.problem.n_interfaces > CHOICES.vertices_up_to:
+            return True
+        shape = (self.problem.n_interfaces, 4)
+        return self.kinematic.solve(np.ones(shape, dtype=bool), np.ones(shape)) is not None
+
+    def adopt(self, other: Search, most: int) -> list[CollapseState]:
+        """The states here of the mechanisms that were lowest in another search, whose friction may differ.
+
+        Zero-dilatancy mechanisms do not depend on friction, so each needs one static programme only. Where forces fit
+        none of them, the mechanisms nearest to their forces are tried.
+        """
+        theirs = sorted((state for state in other.known.values() if state is not None), key=lambda s: s.multiplier)
+        states = [self._best_of(state.velocities, state.moving) for state in theirs[:most]]
+        if not any(states):
+            states = [self.nearest_state(self.problem.slacks(state.forces)) for state in theirs[:most]]
+        return [state for state in states if state is not None]
+
+    def state_of(self, velocities: FloatArray, rates: FloatArray) -> CollapseState | None:
+        """The best collapse state of a mechanism, or None if no forces fit it."""
+        return self._best_of(velocities, moving_contacts(rates))
+
+    def _best_of(self, velocities: FloatArray, moving: BoolArray) -> CollapseState | None:
+        key = _key(moving)
+        if key not in self.known:
+            self.known[key] = state = self._solved(velocities, moving)
+            if state is not None:
+                self.note(state)
+        return self.known[key]
+
+    def _solved(self, velocities: FloatArray, moving: BoolArray) -> CollapseState | None:
+        if self.problem.n_interfaces > CHOICES.vertices_up_to:
+            state, steps = state_of_mechanism(self.problem, self.newton, velocities, moving)
+            self.stepped(steps)
+            exact = state is not None and max(residuals(self.problem, state).values()) <= EXACTNESS.kept
+            return state if exact else None
+        self.budget.spent.programmes += 1
+        solution = self.static.solve(moving)
+        if isinstance(solution, str):
+            return None
+        return CollapseState(solution.forces, solution.multiplier, velocities, moving)
+
+    def solve_associated(self) -> AssociatedResult:
+        """The greatest multiplier of statics alone, which is kept: no collapse state is above it."""
+        self.associated = solve_associated(self.problem, self.newton)
+        return self.associated
+
+    def note(self, state: CollapseState) -> None:
+        """Note a collapse state if none known is lower."""
+        self.record.note(state, self.budget.spent)
+
+    def nearest_state(self, slack: FloatArray, rates: FloatArray | None = None) -> CollapseState | None:
+        """The collapse state of the mechanism that does least work y.g on given slacks (m, 4), or None.
+
+        Args:
+            slack: which may be those of another friction.
+            rates: (m, 4) of the path that has these slacks, if they belong to one.
+        """
+        slack = np.maximum(slack, 0.0)
+        if self.problem.n_interfaces > CHOICES.vertices_up_to:
+            return self._nearest_by_path(slack)
+        for allowed in self._allowed(slack, rates):
+            self.budget.spent.programmes += 1
+            mechanism = self.kinematic.solve(allowed, slack)
+            if mechanism is not None:
+                state = self.state_of(mechanism.velocities, mechanism.rates)
+                if state is not None:
+                    return state
+        return None
+
+    def _nearest_by_path(self, slack: FloatArray) -> CollapseState | None:
+        mechanism = cheapest_mechanism(self.problem, self.newton, slack, np.random.default_rng(self.seed))
+        self.stepped(mechanism.iterations)
+        state, steps = exact_state(self.problem, self.newton, mechanism)
+        self.stepped(steps)
+        if state is not None:
+            self.known[_key(state.moving)] = state
+            self.note(state)
+        return state
+
+    def stepped(self, steps: int) -> None:
+        """Count Newton steps of the whole wall."""
+        self.budget.stepped(steps, self.problem.n_velocities // 3)
+
+    def _allowed(self, slack: FloatArray, rates: FloatArray | None) -> list[BoolArray]:
+        everywhere = np.ones(slack.shape, dtype=bool)
+        if rates is None:
+            return [slack <= CHOICES.nearly_zero, everywhere]
+        return [rates >= slack, slack <= CHOICES.small, everywhere]
+
+    def follow(self, start: Point, settings: PathSettings) -> PathResult:
+        """Interior point from a start; counts its steps."""
+        result = follow_path(self.problem, self.newton, start, settings)
+        self.stepped(result.iterations)
+        return result
+
+    def path_end(self, spread: float = 0.0) -> PathResult | None:
+        """Where the interior point leads from the centred or a random start; None if far from complementarity."""
+        result = self.follow(start_point(self.problem, spread, self.generator), CHOICES.central)
+        return None if result.gap > CHOICES.widest_gap else result
+
+    def interior(self, spread: float = 0.0) -> CollapseState | None:
+        """The exact state nearest to where the interior point leads, from the centred or a random start."""
+        end = self.path_end(spread)
+        return None if end is None else self.nearest_state(end.point.slack, end.point.rates)
+
+    def as_one_block(self, state: CollapseState) -> CollapseState | None:
+        """The best state in which all blocks that move in `state` move as one rigid body; None if they cannot.
+
+        Descent splits blocks up and seldom joins them again, while the joined ones may bear less.
+        """
+        assembly = self.problem.assembly
+        speed = np.abs(state.velocities.reshape(-1, 3)).max(axis=1)
+        moves = np.zeros(assembly.n_blocks, dtype=bool)
+        moves[assembly.free] = speed > CHOICES.still * speed.max(initial=0.0)
+        edge = moves[assembly.block_a] != moves[assembly.block_b]
+        slack = np.maximum(self.problem.slacks(state.forces), 0.0)
+        self.budget.spent.programmes += 1
+        mechanism = self.kinematic.solve(np.repeat(edge[:, None], 4, axis=1), slack)
+        return None if mechanism is None else self.state_of(mechanism.velocities, mechanism.rates)
+
+    def descend_from(self, states: Iterable[CollapseState]) -> list[CollapseState]:
+        """Where ray descent leads from the lowest of the states that differ in multiplier."""
+        reached: list[CollapseState] = []
+        seen: set[int] = set()
+        for state in sorted(states, key=lambda s: s.multiplier):
+            place = round(state.multiplier * 1e9)
+            if place in seen or len(reached) >= self.budget.limits.descents:
+                continue
+            seen.add(place)
+            reached.append(self.descend(state))
+        return reached
+
+    def descend(self, state: CollapseState) -> CollapseState:
+        """Ray descent from a state."""
+        large = self.problem.n_interfaces > CHOICES.once_above
+        if large and any(abs(state.multiplier - end) <= LOWER for end in self.ends):
+            return state
+        failures, limits = 0, self.budget.limits
+        for _ in range(min(limits.draws, self.budget.programmes)):
+            if failures >= limits.failures or not self.budget.programmes:
+                break
+            tight = tight_contacts(self.problem, state.forces)
+            cost = self.generator.exponential(size=tight.shape) ** 2
+            self.budget.spent.programmes += 1
+            mechanism = self.kinematic.solve(tight, cost)
+            other = None if mechanism is None else self.state_of(mechanism.velocities, mechanism.rates)
+            if other is not None and other.multiplier < state.multiplier - LOWER:
+                state, failures = other, 0
+            else:
+                failures += 1
+        self.ends.append(state.multiplier)
+        return state
+
+
+def _key(moving: BoolArray) -> bytes:
+    return np.packbits(moving).tobytes()

@@ -1,0 +1,370 @@
+"""A wall as the gap-spring model sees it: gap points, dimensionless loads and the sparse tangent.
+
+Lengths are measured in the length scale of the wall, forces in the mean weight of a block, displacements in
+force / kn, so that kn = 1 inside. The multiplier is untouched by this, and results at two stiffnesses differ by the
+scale of the displacements only.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import cast
+
+import numpy as np
+import scipy.sparse as sp
+
+from harness.model.assembly import Assembly, FloatArray, IntArray
+from methods.numerics.block_lu import elimination_order
+from methods.numerics.compiled import compiled
+from methods.numerics.vectors import largest
+from methods.springs.model.exact_rates import tangent_defect
+from methods.springs.model.gap_law import (
+    OPEN,
+    classify,
+    equivalent_end_forces,
+    flip_vectors,
+    gap_forces,
+    tangent_coefficients,
+)
+from methods.springs.model.points import gap_points
+from methods.springs.model.spring_settings import GapSettings
+
+FOOTING = 1e-8
+"""Stiffness of a block against the ground, in springs of a gap point, where the tangent alone is singular."""
+
+
+@dataclass(frozen=True, eq=False)
+class WallModel:
+    """Arrays of the gap-spring model. N = 3 n_free unknowns, m interfaces, P gap points.
+
+    Attributes:
+        assembly: the wall.
+        order: (n_free,) block index behind each block of unknowns, in an order that keeps the factors sparse.
+        unknown: (m, 6) unknowns of the two blocks of each interface; those of a fixed block repeat the
+            other block's, with coefficients 0.
+        rows: (m, 3, 6) coefficients of (opening at end 1, at end 2, slip).
+        interface: (P,) interface of each point; position: (P,) in [0, 1] from end 1.
+        kn, kt, mu: (P,) stiffnesses and friction.
+        history: (P,) initial h = T0 - kt s0; initial_opening: (P,) at no displacement, negative where a point carries
+            compression before anything has moved.
+        dead, live: (N,) dimensionless loads.
+        inertia: (N,) dimensionless masses for slow motion.
+        footing: (N,) stiffness of every block against the ground that a singular tangent is factorised with.
+        column_start, row_index: CSC pattern of the tangent; slot: (m, 36) where each interface adds to its values.
+        force, length, displacement: what one unit inside is worth outside.
+    """
+
+    assembly: Assembly
+    order: IntArray
+    unknown: IntArray
+    rows: FloatArray
+    interface: IntArray
+    position: FloatArray
+    kn: FloatArray
+    kt: FloatArray
+    mu: FloatArray
+    history: FloatArray
+    initial_opening: FloatArray
+    dead: FloatArray
+    live: FloatArray
+    inertia: FloatArray
+    footing: FloatArray
+    column_start: IntArray
+    row_index: IntArray
+    slot: IntArray
+    force: float
+    length: float
+    displacement: float
+
+    @property
+    def n_unknowns(self) -> int:
+        """N, three for each free block."""
+        return len(self.dead)
+
+    @property
+    def n_points(self) -> int:
+        """P, the number of gap points."""
+        return len(self.kn)
+
+    def strains(self, u: FloatArray) -> tuple[FloatArray, FloatArray]:
+        """Openings and slips (P,) of the gap points at displacements u (N,)."""
+        opening, slip = np.empty(self.n_points), np.empty(self.n_points)
+        point_strains(self.unknown, self.rows, self.interface, self.position, u, opening, slip)
+        opening += self.initial_opening
+        return opening, slip
+
+    def states(self, u: FloatArray, history: FloatArray, virgin: bool = False) -> IntArray:
+        """States (P,) of the gap points at displacements u with friction history h (P,)."""
+        opening, slip = self.strains(u)
+        state = np.empty(self.n_points, dtype=np.int64)
+        classify(opening, self.kt * slip + history, self.kn, self.mu, state, virgin)
+        return state
+
+    def forces(self, u: FloatArray, history: FloatArray, state: IntArray) -> tuple[FloatArray, FloatArray]:
+        """Compression N and internal shear T (P,) of points held in the given states."""
+        opening, slip = self.strains(u)
+        normal, shear = np.empty(self.n_points), np.empty(self.n_points)
+        gap_forces(opening, self.kt * slip + history, self.kn, self.mu, state, normal, shear)
+        return normal, shear
+
+    def end_forces(self, normal: FloatArray, shear: FloatArray) -> FloatArray:
+        """(m, 3) contact forces (n1, n2, s) [force] from the gap forces N and T (P,)."""
+        count = self.assembly.n_interfaces
+        return self.force * equivalent_end_forces(self.position, self.interface, normal, shear, count)
+
+    def residual(self, u: FloatArray, multiplier: float, history: FloatArray, state: IntArray) -> FloatArray:
+        """Out-of-balance forces (N,): loads minus internal forces of points held in the given states."""
+        opening, slip = self.strains(u)
+        return self.out_of_balance(opening, self.kt * slip + history, state, multiplier)
+
+    def out_of_balance(
+        self, opening: FloatArray, trial: FloatArray, state: IntArray, multiplier: float, dead: float = 1.0
+    ) -> FloatArray:
+        """dead * dead load + multiplier * live load minus the internal forces of gaps g, tau (P,): (N,)."""
+        out = dead * self.dead + multiplier * self.live
+        tangent_defect(
+            self.unknown, self.rows, self.interface, self.position, self.kn, self.mu, state, opening, trial, out
+        )
+        return out
+
+    def added(self, shift: float, footing: bool) -> FloatArray:
+        """What the diagonal (N,) of the tangent is given: `shift` times the inertia, and the footing if asked."""
+        return shift * self.inertia + (self.footing if footing else 0.0)
+
+    def tangent(self, state: IntArray, shift: float = 0.0, footing: bool = False) -> sp.csc_matrix:
+        """The sparse tangent (N, N) in the given states, with what is `added` to its diagonal."""
+        values = np.zeros(len(self.row_index))
+        add_tangent(self.slot, self.rows, self.interface, self.position, self.kn, self.kt, self.mu, state, values)
+        matrix = sp.csc_matrix((values, self.row_index, self.column_start), shape=(self.n_unknowns, self.n_unknowns))
+        if shift or footing:
+            matrix.setdiag(matrix.diagonal() + self.added(shift, footing))
+        return matrix
+
+    def change(self, point: int, old: int, new: int) -> tuple[IntArray, FloatArray, FloatArray]:
+        """The rank-one change a b' of the tangent when a point changes its state: (unknowns, a, b), all (6,)."""
+        a, b = np.empty(6), np.empty(6)
+        rank_one_change(self.rows, self.interface, self.position, self.kn, self.kt, self.mu, point, old, new, a, b)
+        return self.unknown[self.interface[point]], a, b
+
+    def add_changes(self, changes: Sequence[tuple[int, int, int]], columns: FloatArray) -> int:
+        """Add the vectors a of changes (point, old, new) to the columns of (N, k); returns the first row concerned."""
+        springs = self.rows, self.interface, self.position, self.kn, self.kt, self.mu
+        return add_changes(self.unknown, *springs, np.array(changes), columns)
+
+    def block_displacements(self, u: FloatArray) -> FloatArray:
+        """(n, 3) displacements of all blocks [length, length, rad] from the dimensionless unknowns (N,)."""
+        out = np.zeros((self.assembly.n_blocks, 3))
+        out[self.order] = u.reshape(-1, 3) * self.displacement
+        out[:, 2] /= self.length
+        return out
+
+    def moving_blocks(self, motion: FloatArray, slowest: float = 1e-6) -> list[str]:
+        """Names of the blocks that move in a motion (n, 3): faster than this share of the fastest."""
+        speed = np.abs(motion * np.array([1.0, 1.0, self.length])).max(axis=1)
+        return [self.assembly.block_ids[i] for i in np.flatnonzero(speed > slowest * speed.max(initial=0.0))]
+
+
+def build_model(assembly: Assembly, settings: GapSettings, friction_cap: float = np.inf) -> WallModel:
+    """The gap-spring model of a wall.
+
+    Raises:
+        ValueError: no block can move, or a block that can move touches nothing and carries nothing to scale by.
+    """
+    if assembly.n_free == 0:
+        raise ValueError(f"wall {assembly.name!r} has no block that can move")
+    length = assembly.length_scale
+    force = assembly.force_scale / assembly.n_free
+    order = _elimination_order(assembly)
+    place = np.full(assembly.n_blocks, -1, dtype=np.int64)
+    place[order] = np.arange(len(order))
+    unknown, rows = _kinematic_rows(assembly, place, length)
+    xi, weights = gap_points(settings.rule, settings.points)
+    m, q = assembly.n_interfaces, settings.points
+    interface = np.repeat(np.arange(m), q)
+    if settings.weighting == "point":
+        kn = np.tile(weights * q, m)
+    else:
+        kn = np.tile(weights, m) * np.repeat(assembly.length / length, q)
+    n = 3 * len(order)
+    start, row_index, slot = _pattern(unknown, rows, n)
+    scale = np.array([1.0, 1.0, 1.0 / length]) / force
+    weight = np.linalg.norm(assembly.dead[order, :2], axis=1) / force
+    mass = np.maximum(weight, 1e-3)
+    gyration = np.array([np.ptp(assembly.polygons[i], axis=0) @ np.ptp(assembly.polygons[i], axis=0) for i in order])
+    lever = gyration / (12.0 * length**2)
+    inertia = np.stack([mass, mass, mass * lever], axis=1).ravel()
+    footing = FOOTING * np.stack([np.ones_like(lever), np.ones_like(lever), lever], axis=1).ravel()
+    stiffness = settings.normal_stiffness or 1000.0 * force / length
+    model = WallModel(
+        assembly=assembly,
+        order=order,
+        unknown=unknown,
+        rows=rows,
+        interface=interface,
+        position=np.tile(xi, m),
+        kn=kn,
+        kt=kn * settings.stiffness_ratio,
+        mu=np.minimum(assembly.friction, friction_cap)[interface],
+        history=np.zeros(m * q),
+        initial_opening=np.zeros(m * q),
+        dead=(assembly.dead[order] * scale).ravel(),
+        live=(assembly.live[order] * scale).ravel(),
+        inertia=inertia,
+        footing=footing,
+        column_start=start,
+        row_index=row_index,
+        slot=slot,
+        force=force,
+        length=length,
+        displacement=force / stiffness,
+    )
+    return model
+
+
+def load_scale(model: WallModel, multiplier: float) -> float:
+    """Size of the loads (dimensionless force)."""
+    return largest(model.dead) + abs(multiplier) * largest(model.live) or 1.0
+
+
+def _kinematic_rows(assembly: Assembly, place: IntArray, length: float) -> tuple[IntArray, FloatArray]:
+    """Unknowns (m, 6) and coefficients (m, 3, 6) of the generalised strains of every interface."""
+    m = assembly.n_interfaces
+    unknown = np.zeros((m, 6), dtype=np.int64)
+    rows = np.zeros((m, 3, 6))
+    for j, (block, sign) in enumerate(((assembly.block_a, -1.0), (assembly.block_b, 1.0))):
+        moving = place[block] >= 0
+        columns = slice(3 * j, 3 * j + 3)
+        host = np.where(moving, place[block], np.maximum(place[assembly.block_a], place[assembly.block_b]))
+        unknown[:, columns] = 3 * np.maximum(host, 0)[:, None] + np.arange(3)
+        for k, (direction, point) in enumerate(
+            ((assembly.normal, assembly.end1), (assembly.normal, assembly.end2), (assembly.tangent, assembly.end1))
+        ):
+            arm = (point - assembly.centroid[block]) / length
+            lever = arm[:, 0] * direction[:, 1] - arm[:, 1] * direction[:, 0]
+            rows[:, k, columns] = sign * moving[:, None] * np.column_stack([direction, lever])
+    return unknown, rows
+
+
+def _elimination_order(assembly: Assembly) -> IntArray:
+    """Free blocks in the order in which the tangent is factorised."""
+    place = np.full(assembly.n_blocks, -1, dtype=np.int64)
+    place[assembly.free] = np.arange(assembly.n_free)
+    first, second = place[assembly.block_a], place[assembly.block_b]
+    both = (first >= 0) & (second >= 0)
+    out: IntArray = assembly.free[elimination_order(first[both], second[both], assembly.n_free)]
+    return out
+
+
+def _pattern(unknown: IntArray, rows: FloatArray, n: int) -> tuple[IntArray, IntArray, IntArray]:
+    """CSC pattern of the tangent and the slot (m, 36) of every product of two rows in its values."""
+    r = np.repeat(unknown, 6, axis=1).ravel()
+    c = np.tile(unknown, (1, 6)).ravel()
+    diagonal = np.arange(n)
+    keys = np.concatenate([c * n + r, diagonal * n + diagonal])
+    unique, inverse = np.unique(keys, return_inverse=True)
+    start = np.zeros(n + 1, dtype=np.int32)
+    start[1:] = np.cumsum(np.bincount(unique // n, minlength=n))
+    slot = inverse[: len(r)].reshape(-1, 36).astype(np.int64)
+    row_index: IntArray = (unique % n).astype(np.int32)
+    return cast(IntArray, start), row_index, slot
+
+
+@compiled
+def point_strains(
+    unknown: IntArray,
+    rows: FloatArray,
+    interface: IntArray,
+    position: FloatArray,
+    u: FloatArray,
+    opening: FloatArray,
+    slip: FloatArray,
+) -> None:
+    """Openings and slips (P,) at displacements u (N,), into `opening` and `slip`."""
+    previous = -1
+    e0 = e1 = e2 = 0.0
+    for p in range(len(interface)):
+        k = interface[p]
+        if k != previous:
+            e0 = e1 = e2 = 0.0
+            for j in range(6):
+                value = u[unknown[k, j]]
+                e0 += rows[k, 0, j] * value
+                e1 += rows[k, 1, j] * value
+                e2 += rows[k, 2, j] * value
+            previous = k
+        opening[p] = (1.0 - position[p]) * e0 + position[p] * e1
+        slip[p] = e2
+
+
+@compiled
+def add_tangent(
+    slot: IntArray,
+    rows: FloatArray,
+    interface: IntArray,
+    position: FloatArray,
+    kn: FloatArray,
+    kt: FloatArray,
+    mu: FloatArray,
+    state: IntArray,
+    values: FloatArray,
+) -> None:
+    """Add the tangents of all points in their states to the CSC values of the stiffness."""
+    row_n = np.empty(6)
+    for p in range(len(interface)):
+        if state[p] == OPEN:
+            continue
+        k = interface[p]
+        nn, tt, tn = tangent_coefficients(kn[p], kt[p], mu[p], state[p])
+        for j in range(6):
+            row_n[j] = (1.0 - position[p]) * rows[k, 0, j] + position[p] * rows[k, 1, j]
+        for i in range(6):
+            left_n = row_n[i] * nn + rows[k, 2, i] * tn
+            left_t = rows[k, 2, i] * tt
+            for j in range(6):
+                values[slot[k, 6 * i + j]] += left_n * row_n[j] + left_t * rows[k, 2, j]
+
+
+@compiled
+def rank_one_change(
+    rows: FloatArray,
+    interface: IntArray,
+    position: FloatArray,
+    kn: FloatArray,
+    kt: FloatArray,
+    mu: FloatArray,
+    point: int,
+    old: int,
+    new: int,
+    a: FloatArray,
+    b: FloatArray,
+) -> None:
+    """The change a b' of the tangent when a point changes its state, into a and b (6,)."""
+    k, x = interface[point], position[point]
+    row_n = (1.0 - x) * rows[k, 0] + x * rows[k, 1]
+    flip_vectors(row_n, rows[k, 2], kn[point], kt[point], mu[point], old, new, a, b)
+
+
+@compiled
+def add_changes(
+    unknown: IntArray,
+    rows: FloatArray,
+    interface: IntArray,
+    position: FloatArray,
+    kn: FloatArray,
+    kt: FloatArray,
+    mu: FloatArray,
+    changes: IntArray,
+    columns: FloatArray,
+) -> int:
+    """Add the vectors a of changes (k, 3) to the columns of (N, k); returns the first row concerned."""
+    a, b = np.empty(6), np.empty(6)
+    first = len(columns)
+    for c in range(len(changes)):
+        point, old, new = changes[c]
+        rank_one_change(rows, interface, position, kn, kt, mu, point, old, new, a, b)
+        index = unknown[interface[point]]
+        for j in range(6):
+            columns[index[j], c] += a[j]
+            first = min(first, index[j])
+    return first

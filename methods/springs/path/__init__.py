@@ -1,0 +1,1 @@
+"""The equilibrium path traced exactly, kink by kink, to its plateau."""

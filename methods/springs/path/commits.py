@@ -1,0 +1,115 @@
+"""A finite step with freshly committed friction history, by Newton on the factor that the path already has.
+
+After a commit every slipping point sits exactly on its kink, where a path has no single direction. A finite step
+decides which of them stick. Few points change, so the factor follows by rank-one updates.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from harness.model.assembly import FloatArray, IntArray
+from methods.numerics.block_kernels import MANY as AT_ONCE
+from methods.numerics.vectors import largest
+from methods.springs.model.factor import Change, Factor, SingularTangent, refactor_any
+from methods.springs.model.gap_law import OPEN, SLIP_MINUS, SLIP_PLUS, STICK, TIED, classify, same_forces
+from methods.springs.model.wall_model import WallModel, point_strains
+from methods.springs.path.continuation import Tracer
+
+MANY = 24
+"""Changed points above which a fresh factor is cheaper than updates."""
+NEAR = 5.0
+"""Committed steps longer than this many tangent steps may have left the branch and are not taken."""
+SAFE = 1e3
+"""Updates with |1 + b'y| or its inverse above this are not trusted here."""
+BALANCED = 1e-9
+"""Out-of-balance force (share of the load scale) up to which a step is taken without a further one.
+
+A step by way of huge displacements, over a nearly singular tangent, loses digits.
+"""
+
+
+def committed_step(tracer: Tracer, ahead: float, limit: int = 12) -> Tracer | None:
+    """Commit the history where the tracer stands and step `ahead` in the multiplier.
+
+    Returns:
+        A tracer on the new path, or None when Newton did not settle (the old tracer must then be `refresh`ed).
+    """
+    model, factor = tracer.model, tracer.factor
+    history = tracer.commit()
+    multiplier = tracer.multiplier + ahead
+    u, state = tracer.u.copy(), tracer.state.copy()
+    shift = history - tracer.history
+    opening, trial = tracer.opening.copy(), tracer.trial + shift
+    opening_rate, slip_rate = np.empty_like(opening), np.empty_like(trial)
+    seen: set[bytes] = set()
+    landed = np.empty_like(state)
+    try:
+        for _ in range(limit):
+            step = factor.solve(model.out_of_balance(opening, trial, state, multiplier))
+            u += step
+            point_strains(model.unknown, model.rows, model.interface, model.position, step, opening_rate, slip_rate)
+            opening += opening_rate
+            trial += model.kt * slip_rate
+            classify(opening, trial, model.kn, model.mu, landed, False)
+            if same_forces(opening, trial, model.kn, model.mu, state, landed, TIED * tracer.scale):
+                opening, trial = model.strains(u)
+                trial = model.kt * trial + history
+                if largest(model.out_of_balance(opening, trial, state, multiplier)) > BALANCED * tracer.scale:
+                    continue
+                if not _near(tracer, u, ahead):
+                    return None
+                return Tracer(model, factor, u, multiplier, history, state, factorised=True)
+            key = landed.tobytes()
+            if key in seen:
+                return None
+            seen.add(key)
+            change_states(model, factor, state, landed)
+    except SingularTangent:
+        return None
+    return None
+
+
+def _near(tracer: Tracer, u: FloatArray, ahead: float) -> bool:
+    """Whether a step stays on its branch: the live load works forwards, not much further than the tangent predicts."""
+    moved = u - tracer.u
+    predicted = largest(tracer.direction.velocity) * ahead
+    return float(tracer.model.live @ moved) > 0.0 and largest(moved) <= NEAR * predicted
+
+
+def change_states(model: WallModel, factor: Factor, state: IntArray, wanted: IntArray) -> None:
+    """Bring a factor from one set of states (changed in place) to another. Raises SingularTangent."""
+    points = np.flatnonzero(state != wanted).tolist()
+    changes = [change for p in points for change in _way(p, int(state[p]), int(wanted[p]))]
+    if len(points) <= MANY and factor.count + len(changes) < factor.capacity:
+        for k, change in enumerate(changes):
+            if k % AT_ONCE == 0:
+                factor.foresee(changes[k : k + AT_ONCE])
+            if not _change(model, factor, change):
+                break
+        else:
+            state[:] = wanted
+            return
+    state[:] = wanted
+    refactor_any(factor, state)
+
+
+def _way(point: int, old: int, new: int) -> tuple[Change, ...]:
+    """The changes between neighbouring states that lead a point from one state to another."""
+    between = old
+    if {old, new} == {OPEN, STICK}:
+        between = SLIP_PLUS
+    elif {old, new} == {SLIP_PLUS, SLIP_MINUS}:
+        between = STICK
+    return ((point, old, new),) if between == old else ((point, old, between), (point, between, new))
+
+
+def _change(model: WallModel, factor: Factor, change: Change) -> bool:
+    """One rank-one update; False when it would cost digits."""
+    index, _, b = model.change(*change)
+    y = factor.solve_change(change)
+    denominator = 1.0 + float(b @ y[index])
+    if not 1.0 / SAFE < abs(denominator) < SAFE:
+        return False
+    factor.update(y, index, b, denominator)
+    return True

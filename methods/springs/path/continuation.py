@@ -1,0 +1,311 @@
+"""The equilibrium path traced exactly, kink by kink.
+
+In a fixed set of states the response is linear, and the path is a chain of straight pieces; at each kink one gap point
+changes state and the path turns (`direction.py`). When nothing stops the motion at a constant multiplier,
+it is the collapse mechanism.
+"""
+
+from __future__ import annotations
+
+from copy import deepcopy
+
+import numpy as np
+
+from harness.model.assembly import FloatArray, IntArray
+from methods.numerics.block_kernels import MANY
+from methods.numerics.vectors import largest
+from methods.springs.model.factor import Change, Factor, SingularTangent
+from methods.springs.model.gap_law import OPEN, SLIP_PLUS, STICK, gap_forces
+from methods.springs.model.wall_model import WallModel, load_scale
+from methods.springs.path.direction import PathDirection
+from methods.springs.path.kinks import advance, coming_kinks, live_rate, next_kink, strain_rates
+from methods.springs.path.path_record import LoadStep, PathEnd, PathRecord, Snapshot
+from methods.springs.path.plateau import CERTIFICATE, worst_residual
+from methods.springs.path.tolerances import (
+    DRIFT,
+    ELASTIC,
+    ELSEWHERE,
+    ENOUGH,
+    FAR,
+    GLANCE,
+    GROWN,
+    LARGE,
+    LOOK,
+    LOST,
+    NOISE,
+    TIE,
+)
+from methods.springs.rest.newton import Equilibrium
+
+
+class Tracer:
+    """A point on the path and the straight piece that leads on from it.
+
+    Attributes:
+        u, multiplier, state: where the path is; history: (P,) frozen-in shears h.
+        opening, trial: (P,) g and tau there; largest: the largest displacement.
+        direction: of the present piece.
+        kept: the last mechanism on the way that is an exact collapse state but for rounding; kept_holds: whether its
+            residuals pass the certificate; looked_at: the extent where they were last looked at.
+    """
+
+    def __init__(
+        self,
+        model: WallModel,
+        factor: Factor,
+        u: FloatArray,
+        multiplier: float,
+        history: FloatArray,
+        state: IntArray,
+        factorised: bool = False,
+        certificate: float = CERTIFICATE,
+    ) -> None:
+        self.model = model
+        self.factor = factor
+        self.certificate = certificate
+        self.u = u.copy()
+        self.multiplier = multiplier
+        self.history = history
+        self.state = state.copy()
+        self.scale = load_scale(model, multiplier)
+        self.last_point, self.last_old = -1, OPEN
+        self.worst_residual = 0.0
+        self.opening, self.trial = model.strains(u)
+        self.trial *= model.kt
+        self.trial += history
+        self.n_open = int(np.count_nonzero(state == OPEN))
+        self.n_slip = int(np.count_nonzero(state >= SLIP_PLUS))
+        self.largest = largest(self.u)
+        self.first_displacement = self.largest + 1.0 + largest(model.initial_opening)
+        self.kept: Snapshot | None = None
+        self.kept_holds, self.looked_at = False, 0.0
+        self.turns: set[tuple[int, int, float]] = set()
+        self.direction = PathDirection(model, factor)
+        if factorised:
+            self.direction.solve_first(self.state)
+        else:
+            self.refresh()
+
+    @classmethod
+    def from_rest(cls, model: WallModel, factor: Factor, rest: Equilibrium, certificate: float = CERTIFICATE) -> Tracer:
+        """The path that goes on from a state of equilibrium."""
+        return cls(model, factor, rest.u, rest.multiplier, rest.history, rest.state, certificate=certificate)
+
+    @property
+    def extent(self) -> float:
+        """The largest displacement so far (dimensionless, never zero)."""
+        return max(self.largest, self.first_displacement)
+
+    def present(self) -> Snapshot:
+        """The point and the velocity along the present piece."""
+        return Snapshot(self.multiplier, self.opening, self.trial, self.state, self.direction.velocity)
+
+    def load_step(self) -> LoadStep:
+        """The point, kept whole."""
+        return LoadStep(self.multiplier, self.u.copy(), self.opening.copy(), self.trial.copy(), self.state.copy())
+
+    def may_commit(self) -> bool:
+        """Whether a commit changes anything, and the factor is that of the tangent itself."""
+        return self.n_slip > 0 and not self.direction.pins
+
+    def refresh(self, crossed: tuple[Change, float] | None = None) -> None:
+        """Factorise afresh, solve for the direction again, on over the kink just crossed, and remove the drift."""
+        self.direction.solve_anew(self.state, self.extent, crossed)
+        self._remove_drift()
+
+    def _remove_drift(self) -> None:
+        """Bring the gaps back into equilibrium, along no soft piece; the rates are measured again where they move.
+
+        Raises:
+            SingularTangent: they are so far from it that equilibrium found again would be another path's.
+        """
+        residual = self._out_of_balance()
+        worst = largest(residual) / self.scale
+        self.worst_residual = max(self.worst_residual, worst)
+        moved, lost = False, worst > ELSEWHERE
+        for _ in range(2):
+            if worst < 1e-14:
+                break
+            correction, rate = self.direction.balance(residual)
+            self.direction.rates(correction, np.zeros_like(correction))
+            moved = True
+            self._advance(correction, rate, 1.0)
+            residual = self._out_of_balance()
+            previous, worst = worst, largest(residual) / self.scale
+            if worst >= previous:
+                self._advance(correction, rate, -1.0)
+                break
+        if moved:
+            self.direction.measure()
+        if lost or min(worst, self.worst_residual) > LOST:
+            raise SingularTangent("the path was lost to rounding")
+
+    def _out_of_balance(self) -> FloatArray:
+        return self.model.out_of_balance(self.opening, self.trial, self.state, self.multiplier)
+
+    def commit(self) -> FloatArray:
+        """The history h = T - kt s (P,) after the present shears are frozen in."""
+        model = self.model
+        normal, shear = np.empty_like(self.trial), np.empty_like(self.trial)
+        gap_forces(self.opening, self.trial, model.kn, model.mu, self.state, normal, shear)
+        return shear - (self.trial - self.history)
+
+    def is_mechanism(self) -> bool:
+        """Whether no force changes along the present piece (rates within ELASTIC of the fastest)."""
+        way = self.direction
+        strain, elastic = strain_rates(way.opening_rate, way.trial_rate, self.model.kt, self.state)
+        return elastic <= ELASTIC * strain
+
+    def run(
+        self, record: PathRecord, max_events: int, target: float = np.inf, turn: float = np.inf, note: int = 1
+    ) -> PathEnd:
+        """Follow the path.
+
+        Args:
+            record: receives every `note`-th point of the path.
+            max_events: changes of state after which the tracing is given up.
+            target: multiplier at which to stop when it is passed upwards.
+            turn: share of the peak by which the path may fall before it is reported as turned down.
+
+        Returns:
+            Why the stretch ended. At PLATEAU the velocity of `direction` is the mechanism.
+        """
+        try:
+            while record.events < max_events:
+                end = self._piece(record, target, turn, note)
+                if end is not None:
+                    return end
+        except SingularTangent:
+            return PathEnd.BREAKDOWN
+        return PathEnd.EVENTS
+
+    def _piece(self, record: PathRecord, target: float, turn: float, note: int) -> PathEnd | None:
+        """Follow one straight piece and change the state at its end."""
+        model, way = self.model, self.direction
+        step, point, new = next_kink(
+            self.opening,
+            self.trial,
+            way.opening_rate,
+            way.trial_rate,
+            model.kn,
+            model.mu,
+            self.state,
+            TIE * self.scale,
+            1e-11,
+            NOISE * self.scale / self.extent if way.pins else np.inf,
+            self.last_point,
+            self.last_old,
+        )
+        reach = (target - self.multiplier) / way.speed if way.speed > 0.0 and target < np.inf else np.inf
+        ahead = min(step, reach)
+        if self._is_collapse(ahead):
+            return PathEnd.PLATEAU
+        if ahead == np.inf:
+            if self.is_mechanism():
+                return PathEnd.PLATEAU
+            if way.pins:
+                return PathEnd.BREAKDOWN
+            return PathEnd.UNBOUNDED if way.speed > 0.0 else PathEnd.RUNS_DOWN
+        if ahead * largest(way.velocity) > LARGE * self.first_displacement:
+            return PathEnd.BREAKDOWN
+        if reach <= step:
+            self._advance(way.velocity, way.speed, reach)
+            self.multiplier = target
+            self._note(record, 1)
+            return PathEnd.TARGET
+        self._advance(way.velocity, way.speed, step)
+        record.events += 1
+        self._note(record, note)
+        if self.multiplier < record.peak - turn * max(abs(record.peak), 1e-3):
+            return PathEnd.TURNED_DOWN
+        rising = way.speed > 0.0
+        self._flip(point, new)
+        return PathEnd.TURNED_DOWN if rising and way.speed < 0.0 and self._turned_before() else None
+
+    def _turned_before(self) -> bool:
+        """Whether the path turned down here before: from a commit, where many kinks meet, it may run in a loop."""
+        turn = self.last_point, self.last_old, float(f"{self.multiplier:.11g}")
+        known = turn in self.turns
+        self.turns.add(turn)
+        return known
+
+    def _is_collapse(self, step: float) -> bool:
+        """Whether the piece is a mechanism that goes on so far that the next kink is of no interest.
+
+        No gap may close on it. Mechanisms that stop earlier are kept: each is an exact collapse state at its
+        multiplier, and the last one that passes its check stands for the plateau when rounding ends the path. Among
+        displacements of 1e10 times the elastic ones it is the plateau.
+        """
+        model, way = self.model, self.direction
+        if not way.pins:
+            return False
+        size, fastest = self.extent, largest(way.velocity)
+        ahead = step * fastest
+        if ahead < 1e-3 * size or not self.is_mechanism() or live_rate(model.live, way.velocity) <= 0.0:
+            return False
+        if way.opening_rate[self.state == OPEN].min(initial=0.0) < -ELASTIC * fastest:
+            return False
+        if ahead > FAR * size:
+            return True
+        if size < GROWN * self.looked_at:
+            return False
+        self.looked_at = size
+        holds = worst_residual(model, self.present()) <= self.certificate
+        if holds or not self.kept_holds:
+            self.kept, self.kept_holds = deepcopy(self.present()), holds
+        return holds and size > ENOUGH * self.first_displacement
+
+    def _advance(self, velocity: FloatArray, speed: float, step: float) -> None:
+        way = self.direction
+        gaps = self.opening, self.trial, way.opening_rate, way.trial_rate
+        self.largest = advance(self.u, velocity, *gaps, step)
+        self.multiplier += speed * step
+
+    def _note(self, record: PathRecord, note: int) -> None:
+        if self.multiplier > record.peak:
+            record.peak = self.multiplier
+        elif record.first_limit is None and self.multiplier < record.peak * (1.0 - 1e-9):
+            record.first_limit = record.peak
+        if record.events % note == 0:
+            record.add(self.multiplier, live_rate(self.model.live, self.u), self.n_slip, self.n_open)
+        record.keep(self.load_step)
+
+    def _flip(self, point: int, new: int) -> None:
+        """Change one state, and turn onto the next piece."""
+        old = int(self.state[point])
+        change, crossing = (point, old, new), self._kink_rate(point, old, new)
+        if not self.factor.foresees(change):
+            self.factor.foresee(self._coming(change))
+        self.state[point] = new
+        self.n_open += (new == OPEN) - (old == OPEN)
+        self.n_slip += (new >= SLIP_PLUS) - (old >= SLIP_PLUS)
+        self.last_point, self.last_old = point, old
+        look = self.factor.count % GLANCE == 0
+        if not self.direction.turn(change, crossing, self.state, self.extent, look):
+            self.refresh((change, crossing))
+        elif self._drifted():
+            self._remove_drift()
+
+    def _coming(self, change: Change) -> list[Change]:
+        """A change of state, then those that would follow it first if the direction stayed as it is."""
+        model, way = self.model, self.direction
+        points, targets = np.empty(MANY - 1, dtype=np.int64), np.empty(MANY - 1, dtype=np.int64)
+        gaps = self.opening, self.trial, way.opening_rate, way.trial_rate
+        found = coming_kinks(*gaps, model.kn, model.mu, self.state, points, targets)
+        coming = zip(points[:found].tolist(), targets[:found].tolist(), strict=True)
+        return [change, *((p, int(self.state[p]), new) for p, new in coming if p != change[0])]
+
+    def _drifted(self) -> bool:
+        """Whether the out-of-balance force has grown enough to factorise afresh (looked at every few changes)."""
+        if self.factor.count % LOOK:
+            return False
+        return largest(self._out_of_balance()) > DRIFT * self.scale
+
+    def _kink_rate(self, point: int, old: int, new: int) -> float:
+        """b'v of a change of state and the velocity v of the present piece."""
+        model, way = self.model, self.direction
+        pressed = model.kn[point] * way.opening_rate[point]
+        if OPEN in (old, new):
+            return float(pressed)
+        slip = new if old == STICK else old
+        return float(way.trial_rate[point] + (1.0 if slip == SLIP_PLUS else -1.0) * model.mu[point] * pressed)

@@ -1,0 +1,85 @@
+"""A path followed to its end: past turns by jumps, with the friction history committed on the way if asked for."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from methods.springs.path.commits import committed_step
+from methods.springs.path.continuation import Tracer
+from methods.springs.path.jump import JUMPS, TURN, past_turn, successor
+from methods.springs.path.path_record import PathEnd, PathRecord
+
+COMMIT_WITHIN = 300.0
+"""Displacements, in multiples of the first, up to which the history is still committed."""
+
+
+@dataclass(frozen=True)
+class Followed:
+    """Where a path ended and why, the commits on the way, and the largest residual found on it."""
+
+    tracer: Tracer
+    end: PathEnd
+    commits: int
+    residual: float
+
+
+def follow(
+    tracer: Tracer,
+    record: PathRecord,
+    max_events: int,
+    interval: float = np.inf,
+    highest: float = np.inf,
+    jumps: int = JUMPS,
+    committed_up_to: float = np.inf,
+) -> Followed:
+    """Follow a path from where the tracer stands to its end.
+
+    Args:
+        tracer: the beginning of the path, which is used up.
+        record: receives the path.
+        max_events: changes of state after which the path is given up.
+        interval: multiplier between two commits of the history; infinite for none.
+        highest: multiplier above which a path with commits counts as lost.
+        jumps: most jumps tried where the path turns down; none at a peak from which one was tried in vain.
+        committed_up_to: multiplier above which the history is no longer committed.
+
+    Raises:
+        SingularTangent: the path cannot be taken up again where it stands.
+        OutOfTime: the time given is over; the record has the path so far.
+    """
+    committing, large = interval < np.inf, COMMIT_WITHIN * tracer.first_displacement
+    turn = TURN if jumps > 0 else np.inf
+    commits, residual, hopeless = 0, 0.0, -np.inf
+    while True:
+        after = None
+        early = record.peak <= tracer.multiplier <= committed_up_to - interval and tracer.extent < large
+        if committing and early and tracer.may_commit():
+            after = _committed(tracer, interval, record)
+        if after is not None:
+            commits, tracer, end = commits + 1, after, PathEnd.TARGET
+        else:
+            end = tracer.run(record, max_events, tracer.multiplier + interval, turn)
+        residual = max(residual, tracer.worst_residual)
+        if end == PathEnd.TURNED_DOWN:
+            tracer, turn = past_turn(tracer, record.peak, jumps if record.peak > hopeless else 0)
+            jumps -= 1
+            if turn == np.inf:
+                hopeless = record.peak
+        elif end != PathEnd.TARGET:
+            return Followed(tracer, end, commits, residual)
+        elif tracer.multiplier > highest:
+            return Followed(tracer, PathEnd.BREAKDOWN, commits, residual)
+
+
+def _committed(tracer: Tracer, interval: float, record: PathRecord) -> Tracer | None:
+    """The tracer one interval after a commit, by a finite Newton step; None where that does not settle."""
+    after = committed_step(tracer, interval)
+    if after is None:
+        tracer.refresh()
+        return None
+    record.peak = max(record.peak, after.multiplier)
+    record.add(after.multiplier, float(tracer.model.live @ after.u), after.n_slip, after.n_open)
+    record.keep(after.load_step)
+    return successor(after, tracer)

@@ -1,0 +1,50 @@
+"""The dynamic jump of a wall whose path has turned down, to equilibrium just above the peak."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from methods.springs.model.factor import SingularTangent
+from methods.springs.path.continuation import Tracer
+from methods.springs.rest.equilibrium import equilibrium
+
+TURN = 0.1
+"""Share of the peak by which a path may turn down before a jump from it is tried."""
+JUMPS = 10
+"""Jumps tried along one path: a loop would be tried to be left for ever."""
+
+
+def past_turn(tracer: Tracer, peak: float, jumps: int) -> tuple[Tracer, float]:
+    """The tracer to go on with where a path has turned down, and the share of the peak at which to look again.
+
+    Args:
+        tracer: where the path has turned down; peak: its peak; jumps: how many may still be tried.
+
+    Raises:
+        SingularTangent: the path cannot be taken up again where it stands.
+    """
+    after = _jump(tracer, peak) if jumps > 0 else None
+    if after is not None:
+        return after, TURN
+    tracer.refresh()
+    return tracer, np.inf
+
+
+def _jump(tracer: Tracer, peak: float) -> Tracer | None:
+    """The tracer just above the peak, at the equilibrium that the springs come to from where it is; None if at none."""
+    above = peak * (1.0 + 1e-3) + 1e-9
+    answer = equilibrium(tracer.model, tracer.factor, tracer.u, above, tracer.history, commits=True)
+    if not answer.found:
+        return None
+    try:
+        follow = Tracer.from_rest(tracer.model, tracer.factor, answer)
+    except SingularTangent:
+        return None
+    return successor(follow, tracer)
+
+
+def successor(follow: Tracer, tracer: Tracer) -> Tracer:
+    """A tracer further along the path, which keeps the scales of the one it follows."""
+    follow.direction.elastic, follow.first_displacement = tracer.direction.elastic, tracer.first_displacement
+    follow.certificate = tracer.certificate
+    return follow

@@ -1,0 +1,78 @@
+"""Equilibrium under the dead load and off it: Newton, then slow motion when Newton cycles."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import replace
+
+import numpy as np
+
+from harness.model.assembly import FloatArray
+from methods.springs.model.factor import Factor
+from methods.springs.model.wall_model import WallModel
+from methods.springs.rest.newton import Equilibrium, newton
+from methods.springs.rest.slow_motion import FURTHEST, NEWTON_STEPS, SlowMotion
+
+START = 1e-3
+"""First Newton step off the kinks on which gravity leaves many gap points, as a multiplier."""
+SHORTER = 0.1
+"""How much shorter each further first step is, where the wall does not stand that one."""
+MOST_SHORTER = 5
+"""First steps tried after the longest one: a wall may collapse at a multiplier below it."""
+NEWTON_STEPS_AT_FIRST = 10_000
+"""Newton steps of the motion to rest under the dead load, at most."""
+
+
+def equilibrium(
+    model: WallModel,
+    factor: Factor,
+    u: FloatArray,
+    multiplier: float,
+    history: FloatArray,
+    limit: int = NEWTON_STEPS,
+    commits: bool = False,
+) -> Equilibrium:
+    """Newton, then slow motion of at most `limit` Newton steps from where Newton started.
+
+    Args:
+        commits: whether that motion commits its friction history; the equilibrium holds under `history` if not.
+    """
+    answer = newton(model, factor, u, multiplier, history)
+    if answer.found:
+        return answer
+    start = replace(answer, u=u, history=history)
+    return SlowMotion(model, factor, start, commits).move(multiplier, limit)
+
+
+def gravity_state(model: WallModel, factor: Factor) -> Equilibrium:
+    """Equilibrium under the dead load from the virgin state."""
+    return equilibrium(model, factor, np.zeros(model.n_unknowns), 0.0, model.history, NEWTON_STEPS_AT_FIRST)
+
+
+def first_step(model: WallModel, factor: Factor, rest: Equilibrium, scale: float) -> Equilibrium:
+    """Equilibrium a small step off the one under the dead load: the longest of a few that has one.
+
+    Args:
+        model: the wall; factor: its tangent; rest: equilibrium under the dead load.
+        scale: a multiplier of the order of collapse.
+    """
+    multiplier = START * min(1.0, scale)
+    first = equilibrium(model, factor, rest.u, multiplier, rest.history)
+    for _ in range(MOST_SHORTER):
+        if first.found:
+            break
+        multiplier *= SHORTER
+        first = equilibrium(model, factor, rest.u, multiplier, rest.history)
+    return first
+
+
+def doubled(model: WallModel, factor: Factor, first: Equilibrium) -> Iterator[Equilibrium]:
+    """Equilibria at 2, 4, 8, ... times the multiplier of a first one, as far as Newton converges; at most to FURTHEST.
+
+    Without commits the law has no history, so they lie on the path from the first.
+    """
+    while first.multiplier < FURTHEST:
+        first = newton(model, factor, first.u, 2.0 * first.multiplier, first.history, 25)
+        if not first.found:
+            return
+        yield first

@@ -1,0 +1,79 @@
+"""Equilibrium at a given multiplier by full Newton steps.
+
+The law is piecewise linear, so Newton ends exactly when the states it lands in are those it started from. From the
+virgin state it may cycle, which a repeated set of states shows.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from harness.model.assembly import FloatArray, IntArray
+from methods.springs.model.factor import Factor, SingularTangent, refactor_any
+from methods.springs.model.gap_law import TIED, same_forces
+from methods.springs.model.wall_model import WallModel, load_scale
+
+FALLING = 1e-3
+"""Share of the fastest block's motion above which another falls with it; the others may still settle by less."""
+
+
+@dataclass(frozen=True, eq=False)
+class Equilibrium:
+    """A state of equilibrium, or the best that was reached.
+
+    Attributes:
+        found: whether equilibrium holds.
+        multiplier: of the live load; u: (N,) displacements; history: (P,) frozen-in shears h; state: (P,) states.
+        residual: largest out-of-balance force, relative to the loads.
+        rate: (N,) displacement of the last increment of slow motion when the wall moves steadily; zeros when it is in
+            equilibrium, or neither was seen.
+        iterations: linear solves.
+    """
+
+    found: bool
+    multiplier: float
+    u: FloatArray
+    history: FloatArray
+    state: IntArray
+    residual: float
+    rate: FloatArray
+    iterations: int
+
+
+def newton(
+    model: WallModel, factor: Factor, u: FloatArray, multiplier: float, history: FloatArray, limit: int = 40
+) -> Equilibrium:
+    """Full Newton steps until the states repeat: found when they are those of the step itself, else a cycle."""
+    virgin = not np.any(u)
+    state = model.states(u, history, virgin)
+    seen: set[bytes] = set()
+    scale = load_scale(model, multiplier)
+    iterations = 0
+    while iterations < limit and state.tobytes() not in seen:
+        seen.add(state.tobytes())
+        try:
+            refactor_any(factor, state)
+            step = factor.solve(model.residual(u, multiplier, history, state))
+        except SingularTangent:
+            break
+        if not np.isfinite(step).all() or np.abs(step).max() > 1e9 * scale:
+            break
+        u = u + step
+        iterations += 1
+        landed = model.states(u, history)
+        if settled(model, u, history, state, landed, scale):
+            residual = float(np.abs(model.residual(u, multiplier, history, state)).max() / scale)
+            found = residual < 1e-8
+            return Equilibrium(found, multiplier, u, history, state, residual, np.zeros_like(u), iterations)
+        state = landed
+    return Equilibrium(False, multiplier, u, history, state, np.inf, np.zeros_like(u), iterations)
+
+
+def settled(
+    model: WallModel, u: FloatArray, history: FloatArray, state: IntArray, landed: IntArray, scale: float
+) -> bool:
+    """Whether the two sets of states give the same forces at u."""
+    opening, slip = model.strains(u)
+    return same_forces(opening, model.kt * slip + history, model.kn, model.mu, state, landed, TIED * scale)
