@@ -20,7 +20,7 @@ def out_of_time(*_: Any, **__: Any) -> Any:
 STEPS = {
     "later": ("sources.paths.CentralPath.states", "central path"),
     "ladder": ("sources.ladder.FrictionLadder.states", "friction ladder"),
-    "springs": ("search.gravity_of", "springs with little self-stress"),
+    "springs": ("sources.search.gravity_of", "springs with little self-stress"),
     "proof": ("least.prove", "moving blocks joined"),
 }
 
