@@ -18,10 +18,10 @@ from benchmarks.walls import irregular_wall
 from harness.model.assembly import Assembly
 from harness.model.method import Finding
 from methods.bound.tuning import WINDOWS
-from methods.la.adapter import LimitAnalysis
 from methods.la.certify.window_certificate import certified_bracket
 from methods.la.core.problem import make_problem
 from methods.la.core.search_settings import SearchSettings
+from methods.la.search_adapter import LimitAnalysis
 
 
 def small_wall(seed: int) -> Assembly:

@@ -12,7 +12,7 @@ from dataclasses import dataclass, field
 
 from benchmarks.walls import random_wall
 from harness.model.method import Status, load_method
-from methods.fe.adapter import GapSprings
+from methods.fe.gap_spring_adapter import GapSprings
 from methods.fe.path_answers import WIDE
 from methods.fe.path_settings import GapSpringsSettings
 from methods.springs.path.plateau import CERTIFICATE

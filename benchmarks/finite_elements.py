@@ -14,7 +14,7 @@ from collections.abc import Sequence
 
 from harness.model.assembly import Assembly
 from harness.model.case import read_case, shipped_cases
-from methods.fe.adapter import GapSprings
+from methods.fe.gap_spring_adapter import GapSprings
 from methods.fe.path_settings import GapSpringsSettings
 from methods.springs.patterns import arch, block_on_halves, running_bond
 

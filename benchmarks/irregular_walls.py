@@ -13,8 +13,9 @@ from collections.abc import Sequence
 
 from benchmarks.walls import drawn
 from harness.model.method import load_method
-from methods.la.adapter import AssociatedLimitAnalysis, LimitAnalysis
+from methods.la.associated_adapter import AssociatedLimitAnalysis
 from methods.la.core.search_settings import AssociatedSettings, SearchSettings
+from methods.la.search_adapter import LimitAnalysis
 
 SAME = 1e-7
 """Relative difference of multipliers that count as equal."""

@@ -12,8 +12,9 @@ from collections.abc import Sequence
 
 from benchmarks.walls import bond
 from harness.model.method import Answer
-from methods.la.adapter import AssociatedLimitAnalysis, LimitAnalysis
+from methods.la.associated_adapter import AssociatedLimitAnalysis
 from methods.la.core.search_settings import AssociatedSettings, SearchSettings
+from methods.la.search_adapter import LimitAnalysis
 
 BRICKS = (6, 3, 0.2)
 WALLS: tuple[tuple[tuple[int, int, float], float, str, str], ...] = (

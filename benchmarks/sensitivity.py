@@ -12,7 +12,7 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from harness.model.assembly import Assembly
-from methods.fe.adapter import GapSprings
+from methods.fe.gap_spring_adapter import GapSprings
 from methods.fe.path_settings import GapSpringsSettings
 from methods.springs.patterns import running_bond
 

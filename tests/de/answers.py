@@ -8,7 +8,7 @@ import numpy as np
 
 from harness.model.assembly import Assembly
 from harness.model.method import Answer
-from methods.de.adapter import DampedHolds
+from methods.de.hold_adapter import DampedHolds
 from methods.de.hold_settings import SweepSettings
 
 

@@ -15,7 +15,7 @@ from harness.engine.symmetry import beside
 from harness.model.build import build
 from harness.model.method import Finding, Status
 from harness.model.reading import parse_wall
-from methods.de.adapter import DampedHolds
+from methods.de.hold_adapter import DampedHolds
 from tests.de.answers import run, unbalanced, unyielding
 from tests.walls import assembly, running_bond, stack
 

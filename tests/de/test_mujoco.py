@@ -11,8 +11,8 @@ import pytest
 from harness.engine.residuals import force_residuals
 from harness.model.errors import InputError
 from harness.model.method import Finding, Status
-from methods.de.adapter import MujocoHolds
 from methods.de.engines.mujoco_wall import UNIFORM, WALL_IMPEDANCE, MujocoWall, SolverFailed
+from methods.de.hold_adapter import MujocoHolds
 from methods.de.hold_settings import MujocoSettings
 from tests.de.answers import run
 from tests.de.test_damped_holds import two_friction_block

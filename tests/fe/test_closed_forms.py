@@ -11,7 +11,7 @@ from harness.model.assembly import Assembly
 from harness.model.build import build
 from harness.model.method import Finding
 from harness.model.wall import Wall
-from methods.fe.adapter import GapSprings
+from methods.fe.gap_spring_adapter import GapSprings
 from methods.fe.path_settings import GapSpringsSettings
 from methods.springs.patterns import arch
 

@@ -18,7 +18,7 @@ from harness.model.assembly import OF_JOINTS, Assembly
 from harness.model.build import build
 from harness.model.method import Answer, Finding, Status, load_method
 from harness.model.reading import parse_wall
-from methods.fe.adapter import GapSprings
+from methods.fe.gap_spring_adapter import GapSprings
 from methods.fe.path_settings import GapSpringsSettings
 from methods.springs.model.factor import make_factor
 from methods.springs.model.wall_model import build_model

@@ -14,9 +14,10 @@ from harness.model.build import build
 from harness.model.case import read_case
 from harness.model.method import Finding, Status
 from harness.model.wall import Wall
-from methods.la.adapter import AssociatedLimitAnalysis, FromFiniteElements, LimitAnalysis
+from methods.la.associated_adapter import AssociatedLimitAnalysis
 from methods.la.core.search_settings import AssociatedSettings, FromFeSettings, SearchSettings
-from methods.la.literature.literature_adapters import TrescaSequence
+from methods.la.literature.literature_adapters import FromFiniteElements, TrescaSequence
+from methods.la.search_adapter import LimitAnalysis
 from tests.la.bodies import column, running_bond
 from tests.walls import assembly, stack, wedge
 

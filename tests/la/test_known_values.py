@@ -6,13 +6,7 @@ import numpy as np
 import pytest
 
 from harness.model.method import Answer, Finding, Status
-from methods.la.adapter import (
-    AssociatedLimitAnalysis,
-    AssociatedLimitAnalysisCvxpy,
-    LimitAnalysis,
-    PaperProgramme,
-    TrescaSequence,
-)
+from methods.la.associated_adapter import AssociatedLimitAnalysis, AssociatedLimitAnalysisCvxpy
 from methods.la.core.search_settings import (
     AssociatedSettings,
     CvxpySettings,
@@ -20,6 +14,8 @@ from methods.la.core.search_settings import (
     SearchSettings,
     TrescaSettings,
 )
+from methods.la.literature.literature_adapters import PaperProgramme, TrescaSequence
+from methods.la.search_adapter import LimitAnalysis
 from tests.la.bodies import block_on_halves, column, running_bond
 
 

@@ -9,7 +9,7 @@ import pytest
 from scipy.linalg import block_diag
 
 from harness.model.method import Finding
-from methods.la.adapter import AssociatedLimitAnalysis, LimitAnalysis
+from methods.la.associated_adapter import AssociatedLimitAnalysis
 from methods.la.core.exact import close_tight
 from methods.la.core.newton_matrix import NewtonMatrix
 from methods.la.core.problem import make_problem
@@ -22,6 +22,7 @@ from methods.la.interior.interior_point import PathSettings, follow_path, start_
 from methods.la.interior.newton_step import NewtonStep, Point
 from methods.la.interior.region import with_all_above
 from methods.la.least import least_of
+from methods.la.search_adapter import LimitAnalysis
 from methods.la.sources import explore
 from methods.la.sources.arcs import ArcPaths
 from methods.la.sources.budget import Budget, Limits

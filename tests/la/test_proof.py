@@ -5,12 +5,12 @@ from __future__ import annotations
 import pytest
 
 from harness.model.assembly import Assembly
-from methods.la.adapter import LimitAnalysis
 from methods.la.certify.proof import Proof, prove
 from methods.la.core.newton_matrix import NewtonMatrix
 from methods.la.core.problem import Problem, make_problem
 from methods.la.core.search_settings import SearchSettings
 from methods.la.core.state import CollapseState
+from methods.la.search_adapter import LimitAnalysis
 from methods.la.sources.search import Search
 from tests.la.bodies import block_on_halves, column, running_bond
 from tests.la.test_mechanisms import six_blocks

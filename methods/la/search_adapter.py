@@ -1,4 +1,4 @@
-"""The limit-analysis methods as the harness knows them."""
+"""The search for the least collapse state as the harness knows it."""
 
 from __future__ import annotations
 
@@ -6,23 +6,12 @@ from typing import Any, ClassVar
 
 from harness.model.assembly import Assembly
 from harness.model.method import Answer, Settings, Traits
-from methods.la.associated_adapter import AssociatedLimitAnalysis, AssociatedLimitAnalysisCvxpy
 from methods.la.core.newton_matrix import NewtonMatrix
 from methods.la.core.problem import Problem
 from methods.la.core.search_settings import SearchSettings
 from methods.la.family import LimitAnalysisFamily
 from methods.la.least import least_known
-from methods.la.literature.literature_adapters import FromFiniteElements, PaperProgramme, TrescaSequence
 from methods.springs.warm_up import load_kernels
-
-__all__ = [
-    "AssociatedLimitAnalysis",
-    "AssociatedLimitAnalysisCvxpy",
-    "FromFiniteElements",
-    "LimitAnalysis",
-    "PaperProgramme",
-    "TrescaSequence",
-]
 
 load_kernels()
 
