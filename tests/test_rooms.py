@@ -19,7 +19,8 @@ def test_no_two_modules_or_classes_of_the_methods_have_one_name():
         for node in ast.parse(path.read_text(encoding="utf-8")).body
         if isinstance(node, ast.ClassDef) and not node.name.startswith("_")
     ]
-    assert len(MODULES) > 80 and len(classes) > 100
+    assert len(MODULES) > 80
+    assert len(classes) > 100
     assert [name for name, count in Counter(path.name for path in MODULES).items() if count > 1] == []
     assert [name for name, count in Counter(classes).items() if count > 1] == []
 
