@@ -10,7 +10,7 @@ RUN := OMP_NUM_THREADS=1 OPENBLAS_NUM_THREADS=1 $(BIN)
 .PHONY: compare test check bench lint full docs schema lock clean
 
 compare: $(READY)  ## run the main job: three methods on suite "small", judged, with a report
-	$(RUN)/drystone compare --suite small --study imperfections:2
+	$(RUN)/drystone compare --suite small --study imperfections:60s
 
 # Tests of the report in a browser need Debian's chromium; without it they are left out, and said to be.
 BROWSER := $(shell command -v chromium 2>/dev/null)

@@ -51,8 +51,9 @@ from harness.studying import curve_of_shipped
 @click.option(
     "--study",
     "studied",
-    metavar="NAME[:SEEDS]",
-    help="Also make a study that comes with Drystone, of so many seeds, and draw its curve in the report.",
+    metavar="NAME[:AMOUNT]",
+    help="Also make a study that comes with Drystone and draw its curve in the report; AMOUNT is a number of seeds "
+    "(12) or a time that takes as many as fit (60s).",
 )
 @click.option(
     "--set", "settings", multiple=True, metavar="METHOD.NAME=VALUE", help="A setting of a method; may be repeated."

@@ -7,6 +7,7 @@ import time
 from collections import Counter
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import closing, contextmanager
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
@@ -29,27 +30,88 @@ def shipped_studies() -> dict[str, Path]:
     return {path.stem: path for path in sorted((shipped_cases() / "studies").glob("*.toml"))}
 
 
-def curve_of_shipped(words: str, jobs: int, store: Path, *, fresh: bool, quiet: bool) -> dict[str, Any]:
-    """Make a shipped study and give its curve; `words` are its name, or NAME:SEEDS for another number of seeds.
+@dataclass(frozen=True)
+class Amount:
+    """How much of a study with seeds is made.
+
+    Attributes:
+        seeds: so many walls of each kind; None: those of the study.
+        seconds: as many of them as fit in this time; None: all.
+        least: walls made even where they take longer: one alone has no scatter.
+    """
+
+    seeds: int | None = None
+    seconds: float | None = None
+    least: int = 2
+
+
+def amount_of(words: str) -> Amount:
+    """How much NAME:AMOUNT asks for: nothing, a number of seeds, or seconds as "60s".
 
     Raises:
-        InputError: no such study, one without a curve or, where SEEDS are given, without seeds.
+        InputError: anything else.
     """
-    name, _, seeds = words.partition(":")
+    if not words:
+        return Amount()
+    number = words.removesuffix("s")
+    if not number.isdecimal() or int(number) < 1:
+        raise InputError(f'"{words}" is no amount', "Give NAME, NAME:12 (seeds) or NAME:60s (seconds)", "--study")
+    return Amount(seconds=float(number)) if words.endswith("s") else Amount(seeds=int(number))
+
+
+def curve_of_shipped(words: str, jobs: int, store: Path, *, fresh: bool, quiet: bool) -> dict[str, Any]:
+    """Make a shipped study and give its curve; `words` are its name, or NAME:AMOUNT as `amount_of` reads it.
+
+    Raises:
+        InputError: no such study, one without a curve or, where an amount is given, without seeds.
+    """
+    name, _, rest = words.partition(":")
     if name not in shipped_studies():
         raise InputError(f'no study is called "{name}"', f"There are: {', '.join(shipped_studies())}", "--study")
-    path = shipped_studies()[name]
+    path, amount = shipped_studies()[name], amount_of(rest)
     study = read_study(path)
     if study.curve is None:
         raise InputError(f'"{name}" has no curve', "Give it a table [curve], or use `drystone sweep`", "--study")
-    if seeds:
-        if "seed" not in study.vary or not seeds.isdecimal():
-            raise InputError(f'"{words}" names no number of seeds', "Give NAME or NAME:SEEDS", "--study")
-        fewer = validate(Whole, {"seeds": int(seeds)}, "--study")
+    if rest and "seed" not in study.vary:
+        raise InputError(f'"{name}" has no seeds', "Give its name alone", "--study")
+    if amount.seeds is not None:
+        fewer = validate(Whole, {"seeds": amount.seeds}, "--study")
         study = study.model_copy(update={"vary": study.vary | {"seed": fewer}})
     runs = expand(study, sources_of(study, (), path.parent))
     with open_store(store) as opened:
-        return curve_of(study, made(runs, opened, LocalExecutor(jobs), fresh=fresh, quiet=quiet))
+
+        def make(some: Sequence[SweepRun]) -> list[Row]:
+            return made(some, opened, LocalExecutor(jobs), fresh=fresh, quiet=quiet)
+
+        if amount.seconds is None:
+            return curve_of(study, make(runs))
+        return curve_of(study, in_time(runs, make, amount.seconds * jobs, amount.least))
+
+
+def in_time(
+    runs: Sequence[SweepRun], make: Callable[[Sequence[SweepRun]], list[Row]], seconds: float, least: int
+) -> list[Row]:
+    """The rows of as many seeds as fit in a time, told by the clock of the runs, so that the store gives the same.
+
+    Args:
+        runs: of a study with seeds.
+        make: makes runs or finds them in the store.
+        seconds: of all runs together.
+        least: seeds made in any case.
+    """
+    by_seed: dict[Any, list[SweepRun]] = {}
+    for run in runs:
+        by_seed.setdefault(run.varied["seed"], []).append(run)
+    rows: list[Row] = []
+    spent = longest = 0.0
+    for number, same in enumerate(by_seed.values()):
+        if number >= least and spent + longest > seconds:
+            break
+        found = make(same)
+        took = sum(float(row.get("wall_seconds") or 0.0) for row in found)
+        spent, longest = spent + took, max(longest, took)
+        rows += found
+    return rows
 
 
 def made(runs: Sequence[SweepRun], store: Store, executor: Executor, *, fresh: bool, quiet: bool) -> list[Row]:

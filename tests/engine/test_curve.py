@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+from types import SimpleNamespace
 from typing import Any
 
 import pytest
@@ -9,7 +12,7 @@ import pytest
 from harness.engine.sweep.curve import curve_of
 from harness.engine.sweep.study import Curve, Study, read_study
 from harness.model.errors import InputError
-from harness.studying import shipped_studies
+from harness.studying import Amount, amount_of, in_time, shipped_studies
 
 
 def rows(faces: str, found: dict[float, list[float | None]]) -> list[dict[str, Any]]:
@@ -32,9 +35,23 @@ def test_curve_interpolates_where_the_mean_passes_the_level_and_counts_lost_runs
     assert (both["name"], beds["name"]) == ("all faces", "beds")
     assert both["y"] == pytest.approx([0.0, -40.0])
     assert (both["low"][1], both["high"][1]) == pytest.approx((-50.0, -30.0))
-    assert "−20 % at about 0.050" in curve["sentence"]
+    # Mean -40 and standard error 10: the level is passed where -50 x / 0.1 to -30 x / 0.1 is -20.
+    assert (
+        "all faces: −40 ± 10 % at 0.1 (mean of 2 walls with its standard error; single walls −50 to −30 %)"
+        in (curve["sentence"])
+    )
+    assert "−20 % between 0.04 and 0.067" in curve["sentence"]
     assert beds["y"] == pytest.approx([0.0, -10.0])
-    assert "nowhere up to that (1 without an answer)" in curve["sentence"]
+    assert "beds: −10 % at 0.1 (one wall, scatter unknown), −20 % nowhere up to 0.1" in curve["sentence"]
+    assert "1 wall gave no answer and is in no mean" in curve["sentence"]
+
+
+def test_walls_that_fall_unloaded_are_told_apart_from_those_without_an_answer():
+    found = rows("both", {0.0: [1.0, 1.0], 0.1: [0.7, 0.72, None]})
+    found[-1]["finding"] = "falls"
+    sentence = curve_of(study(), found)["sentence"]
+    assert "all faces: 0.71 ± 0.01 at 0.1" in sentence
+    assert "1 wall fell under the dead load and is in no mean" in sentence
 
 
 def test_what_the_judge_rejects_is_lost():
@@ -56,3 +73,34 @@ def test_curves_of_shipped_studies_name_what_varies():
     for read in drawn:
         assert read.curve is not None
         assert {read.curve.across, read.curve.apart} - {""} <= set(read.vary)
+
+
+@dataclass
+class Made:
+    """Runs of a study with seeds, each of which takes as long as its seed says."""
+
+    seconds: list[float]
+    asked: list[int] = field(default_factory=list)
+
+    @property
+    def runs(self) -> Any:
+        return [SimpleNamespace(varied={"seed": seed}) for _ in range(2) for seed in range(len(self.seconds))]
+
+    def make(self, some: Sequence[Any]) -> list[dict[str, Any]]:
+        self.asked += [run.varied["seed"] for run in some]
+        return [{"wall_seconds": self.seconds[run.varied["seed"]]} for run in some]
+
+
+def test_a_study_takes_as_many_seeds_as_fit_in_the_time_and_never_one_alone():
+    walls = Made([1.0] * 6)
+    rows = in_time(walls.runs, walls.make, seconds=7.0, least=2)
+    assert (len(rows), walls.asked) == (6, [0, 0, 1, 1, 2, 2])
+    slow = Made([50.0] * 6)
+    assert len(in_time(slow.runs, slow.make, seconds=7.0, least=2)) == 4
+
+
+def test_amounts_of_a_study():
+    assert (amount_of(""), amount_of("12"), amount_of("60s")) == (Amount(), Amount(seeds=12), Amount(seconds=60.0))
+    for words in ("s", "0", "-3", "1.5", "60m"):
+        with pytest.raises(InputError, match="is no amount"):
+            amount_of(words)
