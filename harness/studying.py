@@ -15,8 +15,9 @@ from harness.engine.executors import Executor, LocalExecutor
 from harness.engine.store import Store, open_store
 from harness.engine.sweep.curve import curve_of
 from harness.engine.sweep.expand import SweepRun, expand, sources_of
+from harness.engine.sweep.neighbours import handed_on
 from harness.engine.sweep.running import Row, sweep
-from harness.engine.sweep.study import Whole, read_study
+from harness.engine.sweep.study import Study, Whole, read_study
 from harness.model.case import shipped_cases
 from harness.model.errors import InputError
 from harness.model.reading import validate
@@ -81,7 +82,7 @@ def curve_of_shipped(words: str, jobs: int, store: Path, *, fresh: bool, quiet: 
     with open_store(store) as opened:
 
         def make(some: Sequence[SweepRun]) -> list[Row]:
-            return made(some, opened, LocalExecutor(jobs), fresh=fresh, quiet=quiet)
+            return made(study, some, opened, LocalExecutor(jobs), fresh=fresh, quiet=quiet)
 
         if amount.seconds is None:
             return curve_of(study, make(runs))
@@ -114,8 +115,19 @@ def in_time(
     return rows
 
 
-def made(runs: Sequence[SweepRun], store: Store, executor: Executor, *, fresh: bool, quiet: bool) -> list[Row]:
-    """The rows of all runs, made or from the store, with progress told."""
+def made(
+    asked: Study, runs: Sequence[SweepRun], store: Store, executor: Executor, *, fresh: bool, quiet: bool
+) -> list[Row]:
+    """The rows of all runs of a study, made or from the store, with progress told; neighbours share what they found."""
+
+    def make(some: Sequence[SweepRun]) -> list[Row]:
+        return _made(some, store, executor, fresh=fresh, quiet=quiet)
+
+    rows = make(runs)
+    return handed_on(runs, rows, store, make) if asked.neighbours else rows
+
+
+def _made(runs: Sequence[SweepRun], store: Store, executor: Executor, *, fresh: bool, quiet: bool) -> list[Row]:
     rows = []
     with _progress(len(runs), quiet=quiet) as told, closing(sweep(runs, store, executor, fresh=fresh)) as ended:
         for _, row, stored in ended:

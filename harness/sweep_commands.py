@@ -54,6 +54,11 @@ OUT = Path("out")
 )
 @click.option("--set", "settings", multiple=True, metavar="METHOD.NAME=VALUE", help="A setting; may be repeated.")
 @click.option("--at", "multipliers", type=float, multiple=True, help="Tell the probability of failure at a multiplier.")
+@click.option(
+    "--neighbours/--alone",
+    default=None,
+    help="Whether runs take up the mechanisms found on walls of the same joints.  [default: as the study says; alone]",
+)
 @click.option("--dry-run", is_flag=True, help="Tell how many runs there are and what they may take; run nothing.")
 @click.option("--scheduler", metavar="tcp://HOST:PORT", help="A Dask scheduler whose workers make the runs.")
 @click.option("-o", "--output", type=click.Path(path_type=Path), help="Folder of the tables.  [default: out/NAME]")
@@ -81,7 +86,7 @@ def sweep_(what: str, dry_run: bool, scheduler: str | None, jobs: int, store: Pa
         _tell_plan(asked, runs, store, jobs, rest["as_json"])
         return
     with open_store(store) as opened:
-        rows = made(runs, opened, _executor(scheduler, jobs), fresh=fresh, quiet=rest["as_json"])
+        rows = made(asked, runs, opened, _executor(scheduler, jobs), fresh=fresh, quiet=rest["as_json"])
     _leave(asked, rows, rest["output"] or OUT / asked.name, rest)
 
 
@@ -99,7 +104,7 @@ def _study(what: str, rest: dict[str, Any]) -> tuple[Study, Path | None]:
                                    for name in {*read.settings, *settings}}  # fmt: skip
         if rest["multipliers"]:
             changes["multipliers"] = list(rest["multipliers"])
-        return read.model_copy(update=changes), file.parent
+        return _shared(read.model_copy(update=changes), rest["neighbours"]), file.parent
     if not quick:
         raise InputError(
             f'"{what}" is no study, and nothing varies',
@@ -107,7 +112,13 @@ def _study(what: str, rest: dict[str, Any]) -> tuple[Study, Path | None]:
             "sweep",
         )
     limits = Limits(rest["seconds"], rest["memory"] * 2**20)
-    return quick_study(what, methods, settings, limits, list(rest["multipliers"]), **quick), None
+    study = quick_study(what, methods, settings, limits, list(rest["multipliers"]), **quick)
+    return _shared(study, rest["neighbours"]), None
+
+
+def _shared(asked: Study, neighbours: bool | None) -> Study:
+    """The study, with the command's word on neighbours if there is one."""
+    return asked if neighbours is None else asked.model_copy(update={"neighbours": neighbours})
 
 
 def _executor(scheduler: str | None, jobs: int) -> Executor:
@@ -193,6 +204,8 @@ def _tell_plan(asked: Study, runs: list[SweepRun], store: Path, jobs: int, as_js
         say(f"  {method}: {count:,} runs, {left[method]:,} to make; {cost}")
     if not unknown:
         say(f"About {duration(seconds)} with {jobs} at a time, walls alike.")
+    if asked.neighbours:
+        say("Then runs take up what their neighbours found, which is quick beside a search.")
 
 
 @click.command(name="study")

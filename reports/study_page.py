@@ -19,6 +19,8 @@ MOST_SERIES, MOST_ROWS = 12, 400
 """Lines in one chart and rows in one table of the page; the files beside it hold all."""
 
 READ = {
+    "neighbours": "Runs that a mechanism of a neighbouring wall led lower, and what they had found alone. A search "
+    "that misses a state at one point of a study may find it at the next.",
     "quantiles": "One line a group of walls: how many answered, mean, standard deviation and quantiles of the "
     "multiplier over seeds and draws.",
     "failure": "Share of walls that collapse at or below a multiplier, with Wilson's score interval at 95 %.",

@@ -27,9 +27,20 @@ from typing import Any
 
 import numpy as np
 
-from harness.model.assembly import Assembly
+from harness.model.assembly import Assembly, FloatArray
 from harness.model.errors import InputError
-from harness.model.method import Answer, Finding, Method, OutOfTime, Status, check_takes, load_method, traits_of
+from harness.model.method import (
+    Answer,
+    Finding,
+    FollowsMotions,
+    Method,
+    OutOfTime,
+    Settings,
+    Status,
+    check_takes,
+    load_method,
+    traits_of,
+)
 from harness.model.reading import validate
 
 LAST_WORDS = (0.05, 5.0)
@@ -46,6 +57,8 @@ class Task:
         settings: those that differ from the method's defaults.
         seconds: wall-clock limit [s].
         memory_bytes: limit of resident memory [bytes].
+        motions: (m, 3) motions of the joints in mechanisms that the method shall take up (`FollowsMotions`) in place of
+            a search of its own; none: it answers by itself.
     """
 
     method: str
@@ -53,6 +66,7 @@ class Task:
     settings: dict[str, Any]
     seconds: float
     memory_bytes: int
+    motions: tuple[FloatArray, ...] = ()
 
 
 LOADED, REPLACE = b"loaded", b"replace"
@@ -114,7 +128,7 @@ def _record(task: Task, method: Method | None, failure: Answer | None) -> dict[s
             check_takes(method, task.assembly)
             started, before = time.perf_counter(), _cpu_seconds()
             with _warned_of_the_limit(task.seconds, started):
-                answer = method.solve(task.assembly, chosen)
+                answer = _answer(method, task, chosen)
             answer = _checked(answer, task.assembly)
     except OutOfTime:
         answer = _failure(Status.TIMEOUT, f"It was stopped at the limit of {task.seconds:g} s.")
@@ -139,6 +153,14 @@ def _record(task: Task, method: Method | None, failure: Answer | None) -> dict[s
         "peak_memory_bytes": _peak_memory(),
         "reusable": not _has_children(),
     }
+
+
+def _answer(method: Method, task: Task, settings: Settings) -> Answer:
+    if not task.motions:
+        return method.solve(task.assembly, settings)
+    if not isinstance(method, FollowsMotions):
+        raise InputError(f"{method.name} takes up no mechanisms of other walls", "Let it answer by itself", "method")
+    return method.solve_from(task.assembly, settings, task.motions)
 
 
 def _clear(folder: Path) -> None:

@@ -56,6 +56,10 @@ RESULTS: tuple[ResultColumn, ...] = (
 NUMBERED = (
     ResultColumn("number", "Int64", "1", "of the run in its study"),
     ResultColumn("draw", "Int64", "1", "of a distribution; missing on a grid"),
+    ResultColumn(
+        "from_neighbour", "boolean", "", "whether a mechanism of a neighbouring wall led to it; missing: none given"
+    ),
+    ResultColumn("multiplier_alone", "Float64", "1", "what the run had found by itself, where a neighbour led lower"),
 )
 """What tables of studies have besides."""
 

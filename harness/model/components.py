@@ -88,6 +88,15 @@ def _component(assembly: Assembly, moving: BoolArray) -> Component:
     return Component(part, blocks, interfaces)
 
 
+def joints_of(part: Assembly, whole: Assembly) -> IntArray:
+    """Indices (j,) in the whole wall of the interfaces of one of its components, in their order."""
+    if part is whole:
+        return np.arange(whole.n_interfaces)
+    moving = {part.block_ids[i] for i in part.free}
+    own = np.array([name in moving for name in whole.block_ids])
+    return np.flatnonzero(own[whole.block_a] | own[whole.block_b])
+
+
 def analysed_apart(assembly: Assembly, solve: Solve, bear: Bear) -> Answer:
     """The answer for a wall from those for its components, each analysed alone.
 

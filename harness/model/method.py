@@ -4,11 +4,12 @@ from __future__ import annotations
 
 import math
 import signal
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 from enum import StrEnum
 from functools import cache
 from importlib.metadata import EntryPoint, entry_points
-from typing import Any, ClassVar, Literal, Protocol
+from typing import Any, ClassVar, Literal, Protocol, runtime_checkable
 
 import numpy as np
 from pydantic import BaseModel, ConfigDict, Field
@@ -164,6 +165,22 @@ class Method(Protocol):
 
     def solve(self, assembly: Assembly, settings: Any) -> Answer:
         """Answer for this assembly. May raise; the engine turns any exception into a row with a sentence."""
+        ...
+
+
+@runtime_checkable
+class FollowsMotions(Protocol):
+    """What a method offers besides, if it can take up mechanisms that were found on other walls."""
+
+    def solve_from(self, assembly: Assembly, settings: Any, motions: Sequence[FloatArray]) -> Answer:
+        """The answer that given mechanisms alone lead to on this wall, by its own forces; `solve` is the whole search.
+
+        Args:
+            assembly: the wall.
+            settings: as for `solve`.
+            motions: (m, 3) openings at both ends and slip of the joints in each mechanism, found on a wall with the
+                same blocks and joints in the same order, whose friction or shape may be other.
+        """
         ...
 
 

@@ -95,6 +95,7 @@ class Result(BaseModel):
     unknowns: int | None = None
     settings: dict[str, Any] = Field(default_factory=dict)
     limits: dict[str, float] = Field(default_factory=dict)
+    given: list[str] = Field(default_factory=list)
     versions: dict[str, str] = Field(default_factory=dict)
     machine: dict[str, Any] = Field(default_factory=dict)
     started: str = ""

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from contextlib import suppress
 from dataclasses import replace
 from typing import Any
@@ -16,7 +17,7 @@ from methods.la.core.newton_matrix import NewtonMatrix
 from methods.la.core.problem import Problem
 from methods.la.core.search_settings import SearchSettings
 from methods.la.core.state import CollapseState, local_residuals, polished, residuals
-from methods.la.sources import explore
+from methods.la.sources import SOURCES, Source, explore
 from methods.la.sources.budget import Budget, limits_of
 from methods.la.sources.search import CHOICES, Search
 from methods.la.state_answers import LOCALLY, NO_MOTION, NO_STATE, collapse_answer, not_converged, unbounded_answer
@@ -27,7 +28,13 @@ SAME = 1e-9
 """Relative difference of two multipliers below which the state with the smaller residuals is the better one."""
 
 
-def least_known(problem: Problem, newton: NewtonMatrix, settings: SearchSettings, tolerance: float) -> Answer:
+def least_known(
+    problem: Problem,
+    newton: NewtonMatrix,
+    settings: SearchSettings,
+    tolerance: float,
+    sources: Sequence[Source] = SOURCES,
+) -> Answer:
     """The answer with the least collapse state that the search finds, in the time there is.
 
     Args:
@@ -35,10 +42,11 @@ def least_known(problem: Problem, newton: NewtonMatrix, settings: SearchSettings
         newton: its Newton matrix.
         settings: effort and seed.
         tolerance: largest residual of a state that is returned.
+        sources: of states, in the order in which they are tried.
     """
     search = Search(problem, newton, settings.seed, Budget(limits_of(settings, problem)))
     try:
-        explore(search)
+        explore(search, sources)
         return _found(search, settings, tolerance)
     except OutOfTime:
         if search.record.known:

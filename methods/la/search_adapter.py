@@ -2,15 +2,19 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import Any, ClassVar
 
-from harness.model.assembly import Assembly
+from harness.model.assembly import Assembly, FloatArray
+from harness.model.components import joints_of
 from harness.model.method import Answer, Settings, Traits
 from methods.la.core.newton_matrix import NewtonMatrix
 from methods.la.core.problem import Problem
 from methods.la.core.search_settings import SearchSettings
 from methods.la.family import LimitAnalysisFamily
 from methods.la.least import least_known
+from methods.la.sources import from_motions
+from methods.numerics.statics import analysed
 from methods.springs.warm_up import load_kernels
 
 load_kernels()
@@ -35,3 +39,15 @@ class LimitAnalysis(LimitAnalysisFamily):
     def answer(self, assembly: Assembly, problem: Problem, newton: NewtonMatrix, settings: Any) -> Answer:
         """Interior point, exact programme, ray descent, restarts and continuation, as the settings say."""
         return least_known(problem, newton, settings, self.tolerance)
+
+    def solve_from(self, assembly: Assembly, settings: Any, motions: Sequence[FloatArray]) -> Answer:
+        """The least of the states that given motions of the joints (m, 3) lead to, without a search of its own.
+
+        A component in which they move nothing is searched as always.
+        """
+
+        def answered(part: Assembly, problem: Problem, newton: NewtonMatrix, settings: Any) -> Answer:
+            sources = from_motions([motion[joints_of(part, assembly)] for motion in motions])
+            return least_known(problem, newton, settings, self.tolerance, sources)
+
+        return analysed(assembly, lambda part: self._of_component(part, settings, answered))

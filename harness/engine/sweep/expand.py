@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import hashlib
 import itertools
 import json
 from collections import OrderedDict
@@ -19,7 +20,7 @@ from harness.engine.store import run_key
 from harness.engine.sweep.paths import setting_of, with_values
 from harness.engine.sweep.study import MOST_RUNS, Distribution, Study
 from harness.engine.worker import Task
-from harness.model.assembly import Assembly
+from harness.model.assembly import Assembly, FloatArray
 from harness.model.build import build
 from harness.model.errors import InputError
 from harness.model.method import load_method
@@ -57,6 +58,24 @@ class Variant:
         return with_values(self.source.data, self.values)
 
 
+@dataclass(frozen=True, eq=False)
+class Motion:
+    """How the joints of a neighbouring wall move in the mechanism that was found there.
+
+    Attributes:
+        found_by: key of the run that found it.
+        joints: (m, 3) openings at both ends and slip.
+    """
+
+    found_by: str
+    joints: FloatArray
+
+    @cached_property
+    def key(self) -> str:
+        """Content hash of the motion."""
+        return hashlib.sha256(np.ascontiguousarray(self.joints).tobytes()).hexdigest()[:16]
+
+
 @dataclass(frozen=True)
 class SweepRun:
     """One run of a study.
@@ -67,6 +86,7 @@ class SweepRun:
         method, settings: what is asked.
         varied: every quantity that the study varies and that this run depends on, by name.
         limits: of the run.
+        given: motions found on neighbouring walls, which it takes up in place of a search of its own.
     """
 
     number: int
@@ -75,17 +95,21 @@ class SweepRun:
     settings: Mapping[str, Any]
     varied: Mapping[str, Any]
     limits: Limits
+    given: tuple[Motion, ...] = ()
 
     @cached_property
     def key(self) -> str:
-        """Content hash: the wall as given, method, settings, limits and the code that expands, solves and judges it."""
+        """Content hash: wall, method, settings, limits, motions, and the code that expands, solves and judges it."""
         text = json.dumps(self.variant.data, sort_keys=True, allow_nan=False)
         code = f"{code_version(self.method)}-{judge_version()}"
-        return run_key(text, self.method, dict(self.settings), self.limits.as_dict(), code)
+        return run_key(
+            text, self.method, dict(self.settings), self.limits.as_dict(), code, *(item.key for item in self.given)
+        )
 
     def task(self, assembly: Assembly) -> Task:
         """What a child process is given."""
-        return Task(self.method, assembly, dict(self.settings), self.limits.seconds, self.limits.memory_bytes)
+        motions = tuple(item.joints for item in self.given)
+        return Task(self.method, assembly, dict(self.settings), self.limits.seconds, self.limits.memory_bytes, motions)
 
 
 class Walls:

@@ -22,6 +22,8 @@ COLUMNS = (
     "status",
     "finding",
     "multiplier",
+    "from_neighbour",
+    "multiplier_alone",
     "bracket_low",
     "bracket_high",
     "judge_accepted",

@@ -55,7 +55,11 @@ def sweep(
         for number, measured in made:
             run, assembly = firsts[number], assemblies.pop(number)
             result = measured.result.model_copy(
-                update={"key": run.key, "judge": judge(assembly, measured.result, measured.tolerance)}
+                update={
+                    "key": run.key,
+                    "judge": judge(assembly, measured.result, measured.tolerance),
+                    "given": [motion.found_by for motion in run.given],
+                }
             )
             store.put(run.key, result, measured.tolerance)
             summary = result.summary()

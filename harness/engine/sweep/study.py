@@ -129,6 +129,9 @@ class Study(Strict):
     samples: Annotated[int, Field(ge=1, le=MOST_RUNS)] = 100
     seed: Annotated[int, Field(ge=0, description="of the draws")] = 0
     settings: dict[str, dict[str, Any]] = Field(default_factory=dict, description="of methods, where not the defaults")
+    neighbours: bool = Field(
+        False, description="runs take up the mechanisms found on walls of the same joints, where the method can"
+    )
     limits: StudyLimits = Field(default_factory=StudyLimits)
     multipliers: list[float] = Field(default_factory=list, description="at which the probability of failure is asked")
     curve: Curve | None = Field(None, description="how `drystone compare --study` draws it")

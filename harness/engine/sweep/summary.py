@@ -44,12 +44,28 @@ def varied_of(study: Study) -> list[str]:
     return [*study.vary, *(name for group in study.together for name in group), *study.draw]
 
 
+def _taken_over(rows: pd.DataFrame, place: list[str]) -> tuple[pd.DataFrame, str]:
+    """The runs that a state of a neighbour changed, with both multipliers and the change in percent; and a sentence."""
+    changed = rows[rows["from_neighbour"].eq(True).fillna(False)]
+    table = changed[[*place, "multiplier_alone", "multiplier"]].reset_index(drop=True)
+    table["change_percent"] = 100.0 * (table["multiplier"] / table["multiplier_alone"] - 1.0)
+    if not len(table):
+        return table, "No run found a lower state by taking up the mechanisms of its neighbours."
+    return table, (
+        f"{len(table)} of {len(rows)} runs take a lower multiplier from the mechanism of a neighbour, by up to "
+        f"{-table['change_percent'].min():.2g} %; it holds on their own walls, by their own forces."
+    )
+
+
 def summarise(study: Study, rows: pd.DataFrame) -> Summary:
     """The statistics that a study's rows allow."""
     groups = ["case", "method", *grid_of(study)]
     rows = rows.copy()
     tables = {"quantiles": statistics.quantiles(rows, groups)}
     remarks = []
+    if study.neighbours:
+        tables["neighbours"], sentence = _taken_over(rows, ["case", "method", *varied_of(study)])
+        remarks.append(sentence)
     lost = len(rows) - len(statistics.answered(rows))
     if lost:
         remarks.append(f"{lost} of {len(rows)} runs gave no multiplier that the judge accepts; they are in the rows.")

@@ -136,7 +136,10 @@ class Problem:
 
     def rates_of_velocities(self, velocities: FloatArray, associated: bool) -> FloatArray:
         """(m, 4) smallest rates g with C u = E g; openings come out negative where blocks pass through each other."""
-        strain = self.strains(velocities)
+        return self.rates_of_strains(self.strains(velocities), associated)
+
+    def rates_of_strains(self, strain: FloatArray, associated: bool) -> FloatArray:
+        """(m, 4) smallest rates g with q = E g of strains q (m, 3), as `rates_of_velocities` tells them."""
         slip = strain[:, 2]
         dilation = self.law(associated).dilatancy * abs(slip)
         return np.column_stack(

@@ -6,8 +6,10 @@ from collections.abc import Sequence
 from contextlib import suppress
 from dataclasses import replace
 
+from harness.model.assembly import FloatArray
 from methods.la.sources.arcs import ArcPaths
 from methods.la.sources.blocks import JoinedBlocks, SingleBlocks
+from methods.la.sources.given import GivenMechanisms
 from methods.la.sources.ladder import FrictionLadder
 from methods.la.sources.paths import CentralPath, LaggedFriction, RandomStarts, SmootherJoints
 from methods.la.sources.search import Search
@@ -15,7 +17,7 @@ from methods.la.sources.source import Source
 from methods.la.sources.springs import CentralForces, LittleSelfStress, SafeForces
 from methods.numerics.failures import SingularMatrix
 
-__all__ = ["SOURCES", "Source", "explore"]
+__all__ = ["SOURCES", "Source", "explore", "from_motions"]
 
 SOURCES: tuple[Source, ...] = (
     SmootherJoints(factors=(0.3,)),
@@ -34,6 +36,12 @@ SOURCES: tuple[Source, ...] = (
     JoinedBlocks(),
 )
 """The soonest state first, then lower ones; what is for walls on which nothing is known stands behind the others."""
+
+
+def from_motions(motions: Sequence[FloatArray]) -> tuple[Source, ...]:
+    """The sources of a search that takes up given motions of joints (m, 3) alone; all, where none moves anything."""
+    given = GivenMechanisms(tuple(motions))
+    return (given, JoinedBlocks()) if given.moves else SOURCES
 
 
 def explore(search: Search, sources: Sequence[Source] = SOURCES) -> None:
