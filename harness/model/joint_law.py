@@ -43,6 +43,15 @@ class JointLaw:
         """(m, 3, 4) flow vectors E, one a column, of the strains q = E g."""
         return np.asarray(_rows(self.dilatancy).transpose(0, 2, 1))
 
+    def strength(self, forces: FloatArray) -> FloatArray:
+        """(m,) greatest shear mu (n1 + n2) that forces (m, 3) leave each interface."""
+        return np.asarray(self.friction * (forces[:, 0] + forces[:, 1]))
+
+    def slacks(self, forces: FloatArray) -> FloatArray:
+        """(m, 4) yield slacks S r of forces (m, 3), negative where they break the law."""
+        strength, shear = self.strength(forces), forces[:, 2]
+        return np.column_stack([forces[:, :2], strength + shear, strength - shear])
+
     @property
     def associated(self) -> JointLaw:
         """The same joints with the dilatancy of associated flow."""

@@ -9,6 +9,7 @@ import numpy as np
 import scipy.sparse as sp
 
 from harness.model.assembly import FloatArray
+from harness.model.joint_law import JointLaw, block_diagonal
 
 
 @dataclass(frozen=True, eq=False)
@@ -39,14 +40,13 @@ class Equations:
     @cached_property
     def slack(self) -> FloatArray:
         """(4m, 3m) matrix S of the slacks y = S r = (n1, n2, mu N + s, mu N - s) of every interface."""
-        blocks = np.zeros((self.n_interfaces, 4, 3))
-        blocks[:, 0, 0] = blocks[:, 1, 1] = blocks[:, 2, 2] = 1.0
-        blocks[:, 3, 2] = -1.0
-        blocks[:, 2:, :2] = self.friction[:, None, None]
-        return sp.block_diag(list(blocks), format="csr").toarray()
+        return block_diagonal(self._law.rows).toarray()
 
     @cached_property
     def flow(self) -> FloatArray:
         """(3m, 4m) matrix E of the strains E g of rates g = (opening 1, opening 2, slip +, slip -)."""
-        own = np.array([[1.0, 0.0, 0.0, 0.0], [0.0, 1.0, 0.0, 0.0], [0.0, 0.0, 1.0, -1.0]])
-        return np.kron(np.eye(self.n_interfaces), own)
+        return block_diagonal(self._law.flow).toarray()
+
+    @property
+    def _law(self) -> JointLaw:
+        return JointLaw(self.friction, np.zeros(self.n_interfaces))

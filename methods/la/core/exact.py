@@ -53,7 +53,7 @@ def close_tight(problem: Problem, tight: BoolArray | None = None) -> BoolArray:
 def snap(problem: Problem, forces: FloatArray, tight: BoolArray) -> FloatArray:
     """Forces (m, 3) with the tight slacks exactly zero and no slack negative."""
     normal = np.where(tight[:, :2], 0.0, np.maximum(forces[:, :2], 0.0))
-    strength = problem.friction * normal.sum(axis=1)
+    strength = problem.law(False).strength(normal)
     shear = np.clip(forces[:, 2], -strength, strength)
     shear = np.where(tight[:, 2], -strength, np.where(tight[:, 3], strength, shear))
     return np.column_stack([normal, shear])

@@ -101,8 +101,7 @@ class Problem:
 
     def slacks(self, forces: FloatArray) -> FloatArray:
         """(m, 4) yield slacks y = S r (+ c) of forces (m, 3)."""
-        strength = self.friction * (forces[:, 0] + forces[:, 1])
-        slack = np.column_stack([forces[:, 0], forces[:, 1], strength + forces[:, 2], strength - forces[:, 2]])
+        slack = self.law(False).slacks(forces)
         return slack if self.cohesion is None else slack + self.cohesion
 
     def forces_of_slacks(self, slack: FloatArray) -> FloatArray:

@@ -44,7 +44,8 @@ def tresca_sequence(
     cost = np.append(np.zeros(3 * m), -1.0)
     matrix = sp.csc_matrix(sp.hstack([problem.statics, sp.csr_matrix(problem.live[:, None])]))
     programme = Programme(matrix, cost, (lower, np.full(3 * m + 1, INFINITY)), (-problem.dead, -problem.dead))
-    bound = problem.friction * forces[:, :2].sum(axis=1)
+    law = problem.law(False)
+    bound = law.strength(forces)
     history: list[float] = []
     change, multiplier = float("inf"), float("nan")
     for _ in range(max_iterations):
@@ -58,7 +59,7 @@ def tresca_sequence(
             return TrescaResult(None, float("nan"), history, change, status)
         forces, multiplier = value[:-1].reshape(-1, 3), float(value[-1])
         history.append(multiplier)
-        wanted = problem.friction * np.maximum(forces[:, :2], 0.0).sum(axis=1)
+        wanted = law.strength(np.maximum(forces, 0.0))
         change = float(abs(wanted - bound).max(initial=0.0))
         if change <= tolerance:
             return TrescaResult(forces, multiplier, history, change, "settled")

@@ -248,22 +248,21 @@ def check(assembly: Assembly, multiplier: float, forces: FloatArray, mechanism: 
     share = power / (float(abs(live) @ abs(velocity)) or 1.0)
     power = power if share > IDLE else 0.0
     speed = float(np.abs(velocity * lengths).max()) * min(1.0, max(share, IDLE)) or 1.0
-    total = forces[:, 0] + forces[:, 1]
-    slack = assembly.friction * total - np.abs(forces[:, 2])
+    strength = assembly.law.strength(forces)
     size = max(assembly.load_unit, abs(multiplier))
-    against = assembly.friction * total + np.sign(rates[:, 2]) * forces[:, 2]
+    against = strength + np.sign(rates[:, 2]) * forces[:, 2]
     idle = float(np.abs(forces[:, :2] * rates[:, :2]).sum() + np.abs(against * rates[:, 2]).sum())
-    strength = np.column_stack([forces[:, :2], against]) / scale
+    pressing = np.column_stack([forces[:, :2], against]) / scale
     motion = np.abs(rates) / speed
     residuals = {
-        "both": float(np.minimum(np.abs(strength), motion).max()),
+        "both": float(np.minimum(np.abs(pressing), motion).max()),
         "equilibrium": float(np.abs(balance).max()) / scale,
-        "yield": max(0.0, -float(forces[:, :2].min()), -float(slack.min())) / scale,
+        "yield": max(0.0, -float(assembly.law.slacks(forces).min())) / scale,
         "dilatancy": max(0.0, -float(rates[:, :2].min())) / speed,
         "complementarity": idle / (power * size) if power > 0.0 else np.inf,
     }
     # power of the contact forces is friction only: n . opening = 0, s slip = -mu (n1 + n2) |slip|
-    friction_work = float(np.sum(assembly.friction * total * np.abs(rates[:, 2])))
+    friction_work = float(np.sum(strength * np.abs(rates[:, 2])))
     work = float(friction_work - dead @ velocity) / power if power else float("inf")
     residuals["work"] = abs(work - multiplier) / size if power > 0.0 else 1.0
     return PlateauState(multiplier, work, forces, mechanism, residuals)
