@@ -7,7 +7,8 @@
 0.500000, accepted
 
 `read_wall`, `build_wall`, `new_wall` and `library_wall` give a `Wall`; `analyse` runs one method in this process,
-`compare` many, each run in a process of its own; `judge` holds an answer against equilibrium, yield and flow.
+`compare` many, each run in a process of its own; `judge` holds an answer against equilibrium, yield and flow. `sweep`
+varies friction, proportions or seeds over many walls, and `check` holds methods to gated references.
 """
 
 from __future__ import annotations
@@ -18,18 +19,21 @@ __version__ = "0.2.0"
 
 __all__ = [
     "Answer",
+    "Check",
     "Comparison",
     "Finding",
     "InputError",
     "Judgement",
     "Result",
     "Status",
+    "Sweep",
     "Traits",
     "Verdict",
     "Wall",
     "__version__",
     "analyse",
     "build_wall",
+    "check",
     "compare",
     "judge",
     "library_wall",
@@ -37,11 +41,14 @@ __all__ = [
     "methods",
     "new_wall",
     "read_wall",
+    "sweep",
 ]
 
 if TYPE_CHECKING:
     from drystone.analysis import Result, analyse, judge, methods
+    from drystone.checking import Check, check
     from drystone.comparing import Comparison, compare
+    from drystone.studies import Sweep, sweep
     from drystone.walls import Wall, build_wall, library_wall, library_walls, new_wall, read_wall
     from harness.model.errors import InputError
     from harness.model.method import Answer, Finding, Status, Traits
@@ -49,7 +56,9 @@ if TYPE_CHECKING:
 
 _HOME = {
     "drystone.analysis": ("Result", "analyse", "judge", "methods"),
+    "drystone.checking": ("Check", "check"),
     "drystone.comparing": ("Comparison", "compare"),
+    "drystone.studies": ("Sweep", "sweep"),
     "drystone.walls": ("Wall", "build_wall", "library_wall", "library_walls", "new_wall", "read_wall"),
     "harness.model.errors": ("InputError",),
     "harness.model.method": ("Answer", "Finding", "Status", "Traits"),

@@ -9,12 +9,13 @@ from pathlib import Path
 
 import click
 
+from drystone.checking import Tier, planned
+from drystone.checking import check as hold
+from drystone.walls import Wall
 from harness import terminal
-from harness.certificates import certificate_line, certificate_runs
 from harness.engine import baseline as recording
 from harness.engine import compare as comparing
-from harness.engine import regression
-from harness.engine.plan import Limits, check_methods, find_cases, gated_runs, plan_case
+from harness.engine.plan import Limits, find_cases, plan_case
 from harness.engine.store import open_store
 from harness.junit import tests_of_check, write_junit
 from harness.model.case import shipped_cases
@@ -46,7 +47,7 @@ from harness.options import (
 def check(
     cases: tuple[str, ...],
     suite: str | None,
-    tier: str,
+    tier: Tier,
     jobs: int,
     store: Path,
     fresh: bool,
@@ -59,16 +60,12 @@ def check(
     The full tier also checks the certificates beside the cases, in fractions and against the wall.
     """
     chosen = find_cases(cases, suite if cases or suite else "all", folders)
-    limits = Limits(seconds=120.0 if tier == "quick" else 3600.0)
-    runs = [planned for case in chosen for planned in gated_runs(case, limits, tier)]
-    check_methods(sorted({planned.method for planned in runs}), "applies_to of a gated reference")
-    certified = certificate_runs(chosen, limits) if tier == "full" else []
     for case in chosen:
         warn(case)
-    with open_store(store) as opened, terminal.progress(len(runs) + len(certified), quiet=as_json) as told:
-        results = comparing.execute([*runs, *certified], opened, jobs, fresh=fresh, told=told)
-    lines = regression.lines(runs, results[: len(runs)])
-    lines += [certificate_line(run, result) for run, result in zip(certified, results[len(runs) :], strict=True)]
+    count = sum(map(len, planned(chosen, tier)))
+    with terminal.progress(count, quiet=as_json) as told:
+        checked = hold([Wall(case) for case in chosen], tier=tier, jobs=jobs, store=store, fresh=fresh, told=told)
+    lines = checked.lines
     if junit is not None:
         write_junit(f"drystone check, {tier} tier", tests_of_check(lines), junit)
     if as_json:
@@ -77,12 +74,12 @@ def check(
                 "tier": tier,
                 "references": lines,
                 "warnings": {case.id: list(case.warnings) for case in chosen if case.warnings},
-                "passed": all(line["verdict"] == "agrees" for line in lines),
+                "passed": checked.passed,
             }
         )
     else:
         terminal.print_check(lines)
-    sys.exit(0 if all(line["verdict"] == "agrees" for line in lines) else 1)
+    sys.exit(0 if checked.passed else 1)
 
 
 @click.command()
@@ -113,7 +110,7 @@ def baseline(
     chosen = find_cases(cases, suite if cases or suite else "all", folders)
     recorded_in = path or shipped_cases() / "baseline.json"
     recorded = recording.read_baseline(recorded_in)
-    runs = [planned for case in chosen for planned in plan_case(case, None, Limits())]
+    runs = [run for case in chosen for run in plan_case(case, None, Limits())]
     with open_store(store) as opened, terminal.progress(len(runs), quiet=as_json) as told:
         results = comparing.execute(runs, opened, jobs, told=told)
     rows = recording.compare_with(recorded, runs, results)

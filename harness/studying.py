@@ -6,29 +6,24 @@ import sys
 import time
 from collections import Counter
 from collections.abc import Callable, Iterator, Sequence
-from contextlib import closing, contextmanager
+from contextlib import contextmanager
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 from typing import Any
 
-from harness.engine.executors import Executor, LocalExecutor
-from harness.engine.store import Store, open_store
+from drystone.studies import Told, rows_of, shipped_studies
+from harness.engine.executors import LocalExecutor
+from harness.engine.store import open_store
 from harness.engine.sweep.curve import curve_of
 from harness.engine.sweep.expand import SweepRun, expand, sources_of
-from harness.engine.sweep.neighbours import handed_on
-from harness.engine.sweep.running import Row, sweep
-from harness.engine.sweep.study import Study, Whole, read_study
-from harness.model.case import shipped_cases
+from harness.engine.sweep.running import Row
+from harness.engine.sweep.study import Whole, read_study
 from harness.model.errors import InputError
 from harness.model.reading import validate
 
 LINE_SECONDS = 10.0
 """How often progress is told where there is no terminal."""
-
-
-def shipped_studies() -> dict[str, Path]:
-    """The studies that come with Drystone, by name."""
-    return {path.stem: path for path in sorted((shipped_cases() / "studies").glob("*.toml"))}
 
 
 @dataclass(frozen=True)
@@ -82,7 +77,8 @@ def curve_of_shipped(words: str, jobs: int, store: Path, *, fresh: bool, quiet: 
     with open_store(store) as opened:
 
         def make(some: Sequence[SweepRun]) -> list[Row]:
-            return made(study, some, opened, LocalExecutor(jobs), fresh=fresh, quiet=quiet)
+            telling = partial(progress, quiet=quiet)
+            return rows_of(study, some, opened, LocalExecutor(jobs), fresh=fresh, telling=telling)
 
         if amount.seconds is None:
             return curve_of(study, make(runs))
@@ -115,29 +111,8 @@ def in_time(
     return rows
 
 
-def made(
-    asked: Study, runs: Sequence[SweepRun], store: Store, executor: Executor, *, fresh: bool, quiet: bool
-) -> list[Row]:
-    """The rows of all runs of a study, made or from the store, with progress told; neighbours share what they found."""
-
-    def make(some: Sequence[SweepRun]) -> list[Row]:
-        return _made(some, store, executor, fresh=fresh, quiet=quiet)
-
-    rows = make(runs)
-    return handed_on(runs, rows, store, make) if asked.neighbours else rows
-
-
-def _made(runs: Sequence[SweepRun], store: Store, executor: Executor, *, fresh: bool, quiet: bool) -> list[Row]:
-    rows = []
-    with _progress(len(runs), quiet=quiet) as told, closing(sweep(runs, store, executor, fresh=fresh)) as ended:
-        for _, row, stored in ended:
-            rows.append(row)
-            told(stored)
-    return rows
-
-
 @contextmanager
-def _progress(total: int, *, quiet: bool) -> Iterator[Callable[[bool], None]]:
+def progress(total: int, *, quiet: bool) -> Iterator[Told]:
     """Something to call after each run: a bar with rate and time left, or a line now and then."""
     from rich.console import Console
     from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeRemainingColumn

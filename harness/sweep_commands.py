@@ -5,18 +5,18 @@ from __future__ import annotations
 import shlex
 import sys
 from collections import Counter
-from datetime import UTC, datetime
+from functools import partial
 from pathlib import Path
 from typing import Any
 
 import click
 
+from drystone.studies import Sweep, changed, rows_of, shipped_studies
 from harness.engine.executors import Executor, LocalExecutor
 from harness.engine.plan import Limits
 from harness.engine.store import open_store
 from harness.engine.sweep.expand import SweepRun, expand, sources_of
 from harness.engine.sweep.quick import quick_study
-from harness.engine.sweep.running import Row
 from harness.engine.sweep.study import Study, read_study
 from harness.given_settings import method_settings
 from harness.model.errors import InputError
@@ -34,7 +34,7 @@ from harness.options import (
     seconds_option,
     store_option,
 )
-from harness.studying import duration, made, shipped_studies
+from harness.studying import duration, progress
 
 OUT = Path("out")
 
@@ -86,8 +86,9 @@ def sweep_(what: str, dry_run: bool, scheduler: str | None, jobs: int, store: Pa
         _tell_plan(asked, runs, store, jobs, rest["as_json"])
         return
     with open_store(store) as opened:
-        rows = made(asked, runs, opened, _executor(scheduler, jobs), fresh=fresh, quiet=rest["as_json"])
-    _leave(asked, rows, rest["output"] or OUT / asked.name, rest)
+        executor = _executor(scheduler, jobs)
+        rows = rows_of(asked, runs, opened, executor, fresh=fresh, telling=partial(progress, quiet=rest["as_json"]))
+    _leave(Sweep(asked, rows), rest["output"] or OUT / asked.name, rest)
 
 
 def _study(what: str, rest: dict[str, Any]) -> tuple[Study, Path | None]:
@@ -97,14 +98,7 @@ def _study(what: str, rest: dict[str, Any]) -> tuple[Study, Path | None]:
     methods = [name.strip() for name in rest["methods"].split(",") if name.strip()] if rest["methods"] else None
     settings = method_settings(rest["settings"])
     if file is not None and file.suffix == ".toml" and not quick:
-        read = read_study(file)
-        changes: dict[str, Any] = {"methods": methods} if methods else {}
-        if settings:
-            changes["settings"] = {name: read.settings.get(name, {}) | settings.get(name, {})
-                                   for name in {*read.settings, *settings}}  # fmt: skip
-        if rest["multipliers"]:
-            changes["multipliers"] = list(rest["multipliers"])
-        return _shared(read.model_copy(update=changes), rest["neighbours"]), file.parent
+        return changed(read_study(file), methods, settings, rest["multipliers"], rest["neighbours"]), file.parent
     if not quick:
         raise InputError(
             f'"{what}" is no study, and nothing varies',
@@ -113,12 +107,7 @@ def _study(what: str, rest: dict[str, Any]) -> tuple[Study, Path | None]:
         )
     limits = Limits(rest["seconds"], rest["memory"] * 2**20)
     study = quick_study(what, methods, settings, limits, list(rest["multipliers"]), **quick)
-    return _shared(study, rest["neighbours"]), None
-
-
-def _shared(asked: Study, neighbours: bool | None) -> Study:
-    """The study, with the command's word on neighbours if there is one."""
-    return asked if neighbours is None else asked.model_copy(update={"neighbours": neighbours})
+    return changed(study, neighbours=rest["neighbours"]), None
 
 
 def _executor(scheduler: str | None, jobs: int) -> Executor:
@@ -129,40 +118,18 @@ def _executor(scheduler: str | None, jobs: int) -> Executor:
     return ClusterExecutor(scheduler)
 
 
-def _leave(asked: Study, rows: list[Row], folder: Path, rest: dict[str, Any]) -> None:
+def _leave(done: Sweep, folder: Path, rest: dict[str, Any]) -> None:
     """Tables, page and a few lines for the terminal; exit code 1 if the judge rejects a run."""
-    from harness.engine.sweep.frame import tidy, write
-    from harness.engine.sweep.summary import grid_of, summarise, varied_of
-
-    table = tidy(rows, varied_of(asked))
-    files = write(table, folder, "runs")
-    summary = summarise(asked, table)
-    for name, statistic in summary.tables.items():
-        files += write(statistic, folder, name)
+    files = done.save(folder)
     page = folder.with_suffix(".html")
     if not rest["no_report"]:
-        from reports.study_page import StudyPage, write_page
-
         names = [f"{folder.name}/{path.name}" for path in files if path.suffix == ".csv"]
-        write_page(
-            StudyPage(
-                asked.title,
-                asked.question,
-                shlex.join(["drystone", *sys.argv[1:]]),
-                datetime.now(UTC).isoformat(timespec="seconds"),
-                table,
-                grid_of(asked),
-                summary.tables,
-                summary.remarks,
-                names,
-            ),
-            page,
-        )
-    rejected = int(table["judge_accepted"].eq(False).fillna(False).sum())
-    statuses = Counter(str(row["status"]) for row in rows)
+        done.report(page, shlex.join(["drystone", *sys.argv[1:]]), names)
+    rejected = done.rejected
+    statuses = Counter(str(row["status"]) for row in done.rows)
     told = {
-        "study": asked.name,
-        "runs": len(rows),
+        "study": done.study.name,
+        "runs": len(done.rows),
         "statuses": dict(statuses),
         "rejected": rejected,
         "files": [str(path) for path in files],
@@ -171,9 +138,9 @@ def _leave(asked: Study, rows: list[Row], folder: Path, rest: dict[str, Any]) ->
     if rest["as_json"]:
         print_json(told)
     else:
-        say(f"{len(rows):,} runs: " + ", ".join(f"{count:,} {name}" for name, count in statuses.items())
+        say(f"{len(done.rows):,} runs: " + ", ".join(f"{count:,} {name}" for name, count in statuses.items())
             + (f"; the judge rejects {rejected:,}" if rejected else ""))  # fmt: skip
-        for sentence in summary.remarks:
+        for sentence in done.summary.remarks:
             say(sentence)
         say(f"Tables: {folder}/" + ("" if rest["no_report"] else f"\nReport: {page}"))
     sys.exit(1 if rejected else 0)

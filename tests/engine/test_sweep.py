@@ -17,6 +17,7 @@ import pandas as pd
 import pytest
 from scipy import stats
 
+from drystone.studies import shipped_studies
 from harness.engine.executors import LocalExecutor
 from harness.engine.store import open_store
 from harness.engine.sweep import statistics
@@ -29,7 +30,6 @@ from harness.engine.sweep.study import Study, read_study
 from harness.model.build import build
 from harness.model.errors import InputError
 from harness.model.reading import parse_wall, validate
-from harness.studying import shipped_studies
 from tests.commands import drystone
 from tests.walls import running_bond, stack, wall_data
 

@@ -20,7 +20,10 @@ MULTIPLIER = 0.5
 """Width over height of the whole stack, 0.3 / 0.6: it topples about its lower corner."""
 
 
-@pytest.mark.parametrize("module", ["drystone", "drystone.walls", "drystone.analysis", "drystone.comparing"])
+MODULES = ["drystone", *(f"drystone.{name}" for name in ("walls", "analysis", "comparing", "studies", "checking"))]
+
+
+@pytest.mark.parametrize("module", MODULES)
 def test_examples_in_docstrings_say_what_comes_out(module: str):
     assert doctest.testmod(importlib.import_module(module)).failed == 0
 
@@ -109,3 +112,41 @@ def test_a_script_without_a_main_guard_may_compare(tmp_path: Path):
     )
     ran = subprocess.run([sys.executable, str(script)], capture_output=True, text=True, check=False, timeout=120)
     assert (ran.stdout, ran.returncode) == ("2\n", 0), ran.stderr
+
+
+def test_a_sweep_gives_rows_in_order_tables_and_a_page_and_finds_runs_again(tmp_path: Path):
+    store, told = tmp_path / "runs.sqlite", list[bool]()
+    vary = {"friction": [0.3, 0.4, 0.8]}
+    done = drystone.sweep(WALL, vary, ["la-associated"], store=store, jobs=2, told=told.append)
+    table = done.to_pandas()
+    # friction below 0.5 lets the lowest joint slide; above, the stack topples
+    assert list(table["friction"]) == vary["friction"]
+    assert table["multiplier"].tolist() == pytest.approx([0.3, 0.4, MULTIPLIER], abs=1e-8)
+    assert (told, done.rejected) == ([False] * 3, 0)
+    assert "quantiles" in done.tables
+    assert {path.name for path in done.save(tmp_path / "out")} >= {"runs.csv", "quantiles.csv"}
+    assert "friction" in done.report(tmp_path / "out.html").read_text(encoding="utf-8")
+    assert "<table" in done._repr_html_()
+    again = drystone.sweep(WALL, vary, ["la-associated"], store=store, told=told.append)
+    assert told[3:] == [True] * 3
+    assert again.to_pandas()["multiplier"].tolist() == table["multiplier"].tolist()
+
+
+def test_a_sweep_takes_a_shipped_study_with_changes_and_refuses_what_varies_nothing():
+    done = drystone.sweep("friction", methods=["la-associated"])
+    assert set(done.to_pandas()["method"]) == {"la-associated"}
+    with pytest.raises(drystone.InputError, match="nothing of"):
+        drystone.sweep(WALL)
+    with pytest.raises(drystone.InputError, match='no study is called "frictoin"'):
+        drystone.sweep("frictoin")
+    with pytest.raises(drystone.InputError, match="says itself what varies"):
+        drystone.sweep("friction", {"friction": [0.5]})
+
+
+def test_a_check_holds_methods_to_gated_references():
+    checked = drystone.check([drystone.library_wall("slide"), drystone.library_wall("topple")])
+    assert checked.passed
+    table = checked.to_pandas()
+    assert set(table["case"]) == {"slide", "topple"}
+    assert set(table["verdict"]) == {"agrees"}
+    assert "references hold" in checked._repr_html_()

@@ -45,7 +45,6 @@ def quick_study(
     Raises:
         InputError: words that mean nothing.
     """
-    uneven = bool(imperfection) or seeds is not None
     axes: dict[str, Any] = {}
     for words in vary:
         name, equals, values = words.partition("=")
@@ -56,6 +55,23 @@ def quick_study(
         axes["imperfection"] = axis_of(imperfection, "--imperfection", SIZES)
     if seeds is not None:
         axes["seed"] = {"seeds": seeds}
+    return varied(what, axes, methods, settings, limits, multipliers)
+
+
+def varied(
+    what: str,
+    axes: dict[str, Any],
+    methods: Sequence[str] | None,
+    settings: dict[str, dict[str, Any]],
+    limits: Limits,
+    multipliers: list[float],
+) -> Study:
+    """The study of one case over a grid, named by both; methods as of `quick_study`.
+
+    Raises:
+        InputError: an axis that is none.
+    """
+    uneven = "imperfection" in axes or "seed" in axes
     stem = re.sub(r"[^a-z0-9]+", "-", Path(what).stem.lower()).strip("-") or "wall"
     data = {
         "name": f"{stem}-{'-'.join(re.sub('[^a-z0-9]+', '-', name.lower()).strip('-') for name in axes)}",

@@ -1,0 +1,101 @@
+"""Methods held to what is known of walls: gated references and, in the full tier, certificates in fractions."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from contextlib import nullcontext
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, Literal
+
+from drystone.walls import Wall, library_wall, library_walls
+from harness.certificates import certificate_line, certificate_runs
+from harness.engine import compare as engine
+from harness.engine import regression
+from harness.engine.plan import Limits, Run, check_methods, gated_runs
+from harness.engine.store import open_store
+from harness.model.case import Case
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+Tier = Literal["quick", "full"]
+SECONDS = {"quick": 120.0, "full": 3600.0}
+"""Limits of a run: the quick tier asks for nothing that takes longer than a minute."""
+
+
+@dataclass(frozen=True)
+class Check:
+    """What was held to what. In a notebook it shows its table.
+
+    Attributes:
+        lines: one a gated reference or certificate: case, reference, method, value, relation, expected, tolerance,
+            source, requirement, verdict, sentence.
+    """
+
+    lines: list[dict[str, Any]]
+
+    @property
+    def passed(self) -> bool:
+        """Whether all agree."""
+        return all(line["verdict"] == "agrees" for line in self.lines)
+
+    def to_pandas(self) -> pd.DataFrame:
+        """The lines as a table."""
+        import pandas as pd
+
+        return pd.DataFrame(self.lines).drop(columns="settings", errors="ignore")
+
+    def _repr_html_(self) -> str:
+        from drystone.pictures import html
+
+        shown = self.to_pandas()[["case", "reference", "method", "value", "relation", "expected", "verdict"]]
+        title = f"{sum(line['verdict'] == 'agrees' for line in self.lines)} of {len(self.lines)} references hold"
+        return html(title, None, str(shown.to_html(index=False, na_rep="-", float_format="{:.6g}".format)))
+
+
+def check(
+    walls: Wall | Iterable[Wall] | None = None,
+    *,
+    tier: Tier = "quick",
+    jobs: int = 1,
+    store: str | Path | None = None,
+    fresh: bool = False,
+    told: engine.Told | None = None,
+) -> Check:
+    """Hold the methods to the gated references of walls.
+
+    Args:
+        walls: of the library, or with references of their own; None: all of the library.
+        tier: "full" asks for the slow references too, and checks the certificates beside the cases in fractions.
+        jobs: runs at a time.
+        store: file in which results are kept and looked for; None: nowhere.
+        fresh: run again what is in the store.
+        told: called after each run with the run, its result and whether it was stored.
+
+    Raises:
+        InputError: a method that a reference names does not exist, or a store that is damaged.
+
+    >>> import drystone
+    >>> drystone.check(drystone.library_wall("slide")).passed
+    True
+    """
+    chosen = map(library_wall, library_walls()) if walls is None else [walls] if isinstance(walls, Wall) else walls
+    runs, certified = planned([wall.case for wall in chosen], tier)
+    with nullcontext() if store is None else open_store(Path(store)) as opened:
+        results = engine.execute([*runs, *certified], opened, jobs, fresh=fresh, told=told)
+    lines = regression.lines(runs, results[: len(runs)])
+    lines += [certificate_line(run, result) for run, result in zip(certified, results[len(runs) :], strict=True)]
+    return Check(lines)
+
+
+def planned(cases: Sequence[Case], tier: Tier) -> tuple[list[Run], list[Run]]:
+    """The runs that the gated references of cases need, and those that their certificates are held to.
+
+    Raises:
+        InputError: a method that a reference names does not exist.
+    """
+    limits = Limits(seconds=SECONDS[tier])
+    runs = [run for case in cases for run in gated_runs(case, limits, tier)]
+    check_methods(sorted({run.method for run in runs}), "applies_to of a gated reference")
+    return runs, certificate_runs(cases, limits) if tier == "full" else []

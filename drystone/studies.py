@@ -1,0 +1,260 @@
+"""Studies: many walls that differ in a few quantities, each by the methods asked for, as tables and a page."""
+
+from __future__ import annotations
+
+import json
+import tempfile
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from contextlib import AbstractContextManager, closing, contextmanager, nullcontext
+from dataclasses import dataclass
+from datetime import UTC, datetime
+from functools import cached_property
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from drystone.walls import Wall
+from harness.engine.executors import Executor, LocalExecutor
+from harness.engine.plan import Limits
+from harness.engine.store import Store, open_store
+from harness.engine.sweep.expand import Source, SweepRun, expand, sources_of
+from harness.engine.sweep.neighbours import handed_on
+from harness.engine.sweep.quick import varied
+from harness.engine.sweep.running import Row
+from harness.engine.sweep.running import sweep as running
+from harness.engine.sweep.study import Study, read_study
+from harness.model.case import shipped_cases
+from harness.model.errors import InputError
+from harness.model.reading import wall_json
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+    from harness.engine.sweep.summary import Summary
+
+Told = Callable[[bool], None]
+"""Called after each run, with whether it came from the store."""
+
+
+@dataclass(frozen=True, eq=False)
+class Sweep:
+    """A study and what it found. In a notebook it shows its quantiles.
+
+    Attributes:
+        study: what was asked.
+        rows: one a run, in the order of the study, whatever order they ended in.
+    """
+
+    study: Study
+    rows: list[Row]
+
+    def to_pandas(self) -> pd.DataFrame:
+        """One row a run: case, method, what varied, and the answer; `attrs["units"]` names the units."""
+        from harness.engine.sweep.frame import tidy
+        from harness.engine.sweep.summary import varied_of
+
+        return tidy(self.rows, varied_of(self.study))
+
+    @cached_property
+    def summary(self) -> Summary:
+        """Statistics that the rows allow, and sentences that a reader should see."""
+        from harness.engine.sweep.summary import summarise
+
+        return summarise(self.study, self.to_pandas())
+
+    @property
+    def tables(self) -> dict[str, pd.DataFrame]:
+        """Tables by name: quantiles; fragility, failure and sensitivity where seeds or draws allow them."""
+        return self.summary.tables
+
+    @property
+    def rejected(self) -> int:
+        """How many answers the judge rejects."""
+        return sum(row.get("judge_accepted") is False for row in self.rows)
+
+    def save(self, folder: str | Path) -> list[Path]:
+        """Write the rows and every table as CSV, and as Parquet where pyarrow is installed; the files."""
+        from harness.engine.sweep.frame import write
+
+        files = write(self.to_pandas(), Path(folder), "runs")
+        for name, table in self.tables.items():
+            files += write(table, Path(folder), name)
+        return files
+
+    def report(self, path: str | Path, command: str = "drystone.sweep", data: Sequence[str] = ()) -> Path:
+        """Write the page of the study.
+
+        Args:
+            path: of the page.
+            command: how to repeat it, told on the page.
+            data: names of files that the page points to.
+        """
+        from harness.engine.sweep.summary import grid_of
+        from reports.study_page import StudyPage, write_page
+
+        created = datetime.now(UTC).isoformat(timespec="seconds")
+        study, summary = self.study, self.summary
+        about = (study.title, study.question, command, created, self.to_pandas(), grid_of(study))
+        target = Path(path)
+        target.parent.mkdir(parents=True, exist_ok=True)
+        write_page(StudyPage(*about, summary.tables, summary.remarks, list(data)), target)
+        return target
+
+    def _repr_html_(self) -> str:
+        from drystone.pictures import html
+
+        return html(self.study.title, None, str(self.tables["quantiles"].to_html(float_format="{:.6g}".format)))
+
+
+def sweep(
+    what: Wall | Study | str | Path,
+    vary: Mapping[str, Any] | None = None,
+    methods: Sequence[str] | None = None,
+    *,
+    settings: Mapping[str, dict[str, Any]] | None = None,
+    multipliers: Sequence[float] = (),
+    neighbours: bool | None = None,
+    jobs: int = 1,
+    seconds: float = Limits().seconds,
+    memory_bytes: int = Limits().memory_bytes,
+    store: str | Path | None = None,
+    executor: Executor | None = None,
+    fresh: bool = False,
+    told: Told | None = None,
+    folders: Sequence[Path] = (),
+) -> Sweep:
+    """Make every run of a study, each in a process of its own, and judge every answer.
+
+    Args:
+        what: a wall of which something varies; or a study: read, its file, or the name of one that comes with Drystone.
+        vary: values by the name of a quantity (`friction`, `proportion`, `imperfection`, a path in the wall, or
+            `settings.METHOD.NAME`): a list, or a mapping as in a study file; every one with every other.
+        methods: names; None: those of the study, or of the library.
+        settings: of methods, by name, where not the defaults.
+        multipliers: at which the probability of failure is asked.
+        neighbours: whether runs take up the motions that their neighbours found; None: as the study says, else not.
+        jobs: runs at a time.
+        seconds, memory_bytes: limits of a run of a wall; a study has its own.
+        store: file in which results are kept and looked for; None: nowhere.
+        executor: where runs are made instead, as on a cluster.
+        fresh: run again what is in the store.
+        told: called after each run with whether it came from the store.
+        folders: more places where cases of a study are looked for.
+
+    Raises:
+        InputError: a study that cannot be read, a quantity, method or setting that does not exist, a value it cannot
+            have, or a wall of which nothing varies.
+
+    >>> import drystone
+    >>> wall = drystone.new_wall("stack", count=3, width=0.3, height=0.2, friction=0.8)
+    >>> done = drystone.sweep(wall, {"friction": [0.3, 0.8]}, ["la-associated"])
+    >>> [round(multiplier, 6) for multiplier in done.to_pandas()["multiplier"]]
+    [0.3, 0.5]
+    """
+    study, sources = _asked(what, vary, methods, settings, multipliers, Limits(seconds, memory_bytes), folders)
+    study = changed(study, neighbours=neighbours)
+    runs = expand(study, sources)
+    with _opened(store) as opened:
+        where = executor or LocalExecutor(jobs)
+        telling = nullcontext(told or _silent)
+        return Sweep(study, rows_of(study, runs, opened, where, fresh=fresh, telling=lambda _: telling))
+
+
+def rows_of(
+    study: Study,
+    runs: Sequence[SweepRun],
+    store: Store,
+    executor: Executor,
+    *,
+    fresh: bool = False,
+    telling: Callable[[int], AbstractContextManager[Told]] = lambda _: nullcontext(_silent),
+) -> list[Row]:
+    """The rows of all runs of a study, made or from the store; neighbours share what they found, if it says so.
+
+    Args:
+        study: what was asked.
+        runs: of `expand`.
+        store: where results are looked for and kept.
+        executor: where runs are made.
+        fresh: make again what is in the store.
+        telling: opened with the number of runs of each round, gives what is called after each.
+
+    Returns:
+        One row a run, in the order of the study.
+    """
+
+    def make(some: Sequence[SweepRun]) -> list[Row]:
+        rows: dict[int, Row] = {}
+        with telling(len(some)) as told, closing(running(some, store, executor, fresh=fresh)) as ended:
+            for run, row, stored in ended:
+                rows[run.number] = row
+                told(stored)
+        return [rows[number] for number in sorted(rows)]
+
+    rows = make(runs)
+    return handed_on(runs, rows, store, make) if study.neighbours else rows
+
+
+def _silent(stored: bool) -> None:
+    """Tell nobody."""
+
+
+def shipped_studies() -> dict[str, Path]:
+    """The studies that come with Drystone, by name."""
+    return {path.stem: path for path in sorted((shipped_cases() / "studies").glob("*.toml"))}
+
+
+def _asked(
+    what: Wall | Study | str | Path,
+    vary: Mapping[str, Any] | None,
+    methods: Sequence[str] | None,
+    settings: Mapping[str, dict[str, Any]] | None,
+    multipliers: Sequence[float],
+    limits: Limits,
+    folders: Sequence[Path],
+) -> tuple[Study, list[Source]]:
+    if isinstance(what, Wall):
+        if not vary:
+            raise InputError(f'nothing of "{what.name}" varies', 'Give vary={"friction": [0.4, 0.6]}', "vary")
+        study = varied(what.name, dict(vary), methods, dict(settings or {}), limits, list(multipliers))
+        return study, [Source(what.name, json.loads(wall_json(what.case.wall)))]
+    if vary:
+        raise InputError("a study says itself what varies", "Leave vary out, or give a wall", "vary")
+    study, place = (what, None) if isinstance(what, Study) else _read(what)
+    study = changed(study, methods, settings or {}, multipliers)
+    return study, sources_of(study, folders, place)
+
+
+def _read(what: str | Path) -> tuple[Study, Path]:
+    path = shipped_studies().get(str(what)) if not Path(what).exists() else Path(what)
+    if path is None:
+        known = ", ".join(shipped_studies())
+        raise InputError(
+            f'no study is called "{what}"', f"Give a file, one of {known}, or a wall and what varies", "sweep"
+        )
+    return read_study(path), path.parent
+
+
+def changed(
+    study: Study,
+    methods: Sequence[str] | None = None,
+    settings: Mapping[str, dict[str, Any]] | None = None,
+    multipliers: Sequence[float] = (),
+    neighbours: bool | None = None,
+) -> Study:
+    """A study with other methods, further settings, other multipliers or another word on neighbours, where given."""
+    changes: dict[str, Any] = {"methods": list(methods)} if methods else {}
+    if settings:
+        own = study.settings
+        changes["settings"] = {name: own.get(name, {}) | settings.get(name, {}) for name in {**own, **settings}}
+    if multipliers:
+        changes["multipliers"] = list(multipliers)
+    if neighbours is not None:
+        changes["neighbours"] = neighbours
+    return study.model_copy(update=changes)
+
+
+@contextmanager
+def _opened(store: str | Path | None) -> Iterator[Store]:
+    """The store, or one that is gone afterwards."""
+    with tempfile.TemporaryDirectory() as folder, open_store(Path(store or Path(folder) / "runs.sqlite")) as opened:
+        yield opened
