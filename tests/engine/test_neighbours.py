@@ -9,6 +9,7 @@ import numpy as np
 import pandas as pd
 import pytest
 
+from drystone.studies import rows_of
 from harness.engine.executors import LocalExecutor
 from harness.engine.store import open_store
 from harness.engine.sweep.expand import SweepRun, expand, sources_of
@@ -20,7 +21,6 @@ from harness.engine.sweep.summary import summarise, varied_of
 from harness.model.method import Finding, FollowsMotions, Status, load_method
 from harness.model.reading import validate
 from harness.model.result import relative_velocities
-from harness.studying import made
 from tests.model.test_components import three_columns
 from tests.walls import assembly, running_bond, stack, wall_data
 
@@ -37,7 +37,7 @@ def study(**more: Any) -> Study:
 def table_of(asked: Study, store: Path, processes: int = 1) -> pd.DataFrame:
     with open_store(store) as opened:
         executor = LocalExecutor(processes)
-        rows = made(asked, expand(asked, sources_of(asked)), opened, executor, fresh=False, quiet=True)
+        rows = rows_of(asked, expand(asked, sources_of(asked)), opened, executor)
     return tidy(rows, varied_of(asked))
 
 
