@@ -27,6 +27,8 @@ from reports.studies import studies
 
 DRAWING_BUDGET = 3_000_000
 """Bytes the fields of mechanisms and forces may take in the page, so that it stays below 5 MB."""
+STILL_BUDGET, STILL_BYTES = 400_000, 140
+"""Bytes that still drawings of forces, for pages without scripts, may take, and about what one joint takes of them."""
 
 
 def write_report(run: ComparisonRun, path: Path, *, drawn: bool = False) -> None:
@@ -123,14 +125,18 @@ def _matrix(
 
 
 def _sections(run: ComparisonRun, rows: list[list[tables.RunRow]], fields: list[str]) -> list[CaseSection]:
-    sections = []
+    sections, left = [], STILL_BUDGET
     for number, item in enumerate(run.cases):
         if shapes.problem(item.case):
             sections.append(case_section(number, item, rows[number], [], [], Markup("")))
             continue
         pairs = agreement.agreements(item)
+        joints = item.case.assembly.n_interfaces * sum(result.forces is not None for result in item.results)
+        still = STILL_BYTES * joints <= left
+        left -= STILL_BYTES * joints if still else 0
+        wall = wall_svg(item.case)
         sections.append(
-            case_section(number, item, rows[number], pairs, curves(item), wall_svg(item.case), fields[number])
+            case_section(number, item, rows[number], pairs, curves(item), wall, fields[number], still_forces=still)
         )
     return sections
 

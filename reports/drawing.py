@@ -27,14 +27,6 @@ FORCE_STEPS = 10_000
 LABELLED_BLOCKS = 160
 DOTTED_INTERFACES = 240
 DRAWN_INTERFACES = 4000
-MARK_CLASS = {
-    joints.SLIDE: "slide",
-    joints.ROCK: "rock",
-    joints.BOTH: "both",
-    joints.OPEN: "open",
-    joints.DILATANT: "dilatant",
-}
-HEAVY = (joints.SLIDE, joints.BOTH, joints.DILATANT)
 
 
 class Frame:
@@ -108,16 +100,16 @@ def wall_svg(case: Case) -> Markup:
     parts.append(_labels(frame, assembly))
     parts.append(_arrows(frame, assembly, shapes.extra_dead_load(assembly), "dead"))
     parts.append(_arrows(frame, assembly, assembly.live, "live"))
-    parts.append(_length_scale(frame, case.wall.units.length))
+    parts.append(length_scale(frame, case.wall.units.length))
     parts.append(Markup("</svg>"))
     return Markup("").join(parts)
 
 
-def _length_scale(frame: Frame, unit: str) -> Markup:
+def length_scale(frame: Frame, unit: str) -> Markup:
     """A bar of a round length below the wall."""
     length = flow.round_number(0.3 * frame.extent.longest)
     y = round(frame.extent.height * frame.scale) + BELOW // 2
-    text = f"{numbers.given(length, 3)} {unit}".removesuffix(" 1")
+    text = numbers.quantity(length, unit)
     return Markup(
         '<g class="scale"><path d="M0 {0}H{1}M0 {2}v80M{1} {2}v80"/><text x="{3}" y="{4}" font-size="110" '
         'style="text-anchor:start">{5}</text></g>'
@@ -139,61 +131,6 @@ def polygons_svg(case: Case, polygons: list[FloatArray]) -> Markup:
         )
         drawn += Markup('<path class="{}" d="{}"/>').format(name, data)
     return drawn + Markup("</svg>")
-
-
-def mechanisms_svg(case: Case, first: Result, second: Result | None = None) -> Markup:
-    """The mechanism of a result as blocks and that of another as dashed outlines over it, each scaled to be seen.
-
-    Args:
-        case: the case.
-        first, second: results with a mechanism (n, 3); the second may be left out.
-    """
-    assembly = case.assembly
-    frame = Frame(assembly)
-    names = first.method + (f", dashed that by {second.method}" if second is not None else "")
-    drawn = Markup('<svg class="wall" style="--k:{}" viewBox="{}" role="img" aria-label="{}">').format(
-        stroke_factor(assembly), frame.view_box, f"Mechanism of {case.id} by {names}"
-    )
-    moves = shapes.moving(assembly, np.asarray(first.mechanism, dtype=float)) & ~assembly.fixed
-    for name, members in (("held", assembly.fixed), ("still", ~assembly.fixed & ~moves), ("moves", moves)):
-        data = "".join(path_of(frame, polygon) for polygon in _displaced(assembly, first, members))
-        drawn += Markup('<path class="{}" d="{}"/>').format(name, data)
-    if second is not None:
-        data = "".join(path_of(frame, polygon) for polygon in _displaced(assembly, second, ~assembly.fixed))
-        drawn += Markup('<path class="other" d="{}"/>').format(data)
-    elif assembly.n_interfaces <= DRAWN_INTERFACES:
-        drawn += _marks(frame, assembly, first)
-    return drawn + Markup("</svg>")
-
-
-def _marks(frame: Frame, assembly: Assembly, result: Result) -> Markup:
-    """What the joints of a mechanism do, drawn where their block a has moved, as static/draw.js does."""
-    states = np.array(joints.joint_states(assembly, result) or [])
-    mechanism = np.asarray(result.mechanism, dtype=float)
-    scale = shapes.amplitude(assembly, mechanism)
-    size = min(46.0, max(8.0, 0.07 * assembly.length_scale * frame.scale))
-    drawn = Markup("")
-    for state, name in ((k, v) for k, v in MARK_CLASS.items() if (states == k).any()):
-        chosen = np.flatnonzero(states == state)
-        ends = shapes.moved_ends(assembly, mechanism, scale, chosen)
-        data = "".join("M{} {}L{} {}".format(*frame.place(start), *frame.place(end)) for start, end in ends)
-        width = size if state in HEAVY else 0.6 * size
-        dashes = Markup(' stroke-dasharray="{0:.0f} {0:.0f}"').format(0.9 * size) if state == joints.OPEN else ""
-        drawn += Markup('<path class="{}" stroke-width="{:.0f}"{} d="{}"/>').format(name, width, dashes, data)
-        if state == joints.DILATANT:
-            drawn += Markup('<path class="core" stroke-width="{:.0f}" d="{}"/>').format(0.4 * size, data)
-        if state in (joints.ROCK, joints.BOTH):
-            for hinge in shapes.hinges(assembly, mechanism, ends, chosen):
-                drawn += Markup('<circle class="hinge" cx="{}" cy="{}" r="{:.0f}"/>').format(
-                    *frame.place(hinge), 1.1 * size
-                )
-    return drawn
-
-
-def _displaced(assembly: Assembly, result: Result, members: np.ndarray) -> list[FloatArray]:
-    mechanism = np.asarray(result.mechanism, dtype=float)
-    polygons = shapes.displaced(assembly, mechanism, shapes.amplitude(assembly, mechanism))
-    return [polygon for polygon, member in zip(polygons, members, strict=True) if member]
 
 
 def _joints(frame: Frame, assembly: Assembly) -> Markup:

@@ -1,4 +1,4 @@
-"""The data folder beside the report: every number with all of its digits, as CSV, Parquet and JSON."""
+"""The data folder beside the report: every number with all its digits, and every drawing and chart as vector file."""
 
 from __future__ import annotations
 
@@ -8,7 +8,6 @@ import json
 import re
 import tempfile
 from collections.abc import Sequence
-from importlib.resources import files
 from importlib.util import find_spec
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -17,7 +16,7 @@ from harness.model import columns
 from harness.model.comparison import CaseResults, ComparisonRun
 from harness.model.result import Result
 from harness.model.writing import write_whole
-from reports import charts, shapes, words
+from reports import charts, shapes, vectors, words
 from reports.curves import curves
 from reports.studies import studies
 from reports.tables import reference_of, worst_residual
@@ -72,6 +71,8 @@ def export(run: ComparisonRun, folder: Path, *, drawn: bool = False) -> None:
                     "units": item.case.wall.units.model_dump(mode="json", exclude_none=True),
                 }
             )
+        for what, svg in vectors.drawings(item).items():
+            contents[f"{_safe(item.case.id)}/{_safe(what)}.svg"] = svg.encode()
         drawing = comparison_figure(item) if drawn else None
         if drawing is not None:
             contents[f"figures/{_safe(item.case.id)}.pdf"] = drawing
@@ -94,27 +95,12 @@ def _charts(run: ComparisonRun) -> dict[str, bytes]:
     ]
     for place, study in enumerate(studies(run), start=1):
         drawings += [(f"study-{place}-{number}", drawing) for number, (_, drawing) in enumerate(study.charts, start=1)]
-    style = _chart_style()
     contents: dict[str, bytes] = {}
     for name, drawing in drawings:
         if isinstance(drawing, charts.Drawing) and drawing.chart is not None:
             contents[f"charts/{name}.csv"] = charts.csv_of(drawing.chart).encode()
-            contents[f"charts/{name}.svg"] = _alone(str(drawing), style).encode()
+            contents[f"charts/{name}.svg"] = vectors.alone(str(drawing)).encode()
     return contents
-
-
-def _alone(drawing: str, style: str) -> str:
-    """An SVG element of the page as a file of its own, with the rules it needs."""
-    inside = drawing.index(">")
-    opened = drawing[: inside + 1].replace("<svg", '<svg xmlns="http://www.w3.org/2000/svg"', 1)
-    return f"{opened}<style>{style}</style>{drawing[inside + 1 :]}"
-
-
-def _chart_style() -> str:
-    """The rules of the page that charts need: its colours and its section on charts."""
-    css = files("reports").joinpath("static/report.css").read_text(encoding="utf-8")
-    root = css[: css.index("}") + 1]
-    return root + css[css.index("/* Charts */") : css.index("footer {")]
 
 
 def comparison_figure(item: CaseResults) -> bytes | None:

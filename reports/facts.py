@@ -35,7 +35,7 @@ def facts(case: Case) -> list[tuple[str, str]]:
         ("Contact found within", detection_text(case)),
         ("Friction tan φ", friction_text(assembly)),
         ("Size", f"{numbers.given(extent.width, 4)} × {numbers.given(extent.height, 4)} {units.length}"),
-        ("Weight of free blocks", f"{numbers.given(weight, 4)} {units.force}".removesuffix(" 1")),
+        ("Weight of free blocks", numbers.quantity(weight, units.force, 4)),
         ("Live load", " and ".join(ways) if ways else "none: the question is whether it stands"),
         ("Units", case.wall.units_sentence),
     ]

@@ -102,7 +102,7 @@ def length_scale(ax: Axes, assembly: Assembly, units: Units) -> None:
     length = flow.round_number(0.3 * extent.longest)
     y = extent.bottom - 0.085 * extent.longest
     ax.plot([extent.left, extent.left + length], [y, y], "-|", color=INK, linewidth=0.8, markersize=4)
-    _word(ax, extent.left + length, y, f"{numbers.given(length, 3)} {units.length}".removesuffix(" 1"), "left")
+    _word(ax, extent.left + length, y, numbers.quantity(length, units.length), "left")
 
 
 def force_scale(ax: Axes, assembly: Assembly, largest: float, units: Units) -> None:
@@ -115,7 +115,7 @@ def force_scale(ax: Axes, assembly: Assembly, largest: float, units: Units) -> N
         [end - 0.12 * extent.longest, end], [y, y], "-", color=BLUE, linewidth=THIN + WIDE * force / largest,
         solid_capstyle="butt",
     )  # fmt: skip
-    _word(ax, end, y, f"{numbers.given(force, 3)} {units.force}".removesuffix(" 1"), "left")
+    _word(ax, end, y, numbers.quantity(force, units.force), "left")
 
 
 def _word(ax: Axes, x: float, y: float, text: str, side: str) -> None:

@@ -36,6 +36,11 @@ class Motion:
     parts: np.ndarray
     dilates: np.ndarray
 
+    @property
+    def rubs(self) -> np.ndarray:
+        """(m,) whether the joint slides while it touches: what parts along its whole length spends no friction."""
+        return np.asarray(self.slides & ~self.parts)
+
 
 def _motion(assembly: Assembly, result: Result) -> Motion:
     velocities = normalised_mechanism(assembly, np.asarray(result.mechanism, dtype=float))

@@ -13,11 +13,11 @@ from harness.model.method import Finding, Status
 from harness.model.writing import write_whole
 from reports import charts, numbers, words
 from reports.build import script_hash, script_json
-from reports.drawing import mechanisms_svg
 from reports.environment import environment
 from reports.facts import friction_text, value_in_words
 from reports.joints import joints_in_words, motion
 from reports.marks import mark_of
+from reports.mechanism_drawing import mechanism_svg
 from reports.paper import printed
 
 
@@ -137,7 +137,7 @@ def _panels(item: CaseResults) -> list[Panel]:
             Panel(
                 result.method,
                 value_in_words(result),
-                mechanisms_svg(item.case, result),
+                mechanism_svg(item.case, result),
                 joints_in_words(found) if found is not None else "a measured field of velocities",
             )
         )

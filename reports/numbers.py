@@ -29,6 +29,11 @@ def given(value: float, digits: int = 6) -> str:
     return f"{value:.{digits}g}".replace("-", "−")
 
 
+def quantity(value: float, unit: str, digits: int = 3) -> str:
+    """A value with its unit; the number alone where walls have none, which is the unit "1"."""
+    return given(value, digits) if unit == "1" else f"{given(value, digits)} {unit}"
+
+
 def power(value: float, digits: int = 1) -> str:
     """A number as mantissa times a power of ten, e.g. 3×10⁻¹⁶."""
     if value == 0.0:

@@ -10,15 +10,17 @@ from markupsafe import Markup
 from harness.model.comparison import CaseResults, ComparisonRun
 from harness.model.method import Finding, Status
 from harness.model.result import Result, Verdict
-from reports import drawing, numbers, paper, shapes, words
+from reports import numbers, paper, shapes, words
 from reports.agreement import agreement, mains, spread
-from reports.facts import value_in_words
+from reports.facts import friction_text, value_in_words
 from reports.joints import joints_in_words, motion
+from reports.mechanism_drawing import mechanism_svg, overlay_svg
 from reports.reasons import SAME_MOTION, least_known, mechanism_in_words
 from reports.tables import anchor_of, certified_bound
 
 CLOSE = 0.01
 """Methods that lie within a hundredth of each other agree, in the words of the paper's comparison."""
+JOINTS_OF_ONE = "Joints that slide (red) or open (violet) in one of them only are marked, those of the second dashed."
 
 
 @dataclass(frozen=True)
@@ -274,7 +276,11 @@ def figure_of(item: CaseResults) -> tuple[Markup, str]:
         if r is not least and r.mechanism is not None and r.finding is Finding.COLLAPSES and r.flow == "non-associated"
     ]
     other = apart[0] if apart else None
-    caption = f"Mechanism of {item.case.id} by {least.method} at {numbers.multiplier(least.multiplier)}"
-    if other is not None:
-        caption += f"; dashed, by {other.method} at {value_in_words(other)}"
-    return drawing.mechanisms_svg(item.case, least, other), f"{caption}. Velocities drawn as displacements."
+    friction = f"tan φ {friction_text(item.case.assembly)}"
+    caption = f"Mechanism of {item.case.id}, {friction}, by {least.method} at {numbers.multiplier(least.multiplier)}"
+    if other is None:
+        drawn = mechanism_svg(item.case, least, measured=True)
+        return drawn, f"{caption}. Velocities drawn as displacements."
+    caption += f"; dashed, by {other.method} at {value_in_words(other)}, where its blocks stand elsewhere"
+    drawn = overlay_svg(item.case, least, other)
+    return drawn, f"{caption}. Velocities drawn as displacements. {JOINTS_OF_ONE}"

@@ -110,7 +110,7 @@ def _reason(assembly: Assembly, least: Result, other: Result, measure: FloatArra
     clauses: list[str] = []
     first, second = motion(assembly, least), motion(assembly, other)
     if first is not None and second is not None:
-        for verb, a, b in (("slide", first.slides, second.slides), ("open", first.opens, second.opens)):
+        for verb, a, b in (("slide", first.rubs, second.rubs), ("open", first.opens, second.opens)):
             clauses.extend(_in_one(verb, least.method, a & ~b))
             clauses.extend(_in_one(verb, other.method, b & ~a))
     for method, blocks in ((least.method, pair.only_first), (other.method, pair.only_second)):

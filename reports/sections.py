@@ -13,9 +13,11 @@ from harness.model.comparison import CaseResults
 from harness.model.result import Result
 from reports import flow, numbers, shapes
 from reports.agreement import Agreement
-from reports.drawing import Frame, mechanisms_svg, stroke_factor
+from reports.drawing import Frame, stroke_factor
 from reports.facts import facts
+from reports.force_drawing import forces_svg
 from reports.joints import joints_in_words, motion, open_with_force
+from reports.mechanism_drawing import mechanism_svg
 from reports.opening import figure_of, is_calm
 from reports.reasons import reasons
 from reports.tables import RunRow
@@ -34,7 +36,7 @@ class Panel:
         origin: which source of a search found it, and when; or nothing.
         beside: joints drawn as open that carry force, and why; or nothing.
         forces_are: what the forces are, for the caption.
-        still: the mechanism for pages without scripts; empty for large walls.
+        still, still_forces: the mechanism and the forces for pages without scripts; empty for large walls.
     """
 
     row: RunRow
@@ -47,6 +49,7 @@ class Panel:
     beside: str
     forces_are: str
     still: Markup
+    still_forces: Markup
 
 
 @dataclass(frozen=True)
@@ -94,8 +97,21 @@ def case_section(
     curves: list[tuple[str, Markup]],
     wall: Markup,
     fields: str = "all",
+    *,
+    still_forces: bool = False,
 ) -> CaseSection:
-    """The section of one case; `fields` as in `reports.drawing.fields_drawn`."""
+    """The section of one case.
+
+    Args:
+        number: of the case in the report.
+        item: the case with its results.
+        rows: of its results.
+        agreements: of pairs of them.
+        curves: captions and charts.
+        wall: its drawing.
+        fields: as in `reports.drawing.fields_drawn`.
+        still_forces: whether forces stand in the page as still drawings too.
+    """
     problem = shapes.problem(item.case)
     if problem:
         return CaseSection(number, item.case, wall, "", 1.0, "", "", [], (), rows, [], rows, [], [], problem)
@@ -121,6 +137,9 @@ def case_section(
                 beside=_forces_beside(item.case, result) if fields == "all" else "",
                 forces_are=_forces_are(result),
                 still=_still(item.case, result, fields),
+                still_forces=forces_svg(item.case, result)
+                if still_forces and fields == "all" and result.forces is not None
+                else Markup(""),
             )
         )
     return CaseSection(
@@ -184,7 +203,7 @@ def _forces_beside(case: Case, result: Result) -> str:
 def _still(case: Case, result: Result, fields: str) -> Markup:
     if result.mechanism is None or fields == "none" or case.assembly.n_blocks > STILL_BLOCKS:
         return Markup("")
-    return mechanisms_svg(case, result)
+    return mechanism_svg(case, result)
 
 
 def origin(result: Result) -> str:

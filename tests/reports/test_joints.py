@@ -8,7 +8,7 @@ import pytest
 from harness.model.case import Case, read_case, shipped_cases
 from harness.model.method import load_method
 from harness.model.result import Result, result_of
-from reports import drawing, joints, sections
+from reports import drawing, joints, mechanism_drawing, sections
 from tests.reports import samples
 
 WALL = read_case(shipped_cases() / "wall-21")
@@ -35,7 +35,7 @@ def test_most_compressed_joint_of_the_associated_maximum_is_drawn_as_dilatant():
     compression = np.asarray(result.forces)[:, :2].sum(axis=1)
     assert states[max(moving, key=lambda p: compression[p])] == "dilatant slip"
     assert joints.open_with_force(WALL.assembly, result) == 0
-    assert 'class="dilatant"' in drawing.mechanisms_svg(WALL, result)
+    assert 'class="dilatant"' in mechanism_drawing.mechanism_svg(WALL, result)
     assert "d" in drawing.result_data(WALL, result, 1.0)["s"]
 
 
@@ -49,7 +49,7 @@ def test_joint_that_rocks_and_slides_is_told_from_one_that_only_rocks():
         assert states is not None
         assert set(states) == {state, "open"}
         assert result_letters(case, result) == {joints.LETTER[state], "o"}
-        assert drawing.mechanisms_svg(case, result).count('class="hinge"') == 1
+        assert mechanism_drawing.mechanism_svg(case, result).count('class="hinge"') == 1
 
 
 def result_letters(case: Case, result: Result) -> set[str]:

@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
+import re
+
 import numpy as np
 import pytest
 
 from harness.model.comparison import CaseResults, ComparisonRun
 from harness.model.method import Status
 from harness.model.result import Verdict
-from reports import build, drawing, joints, opening, reasons, tables
+from reports import build, joints, mechanism_drawing, opening, reasons, tables
 from tests.reports import samples
 
 
@@ -35,7 +37,9 @@ def test_one_wall_opens_with_its_multipliers_and_the_number_to_use():
     assert "For safety use 0.55800, the least multiplier of a collapse state that is known (la)" in opened.advice
     assert "Never use 0.58400 (la-associated, 4.7 % above)" in opened.advice
     assert opened.red == []
-    assert opened.figure.count("<path") == 4
+    assert 'class="other"' in opened.figure
+    assert "0.2 m</text>" in opened.figure
+    assert "tan φ 0.65" in opened.caption
 
 
 def test_least_is_the_minimum_only_where_it_is_proved():
@@ -116,9 +120,34 @@ def test_reason_names_what_moves_in_one_only():
 
 def test_overlay_draws_both_mechanisms():
     item = of_one_wall()
-    drawn = drawing.mechanisms_svg(item.case, item.results[0], item.results[1])
+    drawn = mechanism_drawing.overlay_svg(item.case, item.results[0], item.results[1])
     assert 'class="other"' in drawn
-    assert drawn != drawing.mechanisms_svg(item.case, item.results[1], item.results[0])
+    assert drawn != mechanism_drawing.overlay_svg(item.case, item.results[1], item.results[0])
+
+
+def test_overlay_of_one_motion_at_two_scales_draws_nothing_twice():
+    item = of_one_wall()
+    first = item.results[0]
+    assert first.mechanism is not None
+    faster = first.model_copy(update={"mechanism": [tuple(3.0 * x for x in row) for row in first.mechanism]})
+    drawn = mechanism_drawing.overlay_svg(item.case, first, faster)
+    assert 'class="other"' not in drawn
+    assert 'class="slide"' not in drawn
+
+
+def test_overlay_marks_joints_that_slide_in_one_mechanism_only():
+    case = samples.block()
+    free = int(case.assembly.free[0])
+    toe = case.assembly.polygons[free][[1]] - case.assembly.centroid[free]  # its lower right corner
+    motions = np.zeros((2, case.assembly.n_blocks, 3))
+    motions[0, free] = (1.0, 0.0, 0.0)
+    motions[1, free] = (-toe[0, 1], toe[0, 0], -1.0)
+    slides = samples.solved(case, "la", 0.4).model_copy(update={"mechanism": motions[0].tolist()})
+    turns = slides.model_copy(update={"method": "fe", "mechanism": motions[1].tolist()})
+    drawn = mechanism_drawing.overlay_svg(case, slides, turns)
+    assert drawn.count('class="slide"') == 1
+    assert 'class="slide" stroke-width="46" d=' in drawn, "the first one's are whole lines"
+    assert re.search('class="open" stroke-width="28" stroke-dasharray="41 41" d=', drawn), "the second one's are dashed"
 
 
 def test_own_walls_come_first_then_the_papers_then_those_that_part():
