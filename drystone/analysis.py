@@ -11,10 +11,10 @@ from pydantic import PrivateAttr
 from drystone.walls import Wall
 from harness.engine import compare as engine
 from harness.engine.judge import judge as judge_result
-from harness.engine.plan import Limits, Run, check_methods
+from harness.engine.plan import Limits, Run, check_methods, check_shares
 from harness.engine.provenance import machine, versions
 from harness.model.errors import InputError
-from harness.model.method import Answer, Method, check_takes, load_method, method_names, traits_of
+from harness.model.method import Answer, Method, allowing, check_takes, load_method, method_names, prepared, traits_of
 from harness.model.reading import validate
 from harness.model.result import Judgement, result_of
 from harness.model.result import Result as Record
@@ -108,6 +108,7 @@ def analyse(
     isolated: bool = False,
     seconds: float = Limits().seconds,
     memory_bytes: int = Limits().memory_bytes,
+    processes: int = 1,
     **settings: Any,
 ) -> Result:
     """What a method finds on a wall, judged; in this process and without limits unless it is isolated.
@@ -118,6 +119,7 @@ def analyse(
         isolated: in a process of its own, so that a method that hangs or crashes gives a result that says so.
         seconds: wall-clock limit of an isolated run [s].
         memory_bytes: memory limit of an isolated run [bytes].
+        processes: that the run may use side by side, where the method can (`de`); the answer is the same.
         settings: of the method, by name; what is not given has its default.
 
     Raises:
@@ -131,16 +133,18 @@ def analyse(
         raise InputError("an isolated method is called by its name", "Give it an entry point, or run it here", "method")
     else:
         loaded = method
+    check_shares(loaded, processes)
     chosen = validate(loaded.Settings, settings, "settings")
     references = tuple(item for item in wall.case.file.references if loaded.name in item.applies_to)
     fitting = tuple(item for item in references if item.settings == settings)
-    run = Run(wall.case, loaded.name, settings, Limits(seconds, memory_bytes), fitting)
+    run = Run(wall.case, loaded.name, settings, Limits(seconds, memory_bytes), fitting, processes)
     if isolated:
         (record,) = engine.execute([run], None, 1)
         return Result.on(wall, record)
-    check_takes(loaded, wall.assembly)
+    check_takes(prepared(loaded), wall.assembly)
     started, clock, work = datetime.now(UTC), time.perf_counter(), time.process_time()
-    answer = loaded.solve(wall.assembly, chosen)
+    with allowing(processes):
+        answer = loaded.solve(wall.assembly, chosen)
     cost = {"cpu_seconds": time.process_time() - work, "wall_seconds": time.perf_counter() - clock}
     record = result_of(
         answer, wall.assembly, case=wall.name, method=loaded.name, family=loaded.family, traits=traits_of(loaded)

@@ -29,6 +29,13 @@ from harness.options import (
 @click.argument("method")
 @click.argument("case")
 @settings_option
+@click.option(
+    "--jobs",
+    type=click.IntRange(1),
+    default=1,
+    show_default=True,
+    help="Processes for the parts of this one run, where its method can make them side by side; others refuse.",
+)
 @click.option("--fields", is_flag=True, help="With --json: contact forces, mechanism, states and path too.")
 @json_flag
 @cases_option
@@ -39,6 +46,7 @@ def run(
     method: str,
     case: str,
     settings: tuple[str, ...],
+    jobs: int,
     fields: bool,
     as_json: bool,
     folders: tuple[Path, ...],
@@ -50,7 +58,10 @@ def run(
     (found,) = find_cases([case], None, folders)
     chosen = settings_of(method, settings)
     warn(found)
-    result = analyse(Wall(found), method, isolated=True, seconds=seconds, memory_bytes=memory * 2**20, **chosen)
+    bytes_allowed = memory * 2**20
+    result = analyse(
+        Wall(found), method, isolated=True, seconds=seconds, memory_bytes=bytes_allowed, processes=jobs, **chosen
+    )
     if as_json:
         print_json(result.model_dump(mode="json") if fields else result.summary())
     else:

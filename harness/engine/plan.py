@@ -16,7 +16,7 @@ from harness.engine.worker import Task
 from harness.model.case import Case, Reference, case_folders, case_of_wall, id_of, read_case, shipped_cases
 from harness.model.errors import InputError, did_you_mean
 from harness.model.library import library
-from harness.model.method import method_names
+from harness.model.method import Method, method_names
 from harness.model.reading import DRAWINGS, wall_json
 
 
@@ -34,13 +34,17 @@ class Limits:
 
 @dataclass(frozen=True)
 class Run:
-    """One run to be made or found in the store. `references` are those it is held against."""
+    """One run to be made or found in the store. `references` are those it is held against.
+
+    `processes` are those that it may use side by side; they change no answer.
+    """
 
     case: Case
     method: str
     settings: dict[str, Any]
     limits: Limits
     references: tuple[Reference, ...] = field(default=())
+    processes: int = 1
 
     @cached_property
     def key(self) -> str:
@@ -59,7 +63,15 @@ class Run:
 
     def task(self) -> Task:
         """What the child process is given."""
-        return Task(self.method, self.case.assembly, self.settings, self.limits.seconds, self.limits.memory_bytes)
+        limits = self.limits
+        return Task(
+            self.method,
+            self.case.assembly,
+            self.settings,
+            limits.seconds,
+            limits.memory_bytes,
+            processes=self.processes,
+        )
 
 
 def plan_case(
@@ -121,6 +133,20 @@ def check_methods(names: Sequence[str], element: str = "--methods") -> None:
         if name not in known:
             there = f"There are: {', '.join(known)}"
             raise InputError(f'no method is called "{name}"', f"{did_you_mean(name, known)} {there}".strip(), element)
+
+
+def check_shares(method: Method, processes: int) -> None:
+    """Refuse more than one process for a method that makes its runs in one.
+
+    Raises:
+        InputError: that is so.
+    """
+    if processes > 1 and not getattr(method, "shares_work", False):
+        raise InputError(
+            f"{method.name} makes a run in one process: its parts begin with what those before them found",
+            "Leave it out; several runs go side by side in `drystone compare` and `drystone sweep`",
+            "--jobs",
+        )
 
 
 def find_cases(words: Sequence[str], suite: str | None, folders: Sequence[Path]) -> list[Case]:

@@ -6,7 +6,7 @@ import contextlib
 import os
 from collections.abc import Iterable
 
-from harness.model.method import load_method, method_points
+from harness.model.method import load_method, method_points, prepared
 
 VARIABLE = "DRYSTONE_PRELOAD"
 """Environment variable with the names of the methods a fork server shall load, separated by commas."""
@@ -25,7 +25,7 @@ def load(names: Iterable[str]) -> None:
     """Load methods; one that cannot be loaded is left to the run that needs it, which can say so."""
     for name in names:
         with contextlib.suppress(Exception):
-            load_method(name)
+            prepared(load_method(name))
 
 
 if os.environ.get(VARIABLE):

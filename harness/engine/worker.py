@@ -37,8 +37,10 @@ from harness.model.method import (
     OutOfTime,
     Settings,
     Status,
+    allowing,
     check_takes,
     load_method,
+    prepared,
     traits_of,
 )
 from harness.model.reading import validate
@@ -59,6 +61,7 @@ class Task:
         memory_bytes: limit of resident memory [bytes].
         motions: (m, 3) motions of the joints in mechanisms that the method shall take up (`FollowsMotions`) in place of
             a search of its own; none: it answers by itself.
+        processes: that the run may use side by side.
     """
 
     method: str
@@ -67,6 +70,7 @@ class Task:
     seconds: float
     memory_bytes: int
     motions: tuple[FloatArray, ...] = ()
+    processes: int = 1
 
 
 LOADED, REPLACE = b"loaded", b"replace"
@@ -107,7 +111,7 @@ def serve(engine: connection.Connection, folder: str) -> None:
 def _load(task: Task) -> tuple[Method | None, Answer | None]:
     """The method of a task, or the answer that tells why there is none."""
     try:
-        return load_method(task.method), None
+        return prepared(load_method(task.method)), None
     except (InputError, KeyError) as error:
         return None, _failure(Status.REFUSED, f"{error}.")
 
@@ -127,7 +131,7 @@ def _record(task: Task, method: Method | None, failure: Answer | None) -> dict[s
             settings = chosen.model_dump(mode="json")
             check_takes(method, task.assembly)
             started, before = time.perf_counter(), _cpu_seconds()
-            with _warned_of_the_limit(task.seconds, started):
+            with allowing(task.processes), _warned_of_the_limit(task.seconds, started):
                 answer = _answer(method, task, chosen)
             answer = _checked(answer, task.assembly)
     except OutOfTime:

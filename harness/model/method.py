@@ -4,7 +4,9 @@ from __future__ import annotations
 
 import math
 import signal
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
+from contextvars import ContextVar
 from dataclasses import dataclass, field
 from enum import StrEnum
 from functools import cache
@@ -32,6 +34,24 @@ def seconds_left() -> float:
     Infinite where no limit was set.
     """
     return signal.getitimer(signal.ITIMER_REAL)[0] or math.inf
+
+
+_processes: ContextVar[int] = ContextVar("processes", default=1)
+
+
+def processes_allowed() -> int:
+    """Processes that a run may use side by side, one unless the user allows more; its answer is the same with any."""
+    return _processes.get()
+
+
+@contextmanager
+def allowing(processes: int) -> Iterator[None]:
+    """Allow the runs made inside so many processes each."""
+    token = _processes.set(processes)
+    try:
+        yield
+    finally:
+        _processes.reset(token)
 
 
 class Status(StrEnum):
@@ -153,8 +173,12 @@ class Method(Protocol):
     A method says what its numbers are by `traits = Traits(...)` (a class attribute; without it nothing is said).
     They travel with each result, so that whoever shows results need not load the method.
 
+    Importing its module should cost little, since lists of methods do. What its runs need (libraries, compiled kernels)
+    it loads in `prepare()`, where it has one: that is called once in a process before the clock of a run starts.
+
     A method whose library keeps something from one run to the next says `fresh_process = True` (a class attribute that
-    others leave out): each of its runs then has a process of its own.
+    others leave out): each of its runs then has a process of its own. One that makes parts of a run side by side where
+    `processes_allowed()` is more than one says `shares_work = True`; its answer must be the same to the bit.
     """
 
     name: ClassVar[str]
@@ -232,10 +256,29 @@ def load_method(name: str) -> Method:
             try:
                 method: Method = point.load()()
             except Exception as error:
-                raise InputError(
-                    f"it cannot be loaded ({type(error).__name__}: {error})",
-                    "Install what it needs, or uninstall the package that brings it",
-                    f"method {name}",
-                ) from error
+                raise _not_loaded(name, error) from error
             return method
     raise KeyError(f"no method is called {name!r}; there are: {', '.join(method_names())}")
+
+
+def prepared(method: Method) -> Method:
+    """The method, after it has loaded what its runs need.
+
+    Raises:
+        InputError: that is not there.
+    """
+    prepare = getattr(method, "prepare", None)
+    if prepare is not None:
+        try:
+            prepare()
+        except Exception as error:
+            raise _not_loaded(method.name, error) from error
+    return method
+
+
+def _not_loaded(name: str, error: Exception) -> InputError:
+    return InputError(
+        f"it cannot be loaded ({type(error).__name__}: {error})",
+        "Install what it needs, or uninstall the package that brings it",
+        f"method {name}",
+    )

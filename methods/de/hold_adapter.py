@@ -14,6 +14,7 @@ from methods.de.engines.mujoco_wall import MujocoWall, SolverFailed, load_mujoco
 from methods.de.engines.space import StripSpace
 from methods.de.engines.strips import CannotModel
 from methods.de.engines.sweeps import SweptWall
+from methods.de.engines.warm_sweeps import load_sweeps
 from methods.de.hold_settings import MujocoSettings, SweepSettings
 from methods.de.holds.answer import solve_by_holds
 from methods.de.holds.release import ReleaseSettings, release
@@ -35,6 +36,11 @@ class DampedHolds:
         marker="d",
     )
     Settings: ClassVar[type[Settings]] = SweepSettings
+    shares_work: ClassVar[bool] = True
+
+    def prepare(self) -> None:
+        """Load the compiled sweeps."""
+        load_sweeps()
 
     def solve(self, assembly: Assembly, settings: SweepSettings) -> Answer:
         """Bracket of the collapse multiplier over body orders; see `methods.de.holds.answer`."""
@@ -112,6 +118,10 @@ class ReleasedCollapse:
         line="dotted",
     )
     Settings: ClassVar[type[Settings]] = ReleaseSettings
+
+    def prepare(self) -> None:
+        """Load the compiled sweeps."""
+        load_sweeps()
 
     def solve(self, assembly: Assembly, settings: ReleaseSettings) -> Answer:
         """Answer of `de` with the history of the collapse: frames in `details`, time and displacement in `path`."""

@@ -50,11 +50,17 @@ def solve_by_holds(
     orders = insertion_orders(assembly, course, settings.orders, settings.seed)
     candidates = candidates or tunings(course, settings.mass_decay)
     known = Known(len(orders))
+
+    def searches(tuning: Tuning, first: int) -> list[BracketSearch]:
+        return [BracketSearch(make_engine(b, j, tuning), settings, unit, name) for name, b, j in orders[first:]]
+
     try:
+        known.search_ahead(searches(candidates[0], 0), assembly.has_live_load)
         tuning, first = first_bracket(assembly, settings, make_engine, orders[0], candidates, known)
         known.finished.append(first)
-        for name, blocks, joints in orders[1:]:
-            search = BracketSearch(make_engine(blocks, joints, tuning), settings, unit, name)
+        if tuning is not candidates[0]:
+            known.search_ahead(searches(tuning, 1), assembly.has_live_load)
+        for search in searches(tuning, 1):
             known.finished.append(known.searched(search, assembly.has_live_load))
         brackets = known.finished
         answer = _conclude(assembly, settings, brackets, unit)

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
 from harness.model.assembly import Assembly, FloatArray
-from harness.model.method import Answer, Finding, Status
+from harness.model.method import Answer, Finding, OutOfTime, Status, processes_allowed
 from methods.de.holds.order_bracket import BracketSearch, OrderBracket
+from methods.de.holds.side_by_side import Findings, searched_ahead
 from methods.numerics.statics import out_of_balance
 
 STOPPED = "the search was stopped by the time limit"
@@ -35,16 +37,45 @@ class Known:
         orders: how many insertion orders are asked for.
         searches: every search that was begun, the one under way last.
         finished: the brackets of the orders that were searched to the end.
+        ahead: by name of the order, what searches in other processes found that were not asked for here yet.
     """
 
     orders: int
     searches: list[BracketSearch] = field(default_factory=list)
     finished: list[OrderBracket] = field(default_factory=list)
+    ahead: dict[str, Findings] = field(default_factory=dict)
 
     def searched(self, search: BracketSearch, ask_multiplier: bool) -> OrderBracket:
-        """Run a search whose findings are kept whatever stops it."""
+        """Run a search whose findings are kept whatever stops it, or take those of one that was run ahead."""
         self.searches.append(search)
-        return search.run(ask_multiplier)
+        findings = self.ahead.pop(search.found.order, None)
+        return search.run(ask_multiplier) if findings is None else findings.taken_by(search)
+
+    def search_ahead(self, searches: Sequence[BracketSearch], ask_multiplier: bool) -> None:
+        """Run searches of one tuning side by side, in as many processes as the run may have; in one, leave them.
+
+        Raises:
+            OutOfTime: the time was over; what they had found is known as if it was found here.
+        """
+        processes = processes_allowed()
+        if processes == 1 or len(searches) == 1:
+            return
+        self.ahead = {}
+
+        def take(search: BracketSearch, findings: Findings) -> None:
+            self.ahead[search.found.order] = findings
+
+        try:
+            searched_ahead(searches, ask_multiplier, processes, take)
+        except OutOfTime:
+            for search in searches:
+                findings = self.ahead.get(search.found.order)
+                if findings is not None:
+                    self.searches.append(search)
+                    found = findings.taken_by(search)
+                    if not findings.stopped and found.told(ask_multiplier):
+                        self.finished.append(found)
+            raise
 
     def counted(self) -> list[BracketSearch]:
         """The searches of the orders that were searched to the end; without any, all of the first order."""

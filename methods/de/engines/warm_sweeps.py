@@ -1,0 +1,18 @@
+"""Load the compiled sweeps before the clock of a run starts, and before a run is shared out among processes."""
+
+from __future__ import annotations
+
+from functools import cache
+
+from methods.de.engines.courses import courses, insertion_orders, tunings
+from methods.de.engines.sweeps import SweptWall
+from methods.springs.patterns import block_on_halves
+
+
+@cache
+def load_sweeps() -> None:
+    """Make a time step of a single block, once in a process."""
+    block = block_on_halves((0.6, 0.4))
+    course = courses(block)
+    ((_, blocks, joints),) = insertion_orders(block, course, 1, 0)
+    SweptWall(block, blocks, joints, 1, tunings(course, None)[0]).advance(1)
