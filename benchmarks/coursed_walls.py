@@ -15,7 +15,7 @@ from harness.model.method import Status, load_method
 from methods.fe.gap_spring_adapter import GapSprings
 from methods.fe.path_answers import WIDE
 from methods.fe.path_settings import GapSpringsSettings
-from methods.springs.path.plateau import CERTIFICATE
+from methods.springs.path.plateau import COLLAPSE
 
 ABOVE = 1e-6
 """Relative: how far a plateau may lie above the associated maximum, for the accuracy of the linear programme."""
@@ -69,11 +69,11 @@ def main(arguments: Sequence[str] | None = None) -> int:
     )
     print(f"plateaus: {tally.plateaus}; without one: {tally.without or 'none'}")
     print(f"above the associated maximum: {tally.above or 'none'}")
-    print(f"worst residual of a collapse state: {tally.worst:.1e} (certificate {CERTIFICATE:g})")
+    print(f"worst residual of a collapse state: {tally.worst:.1e} (certificate {COLLAPSE.certificate:g})")
     print(f"largest spread of the histories: {100.0 * tally.spread:.2f} %")
     print(f"spread above {100.0 * WIDE:g} %: {tally.wide or 'none'}")
     print(f"walls with a history that reached no plateau: {tally.lost or 'none'}")
-    return int(bool(tally.above) or tally.worst > CERTIFICATE)
+    return int(bool(tally.above) or tally.worst > COLLAPSE.certificate)
 
 
 if __name__ == "__main__":

@@ -15,7 +15,7 @@ from methods.fe.load_steps import load_steps
 from methods.springs.model.wall_model import WallModel
 from methods.springs.path.path_record import PathEnd, PathRecord
 from methods.springs.path.plateau import PlateauState
-from methods.springs.rest.newton import FALLING, Equilibrium
+from methods.springs.rest.newton import NEWTON, Equilibrium
 
 PATH_POINTS = 300
 """Points of the path that an answer keeps at most."""
@@ -41,7 +41,7 @@ def falling(model: WallModel, rate: FloatArray, why: str, iterations: int) -> An
     `methods.numerics.statics.with_proof` adds the dilatant mechanism that proves the fall.
     """
     motion = model.block_displacements(rate)
-    blocks = model.moving_blocks(motion, FALLING)
+    blocks = model.moving_blocks(motion, NEWTON.falling)
     return Answer(
         Status.OK,
         Finding.FALLS,

@@ -12,9 +12,6 @@ from harness.model.assembly import Assembly
 from harness.model.build import build
 from harness.model.wall import Wall
 
-VOUSSOIRS = 27
-"""Voussoirs of the arch."""
-
 
 def running_bond(
     courses: int, bricks: int, friction: float, length: float = 0.4, height: float = 0.2, lean: float = 1.0
@@ -109,21 +106,22 @@ def block_on_halves(friction: tuple[float, float]) -> Assembly:
     )
 
 
-def arch(friction: float, point_load: bool = False) -> Assembly:
-    """A semicircular arch of 27 voussoirs, radii 1 and 1.2, between fixed abutments.
+def arch(friction: float, point_load: bool = False, count: int = 27) -> Assembly:
+    """A semicircular arch of voussoirs, radii 1 and 1.2, between fixed abutments.
 
     Args:
         friction: of all joints.
         point_load: live load of one weight of the arch down on its seventh voussoir, at the middle of the outer edge;
             otherwise its own weight sideways.
+        count: of voussoirs.
     """
     live: dict[str, Any] = {"body": [{"per_weight": [1.0, 0.0]}]}
     if point_load:
-        half, angle = math.pi / (2 * VOUSSOIRS), math.pi * (1.0 - 6.5 / VOUSSOIRS)
-        weight = VOUSSOIRS * 0.5 * (1.2**2 - 1.0) * math.sin(2.0 * half)
+        half, angle = math.pi / (2 * count), math.pi * (1.0 - 6.5 / count)
+        weight = count * 0.5 * (1.2**2 - 1.0) * math.sin(2.0 * half)
         chord = 1.2 * math.cos(half)
         at = [chord * math.cos(angle), chord * math.sin(angle)]
         live = {"points": [{"block": "v7", "at": at, "force": [0.0, -weight]}]}
-    ring = {"type": "ring", "inner_radius": 1.0, "outer_radius": 1.2, "count": VOUSSOIRS}
+    ring = {"type": "ring", "inner_radius": 1.0, "outer_radius": 1.2, "count": count}
     wall = {"format": "wall/1", "unit_weight": 1.0, "friction": friction, "pattern": ring, "loads": {"live": live}}
     return build(Wall.model_validate(wall)).assembly

@@ -11,7 +11,7 @@ from methods.springs.model.factor import DenseFactor, SparseFactor
 from methods.springs.model.gap_law import OPEN, SLIP_PLUS, STICK, neighbour_states
 from methods.springs.model.wall_model import WallModel, build_model
 from methods.springs.path.direction import PathDirection
-from methods.springs.path.tolerances import MOST
+from methods.springs.path.tolerances import SOFT_MOTIONS
 from methods.springs.patterns import block_on_halves, running_bond
 
 Kind = type[DenseFactor] | type[SparseFactor]
@@ -49,7 +49,7 @@ def change(way: PathDirection, state: IntArray, point: int, new: int, look: bool
 
 
 @pytest.mark.parametrize("kind", [DenseFactor, SparseFactor])
-@pytest.mark.parametrize(("shrink", "pins"), [(1.0, 0), (1e-6, 1), (1e-14, MOST)])
+@pytest.mark.parametrize(("shrink", "pins"), [(1.0, 0), (1e-6, 1), (1e-14, SOFT_MOTIONS.most)])
 @pytest.mark.parametrize("seed", range(4))
 def test_each_piece_is_in_equilibrium_and_leads_on_into_the_new_cell(
     rough: WallModel, kind: Kind, shrink: float, pins: int, seed: int

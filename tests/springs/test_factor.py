@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -72,7 +74,7 @@ def test_rows_are_exchanged_where_block_pivots_are_not_trusted(
     model: WallModel, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     factor, state = SparseFactor(model), sliding_states(model, 3)
-    monkeypatch.setattr(factor_module, "GROWTH", 0.0)
+    monkeypatch.setattr(factor_module, "FACTORS", replace(factor_module.FACTORS, growth=0.0))
     factor.refactor(state, 0.1)
     assert factor._exchanged is not None
     tangent = model.tangent(state, 0.1)

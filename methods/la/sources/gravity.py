@@ -11,7 +11,7 @@ from methods.springs.model.factor import Factor, make_factor
 from methods.springs.model.spring_settings import GapSettings
 from methods.springs.model.wall_model import WallModel, build_model
 from methods.springs.rest.equilibrium import gravity_state
-from methods.springs.rest.newton import FALLING, Equilibrium
+from methods.springs.rest.newton import NEWTON, Equilibrium
 
 SPRINGS = GapSettings()
 """Those of `fe`, whose falls under the dead load are named beside the answer."""
@@ -30,7 +30,7 @@ class Gravity:
     def falling(self) -> list[str]:
         """Names of the blocks that fall; none where there is equilibrium, or the search for it did not end."""
         motion = self.model.block_displacements(self.equilibrium.rate)
-        return [] if self.equilibrium.found else self.model.moving_blocks(motion, FALLING)
+        return [] if self.equilibrium.found else self.model.moving_blocks(motion, NEWTON.falling)
 
     @cached_property
     def forces(self) -> FloatArray | None:

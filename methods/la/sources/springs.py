@@ -36,7 +36,7 @@ from methods.springs.model.spring_settings import GapSettings
 from methods.springs.model.wall_model import build_model
 from methods.springs.path.continuation import Tracer
 from methods.springs.path.follow import follow
-from methods.springs.path.jump import JUMPS
+from methods.springs.path.jump import JUMP
 from methods.springs.path.path_record import PathEnd, PathRecord
 from methods.springs.path.plateau import finish
 from methods.springs.path.preload import preloaded
@@ -284,7 +284,7 @@ def _from_gravity(gravity: Gravity, scale: float, interval: float = np.inf) -> B
         for further in doubled(model, factor, first):
             first = further
     tracer = Tracer.from_rest(model, factor, first, PATHS.certificate)
-    return Beginning(tracer, JUMPS, interval)
+    return Beginning(tracer, JUMP.most, interval)
 
 
 def _scale(search: Search) -> float:
@@ -298,7 +298,7 @@ def _from_central_forces(search: Search, ratio: float, share: float = np.inf) ->
     if forces is None:
         return None
     beginning = _from_forces(search.problem, forces, 0.0, ratio)
-    return beginning if share == np.inf else replace(beginning, jumps=JUMPS, interval=share * _scale(search))
+    return beginning if share == np.inf else replace(beginning, jumps=JUMP.most, interval=share * _scale(search))
 
 
 def _from_forces(problem: Problem, forces: FloatArray, multiplier: float, ratio: float) -> Beginning:

@@ -9,6 +9,7 @@ earlier tangent and the product form of the changes since then: with K_{j+1} = K
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import dataclass
 from typing import Protocol
 
 import numpy as np
@@ -22,17 +23,30 @@ from methods.numerics.block_lu import BlockFactor, BlockPattern
 from methods.numerics.compiled import compiled
 from methods.numerics.failures import SingularMatrix, sparse_lu
 from methods.numerics.vectors import largest
-from methods.springs.model.wall_model import WallModel, add_tangent
-
-GROWTH = 1e5
-"""Entries of L above this cost too many digits; a factorisation with row exchanges is called for."""
-DENSE_LIMIT = 70
-"""Unknowns up to which the dense inverse is faster than the sparse product form."""
-SOFTEST = 1e-4
-"""Stiffness, as a share of the footing's, below which a motion has none: rounding of the tangent leaves 1e-8 of it."""
+from methods.springs.model.wall_model import FOOTING, WallModel, add_tangent
 
 Change = tuple[int, int, int]
 """A point, its state and the state that it turns to."""
+
+
+@dataclass(frozen=True)
+class FactorTuning:
+    """How tangents are factorised, and how long a factor is corrected.
+
+    Attributes:
+        dense: unknowns up to which the dense inverse is faster than the sparse product form.
+        growth: entries of L above this cost too many digits: rows are exchanged then.
+        threshold: share of the largest entry of its column from which a pivot on the diagonal is kept even so.
+        updates: rank-one changes of one factor at most, for which the product form has room.
+    """
+
+    dense: int = 70
+    growth: float = 1e5
+    threshold: float = 1e-3
+    updates: int = 64
+
+
+FACTORS = FactorTuning()
 
 
 class SingularTangent(SingularMatrix):
@@ -91,7 +105,7 @@ class Factor(Protocol):
 
 def make_factor(model: WallModel) -> Factor:
     """The form that suits the size of the wall."""
-    return DenseFactor(model) if model.n_unknowns <= DENSE_LIMIT else SparseFactor(model)
+    return DenseFactor(model) if model.n_unknowns <= FACTORS.dense else SparseFactor(model)
 
 
 def refactor_any(factor: Factor, state: IntArray, careful: bool = False, pins: Sequence[int] = ()) -> None:
@@ -112,7 +126,7 @@ class DenseFactor:
 
     def __init__(self, model: WallModel) -> None:
         self.model = model
-        self.capacity = 64
+        self.capacity = FACTORS.updates
         self.count = 0
         self.factorisations = 0
         self.careful = True
@@ -140,7 +154,7 @@ class DenseFactor:
             self.inverse, info = sla.lapack.dgetri(lu, pivots, overwrite_lu=True)
         if info != 0 or not np.isfinite(self.inverse).all():
             raise SingularTangent("the tangent is singular in these states")
-        if not (shift or footing) and SOFTEST * largest((self.inverse * self._size).T @ self._size) > 1.0:
+        if not (shift or footing) and FOOTING.least * largest((self.inverse * self._size).T @ self._size) > 1.0:
             raise SingularTangent("the tangent is singular to rounding in these states")
 
     def solve(self, right: FloatArray) -> FloatArray:
@@ -173,7 +187,7 @@ class SparseFactor:
 
     def __init__(self, model: WallModel) -> None:
         self.model = model
-        self.capacity = 64
+        self.capacity = FACTORS.updates
         self.count = 0
         self.factorisations = 0
         n = model.n_unknowns
@@ -218,18 +232,25 @@ class SparseFactor:
         self._lu.values[self._diagonal] += added
         for pin in pins:
             self._lu.values[self._diagonal[pin]] += 1.0
-        return self._lu.factorise(GROWTH) and self._stiff(self._lu.values[self._diagonal], added)
+        return self._lu.factorise(FACTORS.growth) and self._stiff(self._lu.values[self._diagonal], added)
 
     def _stiff(self, pivots: FloatArray, added: FloatArray) -> bool:
         """Whether every pivot (N,) is beyond rounding, be it by what was added to the tangent."""
-        return bool((abs(pivots) >= SOFTEST * np.where(added == 0.0, self.model.footing, 0.0)).all())
+        return bool((abs(pivots) >= FOOTING.least * np.where(added == 0.0, self.model.footing, 0.0)).all())
 
     def _with_row_exchanges(self, matrix: sp.csc_matrix, added: FloatArray, pins: Sequence[int]) -> SuperLU:
         options = {"SymmetricMode": True}
         for pin in pins:
             matrix[pin, pin] += 1.0
         try:
-            lu = sparse_lu(matrix, permc_spec="NATURAL", diag_pivot_thresh=1e-3, relax=1, panel_size=1, options=options)
+            lu = sparse_lu(
+                matrix,
+                permc_spec="NATURAL",
+                diag_pivot_thresh=FACTORS.threshold,
+                relax=1,
+                panel_size=1,
+                options=options,
+            )
         except SingularMatrix as error:
             raise SingularTangent(str(error)) from error
         if not self._stiff(lu.U.diagonal(), added):

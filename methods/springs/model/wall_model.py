@@ -30,8 +30,21 @@ from methods.springs.model.gap_law import (
 from methods.springs.model.points import gap_points
 from methods.springs.model.spring_settings import GapSettings
 
-FOOTING = 1e-8
-"""Stiffness of a block against the ground, in springs of a gap point, where the tangent alone is singular."""
+
+@dataclass(frozen=True)
+class Footing:
+    """The stiffness of blocks against the ground that a singular tangent is factorised with.
+
+    Attributes:
+        stiffness: of a block, in springs of a gap point; refinement removes its force.
+        least: share of it below which a motion has no stiffness of its own: rounding of the tangent leaves 1e-8 of it.
+    """
+
+    stiffness: float = 1e-8
+    least: float = 1e-4
+
+
+FOOTING = Footing()
 
 
 @dataclass(frozen=True, eq=False)
@@ -194,7 +207,7 @@ def build_model(assembly: Assembly, settings: GapSettings, friction_cap: float =
     gyration = np.array([np.ptp(assembly.polygons[i], axis=0) @ np.ptp(assembly.polygons[i], axis=0) for i in order])
     lever = gyration / (12.0 * length**2)
     inertia = np.stack([mass, mass, mass * lever], axis=1).ravel()
-    footing = FOOTING * np.stack([np.ones_like(lever), np.ones_like(lever), lever], axis=1).ravel()
+    footing = FOOTING.stiffness * np.stack([np.ones_like(lever), np.ones_like(lever), lever], axis=1).ravel()
     stiffness = settings.normal_stiffness or 1000.0 * force / length
     model = WallModel(
         assembly=assembly,

@@ -6,30 +6,45 @@ decides which of them stick. Few points change, so the factor follows by rank-on
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+
 import numpy as np
 
 from harness.model.assembly import FloatArray, IntArray
 from methods.numerics.block_kernels import MANY as AT_ONCE
 from methods.numerics.vectors import largest
 from methods.springs.model.factor import Change, Factor, SingularTangent, refactor_any
-from methods.springs.model.gap_law import OPEN, SLIP_MINUS, SLIP_PLUS, STICK, TIED, classify, same_forces
+from methods.springs.model.gap_law import KINKS, OPEN, SLIP_MINUS, SLIP_PLUS, STICK, classify, same_forces
 from methods.springs.model.wall_model import WallModel, point_strains
 from methods.springs.path.continuation import Tracer
 
-MANY = 24
-"""Changed points above which a fresh factor is cheaper than updates."""
-NEAR = 5.0
-"""Committed steps longer than this many tangent steps may have left the branch and are not taken."""
-SAFE = 1e3
-"""Updates with |1 + b'y| or its inverse above this are not trusted here."""
-BALANCED = 1e-9
-"""Out-of-balance force (share of the load scale) up to which a step is taken without a further one.
 
-A step by way of huge displacements, over a nearly singular tangent, loses digits.
-"""
+@dataclass(frozen=True)
+class CommitTuning:
+    """The finite step after a commit.
+
+    Attributes:
+        within: displacements, in multiples of the first, up to which the history is still committed.
+        steps: Newton steps at most.
+        updates: changed points above which a fresh factor is cheaper than updates.
+        pivot: |1 + b'y|, or its inverse, above which updates are not trusted here.
+        longest: steps longer than this many tangent steps may have left the branch and are not taken.
+        balanced: out-of-balance force (share of the load scale) up to which a step is taken without a further one: by
+            way of huge displacements, over a nearly singular tangent, it loses digits.
+    """
+
+    within: float = 300.0
+    steps: int = 12
+    updates: int = 24
+    pivot: float = 1e3
+    longest: float = 5.0
+    balanced: float = 1e-9
 
 
-def committed_step(tracer: Tracer, ahead: float, limit: int = 12) -> Tracer | None:
+COMMITS = CommitTuning()
+
+
+def committed_step(tracer: Tracer, ahead: float) -> Tracer | None:
     """Commit the history where the tracer stands and step `ahead` in the multiplier.
 
     Returns:
@@ -45,17 +60,17 @@ def committed_step(tracer: Tracer, ahead: float, limit: int = 12) -> Tracer | No
     seen: set[bytes] = set()
     landed = np.empty_like(state)
     try:
-        for _ in range(limit):
+        for _ in range(COMMITS.steps):
             step = factor.solve(model.out_of_balance(opening, trial, state, multiplier))
             u += step
             point_strains(model.unknown, model.rows, model.interface, model.position, step, opening_rate, slip_rate)
             opening += opening_rate
             trial += model.kt * slip_rate
             classify(opening, trial, model.kn, model.mu, landed, False)
-            if same_forces(opening, trial, model.kn, model.mu, state, landed, TIED * tracer.scale):
+            if same_forces(opening, trial, model.kn, model.mu, state, landed, KINKS.force * tracer.scale):
                 opening, trial = model.strains(u)
                 trial = model.kt * trial + history
-                if largest(model.out_of_balance(opening, trial, state, multiplier)) > BALANCED * tracer.scale:
+                if largest(model.out_of_balance(opening, trial, state, multiplier)) > COMMITS.balanced * tracer.scale:
                     continue
                 if not _near(tracer, u, ahead):
                     return None
@@ -74,14 +89,14 @@ def _near(tracer: Tracer, u: FloatArray, ahead: float) -> bool:
     """Whether a step stays on its branch: the live load works forwards, not much further than the tangent predicts."""
     moved = u - tracer.u
     predicted = largest(tracer.direction.velocity) * ahead
-    return float(tracer.model.live @ moved) > 0.0 and largest(moved) <= NEAR * predicted
+    return float(tracer.model.live @ moved) > 0.0 and largest(moved) <= COMMITS.longest * predicted
 
 
 def change_states(model: WallModel, factor: Factor, state: IntArray, wanted: IntArray) -> None:
     """Bring a factor from one set of states (changed in place) to another. Raises SingularTangent."""
     points = np.flatnonzero(state != wanted).tolist()
     changes = [change for p in points for change in _way(p, int(state[p]), int(wanted[p]))]
-    if len(points) <= MANY and factor.count + len(changes) < factor.capacity:
+    if len(points) <= COMMITS.updates and factor.count + len(changes) < factor.capacity:
         for k, change in enumerate(changes):
             if k % AT_ONCE == 0:
                 factor.foresee(changes[k : k + AT_ONCE])
@@ -109,7 +124,7 @@ def _change(model: WallModel, factor: Factor, change: Change) -> bool:
     index, _, b = model.change(*change)
     y = factor.solve_change(change)
     denominator = 1.0 + float(b @ y[index])
-    if not 1.0 / SAFE < abs(denominator) < SAFE:
+    if not 1.0 / COMMITS.pivot < abs(denominator) < COMMITS.pivot:
         return False
     factor.update(y, index, b, denominator)
     return True

@@ -15,26 +15,13 @@ from harness.model.assembly import FloatArray, IntArray
 from methods.numerics.block_kernels import MANY
 from methods.numerics.vectors import largest
 from methods.springs.model.factor import Change, Factor, SingularTangent
-from methods.springs.model.gap_law import OPEN, SLIP_PLUS, STICK, gap_forces
+from methods.springs.model.gap_law import KINKS, OPEN, SLIP_PLUS, STICK, gap_forces
 from methods.springs.model.wall_model import WallModel, load_scale
 from methods.springs.path.direction import PathDirection
 from methods.springs.path.kinks import advance, coming_kinks, live_rate, next_kink, strain_rates
 from methods.springs.path.path_record import LoadStep, PathEnd, PathRecord, Snapshot
-from methods.springs.path.plateau import CERTIFICATE, worst_residual
-from methods.springs.path.tolerances import (
-    DRIFT,
-    ELASTIC,
-    ELSEWHERE,
-    ENOUGH,
-    FAR,
-    GLANCE,
-    GROWN,
-    LARGE,
-    LOOK,
-    LOST,
-    NOISE,
-    TIE,
-)
+from methods.springs.path.plateau import COLLAPSE, worst_residual
+from methods.springs.path.tolerances import DRIFT, MECHANISM, UPDATES
 from methods.springs.rest.newton import Equilibrium
 
 
@@ -58,7 +45,7 @@ class Tracer:
         history: FloatArray,
         state: IntArray,
         factorised: bool = False,
-        certificate: float = CERTIFICATE,
+        certificate: float = COLLAPSE.certificate,
     ) -> None:
         self.model = model
         self.factor = factor
@@ -87,7 +74,9 @@ class Tracer:
             self.refresh()
 
     @classmethod
-    def from_rest(cls, model: WallModel, factor: Factor, rest: Equilibrium, certificate: float = CERTIFICATE) -> Tracer:
+    def from_rest(
+        cls, model: WallModel, factor: Factor, rest: Equilibrium, certificate: float = COLLAPSE.certificate
+    ) -> Tracer:
         """The path that goes on from a state of equilibrium."""
         return cls(model, factor, rest.u, rest.multiplier, rest.history, rest.state, certificate=certificate)
 
@@ -122,9 +111,9 @@ class Tracer:
         residual = self._out_of_balance()
         worst = largest(residual) / self.scale
         self.worst_residual = max(self.worst_residual, worst)
-        moved, lost = False, worst > ELSEWHERE
-        for _ in range(2):
-            if worst < 1e-14:
+        moved, lost = False, worst > DRIFT.elsewhere
+        for _ in range(DRIFT.corrections):
+            if worst < DRIFT.rounding:
                 break
             correction, rate = self.direction.balance(residual)
             self.direction.rates(correction, np.zeros_like(correction))
@@ -137,7 +126,7 @@ class Tracer:
                 break
         if moved:
             self.direction.measure()
-        if lost or min(worst, self.worst_residual) > LOST:
+        if lost or min(worst, self.worst_residual) > DRIFT.lost:
             raise SingularTangent("the path was lost to rounding")
 
     def _out_of_balance(self) -> FloatArray:
@@ -151,10 +140,10 @@ class Tracer:
         return shear - (self.trial - self.history)
 
     def is_mechanism(self) -> bool:
-        """Whether no force changes along the present piece (rates within ELASTIC of the fastest)."""
+        """Whether no force changes along the present piece (rates of forces negligible beside the fastest)."""
         way = self.direction
         strain, elastic = strain_rates(way.opening_rate, way.trial_rate, self.model.kt, self.state)
-        return elastic <= ELASTIC * strain
+        return elastic <= MECHANISM.elastic * strain
 
     def run(
         self, record: PathRecord, max_events: int, target: float = np.inf, turn: float = np.inf, note: int = 1
@@ -190,9 +179,9 @@ class Tracer:
             model.kn,
             model.mu,
             self.state,
-            TIE * self.scale,
-            1e-11,
-            NOISE * self.scale / self.extent if way.pins else np.inf,
+            KINKS.force * self.scale,
+            KINKS.rate,
+            KINKS.soft_rate * self.scale / self.extent if way.pins else np.inf,
             self.last_point,
             self.last_old,
         )
@@ -206,7 +195,7 @@ class Tracer:
             if way.pins:
                 return PathEnd.BREAKDOWN
             return PathEnd.UNBOUNDED if way.speed > 0.0 else PathEnd.RUNS_DOWN
-        if ahead * largest(way.velocity) > LARGE * self.first_displacement:
+        if ahead * largest(way.velocity) > MECHANISM.furthest * self.first_displacement:
             return PathEnd.BREAKDOWN
         if reach <= step:
             self._advance(way.velocity, way.speed, reach)
@@ -241,19 +230,19 @@ class Tracer:
             return False
         size, fastest = self.extent, largest(way.velocity)
         ahead = step * fastest
-        if ahead < 1e-3 * size or not self.is_mechanism() or live_rate(model.live, way.velocity) <= 0.0:
+        if ahead < MECHANISM.least * size or not self.is_mechanism() or live_rate(model.live, way.velocity) <= 0.0:
             return False
-        if way.opening_rate[self.state == OPEN].min(initial=0.0) < -ELASTIC * fastest:
+        if way.opening_rate[self.state == OPEN].min(initial=0.0) < -MECHANISM.elastic * fastest:
             return False
-        if ahead > FAR * size:
+        if ahead > MECHANISM.far * size:
             return True
-        if size < GROWN * self.looked_at:
+        if size < MECHANISM.growth * self.looked_at:
             return False
         self.looked_at = size
         holds = worst_residual(model, self.present()) <= self.certificate
         if holds or not self.kept_holds:
             self.kept, self.kept_holds = deepcopy(self.present()), holds
-        return holds and size > ENOUGH * self.first_displacement
+        return holds and size > MECHANISM.confirmed * self.first_displacement
 
     def _advance(self, velocity: FloatArray, speed: float, step: float) -> None:
         way = self.direction
@@ -280,7 +269,7 @@ class Tracer:
         self.n_open += (new == OPEN) - (old == OPEN)
         self.n_slip += (new >= SLIP_PLUS) - (old >= SLIP_PLUS)
         self.last_point, self.last_old = point, old
-        look = self.factor.count % GLANCE == 0
+        look = self.factor.count % UPDATES.straight_every == 0
         if not self.direction.turn(change, crossing, self.state, self.extent, look):
             self.refresh((change, crossing))
         elif self._drifted():
@@ -297,9 +286,9 @@ class Tracer:
 
     def _drifted(self) -> bool:
         """Whether the out-of-balance force has grown enough to factorise afresh (looked at every few changes)."""
-        if self.factor.count % LOOK:
+        if self.factor.count % UPDATES.balance_every:
             return False
-        return largest(self._out_of_balance()) > DRIFT * self.scale
+        return largest(self._out_of_balance()) > DRIFT.removed * self.scale
 
     def _kink_rate(self, point: int, old: int, new: int) -> float:
         """b'v of a change of state and the velocity v of the present piece."""

@@ -23,21 +23,9 @@ from harness.model.assembly import FloatArray, IntArray
 from methods.numerics.vectors import combine, largest
 from methods.springs.model.exact_rates import exact_gap_rates
 from methods.springs.model.factor import Change, Factor, SingularTangent, refactor_any
+from methods.springs.model.gap_law import KINKS
 from methods.springs.model.wall_model import WallModel, point_strains
-from methods.springs.path.tolerances import (
-    BEARABLE,
-    BENT,
-    CAREFUL,
-    CLEAR,
-    COARSE,
-    CROOKED,
-    FREE,
-    MOST,
-    SOFT,
-    STEEP,
-    STRAIGHT,
-    WEAK,
-)
+from methods.springs.path.tolerances import REFINEMENT, SOFT_MOTIONS, UPDATES
 
 
 @dataclass
@@ -102,9 +90,9 @@ class PathDirection:
 
     def _solve_pinned(self, state: IntArray, careful: bool) -> None:
         """Solve for the velocity, its fastest displacement pinned where the piece turns out to be soft."""
-        for _ in range(MOST):
+        for _ in range(SOFT_MOTIONS.most):
             before, rising = self.velocity, self.speed
-            self.pins = [int(np.argmax(np.abs(before)))] if self.size > FREE else []
+            self.pins = [int(np.argmax(np.abs(before)))] if self.size > SOFT_MOTIONS.velocity else []
             self._factorise(state, careful)
             self._solve(before, rising)
             if self._is_pinned_right():
@@ -113,8 +101,8 @@ class PathDirection:
     def _is_pinned_right(self) -> bool:
         """Whether a soft piece is pinned, where it moves."""
         if not self.pins:
-            return self.size <= FREE
-        return bool(abs(self.velocity[self.pins[0]]) >= WEAK * largest(self.velocity))
+            return self.size <= SOFT_MOTIONS.velocity
+        return bool(abs(self.velocity[self.pins[0]]) >= SOFT_MOTIONS.held * largest(self.velocity))
 
     def _factorise(self, state: IntArray, careful: bool) -> None:
         """Factorise the tangent, and where a pinned one is still soft, pin the softest motion as well.
@@ -126,14 +114,14 @@ class PathDirection:
             refactor_any(self.factor, state, careful, self.pins)
             self.response = self.factor.solve(self.model.live)
             softest = int(np.argmax(np.abs(self.response)))
-            if not self.pins or not self._is_soft() or softest in self.pins or len(self.pins) == MOST:
+            if not self.pins or not self._is_soft() or softest in self.pins or len(self.pins) == SOFT_MOTIONS.most:
                 break
             self.pins.insert(0 if self.factor.footed else len(self.pins), softest)
         self.shapes = [self._shape(pin, state) for pin in self.pins[1:]]
 
     def _is_soft(self) -> bool:
         """Whether the response to the live load shows a soft motion that is not pinned."""
-        return largest(self.response) > SOFT * self.elastic
+        return largest(self.response) > SOFT_MOTIONS.response * self.elastic
 
     def solve_first(self, state: IntArray) -> None:
         """Solve for the velocity with the factor as it stands, the multiplier rising."""
@@ -162,7 +150,7 @@ class PathDirection:
         """Whether the velocity leads back, beyond rounding, over the kink just crossed with a rate b'v."""
         index, _, b = self.model.change(*change)
         along = float(b @ self.velocity[index])
-        return abs(along) > CLEAR * largest(self.velocity) and along * rate < 0.0
+        return abs(along) > KINKS.sure_rate * largest(self.velocity) and along * rate < 0.0
 
     def _hold(self, x: FloatArray, held: float = 0.0) -> tuple[FloatArray, float]:
         """Add m responses to the live load and shapes of the pins to x, so that the springs of the pins carry nothing.
@@ -240,14 +228,14 @@ class PathDirection:
             self.velocity /= unit
             self.tail /= unit
             self.speed /= unit
-        if self.factor.count >= self.factor.capacity - 1 or not 1.0 / STEEP < abs(1.0 + along) < STEEP:
+        if self.factor.count >= self.factor.capacity - 1 or not 1.0 / UPDATES.pivot < abs(1.0 + along) < UPDATES.pivot:
             return False
         if not self._is_pinned_right():
             return False
         self.factor.update(y, index, b, 1.0 + along)
         if self.pins:
             self.response -= y * (float(b @ self.response[index]) / (1.0 + along))
-            if self._is_soft() and len(self.pins) < MOST:
+            if self._is_soft() and len(self.pins) < SOFT_MOTIONS.most:
                 return False
             for shape in self.shapes:
                 shape.value -= y * (float(b @ shape.value[index]) / (1.0 + along))
@@ -263,19 +251,21 @@ class PathDirection:
 
         A defect that refinement no longer lowers is borne, unless a soft piece is to be strictly straight.
         """
-        self.fine = bool(self.shapes) or (bool(self.pins) and extent > COARSE)
+        self.fine = bool(self.shapes) or (bool(self.pins) and extent > REFINEMENT.doubled)
         self.measure()
+        by = REFINEMENT
         if self.pins:
-            enough, bearable = STRAIGHT / extent, (STRAIGHT if strict else BEARABLE) / extent
+            enough, bearable = by.soft_defect / extent, (by.soft_defect if strict else by.soft_accepted) / extent
         else:
-            enough, bearable = BENT * self.live_size * abs(self.speed), CROOKED * self.live_size * abs(self.speed)
+            live, speed = self.live_size, abs(self.speed)
+            enough, bearable = by.defect * live * speed, by.accepted * live * speed
         previous = np.inf
-        for count in range(CAREFUL):
+        for count in range(REFINEMENT.steps):
             defect = self.model.out_of_balance(self.opening_rate, self.trial_rate, state, self.speed, 0.0)
             worst = largest(defect)
             if worst <= enough and (count > 0 or not self.factor.footed):
                 return True
-            if not worst < 0.5 * previous:
+            if not worst < REFINEMENT.contraction * previous:
                 return worst <= bearable
             previous = worst
             correction, rate = self.balance(defect)

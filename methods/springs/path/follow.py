@@ -6,13 +6,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from methods.springs.path.commits import committed_step
+from methods.springs.path.commits import COMMITS, committed_step
 from methods.springs.path.continuation import Tracer
-from methods.springs.path.jump import JUMPS, TURN, past_turn, successor
+from methods.springs.path.jump import JUMP, past_turn, successor
 from methods.springs.path.path_record import PathEnd, PathRecord
-
-COMMIT_WITHIN = 300.0
-"""Displacements, in multiples of the first, up to which the history is still committed."""
 
 
 @dataclass(frozen=True)
@@ -31,7 +28,7 @@ def follow(
     max_events: int,
     interval: float = np.inf,
     highest: float = np.inf,
-    jumps: int = JUMPS,
+    jumps: int = JUMP.most,
     committed_up_to: float = np.inf,
 ) -> Followed:
     """Follow a path from where the tracer stands to its end.
@@ -49,8 +46,8 @@ def follow(
         SingularTangent: the path cannot be taken up again where it stands.
         OutOfTime: the time given is over; the record has the path so far.
     """
-    committing, large = interval < np.inf, COMMIT_WITHIN * tracer.first_displacement
-    turn = TURN if jumps > 0 else np.inf
+    committing, large = interval < np.inf, COMMITS.within * tracer.first_displacement
+    turn = JUMP.turn if jumps > 0 else np.inf
     commits, residual, hopeless = 0, 0.0, -np.inf
     while True:
         after = None

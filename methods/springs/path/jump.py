@@ -2,16 +2,32 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+
 import numpy as np
 
 from methods.springs.model.factor import SingularTangent
 from methods.springs.path.continuation import Tracer
 from methods.springs.rest.equilibrium import equilibrium
 
-TURN = 0.1
-"""Share of the peak by which a path may turn down before a jump from it is tried."""
-JUMPS = 10
-"""Jumps tried along one path: a loop would be tried to be left for ever."""
+
+@dataclass(frozen=True)
+class JumpTuning:
+    """When jumps are tried, and to where.
+
+    Attributes:
+        turn: share of the peak by which a path may turn down before a jump from it is tried.
+        most: jumps tried along one path: a loop would be tried to be left for ever.
+        above: share of the peak by which the load is raised above it; least: multiplier added to that.
+    """
+
+    turn: float = 0.1
+    most: int = 10
+    above: float = 1e-3
+    least: float = 1e-9
+
+
+JUMP = JumpTuning()
 
 
 def past_turn(tracer: Tracer, peak: float, jumps: int) -> tuple[Tracer, float]:
@@ -25,14 +41,14 @@ def past_turn(tracer: Tracer, peak: float, jumps: int) -> tuple[Tracer, float]:
     """
     after = _jump(tracer, peak) if jumps > 0 else None
     if after is not None:
-        return after, TURN
+        return after, JUMP.turn
     tracer.refresh()
     return tracer, np.inf
 
 
 def _jump(tracer: Tracer, peak: float) -> Tracer | None:
     """The tracer just above the peak, at the equilibrium that the springs come to from where it is; None if at none."""
-    above = peak * (1.0 + 1e-3) + 1e-9
+    above = peak * (1.0 + JUMP.above) + JUMP.least
     answer = equilibrium(tracer.model, tracer.factor, tracer.u, above, tracer.history, commits=True)
     if not answer.found:
         return None

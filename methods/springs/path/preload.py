@@ -12,17 +12,14 @@ import numpy as np
 
 from harness.model.assembly import FloatArray
 from methods.springs.model.factor import Factor
-from methods.springs.model.gap_law import STICK
+from methods.springs.model.gap_law import KINKS, STICK
 from methods.springs.model.wall_model import WallModel
 from methods.springs.path.continuation import Tracer
-from methods.springs.path.plateau import CERTIFICATE
-
-LEAST = 1e-12
-"""Least compression of a gap point, in mean block weights, which closes it."""
+from methods.springs.path.plateau import COLLAPSE
 
 
 def preloaded(
-    model: WallModel, factor: Factor, multiplier: float, forces: FloatArray, certificate: float = CERTIFICATE
+    model: WallModel, factor: Factor, multiplier: float, forces: FloatArray, certificate: float = COLLAPSE.certificate
 ) -> Tracer:
     """The path from contact forces, with a gap point at each end of every interface.
 
@@ -32,7 +29,7 @@ def preloaded(
         forces: (m, 3) end forces n1, n2, s [force] within yield; the shear is shared out as the compression is.
         certificate: largest residual of a mechanism that ends the path.
     """
-    ends = np.maximum(forces[:, :2] / model.force, LEAST)
+    ends = np.maximum(forces[:, :2] / model.force, KINKS.force)
     share = (forces[:, 2] / model.force / ends.sum(axis=1))[model.interface]
     normal = np.where(model.position == 0.0, ends[model.interface, 0], ends[model.interface, 1])
     loaded = replace(model, initial_opening=-normal / model.kn)

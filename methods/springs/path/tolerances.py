@@ -1,52 +1,108 @@
-"""When numbers of the continuation count as zero, as free, as large or as lost."""
+"""When numbers of the continuation count as soft, as straight, as lost, or as a mechanism."""
 
 from __future__ import annotations
 
-DRIFT = 1e-9
-"""Out-of-balance force (share of the load scale) above which the tangent is factorised afresh."""
-STEEP = 1e8
-"""Changes with |1 + b'y| or its inverse above this would cost digits; the tangent is factorised afresh."""
-FREE = 1e4
-"""Velocities larger than this many times the first one, at the same rate of the multiplier, are pinned."""
-WEAK = 1e-3
-"""Share of the fastest displacement below which the pin no longer holds the motion, and is moved."""
-COARSE = 1e6
-"""Dimensionless displacements up to which the rounding of gap rates changes no force by more than 1e-9."""
-BENT = 1e-7
-"""Defect of K v = l live (share of the live load) above which a velocity is refined."""
-CROOKED = 1e-5
-"""The same when refinement no longer helps, above which the tangent is factorised afresh."""
-STRAIGHT = 1e-7
-"""Defect above which a pinned velocity is refined, as a force over a motion as long as the displacements so far."""
-BEARABLE = 1e-4
-"""The same when refinement no longer helps, above which the tangent is factorised afresh."""
-SOFT = 1e8
-"""A response of the pinned wall to the live load this many times the first one is a soft motion to be pinned too."""
-MOST = 4
-"""Pins at most."""
-CLEAR = 1e-6
-"""Rate of a kink function, over the fastest velocity, from which its sign in a new direction is beyond doubt."""
-CAREFUL = 8
-"""Refinements of a velocity at most."""
-NOISE = 1e-7
-"""Rates of kink functions below this, as forces over such a motion, count as zero on pinned pieces."""
-FAR = 1e4
-"""A mechanism that moves this many times the present displacement before its next kink is the collapse."""
-LARGE = 1e13
-"""Displacements, in multiples of the first ones, beyond which the path is not followed."""
-ENOUGH = 1e10
-"""Displacements, in multiples of the first ones, at which a mechanism that passes its check is the collapse."""
-GROWN = 1.1
-"""By how much displacements grow from one check of a mechanism to the next."""
-LOST = 1e-5
-"""Out-of-balance force (share of the load scale) at which the path counts as lost."""
-ELSEWHERE = 1e-2
-"""The same from which equilibrium, found again, would be another path's."""
-GLANCE = 4
-"""Changes of state between two looks at how straight the direction is, while it is not pinned."""
-LOOK = 8
-"""Changes of state between two looks at the out-of-balance force."""
-TIE = 1e-12
-"""How far a kink may be overrun by the choice among near ties (share of the load scale)."""
-ELASTIC = 1e-8
-"""Elastic force rates below this share of the strain rates count as zero: the direction is a mechanism."""
+from dataclasses import dataclass
+
+
+@dataclass(frozen=True)
+class SoftMotions:
+    """When a piece of the path is soft, so that its motion is pinned in the factor.
+
+    Attributes:
+        velocity: multiple of the first piece's velocity, at the same rate of the multiplier, above which the fastest
+            displacement is pinned.
+        response: the same of the pinned wall's response to the live load, which shows a further soft motion.
+        held: share of the fastest displacement below which the pin no longer holds the motion, and is moved.
+        most: pins at most.
+    """
+
+    velocity: float = 1e4
+    response: float = 1e8
+    held: float = 1e-3
+    most: int = 4
+
+
+@dataclass(frozen=True)
+class RefinementTolerances:
+    """Iterative refinement of the velocity, by its defect in K v = l live.
+
+    Attributes:
+        defect: share of the live load above which a velocity is refined.
+        accepted: the same when refinement no longer helps, above which the tangent is factorised afresh.
+        soft_defect, soft_accepted: likewise on pinned pieces, as forces over a motion as long as the displacements.
+        contraction: share of the defect before it that a step must leave at most, or refinement no longer helps.
+        steps: at most.
+        doubled: displacements (dimensionless) above which gap rates of pinned pieces are measured in doubled
+            precision: up to there their rounding changes no force by more than 1e-9.
+    """
+
+    defect: float = 1e-7
+    accepted: float = 1e-5
+    soft_defect: float = 1e-7
+    soft_accepted: float = 1e-4
+    contraction: float = 0.5
+    steps: int = 8
+    doubled: float = 1e6
+
+
+@dataclass(frozen=True)
+class UpdateTolerances:
+    """How long a factor is corrected by rank-one changes before the tangent is factorised afresh.
+
+    Attributes:
+        pivot: |1 + b'y|, or its inverse, above which a change would cost digits.
+        straight_every: changes between two looks at how straight the direction is, while it is not pinned.
+        balance_every: changes between two looks at the out-of-balance force.
+    """
+
+    pivot: float = 1e8
+    straight_every: int = 4
+    balance_every: int = 8
+
+
+@dataclass(frozen=True)
+class DriftTolerances:
+    """Out-of-balance forces on the path, as shares of the load scale.
+
+    Attributes:
+        removed: above this equilibrium is found again.
+        rounding: below this there is nothing to correct.
+        corrections: steps of that at most.
+        lost: at this the path counts as lost.
+        elsewhere: from this equilibrium, found again, would be another path's.
+    """
+
+    removed: float = 1e-9
+    rounding: float = 1e-14
+    corrections: int = 2
+    lost: float = 1e-5
+    elsewhere: float = 1e-2
+
+
+@dataclass(frozen=True)
+class MechanismTests:
+    """When a piece of the path is a mechanism, and when a mechanism is the collapse.
+
+    Attributes:
+        elastic: elastic force rates below this share of the strain rates count as zero: the direction is a mechanism.
+        least: share of the present displacement by which it moves before its next kink, to be looked at.
+        far: multiple of the present displacement that it moves before its next kink as the collapse.
+        growth: of the displacements from one check to the next.
+        confirmed: displacements, in multiples of the first, at which one that passes its check is the collapse.
+        furthest: displacements, in multiples of the first, beyond which the path is not followed.
+    """
+
+    elastic: float = 1e-8
+    least: float = 1e-3
+    far: float = 1e4
+    growth: float = 1.1
+    confirmed: float = 1e10
+    furthest: float = 1e13
+
+
+SOFT_MOTIONS = SoftMotions()
+REFINEMENT = RefinementTolerances()
+UPDATES = UpdateTolerances()
+DRIFT = DriftTolerances()
+MECHANISM = MechanismTests()

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -11,16 +11,27 @@ from harness.model.assembly import FloatArray
 from methods.springs.model.factor import Factor
 from methods.springs.model.wall_model import WallModel
 from methods.springs.rest.newton import Equilibrium, newton
-from methods.springs.rest.slow_motion import FURTHEST, NEWTON_STEPS, SlowMotion
+from methods.springs.rest.slow_motion import LOAD_RAISING, REST, SlowMotion
 
-START = 1e-3
-"""First Newton step off the kinks on which gravity leaves many gap points, as a multiplier."""
-SHORTER = 0.1
-"""How much shorter each further first step is, where the wall does not stand that one."""
-MOST_SHORTER = 5
-"""First steps tried after the longest one: a wall may collapse at a multiplier below it."""
-NEWTON_STEPS_AT_FIRST = 10_000
-"""Newton steps of the motion to rest under the dead load, at most."""
+
+@dataclass(frozen=True)
+class FirstSteps:
+    """The Newton steps off the kinks on which gravity leaves many gap points.
+
+    Attributes:
+        multiplier: of the first.
+        shorter: factor on it where the wall does not stand that one; tries: how often, at most: a wall may collapse at
+            a multiplier below it.
+        newton_steps: at most, of each of the doubled steps that follow.
+    """
+
+    multiplier: float = 1e-3
+    shorter: float = 0.1
+    tries: int = 5
+    newton_steps: int = 25
+
+
+FIRST_STEPS = FirstSteps()
 
 
 def equilibrium(
@@ -29,7 +40,7 @@ def equilibrium(
     u: FloatArray,
     multiplier: float,
     history: FloatArray,
-    limit: int = NEWTON_STEPS,
+    limit: int = REST.steps,
     commits: bool = False,
 ) -> Equilibrium:
     """Newton, then slow motion of at most `limit` Newton steps from where Newton started.
@@ -46,7 +57,7 @@ def equilibrium(
 
 def gravity_state(model: WallModel, factor: Factor) -> Equilibrium:
     """Equilibrium under the dead load from the virgin state."""
-    return equilibrium(model, factor, np.zeros(model.n_unknowns), 0.0, model.history, NEWTON_STEPS_AT_FIRST)
+    return equilibrium(model, factor, np.zeros(model.n_unknowns), 0.0, model.history, REST.steps_under_dead_load)
 
 
 def first_step(model: WallModel, factor: Factor, rest: Equilibrium, scale: float) -> Equilibrium:
@@ -56,23 +67,23 @@ def first_step(model: WallModel, factor: Factor, rest: Equilibrium, scale: float
         model: the wall; factor: its tangent; rest: equilibrium under the dead load.
         scale: a multiplier of the order of collapse.
     """
-    multiplier = START * min(1.0, scale)
+    multiplier = FIRST_STEPS.multiplier * min(1.0, scale)
     first = equilibrium(model, factor, rest.u, multiplier, rest.history)
-    for _ in range(MOST_SHORTER):
+    for _ in range(FIRST_STEPS.tries):
         if first.found:
             break
-        multiplier *= SHORTER
+        multiplier *= FIRST_STEPS.shorter
         first = equilibrium(model, factor, rest.u, multiplier, rest.history)
     return first
 
 
 def doubled(model: WallModel, factor: Factor, first: Equilibrium) -> Iterator[Equilibrium]:
-    """Equilibria at 2, 4, 8, ... times the multiplier of a first one, as far as Newton converges; at most to FURTHEST.
+    """Equilibria at 2, 4, 8, ... times the multiplier of a first one, as far as Newton converges and loads are raised.
 
     Without commits the law has no history, so they lie on the path from the first.
     """
-    while first.multiplier < FURTHEST:
-        first = newton(model, factor, first.u, 2.0 * first.multiplier, first.history, 25)
+    while first.multiplier < LOAD_RAISING.furthest:
+        first = newton(model, factor, first.u, 2.0 * first.multiplier, first.history, FIRST_STEPS.newton_steps)
         if not first.found:
             return
         yield first
