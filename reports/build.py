@@ -183,10 +183,14 @@ def _date(created: str) -> str:
 
 
 def _provenance(run: ComparisonRun) -> list[tuple[str, str]]:
-    """Facts of the comparison as a whole, flattened to names and texts; studies are shown elsewhere."""
+    """Facts of the comparison as a whole, flattened to names and texts; studies are shown elsewhere.
+
+    Machine and versions stand with the runs that were made there, once where they are the same for all.
+    """
+    ran = any(item.results for item in run.cases)
     flat: list[tuple[str, str]] = []
     for name, value in run.provenance.items():
-        if name == "studies":
+        if name == "studies" or (ran and name in ("versions", "machine")):
             continue
         if isinstance(value, dict):
             flat.append((name.replace("_", " "), ", ".join(f"{key} {item}" for key, item in value.items())))

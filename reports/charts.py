@@ -16,6 +16,8 @@ from reports.marks import Mark
 WIDTH, HEIGHT = 560, 330
 LEFT, RIGHT, BOTTOM, TOP = 62, 14, 46, 14
 ROW, PER_ROW = 18, 3
+LETTER, NOTE = 6.6, 12
+"""Width of a letter of a legend, about, and height of a line of notes."""
 MARKERS = (
     "M-3.5 0a3.5 3.5 0 1 0 7 0a3.5 3.5 0 1 0-7 0z",
     "M-3.2-3.2h6.4v6.4h-6.4z",
@@ -56,7 +58,16 @@ class Series:
 
 @dataclass(frozen=True)
 class Chart:
-    """A chart: what is on its axes and its series."""
+    """A chart: what is on its axes and its series.
+
+    Attributes:
+        title, x_label, y_label: texts.
+        series: its lines.
+        log_x, log_y: whether an axis is logarithmic.
+        zero_y: whether the upright axis begins at zero.
+        levels: names and values of level lines.
+        whole: whether the level axis counts, so that only whole numbers stand at it.
+    """
 
     title: str
     x_label: str
@@ -66,6 +77,13 @@ class Chart:
     log_y: bool = False
     zero_y: bool = False
     levels: list[tuple[str, float]] = field(default_factory=list)
+    whole: bool = False
+
+    @property
+    def per_row(self) -> int:
+        """How many names of series stand beside each other."""
+        longest = max((len(series.name) for series in self.series), default=0)
+        return max(1, min(PER_ROW, int((WIDTH - LEFT - RIGHT) / (42 + LETTER * longest))))
 
 
 def ticks(low: float, high: float, wanted: int = 5) -> list[float]:
@@ -168,36 +186,44 @@ def csv_of(chart: Chart) -> str:
 
 def svg(chart: Chart) -> Markup:
     """The chart as an inline SVG element, a `Drawing`."""
-    rows = math.ceil(len(chart.series) / PER_ROW) if len(chart.series) > 1 else 0
+    rows = math.ceil(len(chart.series) / chart.per_row) if len(chart.series) > 1 else 0
     top = TOP + rows * ROW
     height = HEIGHT + rows * ROW
     xs = [value for series in chart.series for value in series.x]
     ys = [value for series in chart.series for value in [*series.y, *series.low, *series.high]]
     ys += [value for _, value in chart.levels]
     across = Axis(xs, LEFT, WIDTH - RIGHT, log=chart.log_x)
+    if chart.whole:
+        across.ticks = [value for value in across.ticks if value == round(value)]
     up = Axis(ys, height - BOTTOM, top, log=chart.log_y, zero=chart.zero_y)
     parts = [
         Markup('<svg class="chart" viewBox="0 0 {} {}" role="img" aria-label="{}">').format(WIDTH, height, chart.title),
         _axes(chart, across, up, height, top),
     ]
-    for number, (name, value) in enumerate(chart.levels):
-        y = up.place(value)
-        if y is not None:
-            # Names stand left and right in turn, so that close levels do not write over each other.
-            x, anchor = (LEFT + 6, "start") if number % 2 == 0 else (WIDTH - RIGHT - 4, "end")
-            parts.append(
-                Markup(
-                    '<path class="level" d="M{} {:.1f}H{}"/><text class="note {}" x="{}" y="{:.1f}">{}</text>'
-                ).format(LEFT, y, WIDTH - RIGHT, anchor, x, y - 4, name)
-            )
+    parts.append(_levels(chart, up))
     for number, series in enumerate(chart.series):
         parts.append(_series(series, number, across, up))
         if rows:
-            parts.append(_legend(series, number))
+            parts.append(_legend(series, number, chart.per_row))
     parts.append(Markup("</svg>"))
     drawing = Drawing(Markup("").join(parts))
     drawing.chart = chart
     return drawing
+
+
+def _levels(chart: Chart, up: Axis) -> Markup:
+    """Levels with their names above them, the next one's on the other side, below its line where it is taken too."""
+    drawn, taken = Markup(""), {"start": -math.inf, "end": -math.inf}
+    for name, y in sorted(((name, up.place(value)) for name, value in chart.levels), key=lambda pair: pair[1] or 0.0):
+        if y is None:
+            continue
+        anchor = "start" if y - 4 - taken["start"] >= NOTE or taken["end"] > taken["start"] else "end"
+        base = max(y - 4, taken[anchor] + NOTE)
+        taken[anchor] = base
+        drawn += Markup(
+            '<path class="level" d="M{} {:.1f}H{}"/><text class="note {}" x="{}" y="{:.1f}">{}</text>'
+        ).format(LEFT, y, WIDTH - RIGHT, anchor, LEFT + 6 if anchor == "start" else WIDTH - RIGHT - 4, base, name)
+    return drawn
 
 
 def _axes(chart: Chart, across: Axis, up: Axis, height: float, top: float) -> Markup:
@@ -261,10 +287,10 @@ def _series(series: Series, number: int, across: Axis, up: Axis) -> Markup:
     return drawn
 
 
-def _legend(series: Series, number: int) -> Markup:
-    width = (WIDTH - LEFT - RIGHT) / PER_ROW
-    x = LEFT + (number % PER_ROW) * width
-    y = TOP + (number // PER_ROW) * ROW - 2
+def _legend(series: Series, number: int, per_row: int) -> Markup:
+    width = (WIDTH - LEFT - RIGHT) / per_row
+    x = LEFT + (number % per_row) * width
+    y = TOP + (number // per_row) * ROW - 2
     line, marker, dashes, shape = _look(series, number)
     sample = Markup("")
     if series.line:

@@ -18,6 +18,8 @@ TIMES = ("cpu_seconds", "seconds", "search_seconds")
 """Columns of a path that tell when a value was found [s]."""
 SAME = 1e-9
 """Relative difference of values that a chart would draw as one: there is nothing to see, and words say it."""
+LEVEL = 0.01
+"""Part of the greatest load by which a plateau may rise or fall: a hundredth is not seen in a chart."""
 LENGTHS = ("live_displacement", "displacement")
 
 
@@ -72,15 +74,17 @@ def _load_displacement(item: CaseResults, result: Result, moved: list[float], lo
 
 
 def _until_plateau(moved: list[float], loads: list[float]) -> int:
-    """How many points to draw: a plateau followed to a huge displacement would squeeze the rest into the axis."""
-    if not loads:
-        return 0
-    top = max(abs(value) for value in loads)
-    rising = [k for k in range(1, len(loads)) if abs(loads[k] - loads[k - 1]) > 1e-4 * top]
-    if not rising:
+    """How many points to draw: a plateau followed to a huge displacement would squeeze the rest into the axis.
+
+    Drawn is three times the displacement from which on the load stays within `LEVEL` of its end.
+    """
+    top = max((abs(value) for value in loads), default=0.0)
+    last = max((k for k, load in enumerate(loads) if abs(load - loads[-1]) > LEVEL * top), default=None)
+    if last is None:
         return len(loads)
-    limit = 3.0 * abs(moved[rising[-1]]) or math.inf
-    return max(rising[-1] + 1, sum(abs(value) <= limit for value in moved))
+    reached = min(last + 1, len(loads) - 1)
+    limit = 3.0 * abs(moved[reached]) or math.inf
+    return max(reached + 1, sum(abs(value) <= limit for value in moved))
 
 
 def _release(item: CaseResults, result: Result) -> list[tuple[str, Markup]]:
@@ -127,6 +131,7 @@ def _holds(result: Result) -> tuple[str, Markup]:
         x_label="hold number",
         y_label="multiplier",
         series=[charts.Series(name, x, y, line=False) for name, (x, y) in groups.items() if x],
+        whole=True,
     )
     orders = result.details.get("orders")
     count = f" ({numbers.count(len(orders), 'body order')} tried)" if isinstance(orders, list) else ""
@@ -163,6 +168,7 @@ def _orders(result: Result) -> list[tuple[str, Markup]]:
         x_label="body order",
         y_label="multiplier",
         series=[held, moving],
+        whole=True,
     )
     names = ", ".join(f"{number} {order.get('order', '')}" for number, order in enumerate(orders, start=1))
     return [
@@ -193,6 +199,7 @@ def _starts(result: Result) -> tuple[str, Markup]:
             charts.Series("found by this start", number, values, line=False),
         ],
         levels=levels,
+        whole=True,
     )
     return f"{result.method}: the collapse state each start of the search leads to.", charts.svg(chart)
 

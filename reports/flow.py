@@ -3,12 +3,16 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
 from harness.model.assembly import Assembly, FloatArray
 from reports.shapes import Thrusts
+
+HEAD_JOINT = 0.5
+"""An interface whose normal has a horizontal part above this (60 degrees from the vertical or more) is a head joint."""
 
 
 @dataclass(frozen=True)
@@ -69,3 +73,15 @@ def round_number(largest: float) -> float:
     """The largest of 1, 2, 5 times a power of ten that does not exceed a positive number."""
     power = 10.0 ** math.floor(math.log10(largest))
     return max(head * power for head in (1.0, 2.0, 5.0) if head * power <= largest * (1.0 + 1e-12))
+
+
+def head_thrust(assembly: Assembly, forces: Sequence[Sequence[float]] | None) -> float | None:
+    """The sum of the normal forces (m, 3) in head joints over the weight of the free blocks; None without either.
+
+    Friction on the beds carries what does not press there, so that the thrust is free within bounds: a self-stress.
+    """
+    weight = float(assembly.weight[assembly.free].sum())
+    head = np.abs(assembly.normal[:, 0]) > HEAD_JOINT
+    if forces is None or not head.any() or weight <= 0.0:
+        return None
+    return float(np.asarray(forces, dtype=float)[head, :2].sum()) / weight

@@ -11,7 +11,7 @@ from markupsafe import Markup
 
 from harness.model.comparison import CaseResults, ComparisonRun
 from harness.model.method import Traits
-from reports import numbers, shapes, words
+from reports import flow, numbers, shapes, words
 from reports.environment import environment
 from reports.families import Study, friction_of, proportion_of, same_but_both, solved
 
@@ -31,9 +31,6 @@ CAUSES = (
     (-1, "elastic", "its history leads to a collapse that the others did not find."),
 )
 """What is known of a method of some trait that stands apart from the others: above them (1) or below (-1)."""
-
-HEAD_JOINT = 0.5
-"""An interface whose normal has a horizontal part above this (60 degrees from the vertical or more) is a head joint."""
 
 
 @dataclass(frozen=True)
@@ -112,7 +109,7 @@ class Cell:
 def grids(run: ComparisonRun) -> list[Study]:
     """A study for every kind of wall of which at least two proportions, frictions and methods are in the comparison."""
     groups: dict[str, list[Cell]] = defaultdict(list)
-    titles: dict[str, str] = {}
+    kinds: dict[str, str] = {}
     for number, item in enumerate(run.cases):
         if shapes.problem(item.case):
             continue
@@ -120,13 +117,15 @@ def grids(run: ComparisonRun) -> list[Study]:
         if cell is not None:
             key = same_but_both(item.case.assembly)
             groups[key].append(cell)
-            titles.setdefault(key, item.case.file.title)
-    return [_study(titles[key], cells) for key, cells in groups.items() if _is_grid(cells)]
+            kinds.setdefault(key, f"walls of {numbers.count(item.case.assembly.n_free, 'block')} in one bond")
+    return [_study(kinds[key], cells) for key, cells in groups.items() if _is_grid(cells)]
 
 
 def _is_grid(cells: list[Cell]) -> bool:
-    walls = len({cell.proportion for cell in cells}) > 1 and len({cell.friction for cell in cells}) > 1
-    return walls and len({name for cell in cells for name in cell.values}) > 1
+    """Whether most places of a table of at least two rows and columns are filled, by at least two methods."""
+    rows, across = {cell.proportion for cell in cells}, {cell.friction for cell in cells}
+    filled = min(len(rows), len(across)) > 1 and 2 * len(cells) > len(rows) * len(across)
+    return filled and len({name for cell in cells for name in cell.values}) > 1
 
 
 def _cell(number: int, item: CaseResults) -> Cell | None:
@@ -135,12 +134,10 @@ def _cell(number: int, item: CaseResults) -> Cell | None:
     if proportion is None or friction is None:
         return None
     mains, above = item.mains, item.associated
-    weight = float(assembly.weight[assembly.free].sum())
-    head = np.abs(assembly.normal[:, 0]) > HEAD_JOINT
     thrust = {
-        result.method: float(np.asarray(result.forces, float)[head, :2].sum()) / weight
+        result.method: found
         for result in (*mains, *([above] if above is not None else []))
-        if result.forces is not None and solved(result) and weight > 0.0
+        if solved(result) and (found := flow.head_thrust(assembly, result.forces)) is not None
     }
     return Cell(
         number=number,
@@ -154,7 +151,7 @@ def _cell(number: int, item: CaseResults) -> Cell | None:
     )
 
 
-def _study(title: str, cells: list[Cell]) -> Study:
+def _study(kind: str, cells: list[Cell]) -> Study:
     proportions = sorted({cell.proportion for cell in cells})
     frictions = sorted({cell.friction for cell in cells})
     at = {(cell.proportion, cell.friction): cell for cell in cells}
@@ -163,7 +160,7 @@ def _study(title: str, cells: list[Cell]) -> Study:
         environment()
         .get_template("_grid.html.j2")
         .render(
-            caption=f"Agreement of {who} over proportion and friction, {title} and its kin",
+            caption=f"Agreement of {who} over proportion and friction, {kind}",
             frictions=[numbers.given(friction, 3) for friction in frictions],
             rows=[
                 (numbers.given(proportion, 3), [at.get((proportion, friction)) for friction in frictions])
@@ -172,7 +169,7 @@ def _study(title: str, cells: list[Cell]) -> Study:
         )
     )
     return Study(
-        f"Where {who} agree: {title} and its kin",
+        f"Where {who} agree: {kind}, by proportion and friction",
         " ".join(sentence for sentence in (_where(cells), *_why(cells)) if sentence),
         "A row is a proportion of the brick (width over height), a column a friction. “agree” means that all "
         "multipliers lie within 1 %; otherwise the cell names the one furthest from the middle one, and how far. "

@@ -224,7 +224,8 @@ def origin(result: Result) -> str:
 
 def _forces_are(result: Result) -> str:
     if result.flow == "approximate":
-        return "contact forces of the last state that was held; the mechanism above is of the one that moved"
+        moved = "; the mechanism above is of the one that moved" if result.mechanism is not None else ""
+        return f"contact forces of the last state that was held{moved}"
     at = numbers.multiplier(result.forces_multiplier)
     if result.forces_multiplier is not None and at != numbers.multiplier(result.multiplier):
         return f"contact forces at {at}"

@@ -190,7 +190,7 @@ def run_row(case_number: int, result_number: int, item: CaseResults) -> RunRow:
         settings=_pairs(result.settings),
         limits=_pairs(result.limits),
         versions=_pairs(result.versions),
-        machine=_pairs(result.machine),
+        machine=_machine(result.machine),
         command=f"drystone run {result.method} {result.case}",
         blocks=result.blocks,
         interfaces=result.interfaces,
@@ -207,6 +207,13 @@ def _pairs(values: dict[str, Any]) -> str:
         f"{name} = {value if isinstance(value, str) else json.dumps(value, default=str, ensure_ascii=False)}"
         for name, value in values.items()
     )
+
+
+def _machine(values: dict[str, Any]) -> str:
+    """Where a run was made, its memory in units that people read."""
+    size = values.get("memory_bytes")
+    known = values if not isinstance(size, int) else values | {"memory_bytes": numbers.memory(size)}
+    return ", ".join(f"{name.removesuffix('_bytes')} {value}" for name, value in known.items())
 
 
 def run_rows(run: ComparisonRun) -> list[list[RunRow]]:
