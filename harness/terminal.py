@@ -153,8 +153,10 @@ def print_comparison(compared: ComparisonRun, report: Path | None) -> None:
     gated = sum(item.gate for case in compared.cases for result in case.results for item in result.comparisons)
     gates = sum(gate.passed is not None for case in compared.cases for gate in case.gates)
     if broken:
-        held = f"{gated} gated references, {gates} statements of theory and the answers"
-        console.print(f"Of {held}, {len(broken)} do not hold:")
+        known = [(gated, "gated references"), (gates, "statements of theory")]
+        held = ", ".join(f"{number} {what}" for number, what in known if number)
+        verb = "does" if len(broken) == 1 else "do"
+        console.print(f"Of {held}{' and ' if held else ''}the answers, {len(broken)} {verb} not hold:")
         for sentence in broken:
             console.print(f"  ✗ {escape(sentence)}", highlight=False)
     else:

@@ -103,7 +103,11 @@ def red_rows(run: ComparisonRun) -> list[RedRow]:
     rows: list[RedRow] = []
     for number, item in enumerate(run.cases):
         rows.extend(
-            RedRow(f"case-{number}", f"{item.case.id}, theory", f"{gate.statement}: does not hold ({gate.sentence})")
+            RedRow(
+                f"case-{number}",
+                f"{item.case.id}, {'search' if gate.of_search else 'theory'}",
+                f"{gate.statement}: does not hold ({gate.sentence})",
+            )
             for gate in item.gates
             if gate.passed is False
         )
@@ -124,10 +128,21 @@ def _wrong(result: Result) -> str:
 
 
 def _broken_theory(run: ComparisonRun) -> list[str]:
-    broken = [item.case.id for item in run.cases if any(gate.passed is False for gate in item.gates)]
-    if not broken:
-        return []
-    return [f"Theory is violated on {', '.join(broken)}: at least one method is wrong there."]
+    """Walls on which a method is wrong, and those on which a search missed a state, each with its figures."""
+    broken = [
+        (item.case.id, gate) for item in run.cases for gate in item.gates if gate.passed is False and not gate.of_search
+    ]
+    missed = [
+        (item.case.id, gate) for item in run.cases for gate in item.gates if gate.passed is False and gate.of_search
+    ]
+    told = []
+    if broken:
+        names = ", ".join(dict.fromkeys(name for name, _ in broken))
+        told.append(f"Theory is violated on {names}: at least one method is wrong there.")
+    if missed:
+        names = "; ".join(f"{name} ({gate.sentence})" for name, gate in missed)
+        told.append(f"The search for the least state missed one that another method reached: {names}.")
+    return told
 
 
 def _called(result: Result, item: CaseResults) -> str:

@@ -109,7 +109,7 @@ def theory_gates(results: CaseResults) -> list[Gate]:
     }
     gates: list[Gate] = []
 
-    def below(name: str, statement: str, lower: Result, upper: Result | None) -> None:
+    def below(name: str, statement: str, lower: Result, upper: Result | None, *, of_search: bool = False) -> None:
         if upper is None:
             return
         value = lower.multiplier if lower.bracket is None else lower.bracket[0]
@@ -123,6 +123,7 @@ def theory_gates(results: CaseResults) -> list[Gate]:
                 statement=statement,
                 passed=value <= limit + slack,
                 sentence=f"{lower.method} {value:.9g}, {upper.method} {limit:.9g}",
+                of_search=of_search,
             )
         )
 
@@ -139,8 +140,8 @@ def theory_gates(results: CaseResults) -> list[Gate]:
             statement = "every collapse state lies below the associated maximum"
             below(f"{method}-below-associated", statement, result, bounding)
         if least is not None and result is not least and not result.traits.brackets:
-            statement = "the least collapse state known lies below every other collapse state"
-            below(f"{least.method}-below-{method}", statement, least, result)
+            statement = "the search for the least collapse state finds none above another method's"
+            below(f"{least.method}-below-{method}", statement, least, result, of_search=True)
     gates += [gate for gate in (_moves_no_lower(results, usable, usable[name]) for name in sorted(usable)) if gate]
     no_equilibrium = bounding or least
     if no_equilibrium is not None and no_equilibrium.finding is Finding.FALLS:

@@ -21,6 +21,7 @@ class Gate(BaseModel):
         statement: what theory says.
         passed: whether it holds; None where a result it needs is missing.
         sentence: the figures.
+        of_search: whether it fails where a search missed a state that another method reached, and no answer is wrong.
     """
 
     model_config = ConfigDict(extra="forbid")
@@ -28,6 +29,7 @@ class Gate(BaseModel):
     statement: str
     passed: bool | None
     sentence: str
+    of_search: bool = False
 
 
 @dataclass(frozen=True)

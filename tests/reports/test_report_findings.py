@@ -7,7 +7,7 @@ import re
 import numpy as np
 import pytest
 
-from harness.model.comparison import CaseResults, ComparisonRun
+from harness.model.comparison import CaseResults, ComparisonRun, Gate
 from harness.model.method import Status
 from harness.model.result import Verdict
 from reports import build, joints, mechanism_drawing, opening, reasons, tables
@@ -76,6 +76,16 @@ def test_suite_names_every_red_row_and_broken_theory_comes_first():
     }
     assert any(finding.startswith("single-block collapses at 0.40000") for finding in opened.findings)
     assert any("the mechanism is the same and the forces differ" in finding for finding in opened.findings)
+
+
+def test_search_that_missed_a_state_is_told_as_such_and_no_method_is_called_wrong():
+    item = of_one_wall()
+    missed = Gate(name="la-below-fe", statement="s", passed=False, sentence="la 0.6, fe 0.5", of_search=True)
+    item.gates.append(missed)
+    opened = opening.opening(ComparisonRun("", "", "", [item]))
+    assert opened.findings[0].startswith("The search for the least state missed one")
+    assert "la 0.6, fe 0.5" in opened.findings[0]
+    assert not any("wrong" in sentence for sentence in opened.findings)
 
 
 def test_case_that_only_failed_has_findings():
