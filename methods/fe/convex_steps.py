@@ -25,14 +25,36 @@ from methods.numerics.vectors import largest
 from methods.springs.model.wall_model import WallModel, load_scale
 from methods.springs.path.path_record import PathRecord
 
-FAR = 100.0
-"""First steps beyond which forces are no longer kept while no step fails: OSQP's accuracy is relative to the load."""
-NEAR = 0.01
-"""Share of the multiplier within which limits that do not settle are taken for the collapse above them."""
-SETTLED = 1e-5
-"""Change of friction limits, in largest loads of a block, at which they count as repeated."""
-SMALL = 1000.0
-"""Multiples of `SETTLED` at which the live load has to stand to the dead load for a bracket to mean anything."""
+
+@dataclass(frozen=True)
+class TrescaTuning:
+    """How the multiplier marches up, and how friction limits are iterated.
+
+    Attributes:
+        longer: factor on the step after one that settled; furthest: first steps after which nothing is left to find.
+        kept: first steps beyond which forces are no longer kept while no step fails: OSQP's accuracy is relative to
+            the load.
+        damped: share of a change of the limits that is taken where the whole of it does not settle.
+        repeated: change of friction limits, in largest loads of a block, at which they count as repeated.
+        nearer: share of the least change so far that a further one must be below to count as nearer.
+        runaway: displacements, in load scales, beyond which there is no minimum.
+        lost: share of the multiplier within which limits that do not settle are taken for the collapse above them.
+        fine: multiples of `repeated` at which the live load has to stand to the dead load for a bracket to mean
+            anything.
+    """
+
+    longer: float = 1.5
+    furthest: float = 1e6
+    kept: float = 100.0
+    damped: float = 0.5
+    repeated: float = 1e-5
+    nearer: float = 0.9
+    runaway: float = 1e6
+    lost: float = 0.01
+    fine: float = 1000.0
+
+
+TRESCA = TrescaTuning()
 
 
 @dataclass(frozen=True)
@@ -161,7 +183,7 @@ def bracket_collapse(
     limit = _settle(programme, 0.0, np.zeros(model.n_points), fixed_points)
     if limit is None:
         rough = model.mu * float(np.abs(model.dead).sum())
-        limit = _settle(programme, 0.0, rough, 2 * fixed_points, 0.5)
+        limit = _settle(programme, 0.0, rough, 2 * fixed_points, TRESCA.damped)
     if limit is None:
         programme.solve(0.0, rough)
         return ConvexResult(0.0, None, record, programme.programmes, False, fall=programme.ray)
@@ -175,20 +197,20 @@ def bracket_collapse(
         ahead = np.maximum(limit + (goal - lower) * growth, 0.0)
         settled = _settle(programme, goal, ahead, fixed_points)
         if settled is None:
-            settled = _settle(programme, goal, 2.0 * np.maximum(ahead, limit), 2 * fixed_points, 0.5)
+            settled = _settle(programme, goal, 2.0 * np.maximum(ahead, limit), 2 * fixed_points, TRESCA.damped)
         if settled is None:
             upper, falls = goal, goal if programme.without_minimum else falls
         else:
             growth = (settled - limit) / (goal - lower)
             lower, limit = goal, settled
-            if goal <= FAR * first_step or upper is not None:
+            if goal <= TRESCA.kept * first_step or upper is not None:
                 forces, at = (programme.normal, np.clip(programme.shear, -limit, limit)), goal
             record.add(goal, 0.0, 0, 0)
-            step *= 1.5
-        if upper is None and lower > 1e6 * first_step:
+            step *= TRESCA.longer
+        if upper is None and lower > TRESCA.furthest * first_step:
             break
-    settles = upper is None or falls <= upper * (1.0 + NEAR)
-    fine = upper is None or upper * largest(model.live) >= SMALL * SETTLED * largest(model.dead)
+    settles = upper is None or falls <= upper * (1.0 + TRESCA.lost)
+    fine = upper is None or upper * largest(model.live) >= TRESCA.fine * TRESCA.repeated * largest(model.dead)
     return ConvexResult(lower, upper, record, programme.programmes, True, forces, at, settles, fine)
 
 
@@ -204,14 +226,14 @@ def _settle(
     least, left = np.inf, count
     while left:
         answer = programme.solve(multiplier, limit)
-        if answer is None or np.abs(answer[0]).max() > 1e6 * scale:
+        if answer is None or np.abs(answer[0]).max() > TRESCA.runaway * scale:
             programme.without_minimum |= answer is not None
             programme.restart()
             return None
         new = model.mu * answer[1]
         change = float(np.abs(new - limit).max())
-        if change < SETTLED * share * scale:
+        if change < TRESCA.repeated * share * scale:
             return new
-        least, left = (change, count) if change < 0.9 * least else (least, left - 1)
+        least, left = (change, count) if change < TRESCA.nearer * least else (least, left - 1)
         limit = limit + share * (new - limit)
     return None

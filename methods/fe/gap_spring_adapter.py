@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from typing import Any, ClassVar
 
 import numpy as np
@@ -12,7 +12,7 @@ from harness.model.assembly import Assembly
 from harness.model.load_steps import NAME
 from harness.model.method import Answer, Finding, Settings, Status, Traits
 from methods.fe.convex_steps import bracket_collapse
-from methods.fe.histories import LARGE_ABOVE, HistoryResult, Plan, trace_history, with_initial_shear
+from methods.fe.histories import HISTORIES, HistoryResult, Plan, trace_history, with_initial_shear
 from methods.fe.incremental import march
 from methods.fe.path_answers import (
     bracket_answer,
@@ -35,16 +35,30 @@ from methods.springs.warm_up import load_kernels
 
 load_kernels()
 
-FEWEST_EVENTS, EVENTS_A_POINT = 2000, (30, 5)
-"""Events up to which a history is traced: so many, and for every gap point more on the first and on those after it.
 
-Two walls of 400 irregular blocks come to a plateau after 20 and 26 events a point. On large walls the first has no more
-than the others: those in courses need 1 to 3.5 a point.
-"""
-LOST_ABOVE = (500, 4)
-"""Once a history reached its plateau, the next are given up above this number of events and multiple of its own."""
-THREE_UP_TO = 1200
-"""Blocks up to which three histories are run by default."""
+@dataclass(frozen=True)
+class EventLimits:
+    """Events up to which histories are traced, and how many histories there are.
+
+    Attributes:
+        fewest: of every history; first, further: for every gap point more on the first and on those after it. Two
+            walls of 400 irregular blocks come to a plateau after 20 and 26 events a point. On large walls the first
+            has no more than the others: those in courses need 1 to 3.5 a point.
+        fewest_beside, multiple: once a history reached its plateau, the next are given up above so many events and
+            this multiple of its own.
+        intervals: of commits, as shares of the multiplier, by default; only the first of them above `three` blocks.
+    """
+
+    fewest: int = 2000
+    first: int = 30
+    further: int = 5
+    fewest_beside: int = 500
+    multiple: int = 4
+    intervals: tuple[float, ...] = (0.0, 0.01, 0.002)
+    three: int = 1200
+
+
+EVENTS = EventLimits()
 
 
 class GapSprings:
@@ -86,8 +100,10 @@ class GapSprings:
                 return gravity_failure(model, gravity)
         results, start = list[HistoryResult](), gravity
         scale = _unit(model.assembly)
-        limits = [settings.max_events or FEWEST_EVENTS + count * model.n_points for count in EVENTS_A_POINT]
-        limit = limits[model.assembly.n_free > LARGE_ABOVE]
+        limits = [
+            settings.max_events or EVENTS.fewest + count * model.n_points for count in (EVENTS.first, EVENTS.further)
+        ]
+        limit = limits[model.assembly.n_free > HISTORIES.large]
         for step in chosen_histories(model, settings):
             result = trace_history(model, factor, start, Plan(step, scale, limit, load_steps=settings.load_steps))
             results.append(result)
@@ -99,10 +115,10 @@ class GapSprings:
                 scale = result.record.peak
             elif result.state is not None:
                 scale = abs(result.state.multiplier) or 1.0
-                limit = min(limit, LOST_ABOVE[0] + LOST_ABOVE[1] * result.record.events)
+                limit = min(limit, EVENTS.fewest_beside + EVENTS.multiple * result.record.events)
         answer = collapse_answer(model, results, factor.factorisations, settings.load_steps)
         lost = results and all(r.state is None and r.end is PathEnd.BREAKDOWN for r in results)
-        if lost and model.assembly.n_free <= LARGE_ABOVE:
+        if lost and model.assembly.n_free <= HISTORIES.large:
             return _by_displacement_control(model, factor, gravity, answer)
         return answer
 
@@ -127,7 +143,7 @@ def chosen_histories(model: WallModel, settings: GapSpringsSettings) -> tuple[fl
     """The commit intervals to run: as set, or by the size of the wall."""
     if settings.histories is not None:
         return settings.histories
-    return (0.0, 0.01, 0.002) if model.assembly.n_free <= THREE_UP_TO else (0.0,)
+    return EVENTS.intervals if model.assembly.n_free <= EVENTS.three else EVENTS.intervals[:1]
 
 
 def _unit(assembly: Assembly) -> float:

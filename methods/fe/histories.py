@@ -27,16 +27,31 @@ from methods.springs.rest.equilibrium import doubled, equilibrium, first_step
 from methods.springs.rest.newton import Equilibrium
 from methods.springs.rest.slow_motion import SlowMotion
 
-DISTURBANCES = (1e-9, 1e-7, 1e-5)
-"""Random initial shears, in weights of a block, tried in turn where exact ties lead a path astray."""
-COMMITTED_UP_TO = (np.inf, 0.97, 0.9, 0.8)
-"""Shares of the multiplier scale up to which a history is committed, in turn while it is lost."""
-LARGE_ABOVE = 500
-"""Blocks above which a path of too many kinks is given up early, and not traced again with disturbed shears."""
-DOUBLE_ABOVE = 100
-"""Blocks above which a path without commits starts where doubled Newton steps end, to save the early events."""
-ASTRAY = 3.0
-"""Multiple of the first history's plateau at which a committed history counts as lost."""
+
+@dataclass(frozen=True)
+class HistoryTuning:
+    """What is tried where a history is lost, and when.
+
+    Attributes:
+        disturbances: random initial shears, in weights of a block, tried in turn where exact ties lead a path astray.
+        committed_up_to: shares of the multiplier scale up to which a history is committed, in turn while it is lost.
+        astray: multiple of the first history's plateau at which a committed history counts as lost.
+        large: blocks above which a path of too many kinks is given up early, and not traced again with disturbed
+            shears.
+        doubled: blocks above which a path without commits starts where doubled Newton steps end, to save the early
+            events.
+        seed: of the disturbances.
+    """
+
+    disturbances: tuple[float, ...] = (1e-9, 1e-7, 1e-5)
+    committed_up_to: tuple[float, ...] = (np.inf, 0.97, 0.9, 0.8)
+    astray: float = 3.0
+    large: int = 500
+    doubled: int = 100
+    seed: int = 1995
+
+
+HISTORIES = HistoryTuning()
 SENTENCES = {
     PathEnd.PLATEAU: "the path ends on a plateau",
     PathEnd.UNBOUNDED: "the path goes on to any multiplier",
@@ -109,11 +124,11 @@ def trace_history(model: WallModel, factor: Factor, start: Equilibrium, plan: Pl
     result = _trace(model, factor, start, plan)
     if result.raised is not None:
         return result
-    large = model.assembly.n_free > LARGE_ABOVE
-    for disturbance in DISTURBANCES:
+    large = model.assembly.n_free > HISTORIES.large
+    for disturbance in HISTORIES.disturbances:
         if not _lost(result) or (large and result.end == PathEnd.EVENTS):
             break
-        noise = np.random.default_rng(1995).uniform(-disturbance, disturbance, model.n_points)
+        noise = np.random.default_rng(HISTORIES.seed).uniform(-disturbance, disturbance, model.n_points)
         disturbed = equilibrium(model, factor, start.u, 0.0, start.history + noise)
         if disturbed.found:
             result = _trace(model, factor, disturbed, replace(plan, disturbance=disturbance))
@@ -125,7 +140,7 @@ def trace_history(model: WallModel, factor: Factor, start: Equilibrium, plan: Pl
 
 def _committed(model: WallModel, factor: Factor, start: Equilibrium, plan: Plan) -> HistoryResult:
     """A history with commits, up to the end or as far as it is not lost."""
-    for share in COMMITTED_UP_TO:
+    for share in HISTORIES.committed_up_to:
         result = _trace(model, factor, start, replace(plan, committed_up_to=share * plan.scale))
         if not _lost(result):
             break
@@ -196,7 +211,7 @@ def _trace_in_time(
         least = f"{first.multiplier:.2g} times the live load, the least step tried"
         sentence = f"the dead load is in equilibrium, but {least}, is not"
         return HistoryResult(plan, PathEnd.BREAKDOWN, sentence, record, None, 0, 0.0)
-    if plan.step == 0.0 and model.assembly.n_free > DOUBLE_ABOVE:
+    if plan.step == 0.0 and model.assembly.n_free > HISTORIES.doubled:
         for further in doubled(model, factor, first):
             first = further
             _note(record, model, first)
@@ -207,7 +222,9 @@ def _followed(tracer: Tracer, plan: Plan, record: PathRecord) -> HistoryResult:
     """What following a path from where the tracer stands leads to. Raises OutOfTime and SingularTangent as above."""
     model, scale = tracer.model, plan.scale
     interval = plan.step * scale or np.inf
-    way = follow(tracer, record, plan.max_events, interval, ASTRAY * scale, committed_up_to=plan.committed_up_to)
+    way = follow(
+        tracer, record, plan.max_events, interval, HISTORIES.astray * scale, committed_up_to=plan.committed_up_to
+    )
     tracer, end = way.tracer, way.end
     record.keep(tracer.load_step, always=True)
     state = (

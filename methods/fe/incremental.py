@@ -20,18 +20,52 @@ from methods.springs.model.factor import Factor, SingularTangent
 from methods.springs.model.wall_model import WallModel, load_scale
 from methods.springs.path.path_record import PathRecord, Snapshot
 from methods.springs.path.plateau import PlateauState, finish
-from methods.springs.rest.newton import Equilibrium, newton, settled
+from methods.springs.rest.newton import NEWTON, Equilibrium, newton, settled
 
-FIRST_PUSH, LEAST_PUSH = 0.02, 1e-6
-"""First step of displacement control, as a share of the way under load control; the shortest as a share of that."""
-LONGER, SHORTER = 1.5, 0.25
-"""Factors on the step of displacement control after one that converged and one that did not."""
-CONTROLS = 6
-"""Blocks whose displacement is controlled, one after the other, where no step however short converges."""
-MOST_ITERATIONS = 60
-"""Newton iterations of one step of displacement control."""
-SHORTEST = 0.05
-"""Least share of a Newton step that is taken where states come round in a cycle."""
+
+@dataclass(frozen=True)
+class LoadControl:
+    """Steps of the multiplier.
+
+    Attributes:
+        iterations: Newton iterations of a step, at most.
+        longer: factor on the step after one that converged, before the first that did not; shorter: after each of
+            those.
+        furthest: first steps after which the load is taken to go on to any multiplier.
+    """
+
+    iterations: int = 25
+    longer: float = 1.5
+    shorter: float = 0.5
+    furthest: float = 1e6
+
+
+@dataclass(frozen=True)
+class DisplacementControl:
+    """Steps of a prescribed displacement.
+
+    Attributes:
+        first: step, as a share of the way under load control; least: of the steps, as a share of that.
+        longer, shorter: factors on the step after one that converged and one that did not.
+        blocks: whose displacement is controlled, one after the other, where no step however short converges.
+        iterations: Newton iterations of a step, at most.
+        damped: least share of a Newton step that is taken where states come round in a cycle; each repetition halves
+            the share.
+        flat: change of the multiplier in a step, relative to it, up to which the wall moves at a constant one.
+    """
+
+    first: float = 0.02
+    least: float = 1e-6
+    longer: float = 1.5
+    shorter: float = 0.25
+    blocks: int = 6
+    iterations: int = 60
+    damped: float = 0.05
+    flat: float = 1e-8
+
+
+LOAD_CONTROL = LoadControl()
+DISPLACEMENT_CONTROL = DisplacementControl()
 
 
 @dataclass(frozen=True)
@@ -72,17 +106,17 @@ def march(
     """
     record = PathRecord()
     point, step, iterations, cut = StepPoint(gravity.u, 0.0, gravity.state), first_step, 0, 0
-    while cut <= cuts and point.multiplier < 1e6 * first_step:
-        answer = newton(model, factor, point.u, point.multiplier + step, model.history, 25)
+    while cut <= cuts and point.multiplier < LOAD_CONTROL.furthest * first_step:
+        answer = newton(model, factor, point.u, point.multiplier + step, model.history, LOAD_CONTROL.iterations)
         iterations += answer.iterations
         if not answer.found:
-            step *= 0.5
+            step *= LOAD_CONTROL.shorter
             cut += 1
             continue
         point = StepPoint(answer.u, point.multiplier + step, answer.state)
         record.add(point.multiplier, float(model.live @ point.u), 0, 0)
         if cut == 0:
-            step *= 1.5
+            step *= LOAD_CONTROL.longer
     reached = point.multiplier
     record.peak = reached
     if cut <= cuts:
@@ -111,28 +145,28 @@ def _displacement_control(
         point: where load control stopped; travel: (N,) how far the wall has moved under the live load.
         steps: at most; record: gets the points that converge.
     """
-    origin, iterations, controls = point.u - travel, 0, CONTROLS
+    origin, iterations, controls = point.u - travel, 0, DISPLACEMENT_CONTROL.blocks
     direction = travel
     control = _farthest(direction)
-    push = first = FIRST_PUSH * float(control @ direction)
+    push = first = DISPLACEMENT_CONTROL.first * float(control @ direction)
     for _ in range(steps if first > 0.0 else 0):
         moved, spent = _controlled(model, factor, point, control, float(control @ point.u) + push)
         iterations += spent
         if moved is None:
-            push *= SHORTER
-            if push < LEAST_PUSH * first:
+            push *= DISPLACEMENT_CONTROL.shorter
+            if push < DISPLACEMENT_CONTROL.least * first:
                 other = _farthest(direction)
                 controls -= 1
                 if controls == 0 or np.array_equal(other, control):
                     break
                 control = other
-                push = first = FIRST_PUSH * abs(float(control @ (point.u - origin)))
+                push = first = DISPLACEMENT_CONTROL.first * abs(float(control @ (point.u - origin)))
             continue
-        flat = abs(moved.multiplier - point.multiplier) <= 1e-8 * max(1.0, abs(point.multiplier))
+        flat = abs(moved.multiplier - point.multiplier) <= DISPLACEMENT_CONTROL.flat * max(1.0, abs(point.multiplier))
         direction, point = moved.u - point.u, moved
         record.add(point.multiplier, float(model.live @ point.u), 0, 0)
         record.peak = max(record.peak, point.multiplier)
-        push *= LONGER
+        push *= DISPLACEMENT_CONTROL.longer
         collapse = _collapse(model, point, direction) if flat else None
         if collapse is not None:
             return collapse, point.multiplier, iterations
@@ -155,9 +189,9 @@ def _controlled(
     u, multiplier, state = point.u, point.multiplier, point.state
     scale, share = load_scale(model, multiplier), 1.0
     seen: set[bytes] = set()
-    for count in range(MOST_ITERATIONS):
+    for count in range(DISPLACEMENT_CONTROL.iterations):
         if state.tobytes() in seen:
-            share = max(0.5 * share, SHORTEST)
+            share = max(0.5 * share, DISPLACEMENT_CONTROL.damped)
         seen.add(state.tobytes())
         try:
             factor.refactor(state, footing=True)
@@ -172,12 +206,12 @@ def _controlled(
         landed = model.states(u + step, model.history)
         if settled(model, u + step, model.history, state, landed, scale):
             u, multiplier = u + step, multiplier + rise
-            if np.abs(model.residual(u, multiplier, model.history, state)).max() < 1e-8 * scale:
+            if np.abs(model.residual(u, multiplier, model.history, state)).max() < NEWTON.balanced * scale:
                 return StepPoint(u, multiplier, state), count + 1
             continue
         u, multiplier = u + share * step, multiplier + share * rise
         state = landed if share == 1.0 else model.states(u, model.history)
-    return None, MOST_ITERATIONS
+    return None, DISPLACEMENT_CONTROL.iterations
 
 
 def _collapse(model: WallModel, point: StepPoint, direction: FloatArray) -> PlateauState | None:

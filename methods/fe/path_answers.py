@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -9,7 +10,7 @@ import numpy as np
 from harness.model.assembly import FloatArray
 from harness.model.errors import first_few
 from harness.model.method import Answer, Finding, Status
-from methods.fe.convex_steps import SETTLED, ConvexResult
+from methods.fe.convex_steps import TRESCA, ConvexResult
 from methods.fe.histories import HistoryResult
 from methods.fe.load_steps import load_steps
 from methods.springs.model.wall_model import WallModel
@@ -17,10 +18,21 @@ from methods.springs.path.path_record import PathEnd, PathRecord
 from methods.springs.path.plateau import PlateauState
 from methods.springs.rest.newton import NEWTON, Equilibrium
 
-PATH_POINTS = 300
-"""Points of the path that an answer keeps at most."""
-WIDE = 0.025
-"""Spread of the histories above which the sentence of an answer speaks of it."""
+
+@dataclass(frozen=True)
+class ToldOfPaths:
+    """What of a path an answer tells.
+
+    Attributes:
+        path_points: that it keeps, at most.
+        spread: of the histories, as a share of the multiplier, above which its sentence speaks of it.
+    """
+
+    path_points: int = 300
+    spread: float = 0.025
+
+
+TOLD = ToldOfPaths()
 
 
 def gravity_failure(model: WallModel, gravity: Equilibrium) -> Answer:
@@ -148,7 +160,7 @@ def collapse_answer(model: WallModel, results: list[HistoryResult], factorisatio
     )
     if best.raised is not None:
         sentence += f"; up to {best.raised.multiplier:.4g} the load was raised in finite steps from rest to rest"
-    if spread > WIDE:
+    if spread > TOLD.spread:
         sentence += (
             f"; friction histories that nobody can know differ by {100.0 * spread:.1f} %, "
             f"from {min(plateaus):.6g} to {max(plateaus):.6g}"
@@ -172,9 +184,11 @@ def collapse_answer(model: WallModel, results: list[HistoryResult], factorisatio
 
 
 def compact(model: WallModel, record: PathRecord) -> dict[str, list[float]]:
-    """At most `PATH_POINTS` points of a path, evenly picked, the last one kept."""
+    """Some of the points of a path, evenly picked, the last one kept."""
     count = len(record.multiplier)
-    pick = np.unique(np.linspace(0, count - 1, min(count, PATH_POINTS)).astype(int)) if count else np.array([], int)
+    pick = (
+        np.unique(np.linspace(0, count - 1, min(count, TOLD.path_points)).astype(int)) if count else np.array([], int)
+    )
     scale = model.displacement / (float(np.abs(model.live.reshape(-1, 3)[:, :2]).sum()) or 1.0)
     return {
         "multiplier": [record.multiplier[i] for i in pick],
@@ -204,8 +218,9 @@ def bracket_answer(result: ConvexResult, forces: FloatArray, details: dict[str, 
             details=details | {"path_status": "unbounded"},
         )
     if not (result.settles and result.fine):
+        share = f"{TRESCA.repeated:g}"
         doubt = (
-            f"friction limits that settle to {SETTLED:g} of the loads are not exact enough for so small a multiplier"
+            f"friction limits that settle to {share} of the loads are not exact enough for so small a multiplier"
             if result.settles
             else f"at {upper:.6g} the friction limits do not settle, which is no proof of collapse"
         )
