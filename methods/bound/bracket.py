@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import time
+from contextlib import suppress
 
+from harness.model.method import OutOfTime
 from methods.bound.equations import Equations
 from methods.bound.rate_bounds import RateProgramme
 from methods.bound.slack_bounds import SlackProgramme
@@ -13,7 +15,7 @@ from methods.bound.window_search import Bracket, Certify, WindowSearch
 def bracket(
     equations: Equations, upper: float, seconds: float, lower: float = 0.0, certify: Certify | None = None
 ) -> Bracket:
-    """The bracket that this much CPU time gives.
+    """The bracket that this much CPU time gives, or the time of the run where that is over before.
 
     Args:
         equations: the scaled wall, which stands under its dead load.
@@ -24,9 +26,10 @@ def bracket(
     """
     until = time.process_time() + seconds
     search = WindowSearch(equations, SlackProgramme(equations), Bracket(lower, upper), until, certify)
-    while not search.found.closed and time.process_time() < until:
-        if not search.window():
-            return branched(search)
+    with suppress(OutOfTime):  # What is known by then is the bracket.
+        while not search.found.closed and time.process_time() < until:
+            if not search.window():
+                return branched(search)
     return search.found
 
 

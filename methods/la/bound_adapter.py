@@ -154,6 +154,8 @@ def bounded(problem: Problem, known: Answer, found: Bracket) -> Answer:
     least = f"The least collapse multiplier known is {known.multiplier:.7g}"
     if found.closed:
         sentence = f"{least}; a relaxation solved in floating point leaves none below {lower:.7g}."
-    else:
+    elif lower > 0.0:
         sentence = f"{least}; the least is at least {lower:.7g}, by a relaxation solved in floating point."
+    else:
+        sentence = f"{least}; in this time no lower bound above zero was found."
     return replace(known, sentence=sentence, details=details)

@@ -9,6 +9,7 @@ import pytest
 from harness.engine.judge import judge
 from harness.model.method import Finding, OutOfTime, Status, load_method
 from harness.model.result import result_of
+from methods.bound.window_search import WindowSearch
 from methods.la.sources import SOURCES
 from tests.walls import assembly, running_bond
 
@@ -66,6 +67,27 @@ def test_bound_of_a_search_that_was_stopped_is_the_answer_of_the_search(monkeypa
     answer = method.solve(wall, method.Settings())
     assert answer.status is Status.OK
     assert answer.details["stopped_by_limit"]
+
+
+@pytest.mark.parametrize("windows", [0, 2])
+def test_bracket_known_before_the_time_was_over_is_the_answer(windows: int, monkeypatch: pytest.MonkeyPatch):
+    """Neither the state below which the bound was looked for nor the bound reached by then is lost."""
+    wall, method = assembly(running_bond(3, 2), 0.75), load_method("la-bound")
+    left = [True] * windows
+    window = WindowSearch.window
+
+    def stopped(search: WindowSearch) -> bool:
+        if not left:
+            raise OutOfTime
+        left.pop()
+        return window(search)
+
+    monkeypatch.setattr(WindowSearch, "window", stopped)
+    answer = method.solve(wall, method.Settings())
+    assert (answer.status, answer.finding) == (Status.OK, Finding.COLLAPSES)
+    assert answer.multiplier is not None
+    assert (answer.details["lower_bound"] > 0.0) == (windows > 0)
+    assert answer.details["lower_bound"] < answer.multiplier
 
 
 def test_associated_state_is_the_answer_where_no_other_is_known(monkeypatch: pytest.MonkeyPatch):
