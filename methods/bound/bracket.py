@@ -52,7 +52,7 @@ def branched(root: WindowSearch) -> Bracket:
             if contact is None:
                 break
             leaves.remove(leaf)
-            leaves += [leaf.part(case, rates) for case in leaf.case.halves(contact)]
+            leaves += leaf.parts(contact, rates)
             found.branches += 1
         found.lower = max(found.lower, min(each.found.lower for each in leaves))
     return found

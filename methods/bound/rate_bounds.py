@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+from typing import Literal
+
 import numpy as np
 import scipy.sparse as sp
 
@@ -10,6 +13,23 @@ from methods.bound.equations import Equations
 from methods.bound.slack_bounds import Case, SlackBounds
 from methods.bound.tuning import ROUNDING
 from methods.numerics.linear_programme import INFINITY, Programme
+
+
+@dataclass(frozen=True, eq=False)
+class RateProof:
+    """Virtual forces that show something of all mechanisms.
+
+    Attributes:
+        shows: that a contact has a rate, that it has next to none, or that there is no mechanism.
+        strains: (3m,) forces on strains; lift, work: multiples of the lift, and of the live work, in addition.
+        contact: of which something is shown.
+    """
+
+    shows: Literal["tight", "slow", "no mechanism"]
+    strains: FloatArray
+    lift: float
+    work: float
+    contact: int = -1
 
 
 class RateProgramme:
@@ -27,7 +47,6 @@ class RateProgramme:
         lift = sp.csc_matrix(np.ones(n + 4 * m)[None, :])
         lower = np.concatenate([np.full(n, -INFINITY), np.zeros(4 * m)])
         right = np.append(np.zeros(3 * m), equations.n_blocks)
-        self._lift = np.zeros(n + 4 * m)
         self._programme = Programme(
             sp.csc_matrix(sp.vstack([strains, work, lift])),
             np.zeros(n + 4 * m),
@@ -35,18 +54,24 @@ class RateProgramme:
             (np.append(right, 0.0), np.append(right, INFINITY)),
         )
 
-    def multiplier(self) -> float:
-        """The least multiplier that virtual work leaves to mechanisms of the last window and case; inf without any."""
-        cost = -self._lift[self._n :] / self._equations.n_blocks
-        self._programme.set_costs(0, np.append(-self._equations.dead / self._equations.n_blocks, cost))
-        status, value, _ = self._programme.run()
-        self._programme.set_costs(0, np.zeros(self._n))
-        if status != "optimal":
-            return np.inf if status == "infeasible" else 0.0
-        return float(cost @ value[self._n :] - self._equations.dead @ value[: self._n] / self._equations.n_blocks)
+    def _proof(self, shows: Literal["tight", "slow", "no mechanism"], dual: FloatArray, contact: int = -1) -> RateProof:
+        m = self._m
+        strains = -dual[: 3 * m]
+        if contact >= 0:
+            p, k = divmod(contact, 4)
+            strains[3 * p + min(k, 2)] += (1.0 if shows == "slow" else -1.0) * (-1.0 if k == 3 else 1.0)
+        return RateProof(shows, strains, max(float(dual[3 * m + 1]), 0.0), -float(dual[3 * m]), contact)
 
-    def decided(self, high: float, bounds: SlackBounds, case: Case) -> Case | None:
-        """The case with the contacts that mechanisms of the window never move or always move; None without mechanisms.
+    def _no_mechanism(self) -> RateProof:
+        ray = self._programme.ray()
+        if ray is None:
+            ray = np.zeros(3 * self._m + 2)
+        return self._proof("no mechanism", ray if ray[3 * self._m] > 0.0 else -ray)
+
+    def decided(self, high: float, bounds: SlackBounds, case: Case) -> tuple[Case | None, list[RateProof]]:
+        """The case with the contacts that mechanisms of the window never move or always move, and what proves it.
+
+        The case is None where there are no mechanisms.
 
         Args:
             high: upper end of the window.
@@ -60,9 +85,11 @@ class RateProgramme:
         self._programme.set_columns(n, np.zeros(4 * m), upper)
         strength = np.repeat(self._equations.friction * bounds.normal_least, 4).reshape(m, 4)
         strength[:, :2] = 0.0
-        self._lift = np.append(high * self._equations.live + self._equations.dead, -strength)
-        self._programme.set_row(3 * m + 1, self._lift)
-        tight, held = set(case.tight), set(case.still)
+        lift = np.append(high * self._equations.live + self._equations.dead, -strength)
+        self._programme.set_row(3 * m + 1, lift)
+        if self._least(np.zeros(4 * m))[0] == "infeasible":
+            return None, [self._no_mechanism()]
+        tight, held, proofs = set(case.tight), set(case.still), list[RateProof]()
         for contact in np.flatnonzero(~still):
             if contact in tight:
                 continue
@@ -70,18 +97,20 @@ class RateProgramme:
             cost[contact] = 1.0
             if contact % 4 >= 2:
                 cost[contact ^ 1] = -1.0
-            status, least = self._least(cost)
+            status, least, dual = self._least(cost)
             if status == "infeasible":
-                return None
+                return None, [self._no_mechanism()]
             if status == "optimal" and least > ROUNDING.margin:
                 tight.add(int(contact))
+                proofs.append(self._proof("tight", dual, int(contact)))
                 continue
-            status, greatest = self._least(-cost)
+            status, greatest, dual = self._least(-cost)
             if status == "optimal" and -greatest < ROUNDING.no_row:
                 held.add(int(contact))
-        return Case(frozenset(tight), frozenset(held))
+                proofs.append(self._proof("slow", dual, int(contact)))
+        return Case(frozenset(tight), frozenset(held)), proofs
 
-    def _least(self, cost: FloatArray) -> tuple[str, float]:
+    def _least(self, cost: FloatArray) -> tuple[str, float, FloatArray]:
         self._programme.set_costs(self._n, cost)
-        status, value, _ = self._programme.run()
-        return status, float(cost @ value[self._n :]) if status == "optimal" else -np.inf
+        status, value, dual = self._programme.run()
+        return status, float(cost @ value[self._n :]) if status == "optimal" else -np.inf, dual

@@ -81,14 +81,19 @@ class SlackProgramme:
         status, value, dual = self._programme.run()
         return status, float(slacks @ value[3 * self._m : 7 * self._m]), dual[: self._n]
 
-    def multiplier(self) -> float:
-        """The least multiplier of the window and the case; inf if no forces within yield exist there."""
+    def multiplier(self) -> tuple[float, FloatArray]:
+        """The least multiplier of the window and the case, inf if there is none, with velocities that prove it."""
         self._programme.set_costs(0, np.append(np.zeros(7 * self._m), 1.0))
-        status, value, _ = self._programme.run()
+        status, value, dual = self._programme.run()
         self._programme.set_costs(7 * self._m, np.zeros(1))
-        if status != "optimal":
-            return np.inf if status == "infeasible" else 0.0
-        return float(value[-1])
+        if status == "infeasible":
+            return np.inf, self.excluding()
+        return (float(value[-1]), dual[: self._n]) if status == "optimal" else (0.0, np.zeros(self._n))
+
+    def excluding(self) -> FloatArray:
+        """(3n,) virtual velocities, of either sign, that exclude all forces, where there were none."""
+        ray = self._programme.ray()
+        return np.zeros(self._n) if ray is None else ray[: self._n]
 
     def bounds(self, low: float, high: float, case: Case = EVERY) -> SlackBounds | None:
         """Bounds of all slacks for multipliers from `low` to `high`; None if no forces within yield exist there."""

@@ -96,7 +96,8 @@ class Precision:
     """Binary places of the numbers in the certificate of a window.
 
     Attributes:
-        numbers: of multipliers and least forces; velocities: of virtual velocities; weights: of the size of mechanisms;
+        numbers: of multipliers and least forces; velocities: of virtual velocities; forces: of virtual forces, and of
+            what steps of cases prove; weights: of the size of mechanisms;
         motions: of the velocities that strains give; size: of multipliers of products that bound the size,
         the first with which it is at most `enough_size` times that of the search.
         multipliers: of those that bound the multiplier, at first and at most, with as many more as what is lost needs.
@@ -106,6 +107,7 @@ class Precision:
 
     numbers: int = 44
     velocities: int = 40
+    forces: int = 54
     weights: int = 20
     motions: int = 30
     size: tuple[int, ...] = (20, 24, 28, 36)

@@ -16,7 +16,8 @@ from pathlib import Path
 from typing import Any
 
 from methods.bound.exact_wall import CertificateError, ExactWall, Vector, dot, fractions_of
-from methods.bound.verify_window import window_bound
+from methods.bound.verify_cases import States, case_bound, states_of
+from methods.bound.verify_window import WindowLimits
 
 
 def digest(document: Any) -> str:
@@ -41,7 +42,7 @@ def verify(document: Any) -> tuple[Fraction, Fraction]:
         if "state" in document:
             check_state(wall, upper, document["state"])
         if "windows" in document:
-            _check_windows(wall, bound, document["windows"])
+            _check_windows(wall, bound, document)
             leaves = []
         else:
             leaves = [_Leaf(wall, leaf) for leaf in document["leaves"]]
@@ -55,14 +56,21 @@ def verify(document: Any) -> tuple[Fraction, Fraction]:
     return bound, upper
 
 
-def _check_windows(wall: ExactWall, bound: Fraction, windows: Any) -> None:
-    """Whether the windows, one above the other from zero, leave no collapse state below the bound."""
+def _check_windows(wall: ExactWall, bound: Fraction, document: Any) -> None:
+    """Whether the windows, one above the other from zero, and cases of the last leave no state below the bound."""
     proved = Fraction(0)
-    for document in windows:
-        low, _, above = window_bound(wall, document)
-        if low > proved:
-            raise CertificateError(f"a window begins at {float(low):.9g}, where {float(proved):.9g} is proved")
-        proved = max(proved, above)
+    states: States | None = None
+    for window in document["windows"]:
+        limits = WindowLimits(wall, window)
+        if limits.forces.low > proved:
+            raise CertificateError(
+                f"a window begins at {float(limits.forces.low):.9g}, where {float(proved):.9g} is proved"
+            )
+        greatest = limits.greatest_size(window["size"])
+        proved = max(proved, limits.bound(window["multiplier"], greatest))
+        states = states_of(limits, greatest, proved)
+    if "cases" in document and states is not None:
+        proved = max(proved, case_bound(states, document["cases"]))
     if proved < bound:
         raise CertificateError(f"the windows prove {float(proved):.9g} only")
 

@@ -11,34 +11,48 @@ import math
 from fractions import Fraction
 from typing import Any
 
-from methods.bound.exact_wall import ZERO, CertificateError, ExactWall, Form, integers, paired, whole, whole_numbers
-from methods.bound.window_limits import Columns, Forces, Motions
-
-
-def window_bound(wall: ExactWall, document: Any) -> tuple[Fraction, Fraction, Fraction]:
-    """(low, high, bound): no collapse state of the wall has a multiplier from `low` to below `bound` <= `high`.
-
-    Raises:
-        CertificateError: the window proves nothing of the kind.
-    """
-    limits = WindowLimits(wall, document)
-    greatest = limits.greatest_size(document["size"])
-    return limits.low, limits.high, limits.bound(document["multiplier"], greatest)
+from methods.bound.exact_wall import (
+    ZERO,
+    CertificateError,
+    ExactWall,
+    Form,
+    Vector,
+    integers,
+    paired,
+    whole,
+    whole_numbers,
+)
+from methods.bound.force_limits import Forces, Known, known_of
+from methods.bound.window_limits import Columns, Motions, Reach
 
 
 class WindowLimits:
     """What a window says of forces and mechanisms, checked, and what multipliers of products then prove.
 
     Attributes:
-        low, high: ends of the window.
+        forces, columns, motions: its limits.
     """
 
-    def __init__(self, wall: ExactWall, document: Any) -> None:
-        self.low, self.high = Fraction(document["low"]), Fraction(document["high"])
-        if not self.low < self.high:
-            raise CertificateError("a window has no width")
-        self._columns = Columns(wall, Forces(wall, self.low, self.high, document["forces"]), document)
-        self._motions = Motions(self._columns, document["motions"])
+    def __init__(self, wall: ExactWall, document: Any, case: tuple[Forces, Known, Vector] | None = None) -> None:
+        """A window of all states.
+
+        Args:
+            wall: of the certificate.
+            document: of the window.
+            case: bounds of forces, what is known of contacts and greatest velocities, where states of a case only are
+                considered; a window of all states proves these itself.
+        """
+        if case is None:
+            low, high = Fraction(document["low"]), Fraction(document["high"])
+            if not low < high:
+                raise CertificateError("a window has no width")
+            self.forces = Forces(wall, low, high, document["forces"])
+            self.columns = Columns(self.forces, known_of(self.forces, document), document)
+            self.motions: Motions | Reach = Motions(self.columns, document["motions"])
+        else:
+            self.forces, known, reach = case
+            self.columns = Columns(self.forces, known, document)
+            self.motions = Reach(self.columns, reach)
 
     def greatest_size(self, document: Any) -> Fraction:
         """The size that no mechanism exceeds, by these multipliers of products.
@@ -46,7 +60,7 @@ class WindowLimits:
         Raises:
             CertificateError: they bound none.
         """
-        size = _Products(self._columns, self._motions, document, True)
+        size = _Products(self.columns, self.motions, document, True)
         if size.price >= 1:
             raise CertificateError("a window does not bound its mechanisms")
         return max(ZERO, (size.lost - size.value) / (1 - size.price))
@@ -58,8 +72,8 @@ class WindowLimits:
             document: the multipliers of products.
             greatest: size that no mechanism exceeds.
         """
-        gain = _Products(self._columns, self._motions, document, False)
-        return min(self.high, self.low + gain.value - gain.lost - gain.price * greatest)
+        gain = _Products(self.columns, self.motions, document, False)
+        return min(self.forces.high, self.forces.low + gain.value - gain.lost - gain.price * greatest)
 
 
 class _Products:
@@ -73,19 +87,24 @@ class _Products:
     lost: Fraction
     price: Fraction
 
-    def __init__(self, columns: Columns, motions: Motions, document: Any, of_size: bool) -> None:
+    def __init__(self, columns: Columns, motions: Motions | Reach, document: Any, of_size: bool) -> None:
         self.columns, self.wall, self.forces = columns, columns.wall, columns.forces
+        self.tight = sorted(self.forces.tight)
         m = self.wall.n_interfaces
         self.unit = 2 ** whole(document["exponent"], 0, 400)
         names = [*columns.rates, "work", "lift"]
         multipliers = dict(paired(names, [whole_numbers(c, 4 * m + 3) for c in document["columns"]]))
         signed = [whole_numbers(three, 3) for three in document["signed"]]
         still = [whole_numbers(form, 3 * m + 2) for form in document["still"]]
-        balance = [whole_numbers(row, columns.n) for row in document["balance"]]
+        balance = [whole_numbers(row, columns.n + len(self.tight)) for row in document["balance"]]
         self.value = Fraction(multipliers["work"][4 * m], self.unit)
-        self._pay(multipliers, signed)
+        self._pay(multipliers, signed, still)
         left = self._left(multipliers, signed, still, of_size)
-        self.price += self._paid_for_rounding(left, balance, motions)
+        rounding = self._paid_for_rounding(left, balance, motions)
+        if motions.of_size:
+            self.price += rounding
+        else:
+            self.lost += rounding
 
     def _rows(self) -> list[Form]:
         """The static inequalities as forms of the forces, the multiplier and one."""
@@ -98,13 +117,15 @@ class _Products:
         load, unit = 3 * m, 3 * m + 1
         return [*rows, {unit: one}, {load: one, unit: -low}, {load: -one, unit: high}]
 
-    def _pay(self, multipliers: dict[Any, list[int]], signed: list[list[int]]) -> None:
+    def _pay(self, multipliers: dict[Any, list[int]], signed: list[list[int]], still: list[list[int]]) -> None:
         """Lost and price for negative multipliers: each product is at most the greatest slack times the column."""
         m, width = self.wall.n_interfaces, self.forces.high - self.forces.low
         limit = []
         for mu, normal in zip(self.wall.friction, self.forces.normal, strict=True):
             limit += [normal, normal, 2 * mu * normal, 2 * mu * normal]
         limit += [Fraction(1), width, width]
+        for k in self.tight:
+            limit[k] = ZERO
         whole_limit, grain = _not_below(limit)
         loss: dict[Any, Fraction] = {}
         for name, column in multipliers.items():
@@ -114,13 +135,14 @@ class _Products:
         worst = ZERO
         for p, (first, second, shear) in paired(self.columns.signed, signed):
             mu = self.wall.friction[p]
-            turned = mu * shear
-            violated = max(0, turned - first, turned - second, turned + first, turned + second)
+            rays = self.forces.rays[p]
+            violated = max((mu * shear + side * (second if end else first) for end, side in rays), default=ZERO)
+            violated = max(ZERO, violated)
             if violated and not mu:
                 raise CertificateError("a slip without friction is paid by none")
             worst = max(worst, Fraction(violated) / mu if mu else ZERO)
         columns = self.columns
-        self.lost = loss["work"]
+        self.lost = loss["work"] + self._paid_for_slow(still)
         lift = (loss["lift"] + worst / self.unit) / columns.lift_weight
         self.price = max([lift, *(loss[k] / columns.weights[k] for k in columns.rates)])
 
@@ -131,7 +153,7 @@ class _Products:
         columns, wall, m = self.columns, self.wall, self.wall.n_interfaces
         rows, row_unit = integers(self._rows())
         slips = [dict(wall.sparse[3 * p + 2]) for p in columns.signed]
-        forms = [*columns.rates.values(), columns.work, columns.lift, *slips, *columns.still]
+        forms = [*columns.rates.values(), columns.work, columns.lift, *slips, *(form for form, _ in columns.still)]
         kinematic, unit = integers(forms)
         statics = [self._combined(column, rows) for column in multipliers.values()]
         for k, value in self._cost(of_size).items():
@@ -167,25 +189,41 @@ class _Products:
                     total[i] += value * entry
         return total
 
-    def _paid_for_rounding(
-        self, left: tuple[list[list[int]], int], balance: list[list[int]], motions: Motions
-    ) -> Fraction:
-        """Greatest value of what is left, after multiples of the equilibrium equations, for mechanisms of size one."""
-        wall, m = self.wall, self.wall.n_interfaces
-        loads = [dict(enumerate(wall.live)), dict(enumerate(wall.dead))]
-        rows, unit = integers([*(dict(wall.sparse[k]) for k in range(3 * m)), *loads])
+    def _sizes(self) -> list[Fraction]:
+        """The greatest forces, multiplier and one."""
         sizes = []
-        for mu, normal in zip(wall.friction, self.forces.normal, strict=True):
+        for mu, normal in zip(self.wall.friction, self.forces.normal, strict=True):
             sizes += [normal, normal, mu * normal]
-        sizes += [max(abs(self.forces.low), abs(self.forces.high)), Fraction(1)]
-        whole_sizes, grain = _not_below(sizes)
+        return [*sizes, max(abs(self.forces.low), abs(self.forces.high)), Fraction(1)]
+
+    def _paid_for_slow(self, still: list[list[int]]) -> Fraction:
+        """The greatest sum of static forms times rates that are next to nothing."""
+        paid: Fraction = ZERO
+        for form, (_, most) in paired(still, self.columns.still):
+            if most:
+                paid += most * sum((abs(v) * size for v, size in zip(form, self._sizes(), strict=True)), ZERO)
+        return paid / Fraction(self.unit)
+
+    def _paid_for_rounding(
+        self, left: tuple[list[list[int]], int], balance: list[list[int]], motions: Motions | Reach
+    ) -> Fraction:
+        """Greatest value of what is left, after multiples of equations of statics, for mechanisms within limits."""
+        wall, m, n = self.wall, self.wall.n_interfaces, self.columns.n
+        loads = [dict(enumerate(wall.live)), dict(enumerate(wall.dead))]
+        equations = [*(dict(wall.sparse[k]) for k in range(3 * m)), *loads]
+        slacks = self._rows()
+        for j, k in enumerate(self.tight):
+            for i, value in slacks[k].items():
+                equations[i][n + j] = value
+        rows, unit = integers(equations)
+        whole_sizes, grain = _not_below(self._sizes())
         matrix, left_unit = left
         price: Fraction = ZERO
-        for static, velocities, limit in zip(matrix, balance, motions.limits, strict=True):
+        for (static, multiples), limit in paired(paired(matrix, balance), motions.limits):
             rest = 0
             for value, row, size in zip(static, rows, whole_sizes, strict=True):
-                equilibrium = sum(entry * velocities[d] for d, entry in row.items())
-                rest += abs(value * unit - equilibrium * left_unit) * size
+                vanishing = sum(entry * multiples[d] for d, entry in row.items())
+                rest += abs(value * unit - vanishing * left_unit) * size
             price += rest * limit
         return price / Fraction(self.unit * left_unit * unit * grain)
 

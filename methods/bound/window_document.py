@@ -12,11 +12,11 @@ import numpy as np
 import scipy.linalg
 
 from harness.model.assembly import FloatArray, IntArray
-from methods.bound.equations import Equations
-from methods.bound.exact_wall import CertificateError, ExactWall
+from methods.bound.exact_wall import CertificateError, ExactWall, Form
 from methods.bound.relaxation import Relaxation
 from methods.bound.slack_bounds import SlackProgramme
 from methods.bound.tuning import PRECISION, ROUNDING
+from methods.bound.verify_cases import States
 from methods.bound.verify_window import WindowLimits
 from methods.bound.window_search import WindowProof
 
@@ -35,44 +35,17 @@ class Scales:
     multiplier: float
     blocks: float
 
+    def velocities(self, velocities: FloatArray) -> list[Any]:
+        """Velocities (.., 3n) that prove a bound of slacks, as whole numbers over 2^`Precision.velocities`."""
+        return whole_values(-velocities * self.velocity, PRECISION.velocities)
 
-class Certifier:
-    """The documents of windows as a bracket goes up, asked after each.
+    def scaled(self, multiplier: Fraction) -> float:
+        """The scaled multiplier of the search, not above this one, whatever the conversion rounds."""
+        return float(multiplier) / self.multiplier * (1.0 - ROUNDING.below)
 
-    Args:
-        wall: of the certificate.
-        scales: from the search to it.
-        equations: of the search.
-
-    Attributes:
-        documents: of the windows that raise the bound, in order; bound: what they prove.
-    """
-
-    def __init__(self, wall: ExactWall, scales: Scales, equations: Equations) -> None:
-        self.wall, self.scales = wall, scales
-        self.documents: list[dict[str, Any]] = []
-        self.bound = Fraction(0)
-        self._programme = SlackProgramme(equations)
-        self._last: Relaxation | None = None
-
-    def __call__(self, proof: WindowProof, needed: float) -> float:
-        """The scaled multiplier below which the documents leave no collapse state, this window among them.
-
-        Args:
-            proof: of the window.
-            needed: scaled multiplier that is enough.
-        """
-        exact = Fraction(needed) * Fraction(self.scales.multiplier)
-        try:
-            document, bound = WindowDocument(self.wall, self.scales, proof, self._programme).document(exact)
-        except CertificateError:
-            return float(self.bound) / self.scales.multiplier
-        if bound > self.bound:
-            if proof.relaxation is self._last:
-                self.documents.pop()
-            self.documents.append(document)
-            self._last, self.bound = proof.relaxation, bound
-        return float(self.bound) / self.scales.multiplier * (1.0 - ROUNDING.below)
+    def low(self, relaxation: Relaxation) -> Fraction:
+        """The lower end of a window."""
+        return below(relaxation.low * self.multiplier)
 
 
 class WindowDocument:
@@ -83,19 +56,38 @@ class WindowDocument:
         scales: from the search to it.
         proof: of the window, in floats.
         programme: of the slacks of the search.
+        states: what is known of the states of a case, where the window is of those.
     """
 
-    def __init__(self, wall: ExactWall, scales: Scales, proof: WindowProof, programme: SlackProgramme) -> None:
-        self.wall, self.scales, self.proof, self.programme = wall, scales, proof, programme
+    def __init__(
+        self,
+        wall: ExactWall,
+        scales: Scales,
+        proof: WindowProof,
+        programme: SlackProgramme,
+        states: States | None = None,
+    ) -> None:
+        self.wall, self.scales, self.proof, self.programme, self.states = wall, scales, proof, programme, states
         self.relaxation = proof.relaxation
         m = wall.n_interfaces
         self.strains = np.array([[float(v) for v in row] for row in wall.rows]).reshape(3 * m, -1)
         self.friction = np.array([float(mu) for mu in wall.friction])
         self.dead = np.array([float(v) for v in wall.dead])
         self.live = np.array([float(v) for v in wall.live])
-        self.low = _below(self.relaxation.low * scales.multiplier)
-        self.high = -_below(-self.relaxation.high * scales.multiplier)
-        programme.window(self.relaxation.low, self.relaxation.high)
+        self.low = scales.low(self.relaxation)
+        self.high = -below(-self.relaxation.high * scales.multiplier) if states is None else states.high
+        programme.window(self.relaxation.low, self.relaxation.high, self.relaxation.case)
+
+    @cached_property
+    def limits(self) -> WindowLimits:
+        """What the window says of forces and mechanisms, checked.
+
+        Raises:
+            CertificateError: it says nothing of the kind.
+        """
+        if self.states is None:
+            return WindowLimits(self.wall, self.parts)
+        return self.states.window(self.parts)
 
     def document(self, needed: Fraction) -> tuple[dict[str, Any], Fraction]:
         """The shortest document that proves what is needed, else the best, and what it proves.
@@ -103,7 +95,7 @@ class WindowDocument:
         Raises:
             CertificateError: none proves anything.
         """
-        limits = WindowLimits(self.wall, self.parts)
+        limits = self.limits
         size, greatest = self._shortest_size(limits)
         most, mine = Fraction(self.proof.bound) * Fraction(self.scales.multiplier), Fraction(0)
         exponent, best = PRECISION.multipliers[0], self.parts
@@ -144,7 +136,7 @@ class WindowDocument:
     def least(self) -> dict[int, Fraction]:
         """Least normal forces of the interfaces that are loaded."""
         normal = self.relaxation.normal / self.scales.length
-        return {int(p): max(Fraction(0), _below(normal[p])) for p in self.relaxation.loaded}
+        return {int(p): max(Fraction(0), below(normal[p])) for p in self.relaxation.loaded}
 
     @cached_property
     def parts(self) -> dict[str, Any]:
@@ -154,24 +146,28 @@ class WindowDocument:
         total = self.programme.least(np.repeat(-1.0 / scales.length, 4) * np.tile([1.0, 1.0, 0.0, 0.0], m))
         if total[0] != "optimal":
             raise CertificateError("the normal forces of a window are not bounded")
-        return {
+        parts = {
             "low": str(self.low),
-            "high": str(self.high),
             "forces": {
                 "exponent": PRECISION.velocities,
-                "total": self._velocities(total[2]),
-                "greatest": self._velocities(by_interface * bounds.greatest_velocities),
+                "total": scales.velocities(total[2]),
+                "greatest": scales.velocities(by_interface * bounds.greatest_velocities),
             },
             "weight_exponent": PRECISION.weights,
             "weights": [int(w) for w in self._weights[0]],
             "lift_weight": self._weights[1],
+        }
+        if self.states is not None:
+            return {"shows": "window"} | parts
+        return parts | {
+            "high": str(self.high),
             "still": self.still.tolist(),
-            "still_velocities": self._velocities(
+            "still_velocities": scales.velocities(
                 np.repeat(by_interface, 4, axis=0)[self.still] * bounds.still_velocities[self.still]
             ),
             "loaded": list(self.least),
             "least": [str(value) for value in self.least.values()],
-            "least_velocities": self._velocities((by_interface * bounds.least_velocities)[list(self.least)]),
+            "least_velocities": scales.velocities((by_interface * bounds.least_velocities)[list(self.least)]),
             "motions": self._motions(),
         }
 
@@ -180,9 +176,6 @@ class WindowDocument:
         """Whole weights (m,) of rates in the size of a mechanism, and of the lift, over 2^`Precision.weights`."""
         scales, unit = self.scales, 2**PRECISION.weights
         return np.round(scales.blocks / (scales.multiplier * scales.length) * unit), round(unit / scales.multiplier)
-
-    def _velocities(self, velocities: FloatArray) -> list[Any]:
-        return _whole(-velocities * self.scales.velocity, PRECISION.velocities)
 
     def _motions(self) -> dict[str, Any]:
         """Strains that give the velocities: bounded ones, then slips of courses."""
@@ -201,7 +194,7 @@ class WindowDocument:
         return {
             "exponent": exponent,
             "strains": chosen.tolist(),
-            "inverse": _whole(inverse, exponent),
+            "inverse": whole_values(inverse, exponent),
             "courses": courses,
         }
 
@@ -228,7 +221,7 @@ class WindowDocument:
             status, least, velocities = self.programme.least(weights.ravel())
             if status == "optimal" and least > ROUNDING.margin:
                 chosen = np.vstack([chosen, slip])
-                courses.append({"joints": joints, "velocities": self._velocities(velocities)})
+                courses.append({"joints": joints, "velocities": self.scales.velocities(velocities)})
         if len(courses) < motions.shape[1]:
             raise CertificateError("a slip of interfaces that may be unloaded is not bounded")
         return courses
@@ -248,29 +241,11 @@ class WindowDocument:
     @cached_property
     def _kinematic(self) -> tuple[FloatArray, FloatArray, FloatArray]:
         """Rates, work and lift, signed slips, and still strains, over velocities and backward slips."""
-        relaxation, m, n = self.relaxation, self.wall.n_interfaces, len(self.dead)
-        free = relaxation.free
-        both = [p for p in relaxation.loaded.tolist() if {4 * p + 2, 4 * p + 3} <= set(free.tolist())]
-        place = {p: n + k for k, p in enumerate(both)}
-        width = n + len(both)
-        strains = np.hstack([self.strains, np.zeros((3 * m, len(both)))])
-        rates = np.zeros((len(free) + 2, width))
-        lift = np.append(float(self.high) * self.live + self.dead, np.zeros(len(both)))
-        for k, contact in enumerate(free.tolist()):
-            p, kind = divmod(contact, 4)
-            rates[k] = (strains[3 * p], strains[3 * p + 1], strains[3 * p + 2], -strains[3 * p + 2])[kind]
-            if p in place and kind >= 2:
-                rates[k] = strains[3 * p + 2] if kind == 2 else 0.0
-                rates[k, place[p]] = 1.0
-            if kind >= 2:
-                lift -= self.friction[p] * float(self.least[p]) * rates[k]
-        rates[-2, :n], rates[-1] = self.live, lift
-        held = set(self.still.tolist())
-        still = []
-        for p in range(m):
-            still += [3 * p + k for k in (0, 1) if 4 * p + k in held]
-            still += [3 * p + 2] if {4 * p + 2, 4 * p + 3} <= held else []
-        return rates, strains[3 * relaxation.unloadable + 2], strains[still]
+        columns = self.limits.columns
+        rates = [*columns.rates.values(), columns.work, columns.lift]
+        signed = [dict(self.wall.sparse[3 * p + 2]) for p in columns.signed]
+        forms = (rates, signed, [form for form, _ in columns.still])
+        return _matrix(forms[0], columns.width), _matrix(forms[1], columns.width), _matrix(forms[2], columns.width)
 
     @cached_property
     def _inverses(self) -> tuple[FloatArray, FloatArray, FloatArray]:
@@ -281,8 +256,10 @@ class WindowDocument:
 
     @cached_property
     def _equilibrium(self) -> tuple[FloatArray, FloatArray]:
-        """The equations of equilibrium over forces, multiplier and one, and an orthonormal basis of their columns."""
-        equations = np.vstack([self.strains, self.live, self.dead])
+        """Equilibrium and slacks that are zero, as columns over forces, multiplier and one, and a basis of them."""
+        equations = np.hstack(
+            [np.vstack([self.strains, self.live, self.dead]), self._static[sorted(self.limits.forces.tight)].T]
+        )
         return equations, scipy.linalg.orth(equations)
 
     @cached_property
@@ -293,7 +270,7 @@ class WindowDocument:
 
     def _products(self, products: FloatArray, exponent: int, of_size: bool) -> dict[str, Any]:
         """Multipliers of products, rounded, with the multiples of equations that leave next to nothing of the rest."""
-        relaxation, m = self.relaxation, self.wall.n_interfaces
+        columns, m = self.limits.columns, self.wall.n_interfaces
         multipliers = self._unscaled(products, of_size)
         rates, signed, still = self._kinematic
         own = self._signed(products, of_size)
@@ -301,16 +278,15 @@ class WindowDocument:
         static_inverse, rate_inverse, still_inverse = self._inverses
         cost = np.zeros((4 * m + 3, rates.shape[0]))
         if of_size:
-            weights, lift_weight = self._weights
-            cost[4 * m, :-2] = -weights[relaxation.free // 4] / 2.0**PRECISION.weights
-            cost[4 * m, -1] = -lift_weight / 2.0**PRECISION.weights
+            cost[4 * m, :-2] = [-float(weight) for weight in columns.weights.values()]
+            cost[4 * m, -1] = -float(columns.lift_weight)
         else:
             cost[4 * m + 1, -2] = 1.0
         unit = 2.0**exponent
 
         def rest_of(values: FloatArray, slips: FloatArray) -> FloatArray:
             rest = static.T @ (cost - values) @ rates
-            for k, p in enumerate(relaxation.unloadable.tolist()):
+            for k, p in enumerate(columns.signed):
                 rest[3 * p : 3 * p + 3] -= np.outer(slips[k], signed[k])
             return rest
 
@@ -329,15 +305,15 @@ class WindowDocument:
         balance: FloatArray = np.asarray(np.linalg.lstsq(equations, rest, rcond=None)[0], dtype=np.float64)
         return {
             "exponent": exponent,
-            "columns": _whole(multipliers.T, exponent),
-            "signed": _whole(own, exponent),
-            "still": _whole(fixed.T, exponent),
-            "balance": _whole(balance.T, exponent),
+            "columns": whole_values(multipliers.T, exponent),
+            "signed": whole_values(own, exponent),
+            "still": whole_values(fixed.T, exponent),
+            "balance": whole_values(balance.T, exponent),
         }
 
     def _own_change(self, rest: FloatArray, basis: FloatArray, signed: FloatArray) -> FloatArray:
         """(q, 3) change of the signed slips' multipliers that takes what no other column can from the rest."""
-        alone, q = self._alone, self.relaxation.unloadable
+        alone, q = self._alone, np.array(self.limits.columns.signed, dtype=np.int64)
         slips = signed @ alone
         if not alone.shape[1]:
             return np.zeros((len(q), 3))
@@ -352,8 +328,15 @@ class WindowDocument:
         row = np.concatenate([np.repeat(scales.length, 4), [1.0, 1.0 / scales.multiplier, 1.0 / scales.multiplier]])
         rate = scales.blocks / (scales.multiplier * scales.length[relaxation.free // 4])
         column = np.concatenate([rate, [1.0, 1.0 / scales.multiplier]])
-        used = products[: 4 * m + 3, : len(column)] * row[:, None] * column
-        return np.asarray(used if of_size else scales.multiplier * used)
+        given = products[: 4 * m + 3, : len(column)] * row[:, None] * column
+        place: dict[int | str, int] = {contact: k for k, contact in enumerate(relaxation.free.tolist())}
+        names: list[int | str] = [*self.limits.columns.rates, "work", "lift"]
+        place |= {"work": relaxation.work_column, "lift": relaxation.lift_column}
+        used = np.zeros((4 * m + 3, len(names)))
+        for k, name in enumerate(names):
+            if name in place:
+                used[:, k] = given[:, place[name]]
+        return used if of_size else scales.multiplier * used
 
     def _signed(self, products: FloatArray, of_size: bool) -> FloatArray:
         """(q, 3) multipliers of n1, n2 and s times the slip of interfaces that may be unloaded."""
@@ -362,20 +345,31 @@ class WindowDocument:
         plus, minus = products[4 * q + 2, column], products[4 * q + 3, column]
         first, second = products[local, column], products[local + len(q), column]
         mu = self.friction[q]
-        forms = np.column_stack(
+        forms = np.zeros((m, 3))
+        forms[q] = np.column_stack(
             [mu * (plus + minus + first - second), mu * (plus + minus - first + second), plus - minus - first - second]
         )
-        return np.asarray(forms * (self.scales.blocks / (self.scales.multiplier if of_size else 1.0)))
+        used = forms[self.limits.columns.signed] * (self.scales.blocks / (self.scales.multiplier if of_size else 1.0))
+        return np.asarray(used)
 
 
-def _below(value: float) -> Fraction:
+def _matrix(forms: list[Form], width: int) -> FloatArray:
+    """Forms as rows."""
+    matrix = np.zeros((len(forms), width))
+    for row, form in zip(matrix, forms, strict=True):
+        for d, value in form.items():
+            row[d] = float(value)
+    return matrix
+
+
+def below(value: float) -> Fraction:
     """A binary fraction next to a float, below it or equal."""
     unit = 2**PRECISION.numbers
     return Fraction(int(np.floor(value * unit)), unit)
 
 
-def _whole(values: FloatArray, exponent: int) -> list[Any]:
+def whole_values(values: FloatArray, exponent: int) -> list[Any]:
     """Whole numbers over 2^exponent, as nested lists."""
     if values.ndim > 1:
-        return [_whole(row, exponent) for row in values]
+        return [whole_values(row, exponent) for row in values]
     return [round(v) for v in np.ldexp(values, exponent).tolist()]

@@ -1,150 +1,79 @@
-"""What bounds the forces and the mechanisms of a window of a certificate, in fractions."""
+"""What bounds the mechanisms of a window of a certificate, in fractions."""
 
 from __future__ import annotations
 
 from fractions import Fraction
 from typing import Any
 
-from methods.bound.exact_wall import (
-    ZERO,
-    CertificateError,
-    ExactWall,
-    Form,
-    Vector,
-    integers,
-    paired,
-    whole,
-    whole_numbers,
-)
-
-
-class Forces:
-    """Bounds of normal forces in all states of a window, each from virtual velocities.
-
-    Forces in equilibrium do no work, so any virtual velocities may be added to a sum of forces; what is then left at an
-    interface is at most a multiple of its normal force.
-    """
-
-    def __init__(self, wall: ExactWall, low: Fraction, high: Fraction, document: Any) -> None:
-        self.wall, self.low, self.high = wall, low, high
-        self.unit = 2 ** whole(document["exponent"], 0, 200)
-        m = wall.n_interfaces
-        self._rows, self._row_unit = integers([dict(row) for row in wall.sparse])
-        self._loads, self._load_unit = integers([dict(enumerate(wall.live)), dict(enumerate(wall.dead))])
-        friction, self._friction_unit = integers([dict(enumerate(wall.friction))])
-        self._friction = {p: friction[0].get(p, 0) for p in range(m)}
-        self.total: Fraction | None = None
-        base, worst = self._above({p: Fraction(1) for p in range(m)}, document["total"])
-        if worst >= 1:
-            raise CertificateError("the normal forces of a window are not bounded")
-        self.total = max(ZERO, base / (1 - worst))
-        alone = [self.greatest({p: Fraction(1)}, v) for p, v in paired(range(m), document["greatest"])]
-        self.normal = [min(self.total, max(ZERO, normal)) for normal in alone]
-
-    def greatest(self, weights: Form, velocities: Any) -> Fraction:
-        """An upper bound of a weighted sum of normal forces; weights {interface: weight}."""
-        base, worst = self._above(weights, velocities)
-        return base + worst * (self.total or ZERO)
-
-    def least_slack(self, contact: int, velocities: Any) -> Fraction:
-        """A lower bound of a yield slack."""
-        p, k = divmod(contact, 4)
-        mu = self.wall.friction[p]
-        one = Fraction(1)
-        slack = ({0: -one}, {1: -one}, {0: -mu, 1: -mu, 2: -one}, {0: -mu, 1: -mu, 2: one})[k]
-        base, worst = self._above_form({3 * p + i: v for i, v in slack.items()}, velocities)
-        return -(base + worst * (self.total or ZERO))
-
-    def _above(self, weights: Form, velocities: Any) -> tuple[Fraction, Fraction]:
-        form = {3 * p + end: weight for p, weight in weights.items() for end in (0, 1)}
-        return self._above_form(form, velocities)
-
-    def _above_form(self, form: Form, velocities: Any) -> tuple[Fraction, Fraction]:
-        """(a, b) such that the form of forces is at most a + b times the sum of normal forces."""
-        v = whole_numbers(velocities, len(self.wall.dead))
-        scale, mu_unit = self.unit * self._row_unit * self._friction_unit, self._friction_unit
-        worst = 0
-        for p, mu in self._friction.items():
-            first, second, shear = (
-                (int(form[k] * scale) if k in form else 0)
-                - mu_unit * sum([value * v[d] for d, value in self._rows[k].items()])
-                for k in range(3 * p, 3 * p + 3)
-            )
-            worst = max(worst, max(first, second) * mu_unit + mu * abs(shear))
-        live, dead = (
-            Fraction(-sum([value * v[d] for d, value in load.items()]), self.unit * self._load_unit)
-            for load in self._loads
-        )
-        return dead + max(self.low * live, self.high * live), Fraction(worst, scale * mu_unit)
+from methods.bound.exact_wall import ZERO, CertificateError, ExactWall, Form, Vector, whole, whole_numbers
+from methods.bound.force_limits import Forces, Known
 
 
 class Columns:
     """Kinematic quantities of a window as forms of the velocities and of the backward slips of loaded interfaces.
 
     Attributes:
-        rates: {contact: form} of rates that may be positive; still: forms that are zero.
+        rates: {contact: form} of rates that may be positive; still: the others, with the most that they come to.
         signed: interfaces whose slip is multiplied with its own forces only.
         work, lift: forms of the live work and of the lift.
         weights: {contact: weight} of rates in the size of a mechanism, and of the lift.
     """
 
-    def __init__(self, wall: ExactWall, forces: Forces, document: Any) -> None:
-        self.wall, self.forces = wall, forces
-        m, self.n = wall.n_interfaces, len(wall.dead)
+    def __init__(self, forces: Forces, known: Known, document: Any) -> None:
+        self.wall, self.forces, self.known = forces.wall, forces, known
+        self.n = len(self.wall.dead)
         quantum = Fraction(1, 2 ** whole(document["weight_exponent"], 0, 200))
-        weights = [quantum * w for w in whole_numbers(document["weights"], m)]
+        weights = [quantum * w for w in whole_numbers(document["weights"], self.wall.n_interfaces)]
         self.lift_weight = quantum * whole(document["lift_weight"], 1)
         if min(weights) <= 0:
             raise CertificateError("a weight is above zero")
-        still = [whole(k, 0, 4 * m - 1) for k in document["still"]]
-        for k, velocities in paired(still, document["still_velocities"]):
-            if forces.least_slack(k, velocities) <= 0:
-                raise CertificateError("a contact that is held still may move")
-        loaded = [whole(p, 0, m - 1) for p in document["loaded"]]
-        least: Form = {}
-        for (p, claimed), velocities in paired(list(paired(loaded, document["least"])), document["least_velocities"]):
-            least[p] = Fraction(claimed)
-            if -forces.greatest({p: Fraction(-1)}, velocities) < least[p]:
-                raise CertificateError("a normal force may be less than is said")
-        self._build(set(still), least, weights)
+        self._build()
+        self.width = self.n + len(self.backward)
+        self.weights = {k: weights[k // 4] for k in self.rates}
 
-    def _build(self, still: set[int], least: Form, weights: Vector) -> None:
-        wall, n = self.wall, self.n
+    def _build(self) -> None:
+        wall, least = self.wall, self.known.least
         self.rates: dict[int, Form] = {}
-        self.still: list[Form] = []
-        self.signed = [p for p in range(wall.n_interfaces) if p not in least]
+        self.still: list[tuple[Form, Fraction]] = []
         self.backward: dict[int, int] = {}
+        held = self.known.still | self.known.slow.keys()
+        self.signed = [
+            p for p in range(wall.n_interfaces) if p not in least and held.isdisjoint({4 * p + 2, 4 * p + 3})
+        ]
         for p in range(wall.n_interfaces):
             for k in (4 * p, 4 * p + 1):
-                strain = dict(wall.sparse[3 * p + k % 4])
-                if k in still:
-                    self.still.append(strain)
-                else:
-                    self.rates[k] = strain
-            if p in least:
-                self._slips(p, still, n)
-        self.width = n + len(self.backward)
-        self.weights = {k: weights[k // 4] for k in self.rates}
+                self._add(k, dict(wall.sparse[3 * p + k % 4]))
+            if p not in self.signed:
+                self._slips(p)
         self.work = {d: f for d, f in enumerate(wall.live) if f}
         self.lift = {d: self.forces.high * f + g for d, (f, g) in enumerate(zip(wall.live, wall.dead, strict=True))}
         for k, form in self.rates.items():
-            if k % 4 >= 2:
+            if k % 4 >= 2 and k // 4 in least:
                 for d, value in form.items():
                     self.lift[d] = self.lift.get(d, ZERO) - wall.friction[k // 4] * least[k // 4] * value
 
-    def _slips(self, p: int, still: set[int], n: int) -> None:
-        slip = dict(self.wall.sparse[3 * p + 2])
-        forward, backward = 4 * p + 2 not in still, 4 * p + 3 not in still
-        if forward and backward:
-            place = n + len(self.backward)
-            self.backward[p] = place
-            self.rates[4 * p + 2], self.rates[4 * p + 3] = slip | {place: Fraction(1)}, {place: Fraction(1)}
-        elif forward:
-            self.rates[4 * p + 2] = slip
-        elif backward:
-            self.rates[4 * p + 3] = {d: -value for d, value in slip.items()}
+    def _add(self, contact: int, form: Form) -> None:
+        if contact in self.known.still:
+            self.still.append((form, ZERO))
+        elif contact in self.known.slow:
+            self.still.append((form, self.known.slow[contact]))
         else:
-            self.still.append(slip)
+            self.rates[contact] = form
+
+    def _slips(self, p: int) -> None:
+        slip = dict(self.wall.sparse[3 * p + 2])
+        forward, backward = (k in self.known.still for k in (4 * p + 2, 4 * p + 3))
+        if forward and backward:
+            self.still.append((slip, ZERO))
+        elif backward:
+            self._add(4 * p + 2, slip)
+        elif forward:
+            self._add(4 * p + 3, {d: -value for d, value in slip.items()})
+        else:
+            place = self.n + len(self.backward)
+            self.backward[p] = place
+            self._add(4 * p + 2, slip | {place: Fraction(1)})
+            self._add(4 * p + 3, {place: Fraction(1)})
 
     def strain_limits(self) -> dict[int, Fraction]:
         """{strain: greatest value in mechanisms of size one} of all strains but slips of signed interfaces."""
@@ -157,12 +86,33 @@ class Columns:
         return limits
 
 
+class Reach:
+    """Greatest velocities and backward slips where those of all states are bounded already.
+
+    Attributes:
+        limits: of velocities, and of backward slips of these columns; of_size: whether they are per size of mechanisms.
+    """
+
+    of_size = False
+
+    def __init__(self, columns: Columns, reach: Vector) -> None:
+        self.limits = list(reach)
+        self.limits += [most_of(columns.wall, 3 * p + 2, reach) for p in columns.backward]
+
+
+def most_of(wall: ExactWall, strain: int, reach: Vector) -> Fraction:
+    """The greatest strain of velocities within limits."""
+    return sum((abs(value) * reach[d] for d, value in wall.sparse[strain]), ZERO)
+
+
 class Motions:
     """Greatest velocities of mechanisms of size one.
 
     The velocities are a matrix times some strains, up to rounding. A slip of interfaces that may be unloaded is bounded
     where it is that of a course: the normal forces of its joints have a sum above zero, and slip against friction.
     """
+
+    of_size = True
 
     def __init__(self, columns: Columns, document: Any) -> None:
         self.columns, wall = columns, columns.wall

@@ -5,6 +5,7 @@ from __future__ import annotations
 import time
 from collections.abc import Callable
 from dataclasses import dataclass, field
+from typing import Protocol
 
 import numpy as np
 
@@ -12,7 +13,7 @@ from harness.model.assembly import FloatArray
 from methods.bound.dual import DualBound
 from methods.bound.equations import Equations
 from methods.bound.halpern import Splitting, carried_over
-from methods.bound.rate_bounds import RateProgramme
+from methods.bound.rate_bounds import RateProgramme, RateProof
 from methods.bound.relaxation import Relaxation
 from methods.bound.slack_bounds import EVERY, Case, SlackBounds, SlackProgramme
 from methods.bound.tuning import ROUNDING, STEPS, WINDOWS
@@ -60,8 +61,23 @@ class Bracket:
         return self.lower >= self.upper * (1.0 - WINDOWS.closed)
 
 
-Certify = Callable[[WindowProof, float], float]
-"""What exact arithmetic leaves of the bound of a window, and how much of it is needed."""
+class Certify(Protocol):
+    """What exact arithmetic leaves of that which a search finds."""
+
+    def window(self, proof: WindowProof, needed: float) -> float:
+        """The bound after a window, of which so much is needed."""
+
+    def part(self, contact: int, tight: bool) -> Certify | None:
+        """The same for the states without slack or without a rate at a contact; None if there is none for parts."""
+
+    def slacks(self, bounds: SlackBounds) -> None:
+        """Take note of slacks and normal forces of a part."""
+
+    def statics(self, velocities: FloatArray) -> float:
+        """The bound after velocities that bound the multiplier of a part."""
+
+    def rates(self, proofs: list[RateProof]) -> float:
+        """The bound after virtual forces that show something of the mechanisms of a part."""
 
 
 class WindowSearch:
@@ -89,16 +105,21 @@ class WindowSearch:
         self._size = np.inf
         self._size_products: FloatArray | None = None
 
-    def part(self, case: Case, rates: RateProgramme) -> WindowSearch:
-        """The search of a part of the states of this one, which begins where this one is.
+    def parts(self, contact: int, rates: RateProgramme) -> list[WindowSearch]:
+        """The searches of both halves of the states of this one, which begin where this one is.
 
         Args:
-            case: what is decided in the part; rates: the programme that decides more, which all parts share.
+            contact: without slack in the first, without a rate in the second.
+            rates: the programme that decides more, which all parts share.
         """
-        known = Bracket(self.found.lower, self.found.upper)
-        part = WindowSearch(self.equations, self._slacks, known, self.until, None, case)
-        part._runs, part._rates = dict(self._runs), rates
-        return part
+        parts = []
+        for case, tight in zip(self.case.halves(contact), (True, False), strict=True):
+            certify = None if self._certify is None else self._certify.part(contact, tight)
+            known = Bracket(self.found.lower, self.found.upper)
+            part = WindowSearch(self.equations, self._slacks, known, self.until, certify, case)
+            part._runs, part._rates = dict(self._runs), rates
+            parts.append(part)
+        return parts
 
     def undecided(self) -> int | None:
         """The contact whose slack and rate do most work in the present iterate; None if all are decided."""
@@ -121,7 +142,6 @@ class WindowSearch:
         found, last = self.found, self._relaxation is not None and self._is_last(self._relaxation)
         unfinished = self._relaxation is not None and not np.isfinite(self._size)
         if not last and not unfinished and not self._build():
-            found.lower = found.upper
             return False
         before = found.lower
         if not np.isfinite(self._size):
@@ -131,7 +151,7 @@ class WindowSearch:
         stalled = self._bound_multiplier()
         if self._certify is not None and found.lower > before:
             needed = found.lower - WINDOWS.below * (found.upper - found.lower)
-            found.lower = min(found.lower, max(before, self._certify(found.proofs[-1], needed)))
+            found.lower = min(found.lower, max(before, self._certify.window(found.proofs[-1], needed)))
         if self._slow and found.lower - before < WINDOWS.gain * (found.upper - before):
             return False
         return found.lower - before > 1e-3 * (found.upper - before) or not (stalled and last)
@@ -140,9 +160,9 @@ class WindowSearch:
         return self.found.upper - relaxation.low < WINDOWS.narrow * self.found.upper
 
     def _build(self) -> bool:
-        """Build the relaxation of the present bracket; False if no forces within yield exist in it."""
+        """Build the relaxation of the present bracket; False if no state is left in it that is not bounded."""
         found, high = self.found, self.found.upper * (1.0 + WINDOWS.above)
-        bounds = self._slacks.bounds(found.lower, high, self.case)
+        bounds = self._slack_bounds(high, self.case)
         if bounds is not None and self._rates is not None:
             bounds = self._tightened(self._rates, high, bounds)
         low = found.lower
@@ -161,22 +181,39 @@ class WindowSearch:
         found.windows.append(low)
         return True
 
+    def _slack_bounds(self, high: float, case: Case) -> SlackBounds | None:
+        """Bounds of the slacks of the present bracket; None, and the bound raised, if it leaves no forces."""
+        bounds = self._slacks.bounds(self.found.lower, high, case)
+        part = self._certify if self._rates is not None else None
+        if bounds is None:
+            self._raise(np.inf, None if part is None else part.statics(self._slacks.excluding()))
+        elif part is not None:
+            part.slacks(bounds)
+        return bounds
+
     def _tightened(self, rates: RateProgramme, high: float, bounds: SlackBounds) -> SlackBounds | None:
-        """Decide contacts by virtual work and raise the bound by statics and by virtual work alone."""
+        """Decide contacts by virtual work and raise the bound by statics alone."""
         found: SlackBounds | None = bounds
         while found is not None:
             before = self.case
-            decided = rates.decided(high, found, before)
+            decided, proofs = rates.decided(high, found, before)
+            certified = None if self._certify is None else self._certify.rates(proofs)
             if decided is None:
+                self._raise(np.inf, certified)
                 return None
             self.case = decided
             self._slacks.window(self.found.lower, high, decided)
-            least = max(self._slacks.multiplier(), rates.multiplier()) - ROUNDING.programme
-            self.found.lower = min(max(self.found.lower, least), self.found.upper)
+            least, velocities = self._slacks.multiplier()
+            self._raise(least, None if self._certify is None else self._certify.statics(velocities))
             if decided.tight == before.tight or self.found.closed:
                 return found
-            found = self._slacks.bounds(self.found.lower, high, decided)
+            found = self._slack_bounds(high, decided)
         return None
+
+    def _raise(self, least: float, certified: float | None) -> None:
+        """Raise the bound to what a programme found, and no more than exact arithmetic leaves of it."""
+        found, least = self.found, least - ROUNDING.programme
+        found.lower = max(found.lower, min(found.upper, least if certified is None else min(least, certified)))
 
     def _bound_size(self) -> None:
         """Bound the size of this window's mechanisms, to within `Windows.size` times the relaxation's own value."""

@@ -108,6 +108,19 @@ class Programme:
             raise OutOfTime
         return status
 
+    def ray(self) -> FloatArray | None:
+        """Row multipliers that show that the last run, which was infeasible, has no solution; None if none are known.
+
+        Their sign is for the caller to find.
+        """
+        _, known, values = self.highs.getDualRay()
+        if not known:
+            self.highs.setOptionValue("presolve", "off")
+            self._run()
+            self.highs.setOptionValue("presolve", "choose")
+            _, known, values = self.highs.getDualRay()
+        return np.array(values) if known else None
+
     def iterations(self) -> int:
         """Iterations of the last run."""
         info = self.highs.getInfo()

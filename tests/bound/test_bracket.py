@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import itertools
-import time
 from collections.abc import Callable
 
 import numpy as np
@@ -13,16 +12,17 @@ from hypothesis import strategies as st
 
 from benchmarks.bounds import small_wall
 from harness.model.assembly import Assembly
-from methods.bound.bracket import bracket, branched
+from methods.bound.bracket import bracket
 from methods.bound.relaxation import Relaxation
 from methods.bound.slack_bounds import SlackProgramme
-from methods.bound.window_search import Bracket, WindowSearch
+from methods.bound.window_search import Bracket
 from methods.la.bound_adapter import BoundedLimitAnalysis
 from methods.la.certify.window_certificate import equations_of
 from methods.la.core.newton_matrix import NewtonMatrix
 from methods.la.core.problem import Problem, make_problem
 from methods.la.core.search_settings import BoundSettings
 from methods.la.sources.search import Search
+from tests.bound.by_cases import in_cases
 from tests.enumeration import least_by_enumeration
 from tests.la.bodies import column, running_bond
 from tests.walls import assembly
@@ -31,14 +31,6 @@ from tests.walls import assembly
 def in_windows(problem: Problem, upper: float, seconds: float) -> Bracket:
     """The bracket of windows first, as the product makes it."""
     return bracket(equations_of(problem), upper, seconds)
-
-
-def in_cases(problem: Problem, upper: float, seconds: float) -> Bracket:
-    """The bracket of one window and, from there, of cases of contacts only."""
-    equations, until = equations_of(problem), time.process_time() + seconds
-    root = WindowSearch(equations, SlackProgramme(equations), Bracket(0.0, upper), until)
-    root.window()
-    return branched(root)
 
 
 @pytest.mark.parametrize("bracketed", [in_windows, in_cases])

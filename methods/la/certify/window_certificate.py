@@ -9,10 +9,11 @@ import numpy as np
 
 from harness.model.assembly import FloatArray
 from methods.bound.bracket import bracket
+from methods.bound.certifier import Certifier
 from methods.bound.equations import Equations
 from methods.bound.exact_wall import CertificateError, ExactWall
 from methods.bound.verify import check_state, digest
-from methods.bound.window_document import Certifier, Scales
+from methods.bound.window_document import Scales
 from methods.bound.window_search import Bracket
 from methods.la.certify.tree_certificate import Fractions, exact_state, wall_document
 from methods.la.core.problem import Problem
@@ -37,24 +38,41 @@ def certified_bracket(
         mechanism: (n_blocks, 3) velocities of the state.
         seconds: of CPU time.
     """
-    equations, upper = equations_of(problem), multiplier / problem.unit_multiplier
-    document = wall_document(problem.assembly, problem.unit_force)
-    wall = ExactWall(document)
-    certifier = Certifier(wall, scales_of(problem), equations)
-    found = bracket(equations, upper, seconds, certify=certifier)
+    certifier = certifier_of(problem)
+    upper = multiplier / problem.unit_multiplier
+    found = bracket(equations_of(problem), upper, seconds, certify=certifier)
+    return found, certificate_of(problem, multiplier, mechanism, certifier)
+
+
+def certifier_of(problem: Problem) -> Certifier:
+    """What keeps the certificate of a search for the bracket of a problem."""
+    wall = ExactWall(wall_document(problem.assembly, problem.unit_force))
+    return Certifier(wall, scales_of(problem), equations_of(problem))
+
+
+def certificate_of(
+    problem: Problem, multiplier: float, mechanism: FloatArray, certifier: Certifier
+) -> dict[str, Any] | None:
+    """The certificate of what a search has proved, None if that is nothing, with the state if it exists in fractions.
+
+    Args:
+        problem: of the search; multiplier, mechanism: of the state; certifier: of the search.
+    """
     if not certifier.documents:
-        return found, None
-    exact = Fraction(multiplier)
+        return None
+    document, exact = wall_document(problem.assembly, problem.unit_force), Fraction(multiplier)
     try:
         rates = problem.rates_of_velocities(problem.from_mechanism(mechanism), False)
         exact, document["state"] = exact_state(Fractions(document), moving_contacts(rates).ravel())
-        check_state(wall, exact, document["state"])
+        check_state(certifier.wall, exact, document["state"])
     except (ArithmeticError, CertificateError):
         document.pop("state", None)
     bound = min(certifier.bound, exact)
     document |= {"multiplier": str(exact), "bound": _short(bound, exact), "windows": certifier.documents}
+    if certifier.cases is not None:
+        document["cases"] = certifier.cases.document()
     document["digest"] = digest(document)
-    return found, document
+    return document
 
 
 def scales_of(problem: Problem) -> Scales:

@@ -1,0 +1,239 @@
+"""The certificate of a bracket as it goes up: documents of its windows, and of the cases they are divided into."""
+
+from __future__ import annotations
+
+from fractions import Fraction
+from typing import Any
+
+import numpy as np
+
+from harness.model.assembly import FloatArray
+from methods.bound.equations import Equations
+from methods.bound.exact_wall import CertificateError, ExactWall
+from methods.bound.rate_bounds import RateProof
+from methods.bound.relaxation import Relaxation
+from methods.bound.slack_bounds import SlackBounds, SlackProgramme
+from methods.bound.tuning import PRECISION, ROUNDING
+from methods.bound.verify_cases import States, states_of
+from methods.bound.window_document import Scales, WindowDocument, below, whole_values
+from methods.bound.window_search import WindowProof
+
+Fact = tuple[str, int]
+"""What a step shows: the rate of a contact is bounded, its slack is zero, or an interface is loaded."""
+
+
+class Certifier:
+    """The documents of windows as a bracket goes up, asked after each.
+
+    Args:
+        wall: of the certificate.
+        scales: from the search to it.
+        equations: of the search.
+
+    Attributes:
+        documents: of the windows that raise the bound, in order.
+        cases: into which the states of the last of them are divided, if they are.
+    """
+
+    def __init__(self, wall: ExactWall, scales: Scales, equations: Equations) -> None:
+        self.wall, self.scales = wall, scales
+        self.documents: list[dict[str, Any]] = []
+        self.cases: CaseCertifier | None = None
+        self._programme = SlackProgramme(equations)
+        self._proved = Fraction(0)
+        self._last: tuple[Relaxation, States] | None = None
+
+    @property
+    def bound(self) -> Fraction:
+        """What the documents prove."""
+        return self._proved if self.cases is None else max(self._proved, self.cases.bound)
+
+    def window(self, proof: WindowProof, needed: float) -> float:
+        """The scaled multiplier below which the documents leave no collapse state, this window among them.
+
+        Args:
+            proof: of the window.
+            needed: scaled multiplier that is enough.
+        """
+        exact = Fraction(needed) * Fraction(self.scales.multiplier)
+        writer = WindowDocument(self.wall, self.scales, proof, self._programme)
+        try:
+            document, bound = writer.document(exact)
+        except CertificateError:
+            return self.scales.scaled(self._proved)
+        if bound > self._proved:
+            if self._last is not None and proof.relaxation is self._last[0]:
+                self.documents.pop()
+            self.documents.append(document)
+            greatest = writer.limits.greatest_size(document["size"])
+            self._proved = bound
+            self._last = proof.relaxation, states_of(writer.limits, greatest, bound)
+        return self.scales.scaled(self._proved)
+
+    def part(self, contact: int, tight: bool) -> CaseCertifier | None:
+        """The certificate of half of the states of the last window; None if none is proved."""
+        if self._last is None:
+            return None
+        if self.cases is None:
+            self.cases = CaseCertifier(self.scales, self._programme, self._last[1])
+        return self.cases.part(contact, tight)
+
+    def slacks(self, bounds: SlackBounds) -> None:
+        """Nothing: windows of all states bring this with them."""
+
+    def statics(self, velocities: FloatArray) -> float:
+        """What is proved already."""
+        return self.scales.scaled(self._proved)
+
+    def rates(self, proofs: list[RateProof]) -> float:
+        """What is proved already."""
+        return self.scales.scaled(self._proved)
+
+
+class CaseCertifier:
+    """What is proved of the states of one case, step by step, and of its halves once it is divided.
+
+    Args:
+        scales: from the search to the certificate.
+        programme: of the slacks of the search.
+        states: with what is known of them at first.
+    """
+
+    def __init__(self, scales: Scales, programme: SlackProgramme, states: States) -> None:
+        self._scales, self._programme, self._states = scales, programme, states
+        self._steps: list[dict[str, Any]] = []
+        self._halves: dict[bool, CaseCertifier] = {}
+        self._contact = -1
+        self._before = states
+        self._last: Relaxation | None = None
+
+    @property
+    def bound(self) -> Fraction:
+        """Multiplier below which no state of the case is left."""
+        halves = [half.bound for half in self._halves.values()]
+        return min(halves) if len(halves) == 2 else self._states.low
+
+    def document(self) -> dict[str, Any]:
+        """The node of the certificate, without the steps that nothing needs."""
+        return self._needed()[0]
+
+    def _needed(self) -> tuple[dict[str, Any], set[Fact]]:
+        """The node, and what it needs that is known before it."""
+        node: dict[str, Any] = {}
+        needs: set[Fact] = set()
+        if len(self._halves) == 2:
+            parts = [self._halves[tight]._needed() for tight in (True, False)]
+            node |= {"contact": self._contact, "parts": [part for part, _ in parts]}
+            needs = parts[0][1] | parts[1][1]
+        steps = []
+        for step in reversed(self._steps):
+            shown = _fact(step)
+            if shown is None or shown in needs:
+                steps.append(step)
+                needs |= _needs_of(step, self._states)
+        return node | {"steps": steps[::-1]}, needs
+
+    def part(self, contact: int, tight: bool) -> CaseCertifier:
+        """Of the states without slack, or without a rate, at a contact."""
+        self._contact = contact
+        self._halves[tight] = CaseCertifier(self._scales, self._programme, self._states.half(contact, tight))
+        return self._halves[tight]
+
+    def window(self, proof: WindowProof, needed: float) -> float:
+        """The bound after a window, of which so much is needed."""
+        exact = Fraction(needed) * Fraction(self._scales.multiplier)
+        before = self._before if proof.relaxation is self._last else self._states
+        writer = WindowDocument(before.wall, self._scales, proof, self._programme, before)
+        try:
+            document, bound = writer.document(exact)
+        except CertificateError:
+            return self._lower
+        if bound > self._states.low:
+            if proof.relaxation is self._last:
+                self._steps.pop()
+            self._before, self._last = before, proof.relaxation
+            self._steps.append(document)
+            self._states = before.at(bound)
+        return self._lower
+
+    def slacks(self, bounds: SlackBounds) -> None:
+        """Note what is new of slacks that stay above zero and of least normal forces."""
+        length = self._scales.length
+        for contact in np.flatnonzero(bounds.least > ROUNDING.margin).tolist():
+            if contact not in self._states.known.still:
+                velocities = self._scales.velocities(bounds.still_velocities[contact] / length[contact // 4])
+                self._learn({"shows": "still", "contact": contact, "velocities": velocities})
+        for p in np.flatnonzero(bounds.normal_least > ROUNDING.margin).tolist():
+            least = below(float(bounds.normal_least[p] / length[p]))
+            known = self._states.known.least.get(p)
+            if known is None or abs(least - known) > ROUNDING.wall * least:
+                velocities = self._scales.velocities(bounds.least_velocities[p] / length[p])
+                self._learn({"shows": "loaded", "interface": p, "least": str(least), "velocities": velocities})
+
+    def statics(self, velocities: FloatArray) -> float:
+        """The bound after velocities, of either sign, that bound the multiplier."""
+        for sign in (1.0, -1.0):
+            self._learn({"shows": "statics", "velocities": self._scales.velocities(sign * velocities)})
+        return self._lower
+
+    def rates(self, proofs: list[RateProof]) -> float:
+        """The bound after virtual forces that show something of the mechanisms."""
+        scales, exponent = self._scales, PRECISION.forces
+        for proof in proofs:
+            unit = scales.length[proof.contact // 4] if proof.contact >= 0 else 1.0
+            step: dict[str, Any] = {
+                "shows": proof.shows,
+                "exponent": exponent,
+                "strains": whole_values(unit * proof.strains / np.repeat(scales.length, 3), exponent),
+                "lift": round(unit * proof.lift * 2**exponent),
+                "work": round(unit * scales.multiplier * proof.work * 2**exponent),
+            }
+            if proof.contact >= 0:
+                step["contact"] = proof.contact
+            self._learn(step)
+        return self._lower
+
+    @property
+    def _lower(self) -> float:
+        return self._scales.scaled(self._states.low)
+
+    def _learn(self, step: dict[str, Any]) -> None:
+        """Take a step, if it shows what it says and something new."""
+        if self._states.low >= self._states.high:
+            return
+        try:
+            after = self._states.after(step)
+        except CertificateError:
+            return
+        if after.low > self._states.low or step["shows"] in ("still", "loaded", "slow", "tight"):
+            self._steps.append(step)
+            self._states, self._last = after, None
+
+
+def _fact(step: dict[str, Any]) -> Fact | None:
+    """What a step shows of contacts; None where it raises the bound."""
+    match step["shows"]:
+        case "still" | "slow":
+            return "rate", int(step["contact"])
+        case "loaded":
+            return "force", int(step["interface"])
+        case "tight":
+            return "slack", int(step["contact"])
+    return None
+
+
+def _needs_of(step: dict[str, Any], states: States) -> set[Fact]:
+    """All that a step may need, of what is known of the states at the end."""
+    slacks: set[Fact] = {("slack", k) for k in states.forces.tight}
+    if "strains" not in step:
+        known = states.known
+        every: set[Fact] = {("rate", k) for k in known.still | known.slow.keys()} | {("force", p) for p in known.least}
+        return slacks | every if step["shows"] == "window" else slacks
+    needs: set[Fact] = set()
+    for strain, value in enumerate(step["strains"]):
+        p, k = divmod(strain, 3)
+        if k < 2 and value > 0:
+            needs.add(("rate", 4 * p + k))
+        elif k == 2 and value:
+            needs |= {("force", p), ("rate", 4 * p + 2), ("rate", 4 * p + 3)}
+    return needs

@@ -1,0 +1,140 @@
+"""What bounds the forces of all states of a window of a certificate, in fractions."""
+
+from __future__ import annotations
+
+import copy
+from collections.abc import Collection, Mapping
+from dataclasses import dataclass
+from fractions import Fraction
+from typing import Any
+
+from methods.bound.exact_wall import ZERO, CertificateError, ExactWall, Form, integers, paired, whole, whole_numbers
+
+
+class Forces:
+    """Bounds of normal forces in all states of a window, each from virtual velocities.
+
+    Forces in equilibrium do no work, so any virtual velocities may be added to a sum of forces; what is then left at an
+    interface is at most a multiple of its normal force. Forces of an interface are sums of `rays`.
+    """
+
+    def __init__(
+        self, wall: ExactWall, low: Fraction, high: Fraction, document: Any, tight: Collection[int] = ()
+    ) -> None:
+        self.wall, self.low, self.high = wall, low, high
+        self.tight, self.rays = frozenset(tight), rays_of(wall, tight)
+        self.unit = 2 ** whole(document["exponent"], 0, 200)
+        m = wall.n_interfaces
+        self._rows, self._row_unit = integers([dict(row) for row in wall.sparse])
+        self._loads, self._load_unit = integers([dict(enumerate(wall.live)), dict(enumerate(wall.dead))])
+        friction, self._friction_unit = integers([dict(enumerate(wall.friction))])
+        self._friction = {p: friction[0].get(p, 0) for p in range(m)}
+        self.total: Fraction | None = None
+        base, worst = self._above({p: Fraction(1) for p in range(m)}, document["total"])
+        if worst >= 1:
+            raise CertificateError("the normal forces of a window are not bounded")
+        self.total = max(ZERO, base / (1 - worst))
+        alone = [self.greatest({p: Fraction(1)}, v) for p, v in paired(range(m), document["greatest"])]
+        self.normal = [min(self.total, max(ZERO, normal)) for normal in alone]
+
+    def within(self, low: Fraction, tight: Collection[int]) -> Forces:
+        """The same bounds for the states from `low` on, of them those without slack in these contacts."""
+        part = copy.copy(self)
+        part.low, part.tight, part.rays = low, frozenset(tight), rays_of(self.wall, tight)
+        return part
+
+    def least_multiplier(self, velocities: Any) -> Fraction | None:
+        """A lower bound of the multiplier of these states; None if velocities show that there are none."""
+        v = whole_numbers(velocities, len(self.wall.dead))
+        live, dead = (
+            Fraction(sum([value * v[d] for d, value in load.items()]), self.unit * self._load_unit)
+            for load in self._loads
+        )
+        most = self._above_form({}, v)[1] * (self.total or ZERO) - dead  # of live times the multiplier
+        if live < 0:
+            least = most / live
+            return least if least <= self.high else None
+        return self.low if most >= live * self.low else None
+
+    def greatest(self, weights: Form, velocities: Any) -> Fraction:
+        """An upper bound of a weighted sum of normal forces; weights {interface: weight}."""
+        base, worst = self._above(weights, velocities)
+        return base + worst * (self.total or ZERO)
+
+    def least_slack(self, contact: int, velocities: Any) -> Fraction:
+        """A lower bound of a yield slack."""
+        p, k = divmod(contact, 4)
+        mu = self.wall.friction[p]
+        one = Fraction(1)
+        slack = ({0: -one}, {1: -one}, {0: -mu, 1: -mu, 2: -one}, {0: -mu, 1: -mu, 2: one})[k]
+        base, worst = self._above_form({3 * p + i: v for i, v in slack.items()}, velocities)
+        return -(base + worst * (self.total or ZERO))
+
+    def _above(self, weights: Form, velocities: Any) -> tuple[Fraction, Fraction]:
+        form = {3 * p + end: weight for p, weight in weights.items() for end in (0, 1)}
+        return self._above_form(form, velocities)
+
+    def _above_form(self, form: Form, velocities: Any) -> tuple[Fraction, Fraction]:
+        """(a, b) such that the form of forces is at most a + b times the sum of normal forces."""
+        v = whole_numbers(velocities, len(self.wall.dead))
+        scale, mu_unit = self.unit * self._row_unit * self._friction_unit, self._friction_unit
+        worst = 0
+        for p, mu in self._friction.items():
+            first, second, shear = (
+                (int(form[k] * scale) if k in form else 0)
+                - mu_unit * sum([value * v[d] for d, value in self._rows[k].items()])
+                for k in range(3 * p, 3 * p + 3)
+            )
+            for end, side in self.rays[p]:
+                worst = max(worst, (second if end else first) * mu_unit + side * mu * shear)
+        live, dead = (
+            Fraction(-sum([value * v[d] for d, value in load.items()]), self.unit * self._load_unit)
+            for load in self._loads
+        )
+        return dead + max(self.low * live, self.high * live), Fraction(worst, scale * mu_unit)
+
+
+def rays_of(wall: ExactWall, tight: Collection[int]) -> list[list[tuple[int, int]]]:
+    """The extreme forces of every interface without slack in `tight`: the end that presses, the side of friction."""
+    rays: list[list[tuple[int, int]]] = []
+    for p, mu in enumerate(wall.friction):
+        rays.append([])
+        for end, side in ((0, -1), (0, 1), (1, -1), (1, 1)):
+            slacks = {4 * p + end, 4 * p + (2 if side > 0 else 3)} if mu else {4 * p + end}
+            if slacks.isdisjoint(tight):
+                rays[p].append((end, side))
+    return rays
+
+
+@dataclass(frozen=True)
+class Known:
+    """What is known of the contacts of all states of a window.
+
+    Attributes:
+        still: contacts without a rate; slow: contacts with a rate of at most so much.
+        least: least normal forces of the interfaces that are loaded.
+    """
+
+    still: frozenset[int]
+    least: Mapping[int, Fraction]
+    slow: Mapping[int, Fraction]
+
+
+def known_of(forces: Forces, document: Any) -> Known:
+    """What virtual velocities show of contacts.
+
+    Raises:
+        CertificateError: they do not show what is said.
+    """
+    m = forces.wall.n_interfaces
+    still = [whole(k, 0, 4 * m - 1) for k in document["still"]]
+    for k, velocities in paired(still, document["still_velocities"]):
+        if forces.least_slack(k, velocities) <= 0:
+            raise CertificateError("a contact that is held still may move")
+    loaded = [whole(p, 0, m - 1) for p in document["loaded"]]
+    least: Form = {}
+    for (p, claimed), velocities in paired(list(paired(loaded, document["least"])), document["least_velocities"]):
+        least[p] = Fraction(claimed)
+        if -forces.greatest({p: Fraction(-1)}, velocities) < least[p]:
+            raise CertificateError("a normal force may be less than is said")
+    return Known(frozenset(still), least, {})

@@ -1,0 +1,36 @@
+"""Brackets that are divided into cases of contacts after one window, where the product would go on with windows."""
+
+from __future__ import annotations
+
+import time
+from typing import Any
+
+from harness.model.assembly import Assembly
+from methods.bound.bracket import branched
+from methods.bound.slack_bounds import SlackProgramme
+from methods.bound.window_search import Bracket, Certify, WindowSearch
+from methods.la.certify.window_certificate import certificate_of, certifier_of, equations_of
+from methods.la.core.problem import Problem, make_problem
+from methods.la.core.search_settings import SearchSettings
+from methods.la.search_adapter import LimitAnalysis
+
+
+def in_cases(problem: Problem, upper: float, seconds: float, certify: Certify | None = None) -> Bracket:
+    """The bracket of one window and, from there, of cases of contacts only."""
+    equations, until = equations_of(problem), time.process_time() + seconds
+    root = WindowSearch(equations, SlackProgramme(equations), Bracket(0.0, upper), until, certify)
+    root.window()
+    return branched(root)
+
+
+def certificate_of_cases(wall: Assembly, seconds: float = 60.0) -> dict[str, Any]:
+    """The certificate of a bracket below the least state known."""
+    problem, known = make_problem(wall), LimitAnalysis().solve(wall, SearchSettings())
+    certifier, multiplier = certifier_of(problem), known.multiplier
+    assert multiplier is not None
+    assert known.mechanism is not None
+    in_cases(problem, multiplier / problem.unit_multiplier, seconds, certifier)
+    document = certificate_of(problem, multiplier, known.mechanism, certifier)
+    assert document is not None
+    assert "cases" in document
+    return document

@@ -1,0 +1,164 @@
+"""Certificates of brackets that are won by cases of contacts prove what they say, and nothing that is false."""
+
+from __future__ import annotations
+
+import copy
+from collections.abc import Iterator
+from fractions import Fraction
+from functools import cache
+from typing import Any
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from benchmarks.bounds import small_wall
+from methods.bound.exact_wall import CertificateError, ExactWall
+from methods.bound.rate_bounds import RateProgramme
+from methods.bound.same_wall import require_same_wall
+from methods.bound.slack_bounds import Case, SlackProgramme
+from methods.bound.verify import digest, verify
+from methods.bound.verify_cases import STEPS, states_of
+from methods.bound.verify_window import WindowLimits
+from methods.bound.window_search import Bracket, WindowSearch
+from methods.la.certify.window_certificate import certifier_of, equations_of
+from methods.la.core.problem import make_problem
+from tests.bound.by_cases import certificate_of_cases
+from tests.bound.digits import one_digit_changed
+from tests.bound.test_bracket import IRREGULAR
+from tests.la.bodies import running_bond
+
+LEAST = Fraction(13, 20)
+"""Least multiplier of 2 courses of 2 bricks .4 x .2 on friction 13/20: the top course slides."""
+
+
+@cache
+def of_bond() -> dict[str, Any]:
+    return certificate_of_cases(running_bond(2, 2, 0.2, 0.65))
+
+
+@cache
+def of_irregular_wall() -> dict[str, Any]:
+    return certificate_of_cases(small_wall(10))
+
+
+def refused(document: dict[str, Any]) -> bool:
+    """Whether a document, its digest made anew, is refused; what it proves otherwise must be true."""
+    try:
+        lower, upper = verify(document | {"digest": digest(document)})
+    except CertificateError:
+        return True
+    assert lower <= LEAST <= upper
+    return False
+
+
+def nodes(node: dict[str, Any]) -> Iterator[dict[str, Any]]:
+    yield node
+    for part in node.get("parts", ()):
+        yield from nodes(part)
+
+
+def test_cases_prove_a_bonded_wall_to_a_millionth() -> None:
+    require_same_wall(of_bond(), running_bond(2, 2, 0.2, 0.65))
+    lower, upper = verify(of_bond())
+    assert upper == LEAST
+    assert 0 < upper - lower <= Fraction(1, 10**6) * upper
+    without = {key: value for key, value in of_bond().items() if key != "cases"}
+    with pytest.raises(CertificateError, match="windows prove"):
+        verify(without | {"digest": digest(without)})
+
+
+@settings(max_examples=40, deadline=None, derandomize=True)
+@given(st.data())
+def test_one_digit_changed_anywhere_is_refused(data: st.DataObject) -> None:
+    with pytest.raises(CertificateError):
+        verify(one_digit_changed(data, of_bond()))
+
+
+@settings(max_examples=60, deadline=None, derandomize=True)
+@given(st.data())
+def test_one_digit_changed_proves_nothing_false_even_with_the_digest_made_anew(data: st.DataObject) -> None:
+    part = {key: of_bond()[key] for key in ("cases", "bound", "multiplier")}
+    refused(of_bond() | one_digit_changed(data, part))
+
+
+def test_a_half_that_is_left_out_or_in_the_place_of_the_other_is_refused() -> None:
+    halves = of_bond()["cases"]["parts"]
+    for parts in ([halves[0]], [halves[1], halves[0]], [halves[0], halves[0]], [halves[1], halves[1]]):
+        document = copy.deepcopy(of_bond())
+        document["cases"]["parts"] = parts
+        assert refused(document)
+
+
+def test_every_part_is_needed_to_its_end() -> None:
+    """A part without its last step no longer reaches the bound."""
+    parts = [node for node in nodes(of_bond()["cases"]) if "parts" not in node]
+    assert len(parts) >= 2
+    for k in range(len(parts)):
+        document = copy.deepcopy(of_bond())
+        [node for node in nodes(document["cases"]) if "parts" not in node][k]["steps"].pop()
+        assert refused(document)
+
+
+@pytest.mark.parametrize("shown", sorted(STEPS.keys() - {"no mechanism", "slow"}))
+def test_steps_are_refused_with_opposite_proofs(shown: str) -> None:
+    document = copy.deepcopy(of_irregular_wall())
+    steps = [step for node in nodes(document["cases"]) for step in node["steps"] if step["shows"] == shown]
+    assert steps
+    for step in steps:
+        if shown == "window":
+            step["multiplier"]["columns"][-2][-3] += 2 ** step["multiplier"]["exponent"]
+        for key in {"velocities", "strains"} & step.keys():
+            step[key] = [-value for value in step[key]]
+    with pytest.raises(CertificateError):
+        verify(document | {"digest": digest(document)})
+
+
+def test_forces_show_how_little_a_contact_moves_and_opposite_ones_do_not() -> None:
+    document, found = of_irregular_wall(), 0
+    window = document["windows"][-1]
+    limits = WindowLimits(ExactWall(document), window)
+    greatest = limits.greatest_size(window["size"])
+    left = [(states_of(limits, greatest, limits.bound(window["multiplier"], greatest)), document["cases"])]
+    while left:
+        states, node = left.pop()
+        for step in node["steps"]:
+            if step["shows"] == "slow":
+                opposite = step | {"strains": [-value for value in step["strains"]]}
+                for each, moves in ((step, False), (opposite, True)):
+                    assert (states.after(each).known.slow[step["contact"]] > Fraction(1, 10**6)) is moves
+                found += 1
+            states = states.after(step)
+        if "parts" in node:
+            tight, still = node["parts"]
+            left += [(states.half(node["contact"], True), tight), (states.half(node["contact"], False), still)]
+    assert found > 0
+
+
+def test_a_case_in_which_nothing_moves_is_empty() -> None:
+    """No mechanism has live work where all contacts but one are still; where more may move, forces do not show so."""
+    problem = make_problem(running_bond(2, 2, 0.2, 0.65))
+    equations, certifier = equations_of(problem), certifier_of(problem)
+    upper = float(LEAST) / problem.unit_multiplier
+    search = WindowSearch(equations, SlackProgramme(equations), Bracket(0.0, upper), np.inf, certifier)
+    search.window()
+    part = certifier.part(1, False)
+    assert part is not None
+    held = frozenset(range(1, 4 * problem.n_interfaces))
+    for contact in sorted(held):
+        part = part.part(contact, False)
+    bounds = SlackProgramme(equations).bounds(search.found.lower, upper)
+    assert bounds is not None
+    decided, proofs = RateProgramme(equations).decided(upper, bounds, Case(still=held))
+    assert (decided, [proof.shows for proof in proofs]) == (None, ["no mechanism"])
+    other = certifier.part(0, False)
+    assert other is not None
+    assert other.rates(proofs) < upper
+    assert part.rates(proofs) == pytest.approx(upper, rel=1e-8)
+
+
+def test_cases_prove_an_irregular_wall() -> None:
+    lower, upper = verify(of_irregular_wall())
+    assert float(upper) == pytest.approx(IRREGULAR, rel=1e-9)
+    assert 0 < upper - lower <= Fraction(2, 10**6) * upper
