@@ -8,12 +8,18 @@ from harness.model.assembly import Assembly, FloatArray
 from harness.model.comparison import CaseResults
 from harness.model.method import Finding, Status
 from harness.model.result import Result, relative_velocities
-from reports import numbers, shapes
+from reports import flow, numbers, shapes
 from reports.agreement import agreement, measure_of
 from reports.joints import motion
 
 SAME_MOTION = 0.9999
 """Cosine of velocity fields from which two mechanisms are called the same: fields rounded to 1e-5 differ by less."""
+ONE_BODY, APART = 0.01, 0.2
+"""Share of a motion that one rigid motion leaves, up to which it is one body's, and up to which it is mainly one's."""
+TOE = 0.05
+"""Block sizes within which the centre of a rotation stands at the end of a joint: numerical fields are that near."""
+THRUST = 0.02
+"""Share of the wall's weight by which thrusts through head joints differ worth a clause: the page prints hundredths."""
 SAME_VALUE = 1e-4
 """Relative difference of multipliers that is not worth a reason: the page prints five digits."""
 
@@ -35,10 +41,11 @@ def friction_share(assembly: Assembly, result: Result) -> float | None:
 
 
 def mechanism_in_words(assembly: Assembly, mechanism: FloatArray, length: str) -> str:
-    """Which share of the blocks moves and how: as one body that slides or turns about a point, or apart.
+    """Which share of the blocks moves and how: as one body that slides or turns about a point, mainly so, or apart.
 
     One rigid motion is fitted to the moving blocks by least squares over their areas; it is named where it holds 99 %
-    of the motion.
+    of the motion, and called the main one where it holds four fifths. What it parts from along beds and heads by turns
+    is a stepped crack.
     """
     moves = shapes.moving(assembly, mechanism)
     who = f"{int(moves.sum())} of {numbers.count(assembly.n_free, 'block')} {'moves' if moves.sum() == 1 else 'move'}"
@@ -52,15 +59,35 @@ def mechanism_in_words(assembly: Assembly, mechanism: FloatArray, length: str) -
         return "no block moves"
     fitted = np.linalg.lstsq(matrix, wanted, rcond=None)[0]
     left = wanted - matrix @ fitted
-    if float(left @ left) > 0.01 * float(wanted @ wanted):
-        return f"{who}, not as one body"
+    rest = float(left @ left) / float(wanted @ wanted)
+    if rest > APART:
+        return f"{who}, not as one body{_along(assembly, moves)}"
+    mainly = "mainly " if rest > ONE_BODY else ""
+    whole = "" if moves.sum() == 1 or mainly else " as one body"
     size = shapes.extent(assembly).longest
     if abs(fitted[2]) * size < 0.02 * float(np.hypot(*mechanism[moves, :2].T).max()):
-        return f"{who}, sliding" if moves.sum() == 1 else f"{who}, sliding as one body"
+        return f"{who}, {mainly}sliding{whole}{_along(assembly, moves)}"
     x, y = (value if abs(value) > 1e-9 * size else 0.0 for value in (-fitted[1] / fitted[2], fitted[0] / fitted[2]))
     ways = "clockwise" if fitted[2] < 0.0 else "anticlockwise"
-    only = "turning" if moves.sum() == 1 else "turning as one body"
-    return f"{who}, {only} {ways} about ({numbers.plain(x, 3)}, {numbers.plain(y, 3)}) {length}".rstrip()
+    place = f"({numbers.plain(x, 3)}, {numbers.plain(y, 3)}) {length}".rstrip()
+    toe = "the toe at " if _is_toe(assembly, x, y) else ""
+    return f"{who}, {mainly}turning{whole} {ways} about {toe}{place}{_along(assembly, moves)}"
+
+
+def _is_toe(assembly: Assembly, x: float, y: float) -> bool:
+    """Whether a point is the end of a joint with a support."""
+    held = assembly.fixed[assembly.block_a] | assembly.fixed[assembly.block_b]
+    ends = np.concatenate([assembly.end1[held], assembly.end2[held]])
+    return bool((np.hypot(*(ends - [x, y]).T) < TOE * assembly.length_scale).any())
+
+
+def _along(assembly: Assembly, moves: np.ndarray) -> str:
+    """The crack between what moves and what does not, where it steps through at least two beds and two heads."""
+    crack = moves[assembly.block_a] != moves[assembly.block_b]
+    head = np.abs(assembly.normal[:, 0]) > flow.HEAD_JOINT
+    steps = min(int((crack & head).sum()), int((crack & ~head).sum()))
+    names = {assembly.joint[p] for p in np.flatnonzero(crack)}
+    return ", along a stepped crack" if steps > 1 and names == {"bed", "head"} else ""
 
 
 def reasons(item: CaseResults) -> list[str]:
@@ -71,14 +98,52 @@ def reasons(item: CaseResults) -> list[str]:
         return []
     assembly = item.case.assembly
     measure = measure_of(assembly)
-    told: list[str] = []
+    apart: list[str] = []
     agree = [other.method for other in states if other is not least and _same_value(least, other)]
-    if agree:
-        told.append(f"At the multiplier of {least.method}: {', '.join(agree)}.")
     for other in states:
         if other is least or other.mechanism is None or other.judge.accepted is False or _same_value(least, other):
             continue
-        told.append(_reason(assembly, least, other, measure))
+        apart.append(_reason(assembly, least, other, measure) + _self_stress(item, least, other))
+    told = [*apart, *_histories(states, several=bool(apart))]
+    return [f"At the multiplier of {least.method}: {', '.join(agree)}.", *told] if agree and told else told
+
+
+def _self_stress(item: CaseResults, least: Result, other: Result) -> str:
+    """Thrust through head joints, which equilibrium leaves free, where two states differ in it."""
+    assembly = item.case.assembly
+    thrusts = [flow.head_thrust(assembly, result.forces) for result in (least, other)]
+    if thrusts[0] is None or thrusts[1] is None or abs(thrusts[0] - thrusts[1]) < THRUST:
+        return ""
+    said = (
+        f" Head joints press with {thrusts[0]:.2f} of the wall’s weight in {least.method} "
+        f"and {thrusts[1]:.2f} in {other.method}"
+    )
+    springs = next((r for r in item.mains if r.traits.elastic and r is not least and r.status is Status.OK), None)
+    built = None if springs is None else flow.head_thrust(assembly, springs.forces)
+    if springs is None or built is None or not other.traits.bounds_above or thrusts[1] - built < THRUST:
+        return f"{said}."
+    return f"{said}, a self-stress that loading does not build up: {springs.method} ends with {built:.2f}."
+
+
+def _histories(states: list[Result], *, several: bool) -> list[str]:
+    """Where histories of friction lead a method that follows several, if they part or there is anything to explain."""
+    told = []
+    for result in states:
+        ends = [
+            float(entry["plateau"])
+            for entry in result.details.get("histories") or []
+            if isinstance(entry, dict) and isinstance(entry.get("plateau"), float)
+        ]
+        if len(ends) < 2:
+            continue
+        low, high = numbers.multiplier(min(ends)), numbers.multiplier(max(ends))
+        if max(ends) - min(ends) > SAME_VALUE * abs(max(ends)):
+            told.append(
+                f"{result.method} ends between {low} and {high} over {len(ends)} histories of friction: "
+                "which collapse state loading reaches depends on them."
+            )
+        elif several:
+            told.append(f"{result.method} ends at {low} along each of {len(ends)} histories of friction.")
     return told
 
 

@@ -105,9 +105,43 @@ def test_one_body_that_turns_is_told_with_its_centre():
         mechanism[block] = (arm[1], -arm[0], -1.0)
     told = reasons.mechanism_in_words(assembly, mechanism, "m")
     everything = f"{assembly.n_free} of {assembly.n_free} blocks move"
-    assert told == f"{everything}, turning as one body clockwise about (0.800, 0) m"
+    assert told == f"{everything}, turning as one body clockwise about the toe at (0.800, 0) m"
     sliding = samples.sliding(assembly)
     assert "sliding as one body" in reasons.mechanism_in_words(assembly, sliding, "m")
+
+
+def test_crack_that_steps_through_beds_and_heads_is_told():
+    assembly = samples.bond(courses=6, bricks=3).assembly
+    mechanism = np.zeros((assembly.n_blocks, 3))
+    mechanism[assembly.centroid[:, 0] + assembly.centroid[:, 1] > 1.2] = (1.0, 0.0, 0.0)
+    told = reasons.mechanism_in_words(assembly, mechanism, "m")
+    assert told.endswith("sliding as one body, along a stepped crack")
+    mechanism[:] = 0.0
+    mechanism[assembly.centroid[:, 1] > 0.4] = (1.0, 0.0, 0.0)
+    assert "stepped" not in reasons.mechanism_in_words(assembly, mechanism, "m"), "a bed alone is no step"
+
+
+def test_self_stress_that_loading_does_not_build_up_is_told_with_its_size():
+    item = of_one_wall()
+    wall = item.case.assembly
+    head = np.abs(wall.normal[:, 0]) > 0.5
+    weight = float(wall.weight[wall.free].sum())
+    for result, share in ((item.results[0], 0.2), (item.results[1], 0.1), (item.results[2], 0.5)):
+        forces = np.zeros((wall.n_interfaces, 3))
+        forces[head, 0] = share * weight / head.sum()
+        result.forces = forces.tolist()
+    told = reasons.reasons(item)
+    (associated,) = (sentence for sentence in told if "la-associated" in sentence)
+    assert "Head joints press with 0.20 of the wall’s weight in la and 0.50 in la-associated" in associated
+    assert "loading does not build up: fe ends with 0.10" in associated
+
+
+def test_friction_histories_that_part_are_told_and_equal_ones_in_a_word():
+    item = of_one_wall()
+    item.results[1].details["histories"] = [{"plateau": 0.55}, {"plateau": 0.5652}]
+    assert "fe ends between 0.55000 and 0.56520 over 2 histories of friction" in " ".join(reasons.reasons(item))
+    item.results[1].details["histories"] = [{"plateau": 0.5652}, {"plateau": 0.5652}]
+    assert "fe ends at 0.56520 along each of 2 histories" in " ".join(reasons.reasons(item))
 
 
 def test_friction_takes_all_work_of_a_block_that_slides_on_level_ground():
