@@ -21,6 +21,7 @@ from harness.engine.plan import Run
 from harness.engine.regression import violations
 from harness.model.assembly import Assembly
 from harness.model.case import Case
+from harness.model.columns import BY_NAME, PRINTED
 from harness.model.comparison import ComparisonRun
 from harness.model.difference import Difference, Kind
 from harness.model.errors import InputError, first_few, visible
@@ -121,9 +122,9 @@ def print_comparison(compared: ComparisonRun, report: Path | None) -> None:
     if not console.is_terminal:
         console = Console(width=140)
     table = Table(title=f"Drystone: {escape(compared.title)}", title_justify="left", caption_justify="left")
-    for name in ("case", "method", "multiplier", "reference", "verdict", "judge residual", "CPU s"):
-        right = name in ("multiplier", "judge residual", "CPU s")
-        table.add_column(name, justify="right" if right else "left", no_wrap=name in ("multiplier", "method"))
+    for column in (BY_NAME[name] for name in PRINTED):
+        whole = column.name in ("multiplier", "method")
+        table.add_column(escape(column.head), justify="right" if column.numeric else "left", no_wrap=whole)
     for case in compared.cases:
         for number, result in enumerate(case.results):
             table.add_row(

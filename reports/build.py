@@ -13,6 +13,7 @@ from typing import Any
 
 from markupsafe import Markup
 
+from harness.model.columns import BY_NAME, LISTED, REPEATED
 from harness.model.comparison import CaseResults, ComparisonRun
 from harness.model.writing import write_whole
 from reports import agreement, numbers, paper, shapes, tables, words
@@ -67,6 +68,8 @@ def render(run: ComparisonRun, *, data_folder: str) -> str:
         findings=tables.findings(run),
         columns=tables.columns(run),
         shown=shown,
+        listed=[BY_NAME[name] for name in LISTED],
+        repeated=[BY_NAME[name] for name in REPEATED],
         matrix=_matrix(rows, shown),
         rows=[row for case_rows in rows for row in case_rows],
         failures=tables.failures(row for case_rows in rows for row in case_rows),

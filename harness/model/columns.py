@@ -1,4 +1,4 @@
-"""The columns of results, declared once: for CSV, Parquet, pandas, tables of studies and the docs."""
+"""The columns of results, declared once: for CSV, Parquet, pandas, tables of studies, terminal, report and docs."""
 
 from __future__ import annotations
 
@@ -7,16 +7,40 @@ from dataclasses import dataclass
 
 @dataclass(frozen=True)
 class ResultColumn:
-    """One column: its name, its type in pandas, its unit ("1": dimensionless, empty: no quantity), what it holds."""
+    """One column.
+
+    Attributes:
+        name: in files.
+        dtype: in pandas.
+        unit: "1" where it is dimensionless, empty where it is no quantity.
+        meaning: what it holds.
+        title: how people read its name, where that is more than its words.
+    """
 
     name: str
     dtype: str
     unit: str
     meaning: str
+    title: str = ""
+
+    @property
+    def label(self) -> str:
+        """The head of the column for people."""
+        return self.title or self.name.replace("_", " ")
+
+    @property
+    def head(self) -> str:
+        """The head with the unit, where there is one to tell."""
+        return self.label if self.unit in ("", "1") else f"{self.label} [{self.unit}]"
+
+    @property
+    def numeric(self) -> bool:
+        """Whether its values are numbers, which stand on the right."""
+        return self.dtype in ("Float64", "Int64")
 
 
-def _text(name: str, meaning: str) -> ResultColumn:
-    return ResultColumn(name, "string", "", meaning)
+def _text(name: str, meaning: str, title: str = "") -> ResultColumn:
+    return ResultColumn(name, "string", "", meaning, title)
 
 
 RESULTS: tuple[ResultColumn, ...] = (
@@ -33,19 +57,19 @@ RESULTS: tuple[ResultColumn, ...] = (
     _text("verdict", "how the value stands to its references"),
     ResultColumn("judge_accepted", "boolean", "", "whether the judge accepts the answer; missing: not judged"),
     ResultColumn("judge_tolerance", "Float64", "1", "the largest relative residual that was acceptable"),
-    ResultColumn("judge_worst_residual", "Float64", "1", "the worst relative residual found"),
+    ResultColumn("judge_worst_residual", "Float64", "1", "the worst relative residual found", "judge residual"),
     _text("judge_worst_residual_name", "which residual that is"),
     _text("judge_sentence", "what was judged, and what failed"),
-    ResultColumn("cpu_seconds", "Float64", "s", "processor time of the method alone"),
+    ResultColumn("cpu_seconds", "Float64", "s", "processor time of the method alone", "CPU time"),
     ResultColumn("wall_seconds", "Float64", "s", "time on the clock"),
-    ResultColumn("peak_memory_bytes", "Int64", "B", "largest resident memory"),
+    ResultColumn("peak_memory_bytes", "Int64", "B", "largest resident memory", "peak memory"),
     ResultColumn("blocks", "Int64", "1", "free blocks"),
     ResultColumn("interfaces", "Int64", "1", "interfaces"),
     ResultColumn("iterations", "Int64", "1", "of the method's main loop"),
     ResultColumn("unknowns", "Int64", "1", "of the method's largest problem"),
     _text("flow", "flow rule of the mechanism"),
     _text("started", "when the run began"),
-    _text("key", "under which the result is stored"),
+    _text("key", "under which the result is stored", "key in the store"),
     _text("settings", "of the method, as JSON"),
     _text("limits", "of the run, as JSON"),
     _text("versions", "of the programme and its libraries, as JSON"),
@@ -63,6 +87,19 @@ NUMBERED = (
 )
 """What tables of studies have besides."""
 
-BY_NAME = {column.name: column for column in (*RESULTS, *NUMBERED)}
+IN_TABLES = (
+    ResultColumn("bracket", "Float64", "1", "the pair of values that the method vouches for"),
+    _text("reference", "the value of another source that matters most; all are in comparisons.csv"),
+)
+"""What tables for people show of several columns, or of other tables, in one."""
+
+BY_NAME = {column.name: column for column in (*RESULTS, *NUMBERED, *IN_TABLES)}
 TYPES = {column.name: column.dtype for column in RESULTS}
 UNITS = {column.name: column.unit for column in RESULTS if column.unit}
+
+PRINTED = ("case", "method", "multiplier", "reference", "verdict", "judge_worst_residual", "cpu_seconds")
+"""Columns of a comparison in a terminal."""
+LISTED = (*PRINTED[:3], "bracket", "reference", "verdict", "finding", "judge_worst_residual", "cpu_seconds")
+"""Columns of every run in the report."""
+REPEATED = ("settings", "limits", "started", "peak_memory_bytes", "iterations", "unknowns", "key")
+"""Columns beside the command that repeats a run, in the report."""

@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+from harness.model.columns import BY_NAME, PRINTED
+from harness.model.comparison import ComparisonRun
 from harness.model.method import Finding, Status
 from harness.model.result import Comparison, Result, Verdict
-from harness.terminal import _expected
+from harness.terminal import _expected, print_comparison
 
 
 def test_a_reference_that_asks_for_other_settings_is_not_shown_as_that_of_the_value_beside_it():
@@ -26,3 +28,10 @@ def test_a_reference_that_asks_for_other_settings_is_not_shown_as_that_of_the_va
         comparisons=[held(0.52, 0.525), held([0.51, 0.53], [0.5, 0.6]), held(0.49, 0.495)],
     )
     assert _expected(result) == "0.525, [0.5, 0.6], 0.495 (other settings)"
+
+
+def test_heads_are_those_of_the_declared_columns(capsys):
+    print_comparison(ComparisonRun("t", "", "", []), None)
+    shown = capsys.readouterr().out
+    assert [name for name in PRINTED if BY_NAME[name].head not in shown] == []
+    assert "CPU time [s]" in shown

@@ -10,6 +10,7 @@ from typing import Any
 
 import pytest
 
+from harness.model import columns
 from harness.model.comparison import CaseResults, ComparisonRun
 from harness.model.method import Status
 from reports import build, drawing
@@ -243,3 +244,9 @@ def test_policy_names_the_scripts_of_the_page_by_their_hash(source: str, page: P
     assert len(run) == 2
     assert scripts.split() == [build.script_hash(script) for script in run]
     assert "unsafe-inline" not in scripts
+
+
+def test_heads_of_tables_are_those_of_the_declared_columns(source: str):
+    table = source[source.index('id="runs-table"') :]
+    heads = re.findall(r'<th scope="col"[^>]*>(?:<button[^>]*>)?([^<]*)', table[: table.index("</thead>")])
+    assert [head.lower() for head in heads] == [columns.BY_NAME[name].label.lower() for name in columns.LISTED]
