@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 from scipy.linalg import block_diag
 
+from benchmarks.la_and_fe import ABOVE, facade, solved
 from harness.model.method import Finding
 from methods.la.associated_adapter import AssociatedLimitAnalysis
 from methods.la.core.exact import close_tight
@@ -159,6 +160,18 @@ def test_wall_of_thousands_of_blocks_has_an_exact_state(courses: int, bricks: in
     assert answer.multiplier is not None
     assert answer.multiplier < by_springs
     assert max(answer.details["residuals"].values()) <= 1e-12
+
+
+@pytest.mark.slow
+def test_facade_is_not_above_the_plateau_of_springs() -> None:
+    """It was by a hundredth: no path of springs from gravity was followed above 2,000 interfaces."""
+    wall = facade(1, 4, "running", 0.6)
+    plateau, _ = solved("fe", wall, histories=(0.0,))
+    least, _ = solved("la", wall)
+    assert wall.n_interfaces > 2000
+    assert plateau.multiplier is not None
+    assert least.multiplier is not None
+    assert least.multiplier <= plateau.multiplier * (1.0 + ABOVE)
 
 
 def test_least_state_is_the_most_exact_of_those_that_differ_by_rounding_only() -> None:

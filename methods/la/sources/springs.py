@@ -108,11 +108,14 @@ class LittleSelfStress:
     mechanism made any of 611 such states on walls of irregular blocks lower.
 
     Attributes:
-        most: interfaces above which the path of gravity may jump, which may take thousands of factorisations.
+        most: interfaces above which the path of gravity takes minutes. On 4,162 it takes 12 to 60 s, and ends below all
+            other sources on walls with openings.
         vertices_up_to: interfaces up to which paths start from pure vertices. Above, none is begun on walls of
             right-angled joints where gravity leads above what is known: on none of ten walls of courses, nor of 25 of
             rectangular stones of many sizes, did one lead to anything lower. Gravity is no such sign where joints have
             many directions.
+        gravity_alone: interfaces above which there is no other path: committed histories take 60,000 kinks on a facade
+            of 863 bricks and end 1e-4 lower, and lead nowhere on 900 irregular blocks.
         vertex: shares of a vertex, of gravity's forces and of central ones up to there.
         mixtures: above, in turn. Pure vertices have many forces at zero or at the limit of friction, and on walls of
             hundreds of blocks their paths seldom end; a tenth of central forces takes them off their limits.
@@ -120,8 +123,9 @@ class LittleSelfStress:
     """
 
     name: ClassVar[str] = "springs with little self-stress"
-    most: int = 2000
+    most: int = 6000
     vertices_up_to: int = 200
+    gravity_alone: int = 2000
     committed: CommittedHistories = CommittedHistories()
     vertex: tuple[tuple[float, float, float], ...] = ((1.0, 0.0, 0.0),)
     mixtures: tuple[tuple[float, float, float], ...] = (
@@ -146,10 +150,13 @@ class LittleSelfStress:
                 return
 
     def _starts(self, search: Search) -> Iterator[Start]:
-        yield partial(_from_gravity, search.gravity, search.problem.unit_multiplier)
-        if search.problem.n_interfaces > self.vertices_up_to:
+        problem = search.problem
+        yield partial(_from_gravity, search.gravity, problem.unit_multiplier)
+        if problem.n_interfaces > self.gravity_alone:
+            return
+        if problem.n_interfaces > self.vertices_up_to:
             yield from self.committed.starts(search)
-        for k in range(2 * search.problem.n_interfaces):
+        for k in range(2 * problem.n_interfaces):
             yield partial(self._from_mixture, search, k)
 
     def _from_mixture(self, search: Search, k: int) -> Beginning | None:
