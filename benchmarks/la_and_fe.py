@@ -1,4 +1,4 @@
-"""The least state known and the plateau of `fe` on large walls: `python -m benchmarks.la_and_fe [WORD]`.
+"""The least state known and the plateau of `fe` on large walls: `python -m benchmarks la_and_fe [WORD]`.
 
 The plateau is a collapse state too, so `la` may not lie above it; a wall is run where WORD is in its name. Coordinates
 of walls from `drystone new` are rounded to whole millimetres, as drawings are. CPU seconds of one thread.
@@ -12,13 +12,12 @@ from collections.abc import Callable, Sequence
 from functools import partial
 from typing import Any
 
+from benchmarks.walls import bond, irregular_wall
 from cases.start import STARTS
 from harness.model.assembly import Assembly
 from harness.model.build import build
 from harness.model.method import Answer, load_method
 from harness.model.wall import Wall
-from methods.la.bench import running_bond
-from methods.la.irregular_walls import irregular_wall
 
 ABOVE = 1e-6
 """Relative difference above which a multiplier counts as higher."""
@@ -36,10 +35,10 @@ def in_millimetres(kind: str, **numbers: Any) -> Assembly:
     return build(Wall.model_validate(data)).assembly
 
 
-def facade(storeys: int, openings: int, bond: str, friction: float) -> Assembly:
+def facade(storeys: int, openings: int, laid: str, friction: float) -> Assembly:
     """A facade of bricks of 247.5 by 73.7 mm."""
     return in_millimetres(
-        "facade", storeys=storeys, openings=openings, bond=bond, friction=friction, thickness=0.25, **BRICK
+        "facade", storeys=storeys, openings=openings, bond=laid, friction=friction, thickness=0.25, **BRICK
     )
 
 
@@ -55,8 +54,8 @@ WALLS: dict[str, Callable[[], Assembly]] = {
     "ashlar of 30 courses": partial(
         in_millimetres, "ashlar", length=16.0, courses=30, course_height=0.25, seed=3, friction=0.8
     ),
-    "running bond, 40 courses of 30": partial(running_bond, 40, 30, 0.175, 0.65),
-    "running bond, 60 courses of 42": partial(running_bond, 60, 42, 0.175, 0.65),
+    "running bond, 40 courses of 30": partial(bond, 40, 30, 0.65),
+    "running bond, 60 courses of 42": partial(bond, 60, 42, 0.65),
     "irregular, 20 courses of 20": partial(irregular_wall, 3, 20, 20, 0.6),
     "irregular, 30 courses of 30": partial(irregular_wall, 1, 30, 30, 0.6),
 }
