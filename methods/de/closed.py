@@ -15,7 +15,7 @@ from pydantic import Field
 
 from harness.model.assembly import Assembly
 from harness.model.method import Answer, Finding, Settings, Status, Traits, load_method
-from methods.de.holds.loading import REACH
+from methods.de.holds.loading import FALL
 from methods.de.imperfect import BRACKET_MEANING, UnevenSettings
 from methods.de.uneven.gapped import GappedWall, load_gapped
 from methods.de.uneven.settled_contacts import load_uneven, settle_uneven
@@ -67,7 +67,7 @@ class ClosedContacts:
             sentence = f"{wall} did not come to rest under its dead load, so its contacts are not known."
             return Answer(Status.NOT_CONVERGED, Finding.NONE, sentence, details=details)
         try:
-            gapped = GappedWall(assembly, settled.outlines, settled.settlement, REACH)
+            gapped = GappedWall(assembly, settled.outlines, settled.settlement, FALL.reach)
         except ValueError as error:
             return Answer(Status.REFUSED, Finding.NONE, f"Its gaps cannot be measured: {error}.")
         began = time.process_time()

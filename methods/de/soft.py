@@ -11,76 +11,20 @@ from dataclasses import dataclass, field, replace
 from typing import Any, ClassVar
 
 import numpy as np
-from pydantic import Field
 
 from harness.model.assembly import Assembly, FloatArray
 from harness.model.method import Answer, Finding, OutOfTime, Settings, Status, Traits
 from methods.de.engines.courses import courses, number_of_courses
 from methods.de.engines.soft_wall import SoftWall
 from methods.de.holds.hold import Hold, State, Watch
-from methods.de.holds.loading import REACH, raise_until_it_falls
+from methods.de.holds.loading import FALL, raise_until_it_falls
 from methods.de.holds.motion import MotionProof, by_travel
-from methods.de.holds.order_bracket import LOOSE
+from methods.de.holds.order_bracket import BRACKET
 from methods.de.holds.stopped import STOPPED, undecided, unmoved
+from methods.de.soft_settings import JOINTS, SOFT_HOLDS, SoftSettings
 from methods.numerics.statics import with_proof
 
 BRACKET_MEANING = "[highest multiplier at which it came to rest, lowest at which it fell]"
-STIFF = 1e6
-"""Stiffness of joints where none is given, in mean dead loads of a block over the square of the length scale."""
-ROUND = 2e-4
-"""Radius of corners where none is given, in length scales."""
-AWAY = 300.0
-"""Multiple of what the blocks had moved at the last rest from which it is asked whether the wall falls."""
-LOOK = 500
-"""Time steps from one look at a hold to the next."""
-LOW = 7
-"""Courses up to which a hold is no longer than `hold_steps`; above, with the square of the courses."""
-SHARE = 2e-3
-"""Share of a small multiplier to which its bracket is narrowed."""
-BEYOND = 2e-3
-"""First relative rise above a multiplier that could not be told; it doubles until the wall falls."""
-
-
-class SoftSettings(Settings):
-    """The joints, the corners, and how the load is raised.
-
-    Attributes:
-        stiffness: of the joints across, per length of joint [force/length^2], half of it at each end. None: a million
-            mean dead loads of a block over the square of the length scale, as good as rigid on low walls.
-        shear_ratio: stiffness along the joints over stiffness across.
-        rounding: radius of the corners [length] where contact points are not set in farther; a contact point that is
-            set in rounds its corner by as much. None: 2e-4 length scales (mean square root of the areas).
-        load_step: load step as a share of the dead load; load_growth: as a share of the multiplier, where that is more.
-        load_cap: live load, as a multiple of the dead load, at which the search for a collapse is given up.
-        accuracy: the bracket is narrowed to this live load, as a share of the dead load, or to a 500th of the
-            multiplier where that is less.
-        held_residual: largest force out of balance of a wall at rest, as a part of the mean dead load of a block.
-        reach: a wall falls when a block has moved by this many length scales under one load, the loads doing work; or
-            earlier, where `methods.de.holds.motion` shows it.
-        hold_steps: most time steps under one load on a wall of up to 7 courses; higher walls get more, with the square
-            of the courses, and all ten times as many under the dead load alone.
-        relaxations: a wall on its way to rest is followed for so many of its own relaxation times, at most for so many
-            times the length of a hold.
-        lean: share of the multiplier that joints may take by giving, half the stated accuracy: beyond it the answer
-            says that they are soft. Where no stiffness is given the wall is then loaded once more, with joints so much
-            stiffer and corners so much sharper, if they are not set either, that they take half of it.
-        stiffest: most factor on the stiffness for that; from 100 on, rounding of the places leaves forces out of
-            balance.
-    """
-
-    stiffness: float | None = Field(default=None, gt=0.0)
-    shear_ratio: float = Field(default=1.0, gt=0.0)
-    rounding: float | None = Field(default=None, gt=0.0)
-    load_step: float = Field(default=0.01, gt=0.0, le=1.0)
-    load_growth: float = Field(default=0.02, ge=0.0, le=1.0)
-    load_cap: float = Field(default=100.0, gt=0.0)
-    accuracy: float = Field(default=5e-4, gt=0.0, le=0.1)
-    held_residual: float = Field(default=1e-6, gt=0.0, lt=1.0)
-    reach: float = Field(default=REACH, gt=0.0)
-    hold_steps: int = Field(default=100_000, ge=LOOK)
-    relaxations: int = Field(default=20, ge=1)
-    lean: float = Field(default=2.5e-3, gt=0.0)
-    stiffest: float = Field(default=30.0, ge=1.0)
 
 
 @dataclass(eq=False)
@@ -108,8 +52,8 @@ class Holds:
     def __post_init__(self) -> None:
         """The wall as it is."""
         self.rest = self.wall.save()
-        high = number_of_courses(courses(self.wall.assembly)) / LOW
-        self._looks = int(self.settings.hold_steps * max(1.0, high**2)) // LOOK
+        high = number_of_courses(courses(self.wall.assembly)) / SOFT_HOLDS.low
+        self._looks = int(self.settings.hold_steps * max(1.0, high**2)) // SOFT_HOLDS.look
 
     def rests(self, multiplier: float) -> bool:
         """Whether the wall comes to rest at a multiplier; if not it is put back where it rested last."""
@@ -119,7 +63,7 @@ class Holds:
         """Hold the wall at a multiplier from its last rest, and note what came of it."""
         wall = self.wall
         wall.load(multiplier)
-        end = self._settled(self._looks * (1 if multiplier else 10))
+        end = self._settled(self._looks * (1 if multiplier else SOFT_HOLDS.patience))
         state = end.state
         if state is State.HELD:
             self.rest = wall.save()
@@ -142,11 +86,11 @@ class Holds:
         wall, settings = self.wall, self.settings
         before, size = self.rest[0], wall.assembly.length_scale
         load = wall.assembly.dead + wall.multiplier * wall.assembly.live
-        away = AWAY * float(np.abs(before[:, :2]).max()) if np.any(before[:, :2]) else np.inf
+        away = SOFT_HOLDS.away * float(np.abs(before[:, :2]).max()) if np.any(before[:, :2]) else np.inf
         watch, places, start = Watch(settings.held_residual, settings.held_residual), before, wall.steps
         affordable = settings.relaxations * looks
         while True:
-            residual = wall.advance(LOOK)
+            residual = wall.advance(SOFT_HOLDS.look)
             moved, places = wall.places - places, wall.places.copy()
             watch.note(moved / [size, size, 1.0], residual)
             if residual < settings.held_residual or not np.all(np.isfinite(places)):
@@ -185,11 +129,12 @@ class DeformableJoints:
         if assembly.n_free == 0:
             return Answer(Status.OK, Finding.STANDS, "every block is fixed: nothing can move")
         mean = assembly.force_scale / assembly.n_free
-        stiffness = settings.stiffness or STIFF * mean / assembly.length_scale**2
-        answer = self._with_joints(assembly, settings, stiffness, ROUND * assembly.length_scale)
+        stiffness = settings.stiffness or JOINTS.stiffness * mean / assembly.length_scale**2
+        answer = self._with_joints(assembly, settings, stiffness, JOINTS.rounding * assembly.length_scale)
         factor = _too_soft(answer, settings)
         if settings.stiffness is None and factor > 1.0 and not answer.details.get("stopped_by_limit"):
-            again = self._with_joints(assembly, settings, factor * stiffness, ROUND / factor * assembly.length_scale)
+            rounding = JOINTS.rounding / factor * assembly.length_scale
+            again = self._with_joints(assembly, settings, factor * stiffness, rounding)
             again.iterations += answer.iterations
             answer = _better(answer, again)
         return with_proof(assembly, _saying_soft(answer, settings))
@@ -219,9 +164,9 @@ class DeformableJoints:
         settings = holds.settings
         cap = settings.load_cap * unit
         step, accuracy = settings.load_step * unit, settings.accuracy * unit
-        stood, fell = raise_until_it_falls(holds.rests, cap, step, accuracy, settings.load_growth, SHARE)
+        stood, fell = raise_until_it_falls(holds.rests, cap, step, accuracy, settings.load_growth, SOFT_HOLDS.share)
         if fell is not None:
-            stood, fell = _in_small_steps(holds, stood, min(accuracy, SHARE * fell))
+            stood, fell = _in_small_steps(holds, stood, min(accuracy, SOFT_HOLDS.share * fell))
         return _concluded(holds, joints, stood, fell, cap)
 
     def _at_zero(self, assembly: Assembly, holds: Holds, joints: str) -> Answer | None:
@@ -261,7 +206,7 @@ def _concluded(holds: Holds, joints: str, stood: float, fell: float | None, cap:
         f"came to rest at {stood:.6g} and fell at {fell:.6g}, with {joints}; the live load had moved by {moved:.3g} "
         "at the last rest"
     )
-    loose = fell - stood > LOOSE * fell
+    loose = fell - stood > BRACKET.loose * fell
     if loose:
         sentence += "; not converged: between them it neither rested nor fell"
     return Answer(
@@ -305,11 +250,11 @@ def _better(answer: Answer, again: Answer) -> Answer:
 
 def _fall_above(holds: Holds, multiplier: float, cap: float) -> float | None:
     """The lowest multiplier tried above one that could not be told at which the wall falls; None up to the cap."""
-    rise = BEYOND * multiplier
+    rise = SOFT_HOLDS.beyond * multiplier
     while multiplier + rise <= cap:
         if holds.hold(multiplier + rise) is State.MOVING:
             return multiplier + rise
-        rise *= 2.0
+        rise *= FALL.rise
     return None
 
 

@@ -13,7 +13,8 @@ from harness.model.displaced import DisplacedState
 from harness.model.method import Finding, Status
 from harness.model.result import result_of
 from methods.de.holds.loading import raise_until_it_falls
-from methods.de.soft import DeformableJoints, SoftSettings
+from methods.de.soft import DeformableJoints
+from methods.de.soft_settings import SoftSettings
 from tests.walls import assembly, running_bond, stack
 
 

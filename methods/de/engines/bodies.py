@@ -8,6 +8,7 @@ share interfaces of different friction, and where blocks meet that did not touch
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -20,9 +21,23 @@ from harness.model.assembly import Assembly, FloatArray, polygon_area
 from harness.model.rings import rings_of
 from methods.de.engines.space import polygon_gyration
 
-TIME_STEP = 2e-3
-RADIUS = 1e-4
-SLOP = 5e-4
+
+@dataclass(frozen=True)
+class BodyTuning:
+    """Whole blocks in pymunk.
+
+    Attributes:
+        time_step: in units of sqrt(length scale / gravity).
+        radius: of the round that Chipmunk puts about a block, in length scales: it keeps blocks so far apart.
+        slop: overlap that Chipmunk leaves, in length scales: some keeps contacts from coming and going.
+    """
+
+    time_step: float = 2e-3
+    radius: float = 1e-4
+    slop: float = 5e-4
+
+
+BODIES = BodyTuning()
 _FORCE = batch.BodyFields.FORCE | batch.BodyFields.TORQUE
 _PLACE = batch.BodyFields.POSITION | batch.BodyFields.ANGLE
 _VELOCITY = batch.BodyFields.VELOCITY | batch.BodyFields.ANGULAR_VELOCITY
@@ -50,7 +65,7 @@ class BlockSpace:
         self._force = assembly.force_scale / max(assembly.n_free, 1)
         self._space = pymunk.Space()
         self._space.iterations = iterations
-        self._space.collision_slop = SLOP
+        self._space.collision_slop = BODIES.slop
         self._space.damping = damping
         self._block_of: dict[pymunk.Shape, int] = {}
         self._bodies: list[pymunk.Body] = []
@@ -77,7 +92,7 @@ class BlockSpace:
 
     def _add_parts(self, body: pymunk.Body, i: int, corners: FloatArray) -> None:
         for part in convex_parts(corners):
-            shape = pymunk.Poly(body, part, radius=RADIUS)
+            shape = pymunk.Poly(body, part, radius=BODIES.radius)
             shape.elasticity = 0.0
             self._space.add(shape)
             self._block_of[shape] = i
@@ -109,7 +124,7 @@ class BlockSpace:
         """Make time steps of 0.002 sqrt(length_scale / gravity)."""
         for _ in range(steps):
             batch.set_space_bodies(self._space, _FORCE, self._loads)
-            self._space.step(TIME_STEP)
+            self._space.step(BODIES.time_step)
 
     def places(self) -> FloatArray:
         """(n, 3) displacement (x, y) of the centroids [length] and rotation [radians] of all blocks."""

@@ -24,8 +24,30 @@ class Tuning:
     damping: float
 
 
-CHAIN = 3.0
-"""Blocks a course up to which a wall is a chain: stacks have 1, arches 2."""
+@dataclass(frozen=True)
+class SettlingRules:
+    """From the courses of a wall to masses and damping.
+
+    Attributes:
+        chain: blocks a course up to which a wall is a chain: stacks have 1, arches 2.
+        decay: of the masses from one course to the next, at most; span: over all courses of a wall, light_span: where
+            tops are to be light.
+        strongest, weakest: part of the velocity kept by a time step, at least and at most; kept: on light tops.
+        loss, chain_loss: of the velocity in a time step, times the courses.
+    """
+
+    chain: float = 3.0
+    decay: float = 0.4
+    span: float = 14.0
+    light_span: float = 4.0
+    strongest: float = 0.95
+    weakest: float = 0.9975
+    kept: float = 0.98
+    loss: float = 0.2
+    chain_loss: float = 0.5
+
+
+RULES = SettlingRules()
 
 
 def tunings(course: IntArray, mass_decay: float | None) -> list[Tuning]:
@@ -37,11 +59,11 @@ def tunings(course: IntArray, mass_decay: float | None) -> list[Tuning]:
     one tuning.
     """
     tallest = number_of_courses(course)
-    keep = float(np.clip(1.0 - 0.2 / tallest, 0.95, 0.9975))
+    keep = float(np.clip(1.0 - RULES.loss / tallest, RULES.strongest, RULES.weakest))
     if mass_decay is not None:
         return [Tuning(mass_decay, keep)]
-    wall, chain = Tuning(min(0.4, 14.0 / tallest), keep), light_top(course)
-    chain = replace(chain, damping=float(np.clip(1.0 - 0.5 / tallest, chain.damping, 0.9975)))
+    wall, chain = Tuning(min(RULES.decay, RULES.span / tallest), keep), light_top(course)
+    chain = replace(chain, damping=float(np.clip(1.0 - RULES.chain_loss / tallest, chain.damping, RULES.weakest)))
     return [chain, wall] if is_chain(course) else [wall, chain]
 
 
@@ -52,12 +74,12 @@ def number_of_courses(course: IntArray) -> int:
 
 def light_top(course: IntArray) -> Tuning:
     """Masses that fall by exp(-0.4) a course, over at most exp(-4) in all; damping 0.98."""
-    return Tuning(min(0.4, 4.0 / number_of_courses(course)), 0.98)
+    return Tuning(min(RULES.decay, RULES.light_span / number_of_courses(course)), RULES.kept)
 
 
 def is_chain(course: IntArray) -> bool:
     """Whether there are few blocks a course, as in stacks and arches."""
-    return bool(np.count_nonzero(course) <= CHAIN * number_of_courses(course))
+    return bool(np.count_nonzero(course) <= RULES.chain * number_of_courses(course))
 
 
 def courses(assembly: Assembly) -> IntArray:

@@ -5,13 +5,13 @@ on the face of a box on block b; explicit pairs with the friction of their inter
 
 MuJoCo's contacts are soft and its friction is viscous below the cone: a normal force needs a penetration, a shear force
 needs a creep. Both are made small and not zero. Lengths are in unit lengths and gravity is 1; the time step is so short
-that a contact yields about TIME_STEP^2 under a block's weight: geometry stays frozen for any purpose.
+that a contact yields about the square of it under a block's weight: geometry stays frozen for any purpose.
 Source: E. Todorov, Convex and analytically-invertible dynamics with contacts and constraints, ICRA 2014.
 """
 
 from __future__ import annotations
 
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -19,39 +19,61 @@ import numpy as np
 from harness.model.assembly import Assembly, FloatArray, IntArray
 from methods.de.engines.courses import Tuning, courses, is_chain, light_top, masses, number_of_courses
 from methods.de.engines.space import polygon_gyration
-from methods.de.engines.strips import DEPTH, OVERHANG, require_lengths
+from methods.de.engines.strips import STRIP, require_lengths
 from methods.de.hold_settings import MujocoSettings
 from methods.numerics.optional import optional
 
-TIME_STEP = 1e-4
-"""In units of sqrt(length scale / gravity)."""
 
-RADIUS = 0.05
-"""Radius of a contact sphere, in unit lengths. It does not matter: the sphere touches a flat face at one point."""
+@dataclass(frozen=True)
+class SoftContacts:
+    """How a contact is pulled back: acceleration -(damping v + stiffness r / time_step) / time_step, r the penetration.
 
-STIFFNESS, DAMPING = 0.05, 1.8
-"""How a contact is pulled back: acceleration -(DAMPING v + STIFFNESS r / TIME_STEP) / TIME_STEP, r the penetration.
+    Overdamped: contacts that rebound keep the head joints of a wall chattering.
 
-Overdamped: contacts that rebound keep the head joints of a wall chattering. With a stiffness of 0.25 walls of more than
-50 bricks shook for ever under their dead load, with 0.1 those of more than 200.
-"""
+    Attributes:
+        time_step: in units of sqrt(length scale / gravity).
+        stiffness, damping: as above. With a stiffness of 0.25 walls of more than 50 bricks shook for ever under their
+            dead load, with 0.1 those of more than 200.
+        wall_impedance, chain_impedance: for walls, and for chains of blocks, whose slow modes want stiffer contacts.
+        radius: of a contact sphere, in unit lengths. It does not matter: the sphere touches a flat face at one point.
+        overlap: by which a sphere starts inside its face, in unit lengths, so that rounding does not decide which
+            contacts start.
+        least_friction: of a contact, whose cone is not to vanish.
+    """
 
+    time_step: float = 1e-4
+    stiffness: float = 0.05
+    damping: float = 1.8
+    wall_impedance: float = 0.9
+    chain_impedance: float = 0.97
+    radius: float = 0.05
+    overlap: float = 1e-12
+    least_friction: float = 1e-12
+
+
+@dataclass(frozen=True)
+class MujocoTuning:
+    """The contact solver of MuJoCo, and what is read from it.
+
+    Attributes:
+        tolerance, search_tolerance: of the solver and its line search.
+        low: courses above which friction stiffens with them.
+        force_steps: time steps over which contact forces are averaged.
+        exploded: acceleration, as a part of gravity, that no wall reaches: a failure of the contact solver, not a
+            collapse.
+    """
+
+    tolerance: float = 1e-14
+    search_tolerance: float = 1e-6
+    low: float = 6.0
+    force_steps: int = 200
+    exploded: float = 1e4
+
+
+SOFT_CONTACTS = SoftContacts()
+MUJOCO = MujocoTuning()
 UNIFORM = Tuning(0.0, 0.99)
 """Masses in proportion to areas, for what does not settle with light tops."""
-
-WALL_IMPEDANCE, CHAIN_IMPEDANCE = 0.9, 0.97
-"""Impedance for walls, and for chains of blocks, whose slow modes want stiffer contacts."""
-
-FORCE_STEPS = 200
-"""Time steps over which contact forces are averaged."""
-
-SOLVER_TOLERANCE = 1e-14
-
-OVERLAP = 1e-12
-"""By which a sphere starts inside its face, in unit lengths, so that rounding does not decide which contacts start."""
-
-EXPLODED = 1e4
-"""Acceleration, as a part of gravity, that no wall reaches: a failure of the contact solver, not a collapse."""
 
 
 class SolverFailed(ArithmeticError):
@@ -71,10 +93,11 @@ def mujoco_tunings(assembly: Assembly, settings: MujocoSettings) -> list[tuple[T
     """Tunings with their impedances, in the order in which they are tried: light tops first."""
     course = courses(assembly)
     tuning = light_top(course)
-    impedance = settings.impedance or (CHAIN_IMPEDANCE if is_chain(course) else WALL_IMPEDANCE)
+    usual = SOFT_CONTACTS.chain_impedance if is_chain(course) else SOFT_CONTACTS.wall_impedance
+    impedance = settings.impedance or usual
     if settings.mass_decay is not None:
         return [(replace(tuning, mass_decay=settings.mass_decay), impedance)]
-    return [(tuning, impedance), (UNIFORM, settings.impedance or WALL_IMPEDANCE)]
+    return [(tuning, impedance), (UNIFORM, settings.impedance or SOFT_CONTACTS.wall_impedance)]
 
 
 class MujocoWall:
@@ -116,7 +139,7 @@ class MujocoWall:
         self.relaxation = 1.0 / (1.0 - tuning.damping)
         self.courses = number_of_courses(course)
         self._blocks = blocks
-        self._drag = (1.0 / tuning.damping - 1.0) / TIME_STEP
+        self._drag = (1.0 / tuning.damping - 1.0) / SOFT_CONTACTS.time_step
         corners = [(assembly.polygons[i] - assembly.centroid[i]) / self._unit for i in blocks]
         mass = masses(assembly, course, tuning.mass_decay)[blocks]
         gyration = np.array([polygon_gyration(polygon) for polygon in corners])
@@ -136,15 +159,15 @@ class MujocoWall:
     def _specification(self, iterations: int, friction_ratio: float) -> Any:
         spec = self._mujoco.MjSpec()
         option = spec.option
-        option.timestep = TIME_STEP
+        option.timestep = SOFT_CONTACTS.time_step
         option.gravity = [0.0, 0.0, 0.0]
         option.integrator = self._mujoco.mjtIntegrator.mjINT_EULER
         option.cone = self._mujoco.mjtCone.mjCONE_ELLIPTIC
         option.solver = self._mujoco.mjtSolver.mjSOL_NEWTON
-        option.impratio = friction_ratio * max(1.0, self.courses / 6.0)
+        option.impratio = friction_ratio * max(1.0, self.courses / MUJOCO.low)
         option.iterations = iterations
-        option.tolerance = SOLVER_TOLERANCE
-        option.ls_tolerance = 1e-6
+        option.tolerance = MUJOCO.tolerance
+        option.ls_tolerance = MUJOCO.search_tolerance
         return spec
 
     def _add_blocks(self, spec: Any) -> None:
@@ -176,18 +199,18 @@ class MujocoWall:
                 continue
             normal, tangent, length = wall.normal[p], wall.tangent[p], float(wall.length[p])
             half = np.arctan2(tangent[1], tangent[0]) / 2.0
-            depth = DEPTH * length
+            depth = STRIP.depth * length
             middle = (wall.end1[p] + wall.end2[p]) / 2.0 + depth * normal
-            size = [(0.5 + OVERHANG) * length / self._unit, depth / self._unit, depth / self._unit]
+            size = [(0.5 + STRIP.overhang) * length / self._unit, depth / self._unit, depth / self._unit]
             add(f"face {p}", b, middle, type=box, size=size, quat=[np.cos(half), 0.0, -np.sin(half), 0.0])
-            friction = max(float(wall.friction[p]), 1e-12)
+            friction = max(float(wall.friction[p]), SOFT_CONTACTS.least_friction)
             for k, end in enumerate((wall.end1[p], wall.end2[p])):
                 add(
                     f"end {p} {k}",
                     a,
-                    end - RADIUS * self._unit * normal,
+                    end - SOFT_CONTACTS.radius * self._unit * normal,
                     type=sphere,
-                    size=[RADIUS + OVERLAP, 0.0, 0.0],
+                    size=[SOFT_CONTACTS.radius + SOFT_CONTACTS.overlap, 0.0, 0.0],
                 )
                 spec.add_pair(
                     name=f"contact {p} {k}",
@@ -196,7 +219,10 @@ class MujocoWall:
                     condim=3,
                     friction=[friction, friction, 0.0, 0.0, 0.0],
                     # The direct form, which MuJoCo divides by powers of the impedance.
-                    solref=[-STIFFNESS * impedance**2 / TIME_STEP**2, -DAMPING * impedance / TIME_STEP],
+                    solref=[
+                        -SOFT_CONTACTS.stiffness * impedance**2 / SOFT_CONTACTS.time_step**2,
+                        -SOFT_CONTACTS.damping * impedance / SOFT_CONTACTS.time_step,
+                    ],
                     solimp=[impedance, impedance, 1.0, 0.5, 2.0],
                 )
 
@@ -225,7 +251,7 @@ class MujocoWall:
         for _ in range(steps):
             self._mujoco.mj_step(self._model, self._data)
         self.steps += steps
-        if self._was_reset() or not float(np.abs(self._data.qvel).max(initial=0.0)) * self._drag < EXPLODED:
+        if self._was_reset() or not float(np.abs(self._data.qvel).max(initial=0.0)) * self._drag < MUJOCO.exploded:
             raise SolverFailed("MuJoCo's contact solver did not converge: blocks were thrown apart")
 
     def _was_reset(self) -> bool:
@@ -240,7 +266,8 @@ class MujocoWall:
         The mean since the last reading, so that contacts that chatter while a wall slides do not hide its motion.
         """
         if self.steps > self._read_at:
-            moved = (self._data.qpos - self._place).reshape(-1, 3) / (TIME_STEP * (self.steps - self._read_at))
+            passed = SOFT_CONTACTS.time_step * (self.steps - self._read_at)
+            moved = (self._data.qpos - self._place).reshape(-1, 3) / passed
             self._mean = np.zeros((self.assembly.n_blocks, 3))
             self._mean[self._blocks] = moved * self._drag
             self._read()
@@ -264,15 +291,15 @@ class MujocoWall:
         self._read()
 
     def contact_forces(self) -> FloatArray:
-        """(m, 3) contact forces (n1, n2, s) [force], the mean over FORCE_STEPS further time steps.
+        """(m, 3) contact forces (n1, n2, s) [force], the mean over some further time steps.
 
         What chattering remains in a held state cancels in the mean, which obeys friction as every step does.
         """
         total = np.zeros((self.interfaces, 3))
-        for _ in range(FORCE_STEPS):
+        for _ in range(MUJOCO.force_steps):
             self.advance(1)
             self._add_forces(total)
-        return total * (self._force / FORCE_STEPS)
+        return total * (self._force / MUJOCO.force_steps)
 
     def _add_forces(self, total: FloatArray) -> None:
         """Add the contact forces of the last time step.

@@ -15,21 +15,35 @@ blocks meet, the one that lies within the other's face is the one that touches.
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
 
 from harness.model.assembly import Assembly, FloatArray, IntArray
 from harness.model.displaced import DisplacedState
-from methods.de.engines.edges import SAME, edge_of
+from methods.de.engines.edges import EDGES, edge_of
 from methods.numerics.compiled import compiled
 
-TIME_STEP = 0.5
-"""Time step; with masses of a quarter of the stiffness around a block the fastest oscillation takes 4.4."""
-HEARD = 20
-"""Time steps made in one call: at 6,000 interfaces 20 take some 10 ms, and what a call costs is far less."""
-DAMPING = 0.8
-"""Force of the damping as a share of the force out of balance (Cundall 1987)."""
+
+@dataclass(frozen=True)
+class ExplicitTuning:
+    """The explicit motion.
+
+    Attributes:
+        inertia: masses as a share of the stiffness around a block; time_step: with a quarter of it the fastest
+            oscillation takes 4.4.
+        damping: force of the damping as a share of the force out of balance (Cundall 1987).
+        steps_at_once: made in one call: at 6,000 interfaces 20 take some 10 ms, and what a call costs is far less.
+    """
+
+    inertia: float = 0.25
+    time_step: float = 0.5
+    damping: float = 0.8
+    steps_at_once: int = 20
+
+
+EXPLICIT = ExplicitTuning()
 
 
 class Contacts(NamedTuple):
@@ -76,7 +90,7 @@ def contacts_of(assembly: Assembly, stiffness: float, shear_ratio: float, least_
         least_radius: of a corner [length].
     """
     rows: list[Contacts] = []
-    small = SAME * assembly.length_scale
+    small = EDGES.same * assembly.length_scale
     for p in range(assembly.n_interfaces):
         faces = np.array([assembly.face1[p], assembly.face2[p]])
         length = float(np.linalg.norm(faces[1] - faces[0]))
@@ -156,12 +170,12 @@ class SoftWall:
         """
         wall = self.assembly
         self.steps += steps
-        moving = self.places, self._velocity, self.shear
+        arrays = self.places, self._velocity, self.shear, self.contacts, wall.centroid, self._loads, self._mass
         worst = 0.0
         # One call a few steps, so that the alarm of a time limit is heard between them.
-        for done in range(0, steps, HEARD):
-            some = min(HEARD, steps - done)
-            worst = _advance(*moving, self.contacts, wall.centroid, self._loads, self._mass, wall.length_scale, some)
+        for done in range(0, steps, EXPLICIT.steps_at_once):
+            some = min(EXPLICIT.steps_at_once, steps - done)
+            worst = _advance(*arrays, wall.length_scale, some, EXPLICIT.time_step, EXPLICIT.damping)
         return float(worst) / self._unit
 
     def state(self) -> DisplacedState:
@@ -221,10 +235,10 @@ class SoftWall:
         self._velocity = np.zeros_like(self.places)
 
     def _masses(self) -> FloatArray:
-        """(n, 3) masses and moments of inertia: a quarter of the stiffness around a block; infinite if it is fixed."""
+        """(n, 3) masses and moments of inertia: a share of the stiffness around a block; infinite if it is fixed."""
         contacts, count = self.contacts, self.assembly.n_blocks
         mass = np.zeros((count, 3))
-        stiffness = 0.25 * (contacts.kn + contacts.kt)
+        stiffness = EXPLICIT.inertia * (contacts.kn + contacts.kt)
         for block, arm, reach in (
             (contacts.corner, contacts.centre, np.maximum(contacts.own_reach, 0.0)),
             (contacts.face, contacts.start, contacts.reach),
@@ -248,6 +262,8 @@ def _advance(
     mass: FloatArray,
     size: float,
     steps: int,
+    time_step: float,
+    damping: float,
 ) -> float:
     """Make time steps in place; the largest force, or moment over the size, out of balance at the last [force]."""
     corner, face, centre, start = contacts.corner, contacts.face, contacts.centre, contacts.start
@@ -309,7 +325,7 @@ def _advance(
             vy = velocity[b, 1] + velocity[b, 2] * bx - velocity[a, 1] - velocity[a, 2] * ax
             pressed = kn[q] * (2.0 * radius[q] - distance)
             limit = friction[q] * pressed
-            force = shear[q] - kt[q] * TIME_STEP * (vy * nx - vx * ny)
+            force = shear[q] - kt[q] * time_step * (vy * nx - vx * ny)
             force = min(max(force, -limit), limit)
             shear[q] = force
             fx, fy = pressed * nx - force * ny, pressed * ny + force * nx
@@ -326,7 +342,7 @@ def _advance(
             for j in range(3):
                 force = out[i, j]
                 worst = max(worst, abs(force) / (size if j == 2 else 1.0))
-                damped = force - DAMPING * abs(force) * np.sign(velocity[i, j])
-                velocity[i, j] += TIME_STEP * damped / mass[i, j]
-                places[i, j] += TIME_STEP * velocity[i, j]
+                damped = force - damping * abs(force) * np.sign(velocity[i, j])
+                velocity[i, j] += time_step * damped / mass[i, j]
+                places[i, j] += time_step * velocity[i, j]
     return worst

@@ -9,6 +9,7 @@ Source: E. Catto, Iterative dynamics with temporal coherence, GDC 2005 (the solv
 from __future__ import annotations
 
 from collections.abc import Iterator
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -17,10 +18,24 @@ from pymunk import batch
 
 from harness.model.assembly import Assembly, FloatArray, IntArray
 from methods.de.engines.courses import Tuning, courses, masses, number_of_courses
-from methods.de.engines.strips import ROUNDING, build_strips
+from methods.de.engines.strips import STRIP, build_strips
 
-TIME_STEP = 1e-2
-GRAVITY = 1e-12
+
+@dataclass(frozen=True)
+class StripTuning:
+    """Strips in pymunk.
+
+    Attributes:
+        time_step: in unit times; gravity: in unit lengths per unit time squared: displacements vanish in rounding.
+        slop: overlap that Chipmunk leaves, in radii of the strips: more than any there is, so that it pushes nothing.
+    """
+
+    time_step: float = 1e-2
+    gravity: float = 1e-12
+    slop: float = 10.0
+
+
+STRIPS = StripTuning()
 _REST = (
     batch.BodyFields.POSITION | batch.BodyFields.ANGLE | batch.BodyFields.VELOCITY | batch.BodyFields.ANGULAR_VELOCITY
 )
@@ -55,16 +70,16 @@ class StripSpace:
         self._space = pymunk.Space()
         self._space.iterations = iterations
         self._space.gravity = (0.0, 0.0)
-        self._space.damping = tuning.damping ** (1.0 / TIME_STEP)
+        self._space.damping = tuning.damping ** (1.0 / STRIPS.time_step)
         if not self._space.damping > 0.0:
             raise ArithmeticError("the damping of the pymunk space underflows to zero")
-        self._space.collision_slop = 10.0 * ROUNDING
+        self._space.collision_slop = STRIPS.slop * STRIP.rounding
         self._ground = self._space.static_body
         self._mass = np.zeros((assembly.n_blocks, 3))
         self._bodies = self._add_bodies(masses(assembly, course, tuning.mass_decay))
         self._joint_of: dict[pymunk.Shape, int] = {}
         self._add_strips(joints)
-        scale = GRAVITY / np.array([self._force, self._force, self._force * self._unit])
+        scale = STRIPS.gravity / np.array([self._force, self._force, self._force * self._unit])
         # One row more than there are bodies: pymunk's batches end with the static body.
         self._dead, self._live = np.zeros((2, len(blocks) + 1, 3))
         self._dead[:-1] = assembly.dead[blocks] * scale
@@ -73,8 +88,8 @@ class StripSpace:
         self._rest[:-1, :2] = (assembly.centroid[blocks] - assembly.middle) / self._unit
         self._out, self._in, self._loads = batch.Buffer(), batch.Buffer(), batch.Buffer()
         self.load(0.0)
-        self._space.step(TIME_STEP)
-        self._space.step(TIME_STEP)
+        self._space.step(STRIPS.time_step)
+        self._space.step(STRIPS.time_step)
         self._records = self._find_records()
         self._at_rest()
 
@@ -100,7 +115,7 @@ class StripSpace:
             ):
                 body = self._bodies.get(block, self._ground)
                 origin = np.array(body.position)
-                shape = pymunk.Poly(body, [tuple(v) for v in vertices - origin], radius=ROUNDING)
+                shape = pymunk.Poly(body, [tuple(v) for v in vertices - origin], radius=STRIP.rounding)
                 shape.friction = float(np.sqrt(self.assembly.friction[p]))
                 shape.elasticity = 0.0
                 shape.filter = pymunk.ShapeFilter(categories=category, mask=category)
@@ -117,7 +132,7 @@ class StripSpace:
         """Make time steps."""
         for _ in range(steps):
             batch.set_space_bodies(self._space, _FORCE, self._loads)
-            self._space.step(TIME_STEP)
+            self._space.step(STRIPS.time_step)
         self.steps += steps
 
     def velocity(self) -> FloatArray:
@@ -126,7 +141,7 @@ class StripSpace:
         batch.get_space_bodies(self._space, _VELOCITY, self._out)
         result = np.zeros((self.assembly.n_blocks, 3))
         read = np.frombuffer(self._out.float_buf()).reshape(-1, 3)
-        result[self._blocks] = read[: len(self._blocks)] / (self.relaxation * GRAVITY * TIME_STEP)
+        result[self._blocks] = read[: len(self._blocks)] / (self.relaxation * STRIPS.gravity * STRIPS.time_step)
         return result
 
     def unbalance(self, velocity: FloatArray) -> float:
@@ -151,7 +166,7 @@ class StripSpace:
 
         Chipmunk's tangent is the normal turned by +90 degrees, whichever of the two shapes comes first.
         """
-        force = self.save() * (self._force / (GRAVITY * TIME_STEP))
+        force = self.save() * (self._force / (STRIPS.gravity * STRIPS.time_step))
         normal, tangent = self.assembly.normal, self.assembly.tangent
         sign = normal[:, 0] * tangent[:, 1] - normal[:, 1] * tangent[:, 0]
         return np.column_stack([force[:, 0, 0], force[:, 1, 0], sign * force[:, :, 1].sum(axis=1)])

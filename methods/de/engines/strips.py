@@ -19,21 +19,31 @@ from harness.model.assembly import Assembly, FloatArray, IntArray
 MAX_COLOURS = 32
 """Bits of a collision category in Chipmunk."""
 
-ROUNDING = 1e-3
-"""Radius around each strip, in unit lengths. The strips' faces are set back by it: the contact plane stays exact."""
 
-OVERLAP = 1e-8
-"""Overlap of the rounded faces, in unit lengths: far above rounding noise, far below anything that shows in forces."""
+@dataclass(frozen=True)
+class StripShape:
+    """How strips are drawn.
 
-DEPTH = 0.1
-"""Depth of a strip as a part of its length."""
+    Attributes:
+        rounding: radius around each strip, in unit lengths. The strips' faces are set back by it: the contact plane
+            stays exact.
+        overlap: of the rounded faces, in unit lengths: far above rounding noise, far below anything that shows in
+            forces.
+        depth: of a strip as a part of its length.
+        overhang: how much the strip of block b is longer than that of block a at each end, as a part of the length.
+            Faces of the same length would put two equal points into the engine's closest-point search (a - b at both
+            ends), whose normal is then decided by rounding noise.
+        margin: distance, in radii, at which two strips count as neighbours.
+    """
 
-OVERHANG = 0.1
-"""How much the strip of block b is longer than that of block a at each end, as a part of the length.
+    rounding: float = 1e-3
+    overlap: float = 1e-8
+    depth: float = 0.1
+    overhang: float = 0.1
+    margin: float = 3.0
 
-Faces of the same length would put two equal points into the engine's closest-point search (a - b at both ends),
-whose normal is then decided by rounding noise.
-"""
+
+STRIP = StripShape()
 
 
 class CannotModel(ValueError):
@@ -81,7 +91,7 @@ def build_strips(assembly: Assembly, unit: float) -> Strips:
     """
     require_lengths(assembly)
     length = assembly.length / unit
-    back = ROUNDING - OVERLAP / 2.0
+    back = STRIP.rounding - STRIP.overlap / 2.0
     end1, end2 = (assembly.end1 - assembly.middle) / unit, (assembly.end2 - assembly.middle) / unit
     along = assembly.tangent * length[:, None]
     inward = assembly.normal * length[:, None]
@@ -89,11 +99,11 @@ def build_strips(assembly: Assembly, unit: float) -> Strips:
     def strip(side: float, overhang: float) -> FloatArray:
         face1 = end1 - overhang * along + side * back * assembly.normal
         face2 = end2 + overhang * along + side * back * assembly.normal
-        tail = side * DEPTH * inward
-        return np.stack([face1, face2, face2 + tail - 2 * DEPTH * along, face1 + tail + 2 * DEPTH * along], axis=1)
+        tail, taper = side * STRIP.depth * inward, 2 * STRIP.depth * along
+        return np.stack([face1, face2, face2 + tail - taper, face1 + tail + taper], axis=1)
 
-    on_a, on_b = strip(-1.0, 0.0), strip(1.0, OVERHANG)
-    return Strips(on_a, on_b, colour_strips(np.concatenate([on_a, on_b], axis=1), margin=3.0 * ROUNDING))
+    on_a, on_b = strip(-1.0, 0.0), strip(1.0, STRIP.overhang)
+    return Strips(on_a, on_b, colour_strips(np.concatenate([on_a, on_b], axis=1), margin=STRIP.margin * STRIP.rounding))
 
 
 def colour_strips(vertices: FloatArray, margin: float) -> IntArray:

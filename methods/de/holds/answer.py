@@ -13,7 +13,7 @@ from harness.model.method import Answer, Finding, OutOfTime, Status
 from methods.de.engines.courses import Tuning, courses, insertion_orders, tunings
 from methods.de.engines.engine import Engine
 from methods.de.hold_settings import HoldSettings
-from methods.de.holds.order_bracket import LOOSE, BracketSearch, OrderBracket, held_forces, mechanism_at
+from methods.de.holds.order_bracket import BRACKET, BracketSearch, OrderBracket, held_forces, mechanism_at
 from methods.de.holds.stopped import Known, stopped_answer
 
 BRACKET_MEANING = (
@@ -215,7 +215,7 @@ def _collapse(brackets: list[OrderBracket]) -> Answer:
     status = Status.OK
     # Beside a range that the orders leave open, what one of them leaves open is as small as it is to that range.
     widest = max(0.0 if b.nothing else ((b.moving or 0.0) - (b.held or 0.0)) / high for b in complete)
-    if len(complete) < len(brackets) or widest > LOOSE:
+    if len(complete) < len(brackets) or widest > BRACKET.loose:
         status = Status.NOT_CONVERGED
         sentence += f"; not converged: {len(brackets) - len(complete)} orders without a moving state, widest bracket "
         sentence += f"{100 * widest:.2g} %"

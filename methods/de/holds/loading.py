@@ -4,9 +4,23 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
+from dataclasses import dataclass
 
-REACH = 0.25
-"""Length scales by which a block of a wall that falls moves under one load."""
+
+@dataclass(frozen=True)
+class FallTests:
+    """When a wall that keeps its displacements falls.
+
+    Attributes:
+        reach: length scales by which a block moves under one load.
+        rise: factor on the rise of the multiplier from one that shows no motion to the next.
+    """
+
+    reach: float = 0.25
+    rise: float = 2.0
+
+
+FALL = FallTests()
 Rests = Callable[[float], bool]
 """Whether the wall comes to rest at a multiplier, from where it rested last. If not, it is put back there."""
 
@@ -49,7 +63,7 @@ def shown_to_fall(
     stood, trial = ends
     while trial is not None and trial + rise <= greatest and not any(multiplier > stood for multiplier in moved):
         trial += rise
-        rise *= 2.0
+        rise *= FALL.rise
         if rests(trial):
             stood = trial
     return stood, min((multiplier for multiplier in moved if multiplier > stood), default=None)

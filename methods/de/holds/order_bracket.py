@@ -10,13 +10,38 @@ from methods.de.hold_settings import HoldSettings
 from methods.de.holds.hold import Hold, State, hold, settle
 from methods.de.holds.motion import MotionProof
 
-WIDE = 5e-3
-"""Relative width of [held, moving] above which undecided holds make the search look for a lower moving state."""
+
+@dataclass(frozen=True)
+class BracketTuning:
+    """The search of one insertion order.
+
+    Attributes:
+        loose: widest bracket, as a part of the multiplier, that still counts as converged: twice the accuracy that is
+            stated, so that its middle keeps it.
+        wide: relative width of [held, moving] above which undecided holds make the search look for a lower moving
+            state.
+        rounds: bisections at most, each above the highest multiplier held so far.
+        creeping: accuracy below a state that could not be told: just under collapse a wall creeps, and narrower costs
+            much.
+        cheap: contact updates up to which a search keeps to the full accuracy even so.
+        growth: factor on load steps after one that could not be told.
+        patience: multiple of the length of a hold that the dead load has.
+        halved: residual of a motion, in those that show one, up to which half of its multiplier would show none.
+        excess: multiple of the middle of the bracket at which the mechanism is read.
+    """
+
+    loose: float = 0.01
+    wide: float = 5e-3
+    rounds: int = 4
+    creeping: float = 2e-3
+    cheap: int = 1_000_000
+    growth: float = 2.0
+    patience: int = 4
+    halved: float = 2.0
+    excess: float = 1.02
 
 
-LOOSE = 0.01
-"""Widest bracket of one order, as a part of the multiplier, that still counts as converged: twice the accuracy that is
-stated, so that its middle keeps it."""
+BRACKET = BracketTuning()
 
 
 @dataclass(eq=False)
@@ -84,17 +109,7 @@ class OrderBracket:
             return self.moving is not None
         if not ask_multiplier or self.capped:
             return True
-        return self.width is not None and self.width <= LOOSE
-
-
-ROUNDS = 4
-"""Bisections at most, each above the highest multiplier held so far."""
-
-CREEPING = 2e-3
-"""Accuracy below a state that could not be told: just under collapse a wall creeps, and narrower costs much."""
-
-CHEAP = 1_000_000
-"""Contact updates up to which a search keeps to the full accuracy even so."""
+        return self.width is not None and self.width <= BRACKET.loose
 
 
 class BracketSearch:
@@ -135,7 +150,7 @@ class BracketSearch:
         if found.state is not None:
             self.engine.restore(found.state)
         self.engine.load(multiplier)
-        patience = 4 if multiplier == 0.0 else 1
+        patience = BRACKET.patience if multiplier == 0.0 else 1
         end = hold(self.engine, self.settings, patience)
         found.steps = self.engine.steps
         found.holds += 1
@@ -164,12 +179,12 @@ class BracketSearch:
             if state is State.MOVING:
                 return
             if state is State.UNDECIDED:
-                growth *= 2.0
+                growth *= BRACKET.growth
             self.found.capped = state is State.HELD and multiplier >= cap
 
     def _narrow(self) -> None:
         """Bisect until the bracket is not loose: again above what turned out to be held beyond an undecided hold."""
-        for _ in range(ROUNDS):
+        for _ in range(BRACKET.rounds):
             held = self.found.held
             self._bisect()
             if self._spent() or self.found.told(True) or self.found.held == held:
@@ -186,9 +201,10 @@ class BracketSearch:
         high = min(top)
         told = found.moving == high
         while not self._spent():
-            cheap = self.engine.steps * self.engine.interfaces < CHEAP
-            accuracy = self.settings.accuracy if told or cheap else max(self.settings.accuracy, CREEPING)
-            found.nothing = found.held == 0.0 and told and found.moving_residual <= 2.0 * self.settings.moving_residual
+            cheap = self.engine.steps * self.engine.interfaces < BRACKET.cheap
+            accuracy = self.settings.accuracy if told or cheap else max(self.settings.accuracy, BRACKET.creeping)
+            vanishing = found.moving_residual <= BRACKET.halved * self.settings.moving_residual
+            found.nothing = found.held == 0.0 and told and vanishing
             if found.nothing:
                 return
             if high - found.held <= accuracy * high:
@@ -197,20 +213,20 @@ class BracketSearch:
             state = self._try(middle).state
             if state is not State.HELD:
                 high, told = middle, state is State.MOVING
-        if found.moving is None or found.moving - found.held > WIDE * found.moving:
+        if found.moving is None or found.moving - found.held > BRACKET.wide * found.moving:
             self._raise_upper_end(high)
 
     def _raise_upper_end(self, high: float) -> None:
         """The lowest state not held was undecided: find the lowest state above it that moves, by growing steps."""
         found = self.found
-        step = CREEPING * high
+        step = BRACKET.creeping * high
         multiplier = high + step
         while not self._spent() and multiplier <= self.settings.load_cap * self.unit:
             if found.moving is not None and multiplier >= found.moving:
                 return
             if self._try(multiplier).state is State.MOVING:
                 return
-            step *= 2.0
+            step *= BRACKET.growth
             multiplier += step
 
 
@@ -225,7 +241,9 @@ def held_forces(engine: Engine, settings: HoldSettings, found: OrderBracket) -> 
     return engine.contact_forces(), residual
 
 
-def mechanism_at(engine: Engine, settings: HoldSettings, found: OrderBracket, excess: float = 1.02) -> FloatArray:
+def mechanism_at(
+    engine: Engine, settings: HoldSettings, found: OrderBracket, excess: float = BRACKET.excess
+) -> FloatArray:
     """Velocity field (n, 3) at `excess` times the middle of the bracket, from the highest held state."""
     if found.nothing and found.velocity is not None:
         return found.velocity

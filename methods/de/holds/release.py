@@ -8,7 +8,7 @@ import numpy as np
 from pydantic import Field
 
 from harness.model.assembly import Assembly, FloatArray
-from methods.de.engines.bodies import TIME_STEP, BlockSpace
+from methods.de.engines.bodies import BODIES, BlockSpace
 from methods.de.hold_settings import SweepSettings
 
 
@@ -64,7 +64,7 @@ def release(assembly: Assembly, multiplier: float, settings: ReleaseSettings) ->
     while made < settings.release_steps:
         space.advance(stride)
         made += stride
-        times.append(made * TIME_STEP)
+        times.append(made * BODIES.time_step)
         places.append(space.places())
         if np.abs(places[-1][:, :2]).max() >= settings.reach * assembly.length_scale:
             break

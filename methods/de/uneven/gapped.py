@@ -14,7 +14,7 @@ import numpy as np
 
 from harness.model.assembly import Assembly, FloatArray
 from harness.model.displaced import DisplacedState
-from methods.de.engines.bodies import RADIUS
+from methods.de.engines.bodies import BODIES
 from methods.de.engines.edges import FacingEdges
 from methods.de.holds.loading import raise_until_it_falls, shown_to_fall
 from methods.de.holds.motion import by_travel
@@ -24,18 +24,31 @@ from methods.springs.model.wall_model import WallModel, build_model
 from methods.springs.rest.newton import Equilibrium, newton
 from methods.springs.rest.slow_motion import SlowMotion
 
-STIFFNESS = 1e4
-"""kn of a gap point in mean dead loads of a block over the length scale: springs give far less than gaps are wide."""
-CLOSED = 3.0 * RADIUS
-"""Opening, in length scales, up to which a gap counts as closed at first: the engine keeps blocks so far apart."""
-STILL = 2e-4
-"""Displacement, in length scales, below which the blocks are not moved again."""
-STRIDE = 0.02
-"""Displacement, in length scales, by which a wall without rest is moved on at a time."""
-MOVES = 30
-"""Times that the blocks are moved under one load, at most."""
-PATIENCE = 600
-"""Newton steps of one motion to rest, at most."""
+
+@dataclass(frozen=True)
+class GappedTuning:
+    """Springs in a wall that has gaps, and how its blocks are moved on.
+
+    Attributes:
+        stiffness: kn of a gap point in mean dead loads of a block over the length scale: springs give far less than
+            gaps are wide.
+        closed: opening, in radii of the blocks in the engine, up to which a gap counts as closed at first: the engine
+            keeps blocks so far apart.
+        still: displacement, in length scales, below which the blocks are not moved again.
+        stride: displacement, in length scales, by which a wall without rest is moved on at a time.
+        moves: times that the blocks are moved under one load, at most.
+        newton_steps: of one motion to rest, at most.
+    """
+
+    stiffness: float = 1e4
+    closed: float = 3.0
+    still: float = 2e-4
+    stride: float = 0.02
+    moves: int = 30
+    newton_steps: int = 600
+
+
+GAPPED = GappedTuning()
 
 
 @dataclass(frozen=True, eq=False)
@@ -78,7 +91,7 @@ class GappedWall:
         self._first = places
         self.moved: list[float] = []
         structure, openings = self._edges.at(places)
-        self._shift = np.where(openings < CLOSED * assembly.length_scale, -openings, 0.0)
+        self._shift = np.where(openings < GAPPED.closed * BODIES.radius * assembly.length_scale, -openings, 0.0)
         none = np.zeros(2 * assembly.n_interfaces)
         self.rest = GappedRest(places, places, structure, none, none)
 
@@ -91,7 +104,7 @@ class GappedWall:
         """Whether the wall comes to rest at a multiplier; if not it stays where it rested last."""
         unit, before = self.assembly.length_scale, self.rest.moved
         places, shear, rest = before, self.rest.shear, None
-        for _ in range(MOVES):
+        for _ in range(GAPPED.moves):
             structure, openings = self._edges.at(places)
             model = self._model(structure, openings, shear)
             found = _at_rest(model, multiplier)
@@ -101,14 +114,14 @@ class GappedWall:
                 pressed, shear = model.forces(found.u, found.history, found.state)
                 rest = GappedRest(places, places + step, structure, pressed, shear)
             elif np.isfinite(size):
-                rest, step = None, step * min(1.0, STRIDE / max(size, STILL))
+                rest, step = None, step * min(1.0, GAPPED.stride / max(size, GAPPED.still))
             places = places + step
             if not np.abs(places - before)[:, :2].max(initial=0.0) < self._reach * unit:
                 load = self.assembly.dead + multiplier * self.assembly.live
                 if by_travel(self.assembly, load, places - before, self._reach) is not None:
                     self.moved.append(multiplier)
                 return False
-            if rest is not None and size < STILL:
+            if rest is not None and size < GAPPED.still:
                 break
         if rest is not None:
             self.rest = rest
@@ -131,7 +144,9 @@ class GappedWall:
     def _model(self, structure: Assembly, openings: FloatArray, shear: FloatArray) -> WallModel:
         """The springs with these openings (m, 2) and shears (2m,)."""
         mean = self.assembly.force_scale / self.assembly.n_free
-        model = build_model(structure, GapSettings(normal_stiffness=STIFFNESS * mean / self.assembly.length_scale))
+        model = build_model(
+            structure, GapSettings(normal_stiffness=GAPPED.stiffness * mean / self.assembly.length_scale)
+        )
         opening = (openings + self._shift).ravel() / model.displacement
         return replace(model, initial_opening=opening, history=shear)
 
@@ -158,4 +173,4 @@ def _at_rest(model: WallModel, multiplier: float) -> Equilibrium:
     found = newton(model, factor, still, multiplier, model.history)
     if found.found:
         return found
-    return SlowMotion(model, factor, replace(found, u=still), True).move(multiplier, PATIENCE)
+    return SlowMotion(model, factor, replace(found, u=still), True).move(multiplier, GAPPED.newton_steps)

@@ -13,18 +13,34 @@ import numpy as np
 
 from harness.model.assembly import Assembly, FloatArray
 from methods.de.engines.bodies import BlockSpace
-from methods.de.holds.loading import REACH, raise_until_it_falls, shown_to_fall
+from methods.de.holds.loading import FALL, raise_until_it_falls, shown_to_fall
 from methods.de.holds.motion import by_travel
 from methods.de.uneven.defects import Faces, block_height
 
-SETTLING_DAMPING = 0.01
-"""Part of the velocity kept by a unit of time sqrt(length scale / gravity) while the wall settles."""
 
-POINT = 1e-3
-"""Length given to a contact at a single point, as a part of the length scale: methods need two contact points."""
+@dataclass(frozen=True)
+class SettlingTuning:
+    """How a wall of whole blocks comes to rest, and the contacts it is given.
 
-PARALLEL = 1e-6
-"""Least distance of two contact points, as a part of the length scale, that makes them a segment."""
+    Attributes:
+        damping: part of the velocity kept by a unit of time sqrt(length scale / gravity).
+        look: time steps from one look at the places to the next.
+        still, slow: change of the places [length scales] from look to look, and velocity [unit lengths per unit time],
+            below which the wall is at rest.
+        point: length given to a contact at a single point, as a part of the length scale: methods need two contact
+            points.
+        segment: least distance of two contact points, as a part of the length scale, that makes them a segment.
+    """
+
+    damping: float = 0.01
+    look: int = 250
+    still: float = 1e-5
+    slow: float = 1e-4
+    point: float = 1e-3
+    segment: float = 1e-6
+
+
+SETTLING = SettlingTuning()
 
 
 @dataclass(frozen=True, eq=False)
@@ -76,7 +92,7 @@ def settle_uneven(
         most_steps: most time steps of the settling.
     """
     outlines = uneven_blocks(assembly, size, faces, seed)
-    space = BlockSpace(assembly, outlines, SETTLING_DAMPING)
+    space = BlockSpace(assembly, outlines, SETTLING.damping)
     before, at_rest = come_to_rest(space, most_steps, np.inf)
     settled, single = with_contacts(assembly, space, before)
     return Settled(settled, at_rest, outlines, before, single)
@@ -90,10 +106,10 @@ def come_to_rest(space: BlockSpace, most_steps: int, reach: float) -> tuple[Floa
     """
     unit = space.assembly.length_scale
     start = before = space.places()
-    for _ in range(max(1, most_steps // 250)):
-        space.advance(250)
+    for _ in range(max(1, most_steps // SETTLING.look)):
+        space.advance(SETTLING.look)
         now = space.places()
-        if float(np.abs(now - before).max()) < 1e-5 * unit and space.speed() < 1e-4:
+        if float(np.abs(now - before).max()) < SETTLING.still * unit and space.speed() < SETTLING.slow:
             return now, True
         before = now
         if float(np.abs(now - start)[:, :2].max()) >= reach * unit:
@@ -126,7 +142,7 @@ def load_uneven(
     greatest: float = 2.0,
     step: float = 0.02,
     accuracy: float = 0.005,
-    reach: float = REACH,
+    reach: float = FALL.reach,
     most_steps: int = 20_000,
 ) -> Loading:
     """Raise the live load on a wall of uneven blocks, at large displacements, until it no longer comes to rest.
@@ -144,7 +160,7 @@ def load_uneven(
         most_steps: most time steps of a load step.
     """
     outlines = uneven_blocks(assembly, size, faces, seed)
-    space = BlockSpace(assembly, outlines, SETTLING_DAMPING)
+    space = BlockSpace(assembly, outlines, SETTLING.damping)
     # Gaps that close add up over the courses to more than `reach`, so the settling has none.
     rest, at_rest = come_to_rest(space, most_steps, np.inf)
     if not at_rest:
@@ -156,7 +172,7 @@ def load_uneven(
     def rests(trial: float) -> bool:
         nonlocal space, rest, fallen
         if fallen:
-            space = BlockSpace(assembly, outlines, SETTLING_DAMPING)
+            space = BlockSpace(assembly, outlines, SETTLING.damping)
             space.put(rest)
         space.load(trial)
         places, at_rest = come_to_rest(space, most_steps, reach)
@@ -188,14 +204,17 @@ def with_contacts(assembly: Assembly, space: BlockSpace, places: FloatArray) -> 
         if assembly.fixed[a] and assembly.fixed[b]:
             continue
         tangent = np.array([-normal[1], normal[0]])
-        if len(points) == 2 and np.linalg.norm(points[1] - points[0]) > PARALLEL * unit:
+        if len(points) == 2 and np.linalg.norm(points[1] - points[0]) > SETTLING.segment * unit:
             one, two = points
             along = (two - one) / np.linalg.norm(two - one)
             across = np.array([along[1], -along[0]])
             normal = across if across @ normal > 0.0 else -across
         else:
             single += 1
-            one, two = points[0] - tangent * POINT * unit / 2.0, points[0] + tangent * POINT * unit / 2.0
+            one, two = (
+                points[0] - tangent * SETTLING.point * unit / 2.0,
+                points[0] + tangent * SETTLING.point * unit / 2.0,
+            )
         rows.append((a, b, one, two, normal, friction.get((a, b), least)))
     one, two = np.array([row[2] for row in rows]), np.array([row[3] for row in rows])
     level = np.abs((two - one)[:, 0]) > np.abs((two - one)[:, 1])
