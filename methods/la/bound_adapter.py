@@ -20,7 +20,7 @@ from methods.la.core.newton_matrix import NewtonMatrix
 from methods.la.core.problem import Problem, make_problem
 from methods.la.core.search_settings import BoundSettings, SearchSettings
 from methods.la.family import LimitAnalysisFamily
-from methods.la.least import SAME, least_known
+from methods.la.least import SAME_MULTIPLIER, least_known
 from methods.numerics.statics import analysed
 from methods.springs.warm_up import load_kernels
 
@@ -94,7 +94,7 @@ def certified(known: Answer, document: dict[str, Any] | None) -> Answer:
             f"{float(lower):.7g}, proved in fractions.",
             details=known.details | {"certificate": document, "certified_bound": float(lower)},
         )
-    if abs(float(upper) - known.multiplier) > SAME * max(abs(known.multiplier), SAME):
+    if abs(float(upper) - known.multiplier) > SAME_MULTIPLIER * max(abs(known.multiplier), SAME_MULTIPLIER):
         return known
     exact = str(upper) if len(str(upper)) <= PRECISION.shown else f"{float(upper):.9g}"
     state = "" if "state" in document else " (its forces to rounding)"

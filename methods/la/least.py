@@ -20,11 +20,18 @@ from methods.la.core.state import CollapseState, local_residuals, polished, resi
 from methods.la.sources import SOURCES, Source, explore
 from methods.la.sources.budget import Budget, limits_of
 from methods.la.sources.search import CHOICES, Search
-from methods.la.state_answers import LOCALLY, NO_MOTION, NO_STATE, collapse_answer, not_converged, unbounded_answer
+from methods.la.state_answers import (
+    LOCAL_RESIDUAL,
+    NO_MOTION,
+    NO_STATE,
+    collapse_answer,
+    not_converged,
+    unbounded_answer,
+)
 from methods.numerics.failures import NumericalFailure
 
 NOT_EXACT = "No state was found that holds beside the lightest blocks too: weights differ too much within the wall"
-SAME = 1e-9
+SAME_MULTIPLIER = 1e-9
 """Relative difference of two multipliers below which the state with the smaller residuals is the better one."""
 
 
@@ -91,7 +98,7 @@ def _chosen(search: Search) -> tuple[CollapseState, Proof] | None:
         best = search.descend(proof.state)
         proof = replace(proof, state=best)
     best = polished(problem, newton, best)
-    if max(part.max(initial=0.0) for part in local_residuals(problem, best)) > LOCALLY:
+    if max(part.max(initial=0.0) for part in local_residuals(problem, best)) > LOCAL_RESIDUAL:
         exact = confirmed(problem, newton, None, [best])
         best = least_of(problem, exact) if exact else best
     return best, proof
@@ -145,7 +152,7 @@ def _nothing_found(search: Search) -> Answer:
 def least_of(problem: Problem, states: list[CollapseState]) -> CollapseState:
     """The most exact of the states with the least multiplier, but for rounding."""
     least = min(state.multiplier for state in states)
-    same = (state for state in states if state.multiplier <= least + SAME * abs(least))
+    same = (state for state in states if state.multiplier <= least + SAME_MULTIPLIER * abs(least))
     return min(same, key=lambda state: max(residuals(problem, state).values()))
 
 
@@ -177,7 +184,7 @@ def _of_uneven(
 ) -> tuple[CollapseState, Proof]:
     """The least state that is confirmed, and what the tree proves of it: nothing where its own is not confirmed."""
     best = least_of(problem, confirmed(problem, newton, units, [*states, proof.state]) or states)
-    holds = best.multiplier <= proof.state.multiplier + SAME * abs(proof.state.multiplier)
+    holds = best.multiplier <= proof.state.multiplier + SAME_MULTIPLIER * abs(proof.state.multiplier)
     return best, replace(proof, state=best) if holds else Proof(best, 0.0, proof.nodes)
 
 

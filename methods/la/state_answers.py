@@ -16,7 +16,7 @@ from methods.la.core.programmes import KinematicSolution
 from methods.la.core.state import CollapseState, local_residuals, residuals
 from methods.la.interior.standing import standing_forces
 
-LOCALLY = 1e-8
+LOCAL_RESIDUAL = 1e-8
 """Residual at a block or joint, relative to the forces and speeds there, of a state that is returned."""
 
 NO_MOTION = "No mechanism lets the live load do work: it cannot make the wall collapse."
@@ -68,12 +68,12 @@ def collapse_answer(
 
 
 def _inexact_blocks(problem: Problem, state: CollapseState) -> list[str]:
-    """Names of the blocks at which a state is wrong by more than `LOCALLY` of what acts there."""
+    """Names of the blocks at which a state is wrong by more than `LOCAL_RESIDUAL` of what acts there."""
     assembly = problem.assembly
     equilibrium, tension, closing = local_residuals(problem, state)
     wrong = np.zeros(assembly.n_blocks, dtype=bool)
-    wrong[assembly.free] = equilibrium > LOCALLY
-    joints = (tension > LOCALLY) | (closing > LOCALLY)
+    wrong[assembly.free] = equilibrium > LOCAL_RESIDUAL
+    joints = (tension > LOCAL_RESIDUAL) | (closing > LOCAL_RESIDUAL)
     wrong[assembly.block_a[joints]] = wrong[assembly.block_b[joints]] = True
     return [assembly.block_ids[i] for i in np.flatnonzero(wrong & ~assembly.fixed)]
 

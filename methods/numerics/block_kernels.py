@@ -10,11 +10,11 @@ import numpy as np
 from harness.model.assembly import FloatArray, IntArray
 from methods.numerics.compiled import compiled, compiled_loosely
 
-MANY = 8
+COLUMNS = 8
 """Right-hand sides that are solved for at once: reading the factors from memory costs more than the sums."""
-LITTLE = 100
-"""Matrices of fewer entries than this are multiplied with MANY columns by our own loops, for the same reason."""
-SMALL = 4000
+LIBRARY_ENTRIES = 100
+"""Matrices of fewer entries than this are multiplied with COLUMNS columns by our own loops, for the same reason."""
+LIBRARY_PRODUCTS = 4000
 """Products of fewer multiplications than this are spelt out: a library call would cost more."""
 
 
@@ -109,7 +109,7 @@ def _solve_columns(lu: FloatArray, swapped: IntArray, x: FloatArray) -> None:
 def _product(a: FloatArray, b: FloatArray, out: FloatArray) -> None:
     """out = a b' for row-major a (3 p, q), b (3 s, q)."""
     p, q, s = a.shape[0], a.shape[1], b.shape[0]
-    if p * q * s >= SMALL:
+    if p * q * s >= LIBRARY_PRODUCTS:
         np.dot(a, b.T, out)
         return
     for i in range(p):
@@ -288,16 +288,16 @@ def substitute_many(
     first: int,
     x: FloatArray,
 ) -> None:
-    """As `substitute`, for MANY columns at once."""
+    """As `substitute`, for COLUMNS columns at once."""
     count = len(start) - 1
-    pieces = np.empty((3 * np.diff(row_start).max() + 3, MANY))
-    products = np.empty((3 * np.diff(start).max(), MANY))
+    pieces = np.empty((3 * np.diff(row_start).max() + 3, COLUMNS))
+    products = np.empty((3 * np.diff(start).max(), COLUMNS))
     for s in range(first, count):
         c0, w = 3 * start[s], 3 * (start[s + 1] - start[s])
         ours = x[c0 : c0 + w]
         some = False
         for i in range(w):
-            for c in range(MANY):
+            for c in range(COLUMNS):
                 some |= ours[i, c] != 0.0
         q0, r = row_start[s], 3 * (row_start[s + 1] - row_start[s])
         if not some or not r:
@@ -308,7 +308,7 @@ def substitute_many(
         _times(low, ours, part)
         for i in range(r):
             j = 3 * row[q0 + i // 3] + i % 3
-            for c in range(MANY):
+            for c in range(COLUMNS):
                 x[j, c] -= part[i, c]
     for s in range(count - 1, -1, -1):
         c0, w = 3 * start[s], 3 * (start[s + 1] - start[s])
@@ -321,34 +321,34 @@ def substitute_many(
             part = pieces[:r]
             for i in range(r):
                 j = 3 * row[q0 + i // 3] + i % 3
-                for c in range(MANY):
+                for c in range(COLUMNS):
                     part[i, c] = x[j, c]
-            if r * w >= LITTLE:
+            if r * w >= LIBRARY_ENTRIES:
                 np.dot(up.T, part, product)
                 for i in range(w):
-                    for c in range(MANY):
+                    for c in range(COLUMNS):
                         ours[i, c] -= product[i, c]
             else:
                 for i in range(r):
                     for k in range(w):
                         entry = up[i, k]
-                        for c in range(MANY):
+                        for c in range(COLUMNS):
                             ours[k, c] -= entry * part[i, c]
         _solve_columns(lu, swapped[c0 : c0 + w], ours)
 
 
 @compiled_loosely
 def _times(a: FloatArray, x: FloatArray, out: FloatArray) -> None:
-    """out = a x for x (q, MANY)."""
-    if a.size >= LITTLE:
+    """out = a x for x (q, COLUMNS)."""
+    if a.size >= LIBRARY_ENTRIES:
         np.dot(a, x, out)
         return
     for i in range(a.shape[0]):
-        for c in range(MANY):
+        for c in range(COLUMNS):
             out[i, c] = 0.0
         for k in range(a.shape[1]):
             entry = a[i, k]
-            for c in range(MANY):
+            for c in range(COLUMNS):
                 out[i, c] += entry * x[k, c]
 
 

@@ -9,6 +9,8 @@ fail while the matrix is symmetric and definite; sliding makes it unsymmetric, a
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+
 import numpy as np
 import scipy.sparse as sp
 from scipy.sparse.linalg import splu
@@ -16,10 +18,21 @@ from scipy.sparse.linalg import splu
 from harness.model.assembly import FloatArray, IntArray
 from methods.numerics.block_kernels import factorise, substitute, substitute_many
 
-WIDEST = 8
-"""Blocks of unknowns in a supernode at most: wider ones spend their time inside the diagonal."""
-PADDING = 0.3
-"""Share of zeros that a supernode may hold for the sake of being wider."""
+
+@dataclass(frozen=True)
+class Supernodes:
+    """Which columns of a factor are kept together.
+
+    Attributes:
+        widest: blocks of unknowns at most: wider ones spend their time inside the diagonal.
+        padding: share of zeros that one may hold for the sake of being wider.
+    """
+
+    widest: int = 8
+    padding: float = 0.3
+
+
+SUPERNODES = Supernodes()
 
 
 class BlockPattern:
@@ -105,7 +118,7 @@ class BlockFactor:
         return x
 
     def solve_many(self, first: int, x: FloatArray) -> None:
-        """Solve for MANY right-hand sides at once, in place in x (3 n, MANY), zero in rows before block `first`."""
+        """Solve for right-hand sides x (3 n, COLUMNS) at once, in place, zero in rows before block `first`."""
         p = self.pattern
         begin = int(p.owner[first])
         substitute_many(p.start, p.row_start, p.row, p.offset, self.values, self._swapped, begin, x)
@@ -162,7 +175,7 @@ def _supernodes(below: list[set[int]]) -> tuple[list[int], list[list[int]]]:
         merged = (rows[-1] | below[j]) - {j}
         entries = true[-1] + len(below[j]) + width
         size = (width + 1) * len(merged) + width * (width + 1) // 2
-        if j in rows[-1] and width < WIDEST and size <= (1.0 + PADDING) * entries:
+        if j in rows[-1] and width < SUPERNODES.widest and size <= (1.0 + SUPERNODES.padding) * entries:
             rows[-1] = merged
             true[-1] = entries
         else:

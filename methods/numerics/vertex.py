@@ -20,16 +20,29 @@ import scipy.sparse as sp
 from harness.model.assembly import BoolArray, FloatArray, IntArray
 from methods.numerics.failures import NumericalFailure, SingularMatrix, sparse_lu
 
-ROUNDS = 6
-"""Refinements of a linear system at most, and magnifications of a programme."""
-ACCURATE = 1e-12
-"""Violation of a bound, relative to the terms beside it, that is rounding."""
-LEAST_TERM, LEAST_SPEED = 1e-3, 1e-5
-"""Terms below this share of the largest bound, and of the largest terms of a reduced cost, count as this share."""
-LARGEST = 1e14
-"""Largest factor by which violations are magnified."""
-EXCESS = 1e7
-"""Magnified reduced costs beyond this are cut off: they are far from zero either way."""
+
+@dataclass(frozen=True)
+class VertexTolerances:
+    """How a vertex is refined, and what is rounding in it.
+
+    Attributes:
+        accurate: violation of a bound, relative to the terms beside it, that is rounding.
+        rounds: refinements of a linear system at most, and magnifications of a programme.
+        least_term, least_speed: terms below this share of the largest bound, and of the largest terms of a reduced
+            cost, count as this share.
+        magnified: largest factor by which violations are magnified.
+        cut_off: magnified reduced costs beyond this are cut off: they are far from zero either way.
+    """
+
+    accurate: float = 1e-12
+    rounds: int = 6
+    least_term: float = 1e-3
+    least_speed: float = 1e-5
+    magnified: float = 1e14
+    cut_off: float = 1e7
+
+
+VERTEX = VertexTolerances()
 LOWER, BASIC, UPPER, ZERO = (
     int(status)
     for status in (
@@ -62,7 +75,7 @@ class Vertex:
     @property
     def optimal(self) -> bool:
         """Whether the vertex is feasible and optimal to rounding."""
-        return max(self.primal, self.dual_violation) <= ACCURATE
+        return max(self.primal, self.dual_violation) <= VERTEX.accurate
 
 
 @dataclass(frozen=True, eq=False)
@@ -109,8 +122,8 @@ class StandardForm:
     def vertex(self, status: IntArray) -> Vertex | None:
         """The optimal vertex that a basis (c + r,) leads to; None if it is singular or leads nowhere."""
         best = solution = self._solution(status)
-        for _ in range(ROUNDS):
-            if solution is None or max(solution.primal, solution.dual_violation) <= ACCURATE:
+        for _ in range(VERTEX.rounds):
+            if solution is None or max(solution.primal, solution.dual_violation) <= VERTEX.accurate:
                 break
             solution = self._magnified(solution)
             if solution is not None and best is not None and _worst(solution) < _worst(best):
@@ -153,8 +166,8 @@ class StandardForm:
             reduced,
             outside,
             wrong,
-            _relative(outside, self._terms_beside(value), LEAST_TERM * self._largest_bound),
-            _relative(wrong, speeds, LEAST_SPEED * float(speeds.max(initial=0.0))),
+            _relative(outside, self._terms_beside(value), VERTEX.least_term * self._largest_bound),
+            _relative(wrong, speeds, VERTEX.least_speed * float(speeds.max(initial=0.0))),
         )
 
     def _terms_beside(self, value: FloatArray) -> FloatArray:
@@ -176,8 +189,8 @@ class StandardForm:
 
     def _magnified(self, at: _Solution) -> _Solution | None:
         """Where the programme leads once it is shifted to a solution and its violations are magnified to one."""
-        primal = _factor(at.outside) if at.primal > ACCURATE else 1.0
-        dual = _factor(at.wrong) if at.dual_violation > ACCURATE else 1.0
+        primal = _factor(at.outside) if at.primal > VERTEX.accurate else 1.0
+        dual = _factor(at.wrong) if at.dual_violation > VERTEX.accurate else 1.0
         basic = at.status == BASIC
         highs: Any = highspy.Highs()
         for option, setting in (
@@ -192,7 +205,7 @@ class StandardForm:
             highs.setOptionValue(option, setting)
         shifted = highspy.HighsLp()
         shifted.num_row_, shifted.num_col_ = self._matrix.shape
-        shifted.col_cost_ = np.where(basic, 0.0, np.clip(dual * at.reduced, -EXCESS, EXCESS))
+        shifted.col_cost_ = np.where(basic, 0.0, np.clip(dual * at.reduced, -VERTEX.cut_off, VERTEX.cut_off))
         shifted.col_lower_ = primal * (self._lower - at.value)
         shifted.col_upper_ = primal * (self._upper - at.value)
         shifted.row_lower_ = shifted.row_upper_ = np.zeros(self._rows)
@@ -227,7 +240,7 @@ def refined(matrix: sp.csc_matrix, right: Any) -> FloatArray:
     factor = sparse_lu(sp.csc_matrix(scaled @ sp.diags(columns)))
     right = np.asarray(right, dtype=np.longdouble)
     solution = np.zeros(len(right), dtype=np.longdouble)
-    for _ in range(ROUNDS):
+    for _ in range(VERTEX.rounds):
         residual = right - extended_product(by_row, solution)
         change = columns * factor.solve(rows * residual.astype(float))
         if not np.isfinite(change).all():
@@ -260,7 +273,7 @@ def _relative(violation: FloatArray, beside: FloatArray, least: float) -> float:
 def _factor(violation: FloatArray) -> float:
     """A power of two that brings the largest violation near one."""
     worst = float(violation.max(initial=0.0))
-    return 1.0 if worst == 0.0 else float(np.clip(2.0 ** np.round(-np.log2(worst)), 1.0, LARGEST))
+    return 1.0 if worst == 0.0 else float(np.clip(2.0 ** np.round(-np.log2(worst)), 1.0, VERTEX.magnified))
 
 
 def _powers(size: FloatArray) -> FloatArray:

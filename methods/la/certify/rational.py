@@ -16,6 +16,7 @@ from methods.la.core.problem import Problem
 from methods.la.core.state import CollapseState, tight_contacts
 
 DENOMINATOR = 10**6
+"""Greatest of a fraction that counts as short: coordinates and loads are written with few digits."""
 Row = dict[int, Fraction]
 
 

@@ -8,6 +8,7 @@ the compiled code.
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from typing import TYPE_CHECKING, cast
 
 import numpy as np
@@ -23,10 +24,21 @@ if TYPE_CHECKING:
 
     from methods.numerics.block_lu import BlockFactor
 
-FEW = 200
-"""Blocks up to which SuperLU factorises."""
-LEAF = 24
-"""Blocks below which a part is not divided further."""
+
+@dataclass(frozen=True)
+class MatrixSizes:
+    """Sizes in blocks.
+
+    Attributes:
+        few: up to which SuperLU factorises.
+        leaf: below which a part is not divided further.
+    """
+
+    few: int = 200
+    leaf: int = 24
+
+
+MATRIX = MatrixSizes()
 
 
 def dissection_order(centroid: FloatArray, first: IntArray, second: IntArray) -> IntArray:
@@ -46,7 +58,7 @@ def dissection_order(centroid: FloatArray, first: IntArray, second: IntArray) ->
 
 
 def _dissect(part: IntArray, centroid: FloatArray, graph: sp.csr_matrix, pieces: list[IntArray]) -> None:
-    if len(part) <= LEAF:
+    if len(part) <= MATRIX.leaf:
         pieces.append(part)
         return
     place = centroid[part]
@@ -72,7 +84,7 @@ class NewtonMatrix:
         column[assembly.free] = np.arange(n)
         block_a, block_b = column[assembly.block_a], column[assembly.block_b]
         both = (block_a >= 0) & (block_b >= 0)
-        self.large = n > FEW
+        self.large = n > MATRIX.few
         if self.large:
             from methods.numerics.block_lu import elimination_order
 

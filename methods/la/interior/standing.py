@@ -17,7 +17,7 @@ from methods.la.core.problem import Problem
 from methods.la.interior.interior_point import PathSettings, follow_path, start_point
 from methods.numerics.failures import NumericalFailure
 
-EXACT = 1e-9
+LARGEST_IMBALANCE = 1e-9
 """Largest imbalance, in mean block weights, of forces that certify."""
 
 
@@ -38,6 +38,6 @@ def standing_forces(problem: Problem, newton: NewtonMatrix) -> FloatArray | None
     if not result.point.multiplier >= 1.0:
         return None
     forces = first + (problem.forces_of_slacks(result.point.slack) - first) / result.point.multiplier
-    within = float(problem.slacks(forces).min(initial=0.0)) >= -EXACT
-    balanced = float(abs(problem.imbalance(forces, 0.0)).max(initial=0.0)) <= EXACT
+    within = float(problem.slacks(forces).min(initial=0.0)) >= -LARGEST_IMBALANCE
+    balanced = float(abs(problem.imbalance(forces, 0.0)).max(initial=0.0)) <= LARGEST_IMBALANCE
     return forces if within and balanced else None

@@ -39,8 +39,10 @@ class Lead:
     most_steps: int
 
 
-NEAR = (10.0, (1e-6, 1e-8), 600)
-FAR = (np.inf, (1e-8, 1e-9, 1e-10), 2000)
+NEAR_PATH = (10.0, (1e-6, 1e-8), 600)
+"""Spread, gaps and most steps of leads near the central path."""
+FAR_PATH = (np.inf, (1e-8, 1e-9, 1e-10), 2000)
+"""Those of leads with the weights of their start."""
 
 
 @dataclass(frozen=True)
@@ -56,8 +58,8 @@ class ArcPaths:
 
     name: ClassVar[str] = "paths by arc length"
     least: int = 1001
-    near: tuple[Lead, ...] = (Lead(0.3, 1e-2, *NEAR), Lead(0.45, 1e-2, *NEAR), Lead(0.3, 1e-3, *NEAR))
-    far: tuple[Lead, ...] = (Lead(0.15, 1e-2, *FAR), Lead(0.3, 1e-3, *FAR), Lead(0.0, 1e-2, *FAR))
+    near: tuple[Lead, ...] = (Lead(0.3, 1e-2, *NEAR_PATH), Lead(0.45, 1e-2, *NEAR_PATH), Lead(0.3, 1e-3, *NEAR_PATH))
+    far: tuple[Lead, ...] = (Lead(0.15, 1e-2, *FAR_PATH), Lead(0.3, 1e-3, *FAR_PATH), Lead(0.0, 1e-2, *FAR_PATH))
     many: int = 2000
 
     def applies(self, problem: Problem) -> bool:

@@ -9,7 +9,7 @@ from typing import ClassVar
 from methods.la.core.problem import Problem
 from methods.la.core.state import CollapseState
 from methods.la.sources.mechanisms import motions_of
-from methods.la.sources.record import LOWER
+from methods.la.sources.record import LEAST_IMPROVEMENT
 from methods.la.sources.search import Search
 
 
@@ -34,7 +34,7 @@ class SingleBlocks:
         for block in range(problem.assembly.n_free):
             for velocities, least in motions_of(problem, block):
                 search.budget.spent.programmes += 1
-                if least >= search.record.least - LOWER:
+                if least >= search.record.least - LEAST_IMPROVEMENT:
                     continue
                 state = search.state_of(velocities, problem.rates_of_velocities(velocities, False))
                 if state is not None:

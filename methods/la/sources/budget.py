@@ -44,11 +44,6 @@ class Limits:
     unbounded_kinks: int = 9_000
 
 
-DOWN = (1.3, 1.15, 1.0, 0.9, 0.8, 0.7, 0.6, 0.5)
-UP = (0.55, 0.6, 0.65, 0.7, 0.75, 0.8, 0.85, 0.9, 0.95)
-"""Factors on friction of the ladder of `deep`, which first goes down from above that of the wall."""
-
-
 @dataclass(frozen=True)
 class Sizes:
     """The sizes at which the budget of normal effort changes, so that the time grows slowly, and what it is there.
@@ -61,7 +56,8 @@ class Sizes:
         descended: interfaces up to which states are descended from; above, a draw takes a second and more.
         provable, provable_ring: interfaces up to which a proof is tried, and those of walls with at most two more
             interfaces than blocks. With more, hardly any tree of 1,500 nodes comes to an end.
-        ladder, fine_ladder: factors on friction: mechanisms found at each are carried to the next.
+        ladder, fine_ladder: factors on friction: mechanisms found at each are carried to the next. The fine one first
+            goes down from above the friction of the wall.
     """
 
     few_blocks: int = 30
@@ -70,7 +66,10 @@ class Sizes:
     provable: int = 16
     provable_ring: int = 30
     ladder: tuple[float, ...] = (0.55, 0.65, 0.75, 0.85, 0.925)
-    fine_ladder: tuple[float, ...] = (*DOWN, *UP)
+    fine_ladder: tuple[float, ...] = (
+        *(1.3, 1.15, 1.0, 0.9, 0.8, 0.7, 0.6, 0.5),
+        *(0.55, 0.6, 0.65, 0.7, 0.75, 0.8, 0.85, 0.9, 0.95),
+    )
 
     def limits(self, effort: str, problem: Problem) -> Limits:
         """The limits of an effort ("quick", "normal" or "deep") on a wall."""

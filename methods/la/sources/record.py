@@ -11,7 +11,7 @@ from typing import Any
 from methods.la.core.state import CollapseState
 from methods.la.sources.budget import Work
 
-LOWER = 1e-10
+LEAST_IMPROVEMENT = 1e-10
 """A scaled multiplier is lower if it is lower by this much: about ten times what linear programmes leave of it."""
 
 
@@ -91,7 +91,7 @@ class Record:
 
     def note(self, state: CollapseState, work: Work) -> None:
         """Keep a state if none known is lower."""
-        if state.multiplier < self.least - LOWER:
+        if state.multiplier < self.least - LEAST_IMPROVEMENT:
             self.improvements.append(Improvement(state, self.source, time.process_time(), replace(work)))
 
     def path(self, unit: float) -> dict[str, list[float]]:

@@ -26,7 +26,7 @@ from methods.la.interior.path_programmes import EXACTNESS, cheapest_mechanism, e
 from methods.la.interior.standing import standing_forces
 from methods.la.sources.budget import Budget
 from methods.la.sources.gravity import Gravity, gravity_of
-from methods.la.sources.record import LOWER, Record
+from methods.la.sources.record import LEAST_IMPROVEMENT, Record
 
 
 @dataclass(frozen=True)
@@ -253,7 +253,7 @@ class Search:
     def descend(self, state: CollapseState) -> CollapseState:
         """Ray descent from a state."""
         large = self.problem.n_interfaces > CHOICES.once_above
-        if large and any(abs(state.multiplier - end) <= LOWER for end in self.ends):
+        if large and any(abs(state.multiplier - end) <= LEAST_IMPROVEMENT for end in self.ends):
             return state
         failures, limits = 0, self.budget.limits
         for _ in range(min(limits.draws, self.budget.programmes)):
@@ -264,7 +264,7 @@ class Search:
             self.budget.spent.programmes += 1
             mechanism = self.kinematic.solve(tight, cost)
             other = None if mechanism is None else self.state_of(mechanism.velocities, mechanism.rates)
-            if other is not None and other.multiplier < state.multiplier - LOWER:
+            if other is not None and other.multiplier < state.multiplier - LEAST_IMPROVEMENT:
                 state, failures = other, 0
             else:
                 failures += 1

@@ -28,7 +28,7 @@ from methods.la.core.problem import Problem
 from methods.la.core.state import CollapseState, moving_contacts
 from methods.la.interior.interior_point import PathSettings, follow_path, start_point
 from methods.la.sources.gravity import SPRINGS, Gravity, gravity_of
-from methods.la.sources.record import LOWER
+from methods.la.sources.record import LEAST_IMPROVEMENT
 from methods.la.sources.search import Search
 from methods.la.sources.unloaded import smoothed
 from methods.springs.model.factor import SingularTangent, make_factor
@@ -145,7 +145,7 @@ class LittleSelfStress:
         problem = search.problem
         for k, state in ends(search, self._starts(search)):
             yield state
-            above = k == 0 and state.multiplier > search.record.least + LOWER
+            above = k == 0 and state.multiplier > search.record.least + LEAST_IMPROVEMENT
             if above and problem.n_interfaces > self.vertices_up_to and _right_angled(problem):
                 return
 

@@ -18,7 +18,7 @@ import scipy.sparse as sp
 from scipy.sparse.linalg import SuperLU
 
 from harness.model.assembly import FloatArray, IntArray
-from methods.numerics.block_kernels import MANY
+from methods.numerics.block_kernels import COLUMNS
 from methods.numerics.block_lu import BlockFactor, BlockPattern
 from methods.numerics.compiled import compiled
 from methods.numerics.failures import SingularMatrix, sparse_lu
@@ -94,7 +94,7 @@ class Factor(Protocol):
         """Whether `solve_change` costs little."""
 
     def foresee(self, changes: list[Change]) -> None:
-        """Solve for up to MANY changes at once, which `solve_change` is likely to be asked for."""
+        """Solve for up to COLUMNS changes at once, which `solve_change` is likely to be asked for."""
 
     def solve_change(self, change: Change) -> FloatArray:
         """K^-1 a (N,) for a change a b' of the tangent that is foreseen."""
@@ -266,9 +266,9 @@ class SparseFactor:
         return change in self._foreseen
 
     def foresee(self, changes: list[Change]) -> None:
-        """Solve the factorised tangent for up to MANY changes at once."""
-        right = np.zeros((self.model.n_unknowns, MANY))
-        first = self.model.add_changes(changes[:MANY], right)
+        """Solve the factorised tangent for up to COLUMNS changes at once."""
+        right = np.zeros((self.model.n_unknowns, COLUMNS))
+        first = self.model.add_changes(changes[:COLUMNS], right)
         if self._exchanged is not None:
             right = self._exchanged.solve(right)
         else:

@@ -11,7 +11,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from harness.model.assembly import FloatArray, IntArray
-from methods.numerics.block_kernels import MANY as AT_ONCE
+from methods.numerics.block_kernels import COLUMNS
 from methods.numerics.vectors import largest
 from methods.springs.model.factor import Change, Factor, SingularTangent, refactor_any
 from methods.springs.model.gap_law import KINKS, OPEN, SLIP_MINUS, SLIP_PLUS, STICK, classify, same_forces
@@ -98,8 +98,8 @@ def change_states(model: WallModel, factor: Factor, state: IntArray, wanted: Int
     changes = [change for p in points for change in _way(p, int(state[p]), int(wanted[p]))]
     if len(points) <= COMMITS.updates and factor.count + len(changes) < factor.capacity:
         for k, change in enumerate(changes):
-            if k % AT_ONCE == 0:
-                factor.foresee(changes[k : k + AT_ONCE])
+            if k % COLUMNS == 0:
+                factor.foresee(changes[k : k + COLUMNS])
             if not _change(model, factor, change):
                 break
         else:

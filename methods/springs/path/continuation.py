@@ -12,7 +12,7 @@ from copy import deepcopy
 import numpy as np
 
 from harness.model.assembly import FloatArray, IntArray
-from methods.numerics.block_kernels import MANY
+from methods.numerics.block_kernels import COLUMNS
 from methods.numerics.vectors import largest
 from methods.springs.model.factor import Change, Factor, SingularTangent
 from methods.springs.model.gap_law import KINKS, OPEN, SLIP_PLUS, STICK, gap_forces
@@ -278,7 +278,7 @@ class Tracer:
     def _coming(self, change: Change) -> list[Change]:
         """A change of state, then those that would follow it first if the direction stayed as it is."""
         model, way = self.model, self.direction
-        points, targets = np.empty(MANY - 1, dtype=np.int64), np.empty(MANY - 1, dtype=np.int64)
+        points, targets = np.empty(COLUMNS - 1, dtype=np.int64), np.empty(COLUMNS - 1, dtype=np.int64)
         gaps = self.opening, self.trial, way.opening_rate, way.trial_rate
         found = coming_kinks(*gaps, model.kn, model.mu, self.state, points, targets)
         coming = zip(points[:found].tolist(), targets[:found].tolist(), strict=True)
