@@ -83,7 +83,7 @@ def test_without_a_rest_nothing_is_said(name: str, monkeypatch: pytest.MonkeyPat
 
 
 def test_orders_searched_to_the_end_are_counted(monkeypatch: pytest.MonkeyPatch):
-    stopped_after(2, monkeypatch, de_answer.Known, "searched")
+    stopped_after(2, monkeypatch, de_answer.KnownBrackets, "searched")
     answer, accepted = solved("de")
     alone, _ = solved("de", orders=1)
     assert accepted

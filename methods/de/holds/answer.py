@@ -14,7 +14,7 @@ from methods.de.engines.courses import Tuning, courses, insertion_orders, tuning
 from methods.de.engines.engine import Engine
 from methods.de.hold_settings import HoldSettings
 from methods.de.holds.order_bracket import BRACKET, BracketSearch, OrderBracket, held_forces, mechanism_at
-from methods.de.holds.stopped import Known, stopped_answer
+from methods.de.holds.stopped import KnownBrackets, stopped_answer
 
 BRACKET_MEANING = (
     "[lowest multiplier held, highest multiplier moving] over the body orders: every order was held at or above the "
@@ -49,7 +49,7 @@ def solve_by_holds(
     course = courses(assembly)
     orders = insertion_orders(assembly, course, settings.orders, settings.seed)
     candidates = candidates or tunings(course, settings.mass_decay)
-    known = Known(len(orders))
+    known = KnownBrackets(len(orders))
 
     def searches(tuning: Tuning, first: int) -> list[BracketSearch]:
         return [BracketSearch(make_engine(b, j, tuning), settings, unit, name) for name, b, j in orders[first:]]
@@ -102,7 +102,7 @@ def first_bracket(
     make_engine: EngineMaker,
     order: tuple[str, IntArray, IntArray],
     candidates: list[Tuning],
-    known: Known,
+    known: KnownBrackets,
 ) -> tuple[Tuning, OrderBracket]:
     """The first order's bracket, and the tuning that gave it: the first that converges, else the one that got nearest.
 

@@ -30,7 +30,7 @@ def unmoved(stood: float, how: str = "") -> Answer:
 
 
 @dataclass(eq=False)
-class Known:
+class KnownBrackets:
     """What the searches of a wall have found at any time.
 
     Attributes:
@@ -113,7 +113,7 @@ def highest_shown(assembly: Assembly, searches: list[BracketSearch], tolerance: 
     return None
 
 
-def stopped_answer(assembly: Assembly, known: Known, tolerance: float, details: dict[str, Any]) -> Answer:
+def stopped_answer(assembly: Assembly, known: KnownBrackets, tolerance: float, details: dict[str, Any]) -> Answer:
     """What was shown when the time was over.
 
     Args:
@@ -133,7 +133,7 @@ def stopped_answer(assembly: Assembly, known: Known, tolerance: float, details: 
     return answer
 
 
-def _without_rest(known: Known) -> Answer:
+def _without_rest(known: KnownBrackets) -> Answer:
     """Nothing is shown to bear even the dead load."""
     moved = [bracket for bracket in known.finished if bracket.held is None and bracket.moving is not None]
     if moved and len(moved) == len(known.finished):
@@ -144,7 +144,7 @@ def _without_rest(known: Known) -> Answer:
     return undecided()
 
 
-def _with_rest(assembly: Assembly, known: Known, found: list[OrderBracket], stood: Stood) -> Answer:
+def _with_rest(assembly: Assembly, known: KnownBrackets, found: list[OrderBracket], stood: Stood) -> Answer:
     """A state at rest is shown; the upper end is that of the motions above it, if there are any."""
     if not assembly.has_live_load:
         return Answer(Status.OK, Finding.STANDS, f"the dead load is held in {_so_far(known)}; {STOPPED}")
@@ -166,7 +166,7 @@ def _with_rest(assembly: Assembly, known: Known, found: list[OrderBracket], stoo
     return answer
 
 
-def _so_far(known: Known) -> str:
+def _so_far(known: KnownBrackets) -> str:
     """How many orders were searched, in words."""
     if known.finished:
         return f"{len(known.finished)} of {known.orders} body orders"
