@@ -5,7 +5,9 @@ from __future__ import annotations
 import pytest
 
 from harness.model.assembly import Assembly
-from methods.la.certify.proof import Proof, prove
+from harness.model.build import build
+from methods.la.certify.proof import Proof, _Certificates, _Part, prove
+from methods.la.core.extremes import ForceProgramme
 from methods.la.core.newton_matrix import NewtonMatrix
 from methods.la.core.problem import Problem, make_problem
 from methods.la.core.search_settings import SearchSettings
@@ -14,6 +16,7 @@ from methods.la.search_adapter import LimitAnalysis
 from methods.la.sources.search import Search
 from tests.la.bodies import block_on_halves, column, running_bond
 from tests.la.test_mechanisms import six_blocks
+from tests.soak import random_wall
 
 
 def proof_from(wall: Assembly, nodes: int) -> tuple[Problem, CollapseState, Proof]:
@@ -55,3 +58,30 @@ def test_a_wall_too_large_for_a_tree_is_said_to_have_no_proof() -> None:
     assert not answer.details["proved_least"]
     assert answer.details["lower_bound"] < answer.multiplier
     assert "It is not proved to be the least." in answer.sentence
+
+
+def test_a_tree_that_does_not_end_bounds_by_all_its_leaves() -> None:
+    """Its first hundred leaves, where it was cut back, prove zero."""
+    problem = make_problem(build(random_wall(59)).assembly)
+    search = Search(problem, NewtonMatrix(problem))
+    known = search.interior()
+    assert known is not None
+    proof = prove(search, known, 1500)
+    assert not proof.complete
+    assert len(proof.leaves) > 700
+    assert 0.387 < proof.lower_bound < known.multiplier
+
+
+def test_contacts_that_a_certificate_needs_bound_without_the_others() -> None:
+    """Of parts that hold these and more the same vertex is the proof; the programmes with these alone say so too."""
+    problem, _, proof = proof_from(six_blocks(), 3000)
+    limit = proof.lower_bound
+    certificates, programme = _Certificates(Search(problem, NewtonMatrix(problem)), limit), ForceProgramme(problem)
+    assert all(certificates.bound(_Part(tight, still, 0.0, 0)) for tight, still in proof.leaves)
+    assert 0 < len(certificates.tight) + len(certificates.still) < len(proof.leaves)
+    for tight in certificates.tight:
+        least = programme.extreme(greatest=False, tight=tight)
+        assert least == "infeasible" or least.statics.multiplier >= limit * (1.0 - 1e-9)
+    for still in certificates.still:
+        work = programme.least_dead_work(still)
+        assert work == "unbounded" or work.work >= limit * (1.0 - 1e-9)

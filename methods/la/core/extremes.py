@@ -54,6 +54,14 @@ class Units:
     blocks: FloatArray
 
 
+@dataclass(frozen=True, eq=False)
+class DeadWork:
+    """The least -dead.u of mechanisms, and the contacts (m, 4) that must be at rest for the forces that prove it."""
+
+    work: float
+    needs: BoolArray
+
+
 class ForceProgramme:
     """The programmes of one wall over its contact forces. Columns are (n1, n2, s) an interface and the multiplier.
 
@@ -106,7 +114,7 @@ class ForceProgramme:
             KinematicSolution(velocities, rates),
         )
 
-    def least_dead_work(self, still: BoolArray) -> float | str:
+    def least_dead_work(self, still: BoolArray) -> DeadWork | str:
         """The least -dead.u of mechanisms with unit live work, at rest in contacts `still` (m, 4).
 
         Their slips lift by the joints' own dilatancy.
@@ -129,7 +137,11 @@ class ForceProgramme:
         column = (np.column_stack([lower, least]).ravel(), np.column_stack([np.full((m, 2), INFINITY), most]).ravel())
         within = (limits, np.full(2 * m, INFINITY))
         solved = self._solved(column, within, -VERTICES.cost * self.problem.live_work, -INFINITY, "simplex", matrix)
-        return solved if isinstance(solved, str) else float(solved[0].value[-1])
+        if isinstance(solved, str):
+            return solved
+        first, second, shear = solved[0].value[: 3 * m].reshape(-1, 3).T
+        needs = np.column_stack([first < 0.0, second < 0.0, shear < 0.0, shear > 0.0])
+        return DeadWork(float(solved[0].value[-1]), needs | self.problem.dilates)
 
     def _solved(
         self,
@@ -177,11 +189,15 @@ def force_programme(problem: Problem) -> ForceProgramme:
     return ForceProgramme(problem, units_of(problem))
 
 
-def bears_no_load(problem: Problem, units: Units | None, tight: BoolArray) -> bool:
-    """Whether a mechanism to rounding proves that no forces with slacks `tight` (m, 4) at zero bear any multiplier."""
+def rates_against_any_load(problem: Problem, units: Units | None, tight: BoolArray) -> FloatArray | None:
+    """Rates (m, 4) of a mechanism to rounding that proves that no forces bear any multiplier, or None without one.
+
+    Args:
+        problem: the scaled wall; units: of its forces; tight: (m, 4) slacks held at zero, whose rates have any sign.
+    """
     part = ForceProgramme(replace(problem, live=-problem.dead), units, also=problem.live)
     found = part.extreme(greatest=False, tight=tight)
-    return not isinstance(found, str) and found.statics.multiplier > 0.5
+    return None if isinstance(found, str) or found.statics.multiplier <= 0.5 else found.kinematics.rates
 
 
 def units_of(problem: Problem) -> Units | None:

@@ -23,8 +23,9 @@ class Limits:
         descents: lowest states of each source, and of each rung, that are descended from.
         ladder: factors on friction of the rungs.
         nodes: of the tree that may prove the least state.
-        leaves: of a tree that does not come to an end, which are bounded to rounding: 8 ms each on 10 interfaces. The
-            first hundred prove a bound on walls of three blocks; 2x2 bricks need 600 for one of .03 where .65 is known.
+        certificates: programmes that may bound a tree that does not come to an end to rounding, as a whole: 5 ms each
+            on 10 interfaces. 751 leaves of a wall of 12 take 242.
+        leaves: of such a tree that are bounded where the whole takes more.
         programmes: linear ones in all, those of the proof among them.
         block_steps: Newton steps times blocks after which no further path is begun once a state is known.
         kinks: on all paths of springs after which no further one is begun; twice as many while no state is known.
@@ -37,6 +38,7 @@ class Limits:
     descents: int = 1
     ladder: tuple[float, ...] = ()
     nodes: int = 0
+    certificates: int = 300
     leaves: int = 100
     programmes: int = 50_000
     block_steps: float = 1e6
@@ -81,7 +83,7 @@ class Sizes:
             return Limits(0, 8, 200, descents, nodes=min(nodes, 100), kinks=300, unbounded_kinks=300)
         if effort == "deep":
             nodes = 20000 if interfaces <= 2 * most else 0
-            return Limits(20, 40, 200, 8, self.fine_ladder, nodes, nodes, 1_000_000, 1e7, 100_000, 100_000)
+            return Limits(20, 40, 200, 8, self.fine_ladder, nodes, 3 * nodes, nodes, 1_000_000, 1e7, 100_000, 100_000)
         if blocks <= self.few_blocks:
             return Limits(0, 12, 200, 3, self.ladder, nodes)
         if blocks <= self.some_blocks:
