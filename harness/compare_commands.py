@@ -96,7 +96,7 @@ def compare(
     limits = Limits(seconds, memory * 2**20)
     for case in chosen:
         warn(case)
-    title = ", ".join(cases) if cases else f"suite {suite or 'small'}"
+    title = ", ".join(case.id for case in chosen) if cases else f"suite {suite or 'small'}"
     asked = method_settings(settings)
     written = None if no_report else report
     planned = [run for case in chosen for run in plan_case(case, names, limits, settings=asked)]
