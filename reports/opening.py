@@ -60,7 +60,7 @@ def opening(run: ComparisonRun) -> Opening:
     """The opening of a comparison: of one wall, of the paper's walls, or of a suite."""
     built = [(number, item) for number, item in enumerate(run.cases) if not shapes.problem(item.case)]
     items = [item for _, item in built]
-    found = _broken_theory(run)
+    found, missed = _broken_theory(run)
     one = len(run.cases) == 1
     if one:
         found.extend(wall_findings(item) for item in items)
@@ -68,6 +68,7 @@ def opening(run: ComparisonRun) -> Opening:
         told = [item for item in items if item.case.id in paper.printed().cases]
         found.extend(wall_findings(item, short=True) for item in told)
         found.extend(_suite(items))
+    found.extend(missed)
     focus = _focus(items, one)
     figure, caption = (Markup(""), "") if focus is None else figure_of(focus)
     return Opening(
@@ -127,22 +128,20 @@ def _wrong(result: Result) -> str:
     return "; ".join(f"{words.VERDICT[c.verdict][1]} ({c.reference}): {c.sentence}" for c in missed)
 
 
-def _broken_theory(run: ComparisonRun) -> list[str]:
-    """Walls on which a method is wrong, and those on which a search missed a state, each with its figures."""
+def _broken_theory(run: ComparisonRun) -> tuple[list[str], list[str]]:
+    """A sentence of walls on which a method is wrong, and one of those on which a search missed a state, if any."""
     broken = [
         (item.case.id, gate) for item in run.cases for gate in item.gates if gate.passed is False and not gate.of_search
     ]
     missed = [
         (item.case.id, gate) for item in run.cases for gate in item.gates if gate.passed is False and gate.of_search
     ]
-    told = []
-    if broken:
-        names = ", ".join(dict.fromkeys(name for name, _ in broken))
-        told.append(f"Theory is violated on {names}: at least one method is wrong there.")
-    if missed:
-        names = "; ".join(f"{name} ({gate.sentence})" for name, gate in missed)
-        told.append(f"The search for the least state missed one that another method reached: {names}.")
-    return told
+    wrong = ", ".join(dict.fromkeys(name for name, _ in broken))
+    found = "; ".join(f"{name} ({gate.sentence})" for name, gate in missed)
+    return (
+        [f"Theory is violated on {wrong}: at least one method is wrong there."] if broken else [],
+        [f"The search for the least state missed one that another method reached: {found}."] if missed else [],
+    )
 
 
 def _called(result: Result, item: CaseResults) -> str:

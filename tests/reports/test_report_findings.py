@@ -83,8 +83,9 @@ def test_search_that_missed_a_state_is_told_as_such_and_no_method_is_called_wron
     missed = Gate(name="la-below-fe", statement="s", passed=False, sentence="la 0.6, fe 0.5", of_search=True)
     item.gates.append(missed)
     opened = opening.opening(ComparisonRun("", "", "", [item]))
-    assert opened.findings[0].startswith("The search for the least state missed one")
-    assert "la 0.6, fe 0.5" in opened.findings[0]
+    assert opened.findings[0].startswith("mine collapses"), "the reader's wall comes first"
+    assert opened.findings[-1].startswith("The search for the least state missed one")
+    assert "la 0.6, fe 0.5" in opened.findings[-1]
     assert not any("wrong" in sentence for sentence in opened.findings)
 
 
