@@ -1,7 +1,7 @@
 """Tiny walls whose least multiplier is known by going through all states: whether the lower bound passes it.
 
-Run as `python -m benchmarks tiny_walls [count [first]]`: columns of one or two blocks on joints that are whole or cut in
-halves, once with windows first and once with cases only. It prints every wall whose bound passes, and the counts.
+Run as `python -m benchmarks tiny_walls [count [first]]`: columns of one or two blocks on whole joints or on halves of one,
+once with windows first and once with cases only. It prints every wall whose bound passes, and the counts.
 """
 
 from __future__ import annotations
