@@ -1,6 +1,6 @@
 """Tiny walls whose least multiplier is known by going through all states: whether the lower bound passes it.
 
-Run as `python -m benchmarks tiny_walls [count [first]]`: columns of one or two blocks on whole joints or on halves of one,
+Run as `python -m benchmarks tiny_walls [count [first]]`: columns of two blocks, and blocks on two halves of a joint,
 once with windows first and once with cases only. It prints every wall whose bound passes, and the counts.
 """
 
