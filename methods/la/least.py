@@ -18,7 +18,7 @@ from methods.la.core.problem import Problem
 from methods.la.core.search_settings import SearchSettings
 from methods.la.core.state import CollapseState, local_residuals, polished, residuals
 from methods.la.sources import SOURCES, Source, explore
-from methods.la.sources.budget import Budget, limits_of
+from methods.la.sources.budget import Budget, rounds_of
 from methods.la.sources.search import CHOICES, Search
 from methods.la.state_answers import (
     LOCAL_RESIDUAL,
@@ -51,9 +51,12 @@ def least_known(
         tolerance: largest residual of a state that is returned.
         sources: of states, in the order in which they are tried.
     """
-    search = Search(problem, newton, settings.seed, Budget(limits_of(settings, problem)))
+    rounds = rounds_of(settings, problem)
+    search = Search(problem, newton, settings.seed, Budget(rounds[0]))
     try:
-        explore(search, sources)
+        for limits in rounds:
+            search.begin_round(limits)
+            explore(search, sources)
         return _found(search, settings, tolerance)
     except OutOfTime:
         if search.record.known:

@@ -6,6 +6,7 @@ from typing import Any
 
 import pytest
 
+from harness.model.build import build
 from methods.la.certify.proof import prove
 from methods.la.core.newton_matrix import NewtonMatrix
 from methods.la.core.problem import make_problem
@@ -18,6 +19,7 @@ from methods.la.sources.search import Search
 from methods.la.sources.springs import LittleSelfStress
 from methods.numerics.failures import SingularMatrix
 from tests.la.bodies import column, running_bond
+from tests.soak import random_wall
 
 
 def search_of(wall: Any, **limits: Any) -> Search:
@@ -116,3 +118,14 @@ def test_larger_walls_are_given_no_more_draws() -> None:
         for counted in ("starts", "descents", "nodes"):
             counts = [getattr(limit, counted) for limit in limits]
             assert counts == sorted(counts, reverse=True)
+
+
+def test_deep_search_begins_with_a_normal_one() -> None:
+    """So it never ends above it: it keeps what that finds, from the same draws, and goes on."""
+    wall = build(random_wall(105)).assembly
+    normal, deep = (LimitAnalysis().solve(wall, SearchSettings(effort=effort)) for effort in ("normal", "deep"))
+    found, kept = ([each["multiplier"] for each in answer.details["improvements"]] for answer in (normal, deep))
+    assert kept[: len(found)] == found
+    assert normal.multiplier is not None
+    assert deep.multiplier is not None
+    assert deep.multiplier < 0.993 * normal.multiplier

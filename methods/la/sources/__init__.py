@@ -50,7 +50,9 @@ def explore(search: Search, sources: Sequence[Source] = SOURCES) -> None:
     Raises:
         OutOfTime: the time given is over; the record has what was found so far.
     """
-    if search.solve_associated().outcome == "unbounded":
+    if search.associated.outcome == "unknown":
+        search.solve_associated()
+    if search.associated.outcome == "unbounded":
         limits = search.budget.limits
         search.budget.limits = replace(limits, kinks=limits.unbounded_kinks)
     for source in sources:

@@ -96,14 +96,18 @@ class Sizes:
 SIZES = Sizes()
 
 
-def limits_of(settings: SearchSettings, problem: Problem) -> Limits:
-    """The limits that the settings ask for; what they leave open depends on the size of the wall.
+def rounds_of(settings: SearchSettings, problem: Problem) -> tuple[Limits, ...]:
+    """The limits that the settings ask for, of one round of the search after the other.
 
-    Whoever asks for draws, starts or a ladder has them descended from at any size.
+    What they leave open depends on the size of the wall. Whoever asks for draws, starts or a ladder has them descended
+    from at any size. The first round of `deep` is a normal search, so that it never ends above one.
     """
-    limits = SIZES.limits(settings.effort, problem)
     asked = {name: value for name in ("starts", "failures", "ladder") if (value := getattr(settings, name)) is not None}
-    return replace(limits, descents=max(limits.descents, 1), **asked) if asked else limits
+    rounds = []
+    for effort in ("normal", "deep") if settings.effort == "deep" else (settings.effort,):
+        limits = SIZES.limits(effort, problem)
+        rounds.append(replace(limits, descents=max(limits.descents, 1), **asked) if asked else limits)
+    return tuple(rounds)
 
 
 @dataclass

@@ -24,7 +24,7 @@ from methods.la.interior.interior_point import PathResult, PathSettings, follow_
 from methods.la.interior.newton_step import Point
 from methods.la.interior.path_programmes import EXACTNESS, cheapest_mechanism, exact_state, state_of_mechanism
 from methods.la.interior.standing import standing_forces
-from methods.la.sources.budget import Budget
+from methods.la.sources.budget import Budget, Limits
 from methods.la.sources.gravity import Gravity, gravity_of
 from methods.la.sources.record import LEAST_IMPROVEMENT, Record
 
@@ -88,6 +88,11 @@ class Search:
         self.known: dict[bytes, CollapseState | None] = {}
         self.ends: list[float] = []
         self.associated = AssociatedResult("unknown")
+
+    def begin_round(self, limits: Limits) -> None:
+        """Go on with other limits; more draws may lead down from where a descent ended."""
+        self.budget.limits = limits
+        self.ends.clear()
 
     def at_friction(self, problem: Problem) -> Search:
         """A search of the same wall with other friction coefficients, which serves this one."""
