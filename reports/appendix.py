@@ -18,7 +18,7 @@ from harness.model.comparison import CaseResults, ComparisonRun
 from harness.model.method import Status
 from harness.model.result import Result
 from harness.model.writing import write_whole
-from reports import numbers, words
+from reports import numbers, shapes, words
 from reports.environment import environment
 from reports.facts import facts, value_in_words
 from reports.figures import results_figure, style, wall_figure
@@ -108,6 +108,7 @@ def render(run: ComparisonRun) -> str:
             methods=[_method_row(result) for result in words.in_order(item)],
             gates=[gate for gate in item.gates if gate.passed is not None],
             wall=_svg(wall_figure(case.built)) if _drawn(item) else Markup(""),
+            every=shapes.drawn_every(len(shapes.load_arrows(case.assembly, case.assembly.live))),
             answer=[_svg(results_figure(case, [shown], kind)) for kind in ("mechanism", "forces")]
             if shown and _drawn(item)
             else [],

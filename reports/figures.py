@@ -22,7 +22,7 @@ from harness.model.case import Case
 from harness.model.errors import InputError
 from harness.model.result import Result
 from reports import flow, joints, shapes
-from reports.drawing import LABELLED_BLOCKS, block_labels
+from reports.drawing import LABELLED_BLOCKS, block_labels, stroke_factor
 from reports.facts import friction_text, value_in_words
 from reports.force_figure import BLUE, GREY, INK, PLUM, RUST, draw_forces, length_scale, stones
 
@@ -285,18 +285,18 @@ def draw_mechanism(
     draw_blocks(ax, assembly, shapes.displaced(assembly, mechanism, scale), shapes.moving(assembly, mechanism))
     if states is None:
         return
-    names = np.array(states)
+    names, thinner = np.array(states), stroke_factor(assembly)
     for state, (colour, width, line) in MARKS.items():
         chosen = np.flatnonzero(names == state)
         if not len(chosen):
             continue
         ends = shapes.moved_ends(assembly, mechanism, scale, chosen)
-        ax.add_collection(LineCollection(list(ends), colors=colour, linewidths=width, linestyles=line))
+        ax.add_collection(LineCollection(list(ends), colors=colour, linewidths=thinner * width, linestyles=line))
         if state == joints.DILATANT:
-            ax.add_collection(LineCollection(list(ends), colors="white", linewidths=0.4 * width))
+            ax.add_collection(LineCollection(list(ends), colors="white", linewidths=0.4 * thinner * width))
         if state in (joints.ROCK, joints.BOTH):
             hinges = shapes.hinges(assembly, mechanism, ends, chosen)
-            ax.plot(hinges[:, 0], hinges[:, 1], "o", color=BLUE, markersize=2.8)
+            ax.plot(hinges[:, 0], hinges[:, 1], "o", color=BLUE, markersize=2.8 * thinner)
 
 
 def _labels(ax: Axes, assembly: Assembly) -> None:
@@ -309,6 +309,7 @@ def _labels(ax: Axes, assembly: Assembly) -> None:
 def draw_loads(ax: Axes, assembly: Assembly, load: FloatArray, colour: str, kind: str) -> None:
     """A load (n, 3) as arrows at its blocks, dashed where it is dead."""
     arrows = shapes.load_arrows(assembly, load)
+    arrows = arrows[:: shapes.drawn_every(len(arrows))]
     if not arrows:
         return
     largest = max(float(np.linalg.norm(arrow.force)) for arrow in arrows)

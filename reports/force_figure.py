@@ -14,6 +14,7 @@ from harness.model.assembly import Assembly, FloatArray
 from harness.model.rings import rings_of
 from harness.model.wall import Units
 from reports import flow, numbers, shapes
+from reports.drawing import stroke_factor
 
 INK, GREY, BLUE, RUST, PLUM = "#14202b", "#8a96a1", "#17508c", "#a63c06", "#6d2077"
 THIN, WIDE = 0.3, 3.2
@@ -46,7 +47,7 @@ def draw_forces(ax: Axes, assembly: Assembly, forces: FloatArray, *, thrust: boo
     found = shapes.thrusts(assembly, forces, smallest=flow.STYLE.smallest)
     if not len(found.size):
         return
-    widths = THIN + WIDE * found.size / found.size.max()
+    widths = (THIN + WIDE * found.size / found.size.max()) * stroke_factor(assembly)
     if thrust:
         _through_blocks(ax, assembly, found, widths)
     else:
@@ -81,7 +82,15 @@ def _resultants(ax: Axes, assembly: Assembly, found: shapes.Thrusts, forces: Flo
     side = 0.38 * head * np.stack([-way[:, 1], way[:, 0]], axis=1)
     heads = np.stack([tips, neck + side, neck - side], axis=1)
     ax.add_collection(PolyCollection(list(heads), facecolor=colours, edgecolor="none"))
-    ax.plot(found.point[full, 0], found.point[full, 1], "o", mfc="none", mec=RUST, mew=0.6, markersize=4.0)
+    ax.plot(
+        found.point[full, 0],
+        found.point[full, 1],
+        "o",
+        mfc="none",
+        mec=RUST,
+        mew=0.6 * stroke_factor(assembly),
+        markersize=4.0 * stroke_factor(assembly),
+    )
 
 
 def _sizes(ax: Axes, assembly: Assembly, found: shapes.Thrusts, units: Units) -> None:
@@ -110,9 +119,10 @@ def force_scale(ax: Axes, assembly: Assembly, largest: float, units: Units) -> N
     extent = shapes.extent(assembly)
     force = flow.round_number(largest)
     y = extent.bottom - 0.085 * extent.longest
+    width = (THIN + WIDE * force / largest) * stroke_factor(assembly)
     end = extent.right - 0.17 * extent.longest
     ax.plot(
-        [end - 0.12 * extent.longest, end], [y, y], "-", color=BLUE, linewidth=THIN + WIDE * force / largest,
+        [end - 0.12 * extent.longest, end], [y, y], "-", color=BLUE, linewidth=width,
         solid_capstyle="butt",
     )  # fmt: skip
     _word(ax, end, y, numbers.quantity(force, units.force), "left")

@@ -6,6 +6,7 @@ A comparison may bring further studies in `provenance["studies"]`, a list of obj
 
 from __future__ import annotations
 
+import json
 import math
 from collections.abc import Callable, Iterator
 from typing import Any
@@ -76,13 +77,13 @@ def _slopes(run: ComparisonRun) -> str:
     """Slopes fitted over walls of one pattern and friction that differ in size, of which there must be four sizes."""
     found = []
     for method in methods_of(run):
-        families: dict[tuple[str, str], list[tuple[float, float]]] = {}
+        families: dict[tuple[str, str, str], list[tuple[float, float]]] = {}
         for item, result, seconds in _collapses(run, method):
             pattern = item.case.wall.pattern
             if pattern is not None and not isinstance(pattern, list):
-                key = (pattern.type.replace("_", " "), friction_text(item.case.assembly))
-                families.setdefault(key, []).append((float(result.blocks), seconds))
-        for (pattern_name, friction), points in families.items():
+                names = (pattern.type.replace("_", " "), friction_text(item.case.assembly))
+                families.setdefault((*names, _all_but_size(item)), []).append((float(result.blocks), seconds))
+        for (pattern_name, friction, _), points in families.items():
             slope = _slope([x for x, _ in points], [y for _, y in points])
             if slope is not None:
                 sizes = len({x for x, _ in points})
@@ -90,6 +91,15 @@ def _slopes(run: ComparisonRun) -> str:
     if not found:
         return "There are fewer than four sizes of any one kind of wall, so no slope is fitted."
     return f"Slopes fitted over one kind of wall each: {'; '.join(found)}."
+
+
+def _all_but_size(item: CaseResults) -> str:
+    """What walls of one family share: the blocks of their pattern and how they are loaded, whatever their number."""
+    pattern = item.case.wall.pattern
+    assert pattern is not None
+    assert not isinstance(pattern, list)
+    blocks = pattern.model_dump(mode="json", exclude={"count", "bricks", "courses", "offsets", "prefix"})
+    return json.dumps([blocks, item.case.wall.loads.model_dump(mode="json")], sort_keys=True)
 
 
 def _mark(run: ComparisonRun, method: str) -> Mark:

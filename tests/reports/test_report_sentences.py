@@ -42,10 +42,10 @@ def test_cost_of_limit_analysis_stands_for_the_value_and_for_the_whole_search():
 
 
 def test_slopes_are_fitted_over_four_sizes_of_one_kind_of_wall_that_collapses():
-    def run(sizes, finding=Finding.COLLAPSES):
+    def run(sizes, finding=Finding.COLLAPSES, grow=0.0):
         items = []
         for count in sizes:
-            wall = wall_case(stack(count))
+            wall = wall_case(stack(count) | {"height": 0.2 + grow * count})
             row = samples.solved(wall, "fe", 0.5, cpu=0.01 * count**2)
             items.append(CaseResults(wall, [row.model_copy(update={"finding": finding})]))
         return ComparisonRun("a", "b", "c", items)
@@ -53,6 +53,7 @@ def test_slopes_are_fitted_over_four_sizes_of_one_kind_of_wall_that_collapses():
     assert "fe 2.00 (stack, friction 0.65, 4 sizes)" in studies.cost_against_size(run((2, 4, 8, 16))).sentence
     assert "no slope" in studies.cost_against_size(run((2, 8, 16))).sentence
     assert studies.cost_against_size(run((2, 4, 8, 16), Finding.STANDS)) is None
+    assert "no slope" in studies.cost_against_size(run((2, 4, 8, 16), grow=0.01)).sentence, "other blocks each time"
 
 
 def test_a_chart_with_nothing_to_see_is_words():
