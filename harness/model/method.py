@@ -10,6 +10,7 @@ from contextvars import ContextVar
 from dataclasses import dataclass, field
 from enum import StrEnum
 from functools import cache
+from importlib import import_module
 from importlib.metadata import EntryPoint, entry_points
 from typing import Any, ClassVar, Literal, Protocol, runtime_checkable
 
@@ -259,6 +260,31 @@ def load_method(name: str) -> Method:
                 raise _not_loaded(name, error) from error
             return method
     raise KeyError(f"no method is called {name!r}; there are: {', '.join(method_names())}")
+
+
+class Declared:
+    """A method that is told apart from what solves: its solver is imported when a run needs it, and not to list it.
+
+    Attributes:
+        solver: "module:Class" of what solves, itself a method and a subclass of what declares it.
+    """
+
+    solver: ClassVar[str]
+
+    def prepare(self) -> None:
+        """Import the solver, and let it load what it needs besides."""
+        found = self._solver()
+        if type(found) is not type(self):
+            found.prepare()
+
+    def solve(self, assembly: Assembly, settings: Any) -> Answer:
+        """The answer of the solver."""
+        answer: Answer = self._solver().solve(assembly, settings)
+        return answer
+
+    def _solver(self) -> Any:
+        module, _, name = self.solver.partition(":")
+        return getattr(import_module(module), name)()
 
 
 def prepared(method: Method) -> Method:

@@ -9,47 +9,20 @@ under the dead load, and nothing closes, stands beside that.
 from __future__ import annotations
 
 import time
-from typing import Any, ClassVar
-
-from pydantic import Field
+from typing import Any
 
 from harness.model.assembly import Assembly
-from harness.model.method import Answer, Finding, Settings, Status, Traits, load_method
+from harness.model.method import Answer, Finding, Status, load_method
+from methods.de.declared_de import DeclaredClosed
 from methods.de.holds.loading import FALL
-from methods.de.imperfect import BRACKET_MEANING, UnevenSettings
+from methods.de.imperfect import BRACKET_MEANING
 from methods.de.uneven.gapped import GappedWall, load_gapped
 from methods.de.uneven.settled_contacts import load_uneven, settle_uneven
+from methods.de.uneven_settings import ClosedSettings
 
 
-class ClosedSettings(UnevenSettings):
-    """The defects, how finely the multiplier is sought, and what stands beside the answer.
-
-    Attributes:
-        step: load step.
-        alone: methods that analyse the contacts closed under the dead load alone.
-        compare: also load the same uneven wall with distinct elements alone, as `de-uneven` does, for value and cost.
-    """
-
-    step: float = Field(default=0.02, gt=0.0, le=1.0)
-    alone: tuple[str, ...] = ("fe", "la")
-    compare: bool = True
-
-
-class ClosedContacts:
+class ClosedContacts(DeclaredClosed):
     """Contacts and gaps of an uneven wall from distinct elements, its multiplier from gap springs (`de-closed`)."""
-
-    name: ClassVar[str] = "de-closed"
-    family: ClassVar[str] = "de"
-    title: ClassVar[str] = "distinct elements find contacts and gaps, FE loads them"
-    tolerance: ClassVar[float] = 1e-6
-    traits: ClassVar[Traits] = Traits(
-        caption="plateau over the contacts that closed",
-        brackets=True,
-        colour="#2f6b3a",
-        marker="p",
-        line="dashed",
-    )
-    Settings: ClassVar[type[Settings]] = ClosedSettings
 
     def solve(self, assembly: Assembly, settings: ClosedSettings) -> Answer:
         """Settle the uneven wall, then load it with springs in its contacts and gaps."""

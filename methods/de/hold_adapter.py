@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-from typing import ClassVar
-
 import numpy as np
 
 from harness.model.assembly import Assembly, IntArray
-from harness.model.method import Answer, Finding, OutOfTime, Settings, Status, Traits
+from harness.model.method import Answer, Finding, OutOfTime, Status
+from methods.de.declared_de import DeclaredHolds, DeclaredMujoco, DeclaredRelease
 from methods.de.engines.courses import Tuning
 from methods.de.engines.engine import Engine
 from methods.de.engines.mujoco_wall import MujocoWall, SolverFailed, load_mujoco, mujoco_tunings
@@ -15,28 +14,14 @@ from methods.de.engines.space import StripSpace
 from methods.de.engines.strips import CannotModel
 from methods.de.engines.sweeps import SweptWall
 from methods.de.engines.warm_sweeps import load_sweeps
-from methods.de.hold_settings import MujocoSettings, SweepSettings
+from methods.de.hold_settings import MujocoSettings, ReleaseSettings, SweepSettings
 from methods.de.holds.answer import solve_by_holds
-from methods.de.holds.release import ReleaseSettings, release
+from methods.de.holds.release import release
 from methods.numerics.statics import analysed
 
 
-class DampedHolds:
+class DampedHolds(DeclaredHolds):
     """Damped holds of a wall at frozen geometry, bracketed over body orders."""
-
-    name: ClassVar[str] = "de"
-    family: ClassVar[str] = "de"
-    title: ClassVar[str] = "distinct elements (damped holds)"
-    tolerance: ClassVar[float] = 1e-6
-    traits: ClassVar[Traits] = Traits(
-        caption="between held and moving",
-        brackets=True,
-        moves_no_lower=True,
-        colour="#2f6b3a",
-        marker="d",
-    )
-    Settings: ClassVar[type[Settings]] = SweepSettings
-    shares_work: ClassVar[bool] = True
 
     def prepare(self) -> None:
         """Load the compiled sweeps."""
@@ -58,24 +43,8 @@ class DampedHolds:
             return Answer(Status.REFUSED, Finding.NONE, str(error))
 
 
-class MujocoHolds:
+class MujocoHolds(DeclaredMujoco):
     """The holds, the bracket and the orders of `de` on MuJoCo, so that an answer does not hang on one engine."""
-
-    name: ClassVar[str] = "de-mujoco"
-    family: ClassVar[str] = "de"
-    title: ClassVar[str] = "distinct elements (MuJoCo, damped holds)"
-    tolerance: ClassVar[float] = 1e-4
-    traits: ClassVar[Traits] = Traits(
-        # Three times the most that a held state lay above the associated maximum on 45 random walls: contacts give way.
-        held_accuracy=5e-4,
-        caption="between held and moving, in MuJoCo",
-        brackets=True,
-        moves_no_lower=True,
-        colour="#2f6b3a",
-        marker="<",
-        line="dashed",
-    )
-    Settings: ClassVar[type[Settings]] = MujocoSettings
 
     def solve(self, assembly: Assembly, settings: MujocoSettings) -> Answer:
         """Bracket of the collapse multiplier over body orders; see `methods.de.holds.answer`.
@@ -102,22 +71,8 @@ class MujocoHolds:
             return Answer(Status.NOT_CONVERGED, Finding.NONE, str(error))
 
 
-class ReleasedCollapse:
+class ReleasedCollapse(DeclaredRelease):
     """The bracket of `de`, and the collapse followed through large displacements once the wall is released."""
-
-    name: ClassVar[str] = "de-tilt"
-    family: ClassVar[str] = "de"
-    title: ClassVar[str] = "distinct elements, released after the bracket"
-    tolerance: ClassVar[float] = 1e-6
-    traits: ClassVar[Traits] = Traits(
-        caption="as de, then released and followed",
-        brackets=True,
-        moves_no_lower=True,
-        colour="#2f6b3a",
-        marker=">",
-        line="dotted",
-    )
-    Settings: ClassVar[type[Settings]] = ReleaseSettings
 
     def prepare(self) -> None:
         """Load the compiled sweeps."""

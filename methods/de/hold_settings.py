@@ -84,3 +84,21 @@ class MujocoSettings(HoldSettings):
     friction_ratio: float = Field(default=2e3, ge=100.0)
     hold_steps: int = Field(default=60, ge=1)
     work: int = Field(default=60_000_000, ge=1)
+
+
+class ReleaseSettings(SweepSettings):
+    """Settings of the bracket and of the release that follows it.
+
+    Attributes:
+        excess: the wall is released at this multiple of its collapse multiplier.
+        reach: the release ends when a block has moved by this many length scales (mean square root of the areas).
+        release_steps: most time steps of the release, of 0.002 sqrt(length scale / gravity).
+        frames: most frames kept; fewer for large walls.
+        gap: contact points that have come apart by this many length scales are counted as separated.
+    """
+
+    excess: float = Field(default=1.05, ge=1.0)
+    reach: float = Field(default=0.5, gt=0.0)
+    release_steps: int = Field(default=20_000, ge=1)
+    frames: int = Field(default=40, ge=2, le=1000)
+    gap: float = Field(default=0.01, gt=0.0)

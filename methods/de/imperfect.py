@@ -2,57 +2,18 @@
 
 from __future__ import annotations
 
-from typing import ClassVar
-
-from pydantic import Field
-
 from harness.model.assembly import Assembly
-from harness.model.method import Answer, Finding, Settings, Status, Traits
+from harness.model.method import Answer, Finding, Status
 from harness.model.rings import rings_of
-from methods.de.uneven.defects import Faces
+from methods.de.declared_de import DeclaredUneven
 from methods.de.uneven.settled_contacts import Loading, load_uneven
+from methods.de.uneven_settings import UnevenSettings
 
 BRACKET_MEANING = "[highest multiplier at which it came to rest, lowest at which it fell]"
 
 
-class UnevenSettings(Settings):
-    """The defects of planarity and how finely the multiplier is sought.
-
-    Attributes:
-        size: greatest cut of a corner as a part of the block height; each is drawn from U(0, size x height).
-        faces: which faces are uneven.
-        seed: seed of the cuts.
-        accuracy: the multiplier is narrowed to this difference.
-        greatest: multiplier at which the loading ends.
-    """
-
-    size: float = Field(default=0.03, ge=0.0, le=0.3)
-    faces: Faces = "both"
-    seed: int = Field(default=0, ge=0)
-    accuracy: float = Field(default=0.005, gt=0.0, le=0.1)
-    greatest: float = Field(default=2.0, gt=0.0)
-
-    @property
-    def wall(self) -> str:
-        """What a sentence calls the wall with these defects."""
-        return f"The wall with corners cut by up to {self.size:g} of the block height (seed {self.seed})"
-
-
-class UnevenBlocks:
+class UnevenBlocks(DeclaredUneven):
     """Distinct elements on a wall with seeded defects of planarity (C. Baggio and P. Trovalusci 1995, section 6)."""
-
-    name: ClassVar[str] = "de-uneven"
-    family: ClassVar[str] = "de"
-    title: ClassVar[str] = "distinct elements, uneven blocks"
-    tolerance: ClassVar[float] = 1e-6
-    traits: ClassVar[Traits] = Traits(
-        caption="between held and moving, uneven blocks",
-        brackets=True,
-        colour="#2f6b3a",
-        marker="h",
-        line="dashdot",
-    )
-    Settings: ClassVar[type[Settings]] = UnevenSettings
 
     def solve(self, assembly: Assembly, settings: UnevenSettings) -> Answer:
         """The bracket [stood, fell] of one imperfect wall; gaps close under the load as they do."""

@@ -8,12 +8,13 @@ softer joints and larger rounds take from it is the finding.
 from __future__ import annotations
 
 from dataclasses import dataclass, field, replace
-from typing import Any, ClassVar
+from typing import Any
 
 import numpy as np
 
 from harness.model.assembly import Assembly, FloatArray
-from harness.model.method import Answer, Finding, OutOfTime, Settings, Status, Traits
+from harness.model.method import Answer, Finding, OutOfTime, Status
+from methods.de.declared_de import DeclaredSoft
 from methods.de.engines.courses import courses, number_of_courses
 from methods.de.engines.soft_wall import SoftWall
 from methods.de.holds.hold import Hold, State, Watch
@@ -108,21 +109,8 @@ class Holds:
                 return Hold(State.UNDECIDED, residual, wall.steps - start, places - before)
 
 
-class DeformableJoints:
+class DeformableJoints(DeclaredSoft):
     """Distinct elements with deformable joints and rounded corners (`de-soft`)."""
-
-    name: ClassVar[str] = "de-soft"
-    family: ClassVar[str] = "de"
-    title: ClassVar[str] = "distinct elements, deformable joints"
-    tolerance: ClassVar[float] = 1e-5
-    traits: ClassVar[Traits] = Traits(
-        caption="between held and moving, joints that give",
-        brackets=True,
-        colour="#2f6b3a",
-        marker="*",
-        line="dotted",
-    )
-    Settings: ClassVar[type[Settings]] = SoftSettings
 
     def solve(self, assembly: Assembly, settings: SoftSettings) -> Answer:
         """The bracket [rested, fell] as the live load grows from rest to rest."""

@@ -4,14 +4,15 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, replace
-from typing import Any, ClassVar
+from typing import Any
 
 import numpy as np
 
 from harness.model.assembly import Assembly
 from harness.model.load_steps import NAME
-from harness.model.method import Answer, Finding, Settings, Status, Traits
+from harness.model.method import Answer, Finding, Status
 from methods.fe.convex_steps import bracket_collapse
+from methods.fe.declared_fe import DeclaredConvex, DeclaredGapSprings, DeclaredNewton
 from methods.fe.histories import HISTORIES, HistoryResult, Plan, trace_history, with_initial_shear
 from methods.fe.incremental import march
 from methods.fe.path_answers import (
@@ -24,7 +25,7 @@ from methods.fe.path_answers import (
     standing_answer,
     stands,
 )
-from methods.fe.path_settings import ConvexSettings, GapSpringsSettings, NewtonSettings
+from methods.fe.path_settings import GapSpringsSettings, NewtonSettings
 from methods.numerics.statics import analysed
 from methods.springs.model.factor import Factor, make_factor
 from methods.springs.model.wall_model import WallModel, build_model
@@ -61,20 +62,8 @@ class EventLimits:
 EVENTS = EventLimits()
 
 
-class GapSprings:
+class GapSprings(DeclaredGapSprings):
     """Gap-spring finite elements with the path traced exactly, kink by kink (`fe`)."""
-
-    name: ClassVar[str] = "fe"
-    family: ClassVar[str] = "fe"
-    title: ClassVar[str] = "FE, exact continuation"
-    tolerance: ClassVar[float] = 1e-8
-    traits: ClassVar[Traits] = Traits(
-        caption="plateau of the traced path",
-        elastic=True,
-        colour="#1f4e79",
-        marker="o",
-    )
-    Settings: ClassVar[type[Settings]] = GapSpringsSettings
 
     def solve(self, assembly: Assembly, settings: Any) -> Answer:
         """Gravity first, then the live load to the plateau under every history asked for."""
@@ -151,21 +140,8 @@ def _unit(assembly: Assembly) -> float:
     return 2.0 ** round(math.log2(assembly.load_unit))
 
 
-class IncrementalNewton:
+class IncrementalNewton(DeclaredNewton):
     """Ordinary incremental Newton: load control, then displacement control (`fe-newton`)."""
-
-    name: ClassVar[str] = "fe-newton"
-    family: ClassVar[str] = "fe"
-    title: ClassVar[str] = "FE, incremental Newton"
-    tolerance: ClassVar[float] = 1e-8
-    traits: ClassVar[Traits] = Traits(
-        caption="plateau, where it arrives",
-        elastic=True,
-        colour="#1f4e79",
-        marker="x",
-        line="dashed",
-    )
-    Settings: ClassVar[type[Settings]] = NewtonSettings
 
     def solve(self, assembly: Assembly, settings: Any) -> Answer:
         """March as a general code does; a value only where a mechanism was reached and checked."""
@@ -195,21 +171,8 @@ class IncrementalNewton:
         )
 
 
-class ConvexSteps:
+class ConvexSteps(DeclaredConvex):
     """Each step as convex quadratic programmes with frozen friction limits (`fe-qp`)."""
-
-    name: ClassVar[str] = "fe-qp"
-    family: ClassVar[str] = "fe"
-    title: ClassVar[str] = "FE, convex steps"
-    tolerance: ClassVar[float] = 1e-3
-    traits: ClassVar[Traits] = Traits(
-        caption="plateau, by convex steps",
-        elastic=True,
-        colour="#1f4e79",
-        marker="+",
-        line="dotted",
-    )
-    Settings: ClassVar[type[Settings]] = ConvexSettings
 
     def solve(self, assembly: Assembly, settings: Any) -> Answer:
         """Bracket the multiplier at which the steps lose their equilibrium; refused above the set number of blocks."""

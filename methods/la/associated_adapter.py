@@ -2,56 +2,28 @@
 
 from __future__ import annotations
 
-from typing import Any, ClassVar
+from typing import Any
 
 from harness.model.assembly import Assembly
-from harness.model.method import Answer, Settings, Traits
+from harness.model.method import Answer
 from methods.la.core.newton_matrix import NewtonMatrix
 from methods.la.core.problem import Problem
-from methods.la.core.search_settings import AssociatedSettings, CvxpySettings
+from methods.la.declared_la import DeclaredAssociated, DeclaredCvxpy
 from methods.la.family import LimitAnalysisFamily
 from methods.la.interior.associated import AssociatedResult, solve_associated, solve_with_cvxpy, with_mechanism
 from methods.la.state_answers import collapse_answer, not_converged, unbounded_answer
 
 
-class AssociatedLimitAnalysis(LimitAnalysisFamily):
+class AssociatedLimitAnalysis(LimitAnalysisFamily, DeclaredAssociated):
     """Greatest multiplier of statics, the linear programme of associated limit analysis (`la-associated`)."""
-
-    name: ClassVar[str] = "la-associated"
-    title: ClassVar[str] = "LA, associated (greatest)"
-    tolerance: ClassVar[float] = 1e-9
-    traits: ClassVar[Traits] = Traits(
-        caption="associated maximum",
-        bounds_above=True,
-        any_self_stress=True,
-        any_dilatancy=True,
-        colour="#7a3b69",
-        marker="^",
-        line="dashed",
-    )
-    Settings: ClassVar[type[Settings]] = AssociatedSettings
 
     def answer(self, assembly: Assembly, problem: Problem, newton: NewtonMatrix, settings: Any) -> Answer:
         """The linear programme by simplex or interior point."""
         return associated_answer(problem, solve_associated(problem, newton, settings.solver), 1e-9)
 
 
-class AssociatedLimitAnalysisCvxpy(LimitAnalysisFamily):
+class AssociatedLimitAnalysisCvxpy(LimitAnalysisFamily, DeclaredCvxpy):
     """The same linear programme written in cvxpy, to be read beside the formulas (`la-associated-cvxpy`)."""
-
-    name: ClassVar[str] = "la-associated-cvxpy"
-    title: ClassVar[str] = "LA, associated (cvxpy)"
-    tolerance: ClassVar[float] = 1e-9
-    traits: ClassVar[Traits] = Traits(
-        caption="associated maximum, in cvxpy",
-        bounds_above=True,
-        any_self_stress=True,
-        any_dilatancy=True,
-        colour="#7a3b69",
-        marker="v",
-        line="dotted",
-    )
-    Settings: ClassVar[type[Settings]] = CvxpySettings
 
     def answer(self, assembly: Assembly, problem: Problem, newton: NewtonMatrix, settings: Any) -> Answer:
         """The linear programme through cvxpy; its mechanism is found as for `la-associated`."""

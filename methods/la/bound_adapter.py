@@ -5,10 +5,10 @@ from __future__ import annotations
 import json
 from dataclasses import replace
 from fractions import Fraction
-from typing import Any, ClassVar
+from typing import Any
 
 from harness.model.assembly import Assembly
-from harness.model.method import Answer, Finding, Settings, Status, Traits
+from harness.model.method import Answer, Finding, Status
 from methods.bound.exact_wall import CertificateError
 from methods.bound.same_wall import require_same_wall
 from methods.bound.tuning import PRECISION, WINDOWS
@@ -18,7 +18,8 @@ from methods.la.certify.tree_certificate import certificate
 from methods.la.certify.window_certificate import certified_bracket
 from methods.la.core.newton_matrix import NewtonMatrix
 from methods.la.core.problem import Problem, make_problem
-from methods.la.core.search_settings import BoundSettings, SearchSettings
+from methods.la.core.search_settings import SearchSettings
+from methods.la.declared_la import DeclaredBound
 from methods.la.family import LimitAnalysisFamily
 from methods.la.least import SAME_MULTIPLIER, least_known
 from methods.numerics.statics import analysed
@@ -27,16 +28,8 @@ from methods.springs.warm_up import load_kernels
 load_kernels()
 
 
-class BoundedLimitAnalysis(LimitAnalysisFamily):
+class BoundedLimitAnalysis(LimitAnalysisFamily, DeclaredBound):
     """The state of `la`, and a multiplier below which there is no collapse state (`la-bound`)."""
-
-    name: ClassVar[str] = "la-bound"
-    title: ClassVar[str] = "LA, least known and lower bound"
-    tolerance: ClassVar[float] = 1e-10
-    Settings: ClassVar[type[Settings]] = BoundSettings
-    traits: ClassVar[Traits] = Traits(
-        caption="least known, with a lower bound", seeks_least=True, any_self_stress=True, colour="#a8431e", marker="P"
-    )
 
     def solve(self, assembly: Assembly, settings: Any) -> Answer:
         """The answer of the component that fails first, with the least of the bounds of all components."""

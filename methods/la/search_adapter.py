@@ -3,14 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import Any, ClassVar
+from typing import Any
 
 from harness.model.assembly import Assembly, FloatArray
 from harness.model.components import joints_of
-from harness.model.method import Answer, Settings, Traits
+from harness.model.method import Answer
 from methods.la.core.newton_matrix import NewtonMatrix
 from methods.la.core.problem import Problem
-from methods.la.core.search_settings import SearchSettings
+from methods.la.declared_la import DeclaredSearch
 from methods.la.family import LimitAnalysisFamily
 from methods.la.least import least_known
 from methods.la.sources import from_motions
@@ -20,21 +20,8 @@ from methods.springs.warm_up import load_kernels
 load_kernels()
 
 
-class LimitAnalysis(LimitAnalysisFamily):
+class LimitAnalysis(LimitAnalysisFamily, DeclaredSearch):
     """Least collapse state known, under zero dilatancy (`la`): the method to use."""
-
-    name: ClassVar[str] = "la"
-    title: ClassVar[str] = "LA, least known"
-    tolerance: ClassVar[float] = 1e-10
-    traits: ClassVar[Traits] = Traits(
-        caption="least known collapse state",
-        seeks_least=True,
-        any_self_stress=True,
-        any_dilatancy=True,
-        colour="#a8431e",
-        marker="s",
-    )
-    Settings: ClassVar[type[Settings]] = SearchSettings
 
     def answer(self, assembly: Assembly, problem: Problem, newton: NewtonMatrix, settings: Any) -> Answer:
         """Interior point, exact programme, ray descent, restarts and continuation, as the settings say."""

@@ -5,29 +5,10 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from pydantic import Field
 
 from harness.model.assembly import Assembly, FloatArray
 from methods.de.engines.bodies import BODIES, BlockSpace
-from methods.de.hold_settings import SweepSettings
-
-
-class ReleaseSettings(SweepSettings):
-    """Settings of the bracket and of the release that follows it.
-
-    Attributes:
-        excess: the wall is released at this multiple of its collapse multiplier.
-        reach: the release ends when a block has moved by this many length scales (mean square root of the areas).
-        release_steps: most time steps of the release, of 0.002 sqrt(length scale / gravity).
-        frames: most frames kept; fewer for large walls.
-        gap: contact points that have come apart by this many length scales are counted as separated.
-    """
-
-    excess: float = Field(default=1.05, ge=1.0)
-    reach: float = Field(default=0.5, gt=0.0)
-    release_steps: int = Field(default=20_000, ge=1)
-    frames: int = Field(default=40, ge=2, le=1000)
-    gap: float = Field(default=0.01, gt=0.0)
+from methods.de.hold_settings import ReleaseSettings
 
 
 @dataclass(frozen=True, eq=False)

@@ -2,16 +2,16 @@
 
 from __future__ import annotations
 
-from typing import Any, ClassVar
+from typing import Any
 
 import numpy as np
 
 from harness.model.assembly import Assembly
-from harness.model.method import Answer, Finding, Settings, Status, Traits, load_method
+from harness.model.method import Answer, Finding, Status, load_method
 from methods.la.core.newton_matrix import NewtonMatrix
 from methods.la.core.problem import Problem
-from methods.la.core.search_settings import FromFeSettings, PaperSettings, TrescaSettings
 from methods.la.core.state import CollapseState, moving_contacts, polished, tight_contacts
+from methods.la.declared_la import DeclaredFromFe, DeclaredPaper, DeclaredTresca
 from methods.la.family import LimitAnalysisFamily
 from methods.la.interior.associated import solve_associated
 from methods.la.literature.cooperation import project_forces
@@ -36,21 +36,8 @@ def without_start(given: Answer) -> Answer:
     return not_converged("The finite-element run gave no collapse state to start from.")
 
 
-class PaperProgramme(LimitAnalysisFamily):
+class PaperProgramme(LimitAnalysisFamily, DeclaredPaper):
     """The paper's own programme (8)-(11) in reduced unknowns, by Ipopt (`la-paper`)."""
-
-    name: ClassVar[str] = "la-paper"
-    title: ClassVar[str] = "LA, programme of 1995"
-    tolerance: ClassVar[float] = 1e-9
-    traits: ClassVar[Traits] = Traits(
-        caption="local optimum of the paper's programme",
-        seeks_least=True,
-        any_self_stress=True,
-        colour="#a8431e",
-        marker="P",
-        line="dotted",
-    )
-    Settings: ClassVar[type[Settings]] = PaperSettings
 
     def answer(self, assembly: Assembly, problem: Problem, newton: NewtonMatrix, settings: Any) -> Answer:
         """A local solution of the programme, made exact on the mechanism it ends at."""
@@ -103,21 +90,8 @@ def paper_answer(problem: Problem, newton: NewtonMatrix, result: PaperResult, st
     )
 
 
-class TrescaSequence(LimitAnalysisFamily):
+class TrescaSequence(LimitAnalysisFamily, DeclaredTresca):
     """Sequence of programmes with the friction bound of the previous iterate: a baseline (`la-tresca`)."""
-
-    name: ClassVar[str] = "la-tresca"
-    title: ClassVar[str] = "LA, friction-bound sequence"
-    tolerance: ClassVar[float] = 1e-8
-    traits: ClassVar[Traits] = Traits(
-        caption="fixed point of Tresca steps",
-        seeks_least=True,
-        any_self_stress=True,
-        colour="#a8431e",
-        marker="X",
-        line="dashdot",
-    )
-    Settings: ClassVar[type[Settings]] = TrescaSettings
 
     def answer(self, assembly: Assembly, problem: Problem, newton: NewtonMatrix, settings: Any) -> Answer:
         """The sequence from the associated solution; its fixed point is a collapse state, not the least one."""
@@ -150,21 +124,8 @@ class TrescaSequence(LimitAnalysisFamily):
         )
 
 
-class FromFiniteElements(LimitAnalysisFamily):
+class FromFiniteElements(LimitAnalysisFamily, DeclaredFromFe):
     """Ray descent from the finite-element collapse state, against a cold start (`la-from-fe`)."""
-
-    name: ClassVar[str] = "la-from-fe"
-    title: ClassVar[str] = "LA started from FE"
-    tolerance: ClassVar[float] = 1e-10
-    traits: ClassVar[Traits] = Traits(
-        caption="least known, started from FE",
-        seeks_least=True,
-        any_self_stress=True,
-        colour="#a8431e",
-        marker="D",
-        line="dashed",
-    )
-    Settings: ClassVar[type[Settings]] = FromFeSettings
 
     def answer(self, assembly: Assembly, problem: Problem, newton: NewtonMatrix, settings: Any) -> Answer:
         """FE forces projected onto equilibrium and yield, nearest mechanism, descent; and the same from cold."""
