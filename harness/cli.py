@@ -10,6 +10,7 @@ import importlib
 import click
 
 from harness import formats
+from harness.engine.deferred_modules import defer
 from harness.engine.threads import pin
 
 COMMANDS = {
@@ -57,6 +58,7 @@ class Commands(click.Group):
         if cmd_name not in COMMANDS:
             return None
         pin()
+        defer()
         formats.register()
         module, name, _ = COMMANDS[cmd_name]
         command: click.Command = getattr(importlib.import_module(f"harness.{module}"), name)

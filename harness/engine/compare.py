@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Generator, Sequence
 from contextlib import closing
 from datetime import UTC, datetime
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from pydantic import BaseModel
 
@@ -13,13 +13,15 @@ from harness.engine.executors import Executor, LocalExecutor
 from harness.engine.judge import judge
 from harness.engine.plan import Run
 from harness.engine.provenance import machine, versions
-from harness.engine.store import Store
 from harness.engine.verdict import compare, overall, theory_gates
 from harness.model.case import Case, CaseFile, Reference
 from harness.model.comparison import CaseResults, ComparisonRun
 from harness.model.errors import InputError
 from harness.model.reading import parse_wall, validate
 from harness.model.result import Result
+
+if TYPE_CHECKING:
+    from harness.engine.store import Store
 
 Told = Callable[[Run, Result, bool], None]
 """Called after every run with the run, its result and whether it came from the store."""

@@ -54,7 +54,7 @@ class LocalExecutor:
         coming = iter(jobs)
         first = list(itertools.islice(coming, 2))
         waiting, busy = itertools.chain(first, coming), dict[Child, Job]()
-        slots = Slots((own_context() if len(first) == 1 else None) or start_context(methods))
+        slots = Slots((own_context(methods) if len(first) == 1 else None) or start_context(methods))
 
         def occupy() -> None:
             for job in itertools.islice(waiting, self.processes - len(busy)):

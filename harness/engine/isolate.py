@@ -18,9 +18,7 @@ from multiprocessing import forkserver
 from multiprocessing.connection import wait
 from multiprocessing.context import BaseContext
 from pathlib import Path
-from typing import Any
-
-import psutil
+from typing import TYPE_CHECKING, Any
 
 from harness.engine import preload, worker
 from harness.engine.provenance import machine, versions
@@ -28,6 +26,9 @@ from harness.engine.threads import pin
 from harness.engine.worker import Task
 from harness.model.method import Answer, Finding, Status, Traits
 from harness.model.result import Result, result_of
+
+if TYPE_CHECKING:
+    import psutil
 
 LOOK_SECONDS, LOOKS_AT_CHILDREN = 0.05, 10
 """How often memory and time of a run are looked at, and at which look those of what it started as well."""
@@ -78,11 +79,12 @@ def start_context(methods: Iterable[str]) -> BaseContext:
     return context
 
 
-def own_context() -> BaseContext | None:
-    """Children forked from this very process, which has loaded most already; None if it has threads.
+def own_context(methods: Iterable[str]) -> BaseContext | None:
+    """Children forked from this very process, after it has loaded the methods; None if it has threads.
 
     One run alone is cheapest so: a fork server would be a second interpreter.
     """
+    preload.load(methods)
     try:
         threads = len(os.listdir("/proc/self/task"))
     except OSError:
@@ -275,6 +277,8 @@ class _UnderWay:
         """Take stock of memory and CPU time if it is time to, and see whether a limit is passed."""
         if (now := time.perf_counter()) < self._next_look:
             return
+        import psutil  # no run that ends before the first look needs it
+
         self._next_look = now + LOOK_SECONDS
         self._looks += 1
         memory, cpu = 0, 0.0

@@ -10,8 +10,7 @@ from pathlib import Path
 from typing import Any
 
 from harness.engine.executors import Job
-from harness.engine.provenance import code_version
-from harness.engine.store import run_key
+from harness.engine.provenance import code_version, run_key
 from harness.engine.worker import Task
 from harness.model.case import Case, Reference, case_folders, case_of_wall, id_of, read_case, shipped_cases
 from harness.model.errors import InputError, did_you_mean

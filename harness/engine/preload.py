@@ -6,6 +6,7 @@ import contextlib
 import os
 from collections.abc import Iterable
 
+from harness.engine.deferred_modules import defer
 from harness.model.method import load_method, method_points, prepared
 
 VARIABLE = "DRYSTONE_PRELOAD"
@@ -29,4 +30,5 @@ def load(names: Iterable[str]) -> None:
 
 
 if os.environ.get(VARIABLE):
+    defer()
     load(os.environ[VARIABLE].split(","))

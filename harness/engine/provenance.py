@@ -5,14 +5,13 @@ from __future__ import annotations
 import functools
 import hashlib
 import importlib.util
+import json
 import os
 import platform
 import subprocess
 from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
 from typing import Any
-
-import psutil
 
 from harness.model.method import method_points
 
@@ -77,7 +76,7 @@ def machine() -> dict[str, Any]:
     return {
         "processor": processor,
         "cores": os.cpu_count() or 1,
-        "memory_bytes": int(psutil.virtual_memory().total),
+        "memory_bytes": os.sysconf("SC_PAGE_SIZE") * os.sysconf("SC_PHYS_PAGES"),
         "system": f"{platform.system()} {platform.release()}",
     }
 
@@ -101,6 +100,12 @@ def code_version(method: str) -> str:
         if name not in ("commit", "drystone"):
             digest.update(f"{name}={number}".encode())
     return digest.hexdigest()[:16]
+
+
+def run_key(wall: str, method: str, settings: dict[str, Any], limits: dict[str, float], code: str, *given: str) -> str:
+    """Content hash that stands for one run: explicit wall, method, settings, limits, code version, what was given."""
+    text = json.dumps([wall, method, settings, limits, code, *given], sort_keys=True, allow_nan=False)
+    return hashlib.sha256(text.encode()).hexdigest()[:32]
 
 
 @functools.cache

@@ -64,12 +64,6 @@ SOME_KEYS = 500
 """Up to so many results are looked for one by one; above, the whole table is read."""
 
 
-def run_key(wall: str, method: str, settings: dict[str, Any], limits: dict[str, float], code: str, *given: str) -> str:
-    """Content hash that stands for one run: explicit wall, method, settings, limits, code version, what was given."""
-    text = json.dumps([wall, method, settings, limits, code, *given], sort_keys=True, allow_nan=False)
-    return hashlib.sha256(text.encode()).hexdigest()[:32]
-
-
 class Store:
     """An open result store. Every finished run is committed at once, so that killing the process loses none.
 

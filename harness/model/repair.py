@@ -10,7 +10,6 @@ from dataclasses import dataclass
 
 import numpy as np
 import shapely
-from scipy.spatial import cKDTree
 
 from harness.model import geometry
 from harness.model.assembly import FloatArray, IntArray
@@ -112,6 +111,8 @@ def _once(blocks: list[Block], snap: float) -> tuple[list[Block], list[tuple[str
 
 def _met(points: FloatArray, snap: float) -> FloatArray:
     """The points (k, 2), those near to each other at their mean unless one of them would move too far."""
+    from scipy.spatial import cKDTree
+
     pairs = cKDTree(points).query_pairs(snap, output_type="ndarray")
     label = groups_of(len(points), pairs[:, 0], pairs[:, 1])
     size = np.bincount(label)

@@ -17,7 +17,6 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-import osqp
 import scipy.sparse as sp
 
 from harness.model.assembly import FloatArray
@@ -119,6 +118,8 @@ class TrescaProgramme:
     def restart(self) -> None:
         """Set the solver up afresh: a programme without minimum leaves its iterate and its step far away."""
         n, p = self.n, self.p
+        import osqp  # with all that it imports, for this method alone
+
         self._solver = osqp.OSQP()
         self._solver.setup(
             sp.triu(self._quadratic, format="csc"),

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, replace
+from importlib import import_module
 from typing import Any
 
 import numpy as np
@@ -173,6 +174,10 @@ class IncrementalNewton(DeclaredNewton):
 
 class ConvexSteps(DeclaredConvex):
     """Each step as convex quadratic programmes with frozen friction limits (`fe-qp`)."""
+
+    def prepare(self) -> None:
+        """Import the solver of the programmes."""
+        import_module("osqp")
 
     def solve(self, assembly: Assembly, settings: Any) -> Answer:
         """Bracket the multiplier at which the steps lose their equilibrium; refused above the set number of blocks."""

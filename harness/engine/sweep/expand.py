@@ -15,8 +15,7 @@ from typing import Any
 import numpy as np
 
 from harness.engine.plan import Limits, check_methods, find_cases
-from harness.engine.provenance import code_version, judge_version
-from harness.engine.store import run_key
+from harness.engine.provenance import code_version, judge_version, run_key
 from harness.engine.sweep.paths import setting_of, with_values
 from harness.engine.sweep.study import MOST_RUNS, Distribution, Study
 from harness.engine.worker import Task

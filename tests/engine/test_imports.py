@@ -1,0 +1,79 @@
+"""What commands import: lists and drawings no solver, no compiled kernels, nothing for its name alone."""
+
+from __future__ import annotations
+
+import json
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from harness.engine.preload import shipped
+from harness.model.method import Declared, load_method, method_names, prepared
+
+SOLVERS = {"scipy", "numba", "llvmlite", "highspy", "osqp", "pymunk", "casadi", "cvxpy", "mujoco"}
+COMMAND = """
+import json, sys
+from harness.cli import main
+try:
+    main(sys.argv[1:])
+except SystemExit as end:
+    assert not end.code, end.code
+print(json.dumps(sorted(sys.modules)))
+"""
+
+
+def imported(program: str, *words: str | Path) -> set[str]:
+    """Modules that a fresh interpreter has loaded at the end of a program, which prints them in its last line."""
+    command = [sys.executable, "-c", program, *map(str, words)]
+    done = subprocess.run(command, capture_output=True, text=True, timeout=120, check=False)
+    assert done.returncode == 0, done.stderr
+    return set(json.loads(done.stdout.splitlines()[-1]))
+
+
+@pytest.mark.parametrize(
+    "words",
+    [("list", "methods"), ("list", "methods", "--json"), ("list", "cases"), ("list", "suites"), ("show", "wall-21")],
+    ids=" ".join,
+)
+def test_lists_and_drawings_import_no_solver(words: tuple[str, ...], tmp_path: Path):
+    more = ("-o", tmp_path / "wall.svg") if words[0] == "show" else ()
+    modules = imported(COMMAND, *words, *more)
+    assert not modules & SOLVERS
+    assert not {name for name in modules if name.startswith("methods.") and name.endswith(("adapter", "kernels"))}
+
+
+def test_a_run_imports_the_solver_of_its_method_alone():
+    modules = imported(COMMAND, "run", "la-associated", "single-block")
+    assert {"scipy", "highspy", "methods.la.associated_adapter"} <= modules
+    assert not modules & {"numba", "osqp", "pymunk", "sqlite3", "pandas", "matplotlib"}
+    assert not {"numpy.f2py.crackfortran", "numpy.testing._private"} & modules, "no run uses them"
+
+
+def test_a_deferred_module_is_the_module_once_it_is_used():
+    program = """
+import json, sys
+from harness.engine.deferred_modules import defer
+defer()
+import scipy.sparse
+before = "numpy.testing._private" in sys.modules
+import numpy
+numpy.testing.assert_array_equal([1], [1])
+try:
+    numpy.testing.assert_array_equal([1], [2])
+except AssertionError:
+    print(json.dumps([str(before), str("numpy.testing._private" in sys.modules)]))
+"""
+    assert imported(program) == {"False", "True"}
+
+
+@pytest.mark.parametrize("name", [name for name in shipped(method_names()) if name not in ("dummy", "de-mujoco")])
+def test_what_declares_a_method_leads_to_what_solves_it(name: str):
+    declared = load_method(name)
+    assert isinstance(declared, Declared)
+    module, _, solver = declared.solver.partition(":")
+    prepared(declared)
+    found = getattr(sys.modules[module], solver)
+    assert issubclass(found, type(declared))
+    assert found().name == name, "the solver answers under the same name"
