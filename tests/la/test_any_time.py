@@ -6,6 +6,7 @@ from typing import Any
 
 import pytest
 
+from benchmarks.la_any_time import timed
 from harness.engine.judge import judge
 from harness.model.method import Finding, OutOfTime, Status, load_method
 from harness.model.result import result_of
@@ -101,3 +102,11 @@ def test_associated_state_is_the_answer_where_no_other_is_known(monkeypatch: pyt
     greatest = load_method("la-associated")
     assert answer.multiplier == pytest.approx(greatest.solve(wall, greatest.Settings()).multiplier, rel=1e-12)
     assert judge(wall, result_of(answer, wall, case="x", method="la", family="la"), method.tolerance).accepted
+
+
+@pytest.mark.slow
+def test_limits_are_kept_and_longer_ones_answer_more():
+    """Isolated, as in a comparison; 210 bricks need half a second of a processor for a first state, 1,020 two."""
+    runs = list(timed(((20, 10), (40, 25)), (3.0, 10.0)))
+    assert not [f"{run.blocks} blocks, {run.limit:g} s: {run.said}" for run in runs if run.failed]
+    assert all(run.result.multiplier is not None for run in runs if run.limit == 10.0)
