@@ -33,7 +33,7 @@ def defect(model: WallModel, state: IntArray, way: PathDirection) -> float:
     return float(np.abs(tangent @ (way.velocity + way.tail) - way.speed * model.live).max())
 
 
-def change(way: PathDirection, state: IntArray, point: int, new: int, look: bool = True) -> tuple[FloatArray, float]:
+def change(way: PathDirection, state: IntArray, point: int, new: int) -> tuple[FloatArray, float]:
     """Turn at a change of state; the gradient b of its kink function in full length, and its rate before."""
     model = way.model
     old = int(state[point])
@@ -43,7 +43,7 @@ def change(way: PathDirection, state: IntArray, point: int, new: int, look: bool
     crossing = float(gradient @ way.velocity)
     way.factor.foresee([(point, old, new)])
     state[point] = new
-    if not way.turn((point, old, new), crossing, state, EXTENT, look):
+    if not way.turn((point, old, new), crossing, state, EXTENT):
         way.solve_anew(state, EXTENT, ((point, old, new), crossing))
     return gradient, crossing
 

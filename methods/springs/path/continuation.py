@@ -106,12 +106,12 @@ class Tracer:
         """Bring the gaps back into equilibrium, along no soft piece; the rates are measured again where they move.
 
         Raises:
-            SingularTangent: they are so far from it that equilibrium found again would be another path's.
+            SingularTangent: they stay out of it.
         """
         residual = self._out_of_balance()
         worst = largest(residual) / self.scale
         self.worst_residual = max(self.worst_residual, worst)
-        moved, lost = False, worst > DRIFT.elsewhere
+        moved = False
         for _ in range(DRIFT.corrections):
             if worst < DRIFT.rounding:
                 break
@@ -126,7 +126,7 @@ class Tracer:
                 break
         if moved:
             self.direction.measure()
-        if lost or min(worst, self.worst_residual) > DRIFT.lost:
+        if min(worst, self.worst_residual) > DRIFT.lost:
             raise SingularTangent("the path was lost to rounding")
 
     def _out_of_balance(self) -> FloatArray:
@@ -195,8 +195,6 @@ class Tracer:
             if way.pins:
                 return PathEnd.BREAKDOWN
             return PathEnd.UNBOUNDED if way.speed > 0.0 else PathEnd.RUNS_DOWN
-        if ahead * largest(way.velocity) > MECHANISM.furthest * self.first_displacement:
-            return PathEnd.BREAKDOWN
         if reach <= step:
             self._advance(way.velocity, way.speed, reach)
             self.multiplier = target
@@ -269,8 +267,7 @@ class Tracer:
         self.n_open += (new == OPEN) - (old == OPEN)
         self.n_slip += (new >= SLIP_PLUS) - (old >= SLIP_PLUS)
         self.last_point, self.last_old = point, old
-        look = self.factor.count % UPDATES.straight_every == 0
-        if not self.direction.turn(change, crossing, self.state, self.extent, look):
+        if not self.direction.turn(change, crossing, self.state, self.extent):
             self.refresh((change, crossing))
         elif self._drifted():
             self._remove_drift()

@@ -205,12 +205,11 @@ class PathDirection:
                 defect[pin] += (float(pin == shape.pin) - shape.value[pin]) - shape.tail[pin]
             shape.value, shape.tail = _sum(shape.value, shape.tail + self.factor.solve(defect))
 
-    def turn(self, change: Change, crossing: float, state: IntArray, extent: float, look: bool) -> bool:
+    def turn(self, change: Change, crossing: float, state: IntArray, extent: float) -> bool:
         """Turn onto the next piece.
 
         Args:
             change: the point that changes state, already changed in `state`; crossing: rate b'v of its kink function.
-            look: whether straightness is looked at while nothing is pinned.
 
         Returns:
             False where the tangent must be factorised afresh; velocity and rate of the multiplier are near then.
@@ -241,15 +240,12 @@ class PathDirection:
                 shape.value -= y * (float(b @ shape.value[index]) / (1.0 + along))
                 shape.tail -= y * (float(b @ shape.tail[index]) / (1.0 + along))
                 self._refine(shape, state, 1)
-        if self.pins or look or self.factor.footed:
-            return self.straighten(state, extent, strict=True) and not self._leads_back(change, crossing)
-        self.measure()
-        return True
+        return self.straighten(state, extent, strict=True) and not self._leads_back(change, crossing)
 
     def straighten(self, state: IntArray, extent: float, strict: bool = False) -> bool:
         """Measure the gap rates, and refine the velocity while K v = l live is not met. False: it stays bent.
 
-        A defect that refinement no longer lowers is borne, unless a soft piece is to be strictly straight.
+        A defect of a soft piece that refinement no longer lowers is borne, unless it is to be strictly straight.
         """
         self.fine = bool(self.shapes) or (bool(self.pins) and extent > REFINEMENT.doubled)
         self.measure()
@@ -257,8 +253,7 @@ class PathDirection:
         if self.pins:
             enough, bearable = by.soft_defect / extent, (by.soft_defect if strict else by.soft_accepted) / extent
         else:
-            live, speed = self.live_size, abs(self.speed)
-            enough, bearable = by.defect * live * speed, by.accepted * live * speed
+            enough = bearable = by.defect * self.live_size * abs(self.speed)
         previous = np.inf
         for count in range(REFINEMENT.steps):
             defect = self.model.out_of_balance(self.opening_rate, self.trial_rate, state, self.speed, 0.0)

@@ -28,9 +28,10 @@ class RefinementTolerances:
     """Iterative refinement of the velocity, by its defect in K v = l live.
 
     Attributes:
-        defect: share of the live load above which a velocity is refined.
-        accepted: the same when refinement no longer helps, above which the tangent is factorised afresh.
-        soft_defect, soft_accepted: likewise on pinned pieces, as forces over a motion as long as the displacements.
+        defect: share of the live load above which a velocity is refined, and the tangent factorised afresh when that no
+            longer helps.
+        soft_defect: the same on pinned pieces, as forces over a motion as long as the displacements; soft_accepted:
+            when refinement no longer helps, above which the tangent is factorised afresh.
         contraction: share of the defect before it that a step must leave at most, or refinement no longer helps.
         steps: at most.
         doubled: displacements (dimensionless) above which gap rates of pinned pieces are measured in doubled
@@ -38,7 +39,6 @@ class RefinementTolerances:
     """
 
     defect: float = 1e-7
-    accepted: float = 1e-5
     soft_defect: float = 1e-7
     soft_accepted: float = 1e-4
     contraction: float = 0.5
@@ -52,12 +52,10 @@ class UpdateTolerances:
 
     Attributes:
         pivot: |1 + b'y|, or its inverse, above which a change would cost digits.
-        straight_every: changes between two looks at how straight the direction is, while it is not pinned.
         balance_every: changes between two looks at the out-of-balance force.
     """
 
     pivot: float = 1e8
-    straight_every: int = 4
     balance_every: int = 8
 
 
@@ -70,14 +68,12 @@ class DriftTolerances:
         rounding: below this there is nothing to correct.
         corrections: steps of that at most.
         lost: at this the path counts as lost.
-        elsewhere: from this equilibrium, found again, would be another path's.
     """
 
     removed: float = 1e-9
     rounding: float = 1e-14
     corrections: int = 2
     lost: float = 1e-5
-    elsewhere: float = 1e-2
 
 
 @dataclass(frozen=True)
@@ -90,7 +86,6 @@ class MechanismTests:
         far: multiple of the present displacement that it moves before its next kink as the collapse.
         growth: of the displacements from one check to the next.
         confirmed: displacements, in multiples of the first, at which one that passes its check is the collapse.
-        furthest: displacements, in multiples of the first, beyond which the path is not followed.
     """
 
     elastic: float = 1e-8
@@ -98,7 +93,6 @@ class MechanismTests:
     far: float = 1e4
     growth: float = 1.1
     confirmed: float = 1e10
-    furthest: float = 1e13
 
 
 SOFT_MOTIONS = SoftMotions()
