@@ -1,0 +1,67 @@
+"""What each rung of the friction ladder gains: `python -m benchmarks la_ladder [COUNT]`.
+
+Of COUNT (40) coursed and COUNT irregular random walls those of up to 30 blocks, on which all rungs are tried. Only
+central paths and the ladder are searched: with all rungs, without each of them, and without any. A rung gains on a wall
+if the search ends higher without it, and loses if it ends lower.
+"""
+
+from __future__ import annotations
+
+import sys
+import time
+from collections.abc import Sequence
+from dataclasses import replace
+
+from benchmarks.walls import drawn, random_wall
+from harness.model.assembly import Assembly
+from methods.la.core.newton_matrix import NewtonMatrix
+from methods.la.core.problem import Problem, make_problem
+from methods.la.sources import explore
+from methods.la.sources.budget import SIZES, Budget
+from methods.la.sources.ladder import FrictionLadder
+from methods.la.sources.paths import CentralPath, SmootherJoints
+from methods.la.sources.search import Search
+
+LOWER = 1e-7
+"""Relative difference from which a multiplier is lower."""
+
+
+def least(problem: Problem, newton: NewtonMatrix, ladder: tuple[float, ...]) -> float:
+    """The least multiplier (scaled) that central paths and a ladder lead to; infinite where they lead to none."""
+    search = Search(problem, newton, 0, Budget(replace(SIZES.limits("normal", problem), ladder=ladder)))
+    explore(search, [SmootherJoints(), CentralPath(), FrictionLadder()])
+    return search.record.least
+
+
+def suits(wall: Assembly) -> bool:
+    """Whether all rungs are tried on a wall, which has a live load."""
+    return wall.has_live_load and 2 < wall.n_free <= SIZES.few_blocks
+
+
+def main(arguments: Sequence[str] | None = None) -> int:
+    """Print the table."""
+    count = int([*(sys.argv[1:] if arguments is None else arguments), "40"][0])
+    ladders = {"none": ()} | {f"without {rung:g}": tuple(r for r in SIZES.ladder if r != rung) for rung in SIZES.ladder}
+    gains = {name: [0, 0] for name in ladders}
+    walls, began = 0, time.process_time()
+    for wall in (wall for seed in range(count) for wall in (random_wall(seed), drawn(seed, 3, 5))):
+        if not suits(wall):
+            continue
+        problem = make_problem(wall)
+        newton = NewtonMatrix(problem)
+        whole = least(problem, newton, SIZES.ladder)
+        if whole == float("inf"):
+            continue
+        walls += 1
+        for name, ladder in ladders.items():
+            other = least(problem, newton, ladder)
+            gains[name][0] += other > whole + LOWER * abs(whole)
+            gains[name][1] += other < whole - LOWER * abs(whole)
+    print(f"{walls} walls, {time.process_time() - began:.0f} CPU s\n| rungs | higher | lower |\n|---|---|---|")
+    for name, (higher, lower) in gains.items():
+        print(f"| {name} | {higher} | {lower} |")
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
