@@ -15,7 +15,7 @@ import numpy as np
 from harness.model.assembly import Assembly, BoolArray, FloatArray, IntArray
 from harness.model.errors import first_few
 from harness.model.groups import groups_of
-from harness.model.method import Answer, Finding, Status
+from harness.model.method import Answer, Finding, OutOfTime, Status
 
 NAMED = 8
 """Blocks of a component that are named at most."""
@@ -101,7 +101,7 @@ def analysed_apart(assembly: Assembly, solve: Solve, bear: Bear) -> Answer:
     """The answer for a wall from those for its components, each analysed alone.
 
     The smallest come first, so that a run that is stopped knows as much as it can. After one that was stopped by the
-    time limit (`details["stopped_by_limit"]`) there is no time for the others.
+    time limit (`details["stopped_by_limit"]`, or `OutOfTime` once another has an answer) there is no time for the others.
 
     Args:
         assembly: the wall.
@@ -114,14 +114,20 @@ def analysed_apart(assembly: Assembly, solve: Solve, bear: Bear) -> Answer:
     answers: dict[int, Answer] = {}
     stopped = False
     for k in sorted(range(len(parts)), key=lambda k: parts[k].assembly.n_free):
-        answers[k] = _not_reached(parts[k]) if stopped else solve(parts[k].assembly)
+        try:
+            answers[k] = _not_reached(parts[k]) if stopped else solve(parts[k].assembly)
+        except OutOfTime:
+            if not answers:
+                raise
+            answers[k] = _not_reached(parts[k])
+            stopped = True
         stopped = stopped or bool(answers[k].details.get("stopped_by_limit"))
     return joined(assembly, parts, [answers[k] for k in range(len(parts))], bear)
 
 
 def _not_reached(part: Component) -> Answer:
-    """The answer for a component for which no time was left."""
-    sentence = f"the time was over before the component of {part.named} was analysed"
+    """The answer for a component for which the time did not suffice."""
+    sentence = f"the time was over before the component of {part.named} had an answer"
     return Answer(Status.NOT_CONVERGED, Finding.NONE, sentence)
 
 
@@ -216,7 +222,12 @@ def _sentence(parts: list[Component], answers: list[Answer], deciding: int) -> s
     own = answers[deciding].sentence.rstrip(".")
     said = f"{own[:1].upper()}{own[1:]}. The wall has {len(parts)} independent components"
     if answers[deciding].status is not Status.OK:
-        return f"{said}; this is said of that of {parts[deciding].named}."
+        known = [k for k, answer in enumerate(answers) if answer.finding is Finding.COLLAPSES]
+        least = min(known, key=lambda k: _lower_end(answers[k]), default=None)
+        other = "" if least is None else (
+            f" That of {parts[least].named} alone collapses at {answers[least].multiplier:.7g}."
+        )  # fmt: skip
+        return f"{said}; this is said of that of {parts[deciding].named}.{other}"
     if answers[deciding].finding in (Finding.COLLAPSES, Finding.FALLS):
         return f"{said}; the one that fails is that of {parts[deciding].named}."
     return f"{said}, and none of them fails."

@@ -119,23 +119,46 @@ def test_soft_joints_give_the_bracket_known(looks: int, monkeypatch: pytest.Monk
         assert 0.0 < answer.forces_multiplier <= whole.bracket[1]
 
 
+TWO_STACKS = [
+    {"id": f"{k}-{i}", "polygon": [[2 * k, i], [2 * k + 1, i], [2 * k + 1, i + 1], [2 * k, i + 1]], "fixed": i == 0}
+    for k in range(2)
+    for i in range(k + 2)
+]
+"""A column of one block and one of two, on supports of their own."""
+
+
 def test_components_after_one_that_was_stopped_are_not_begun():
-    parts = [stack(1, 0.2, 0.4), stack(3, 0.2, 0.4)]
     begun = []
 
     def solve(part: Assembly) -> Answer:
         begun.append(part.n_free)
         return Answer(Status.OK, Finding.COLLAPSES, "x", multiplier=0.5, details={"stopped_by_limit": True})
 
-    blocks = [
-        {"id": f"{k}-{i}", "polygon": [[2 * k, i], [2 * k + 1, i], [2 * k + 1, i + 1], [2 * k, i + 1]], "fixed": i == 0}
-        for k in range(len(parts))
-        for i in range(k + 2)
-    ]
-    answer = analysed_apart(assembly(None, 0.5, blocks=blocks), solve, lambda *_: None)
+    answer = analysed_apart(assembly(None, 0.5, blocks=TWO_STACKS), solve, lambda *_: None)
     assert begun == [1]
     assert answer.status is Status.NOT_CONVERGED
     assert "before the component" in answer.sentence
+
+
+def test_what_one_component_gave_is_told_where_the_time_is_over_in_the_next():
+    def solve(part: Assembly) -> Answer:
+        if part.n_free > 1:
+            raise OutOfTime
+        return Answer(Status.OK, Finding.COLLAPSES, "x", multiplier=0.5)
+
+    answer = analysed_apart(assembly(None, 0.5, blocks=TWO_STACKS), solve, lambda *_: None)
+    assert answer.status is Status.NOT_CONVERGED
+    assert "before the component of 1-1, 1-2 had an answer" in answer.sentence
+    assert "That of 0-1 alone collapses at 0.5" in answer.sentence
+    assert [part["multiplier"] for part in answer.details["components"]] == [0.5, None]
+
+
+def test_without_an_answer_of_any_component_the_time_is_over():
+    def solve(part: Assembly) -> Answer:
+        raise OutOfTime
+
+    with pytest.raises(OutOfTime):
+        analysed_apart(assembly(None, 0.5, blocks=TWO_STACKS), solve, lambda *_: None)
 
 
 @pytest.mark.parametrize(("courses", "bricks", "seconds"), [(14, 14, 4.0), (14, 28, 8.0)])
