@@ -101,7 +101,7 @@ def analysed_apart(assembly: Assembly, solve: Solve, bear: Bear) -> Answer:
     """The answer for a wall from those for its components, each analysed alone.
 
     The smallest come first, so that a run that is stopped knows as much as it can. After one that was stopped by the
-    time limit (`details["stopped_by_limit"]`, or `OutOfTime` once another has an answer) there is no time for the others.
+    time limit (`details["stopped_by_limit"]`, or `OutOfTime` once another has an answer) there is no time for others.
 
     Args:
         assembly: the wall.
