@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 from drystone.analysis import Result, analyse
 from drystone.walls import Wall
+from harness.certificates import with_certificates
 from harness.engine import compare as engine
 from harness.engine.isolate import announce
 from harness.engine.plan import Limits, Run, check_methods, plan_case
@@ -132,7 +133,7 @@ def compare(
             results = engine.execute(planned, opened, jobs, fresh=fresh, told=told)
         else:
             results = _here(chosen, planned)
-        run = engine.comparison_run(title or ", ".join(names), command, cases, planned, results)
+        run = with_certificates(engine.comparison_run(title or ", ".join(names), command, cases, planned, results))
         if studies:
             run.provenance["studies"] = list(studies)
         if opened is not None:

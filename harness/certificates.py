@@ -4,14 +4,17 @@ from __future__ import annotations
 
 import gzip
 import json
+import math
 import zlib
 from collections.abc import Sequence
+from dataclasses import replace
 from fractions import Fraction
 from pathlib import Path
 from typing import Any
 
 from harness.engine.plan import Limits, Run
 from harness.model.case import Case
+from harness.model.comparison import CaseResults, Certified, ComparisonRun, Gate
 from harness.model.errors import InputError
 from harness.model.library import library
 from harness.model.method import Finding
@@ -120,6 +123,49 @@ def _held(result: Result, lower: float, proved: str) -> tuple[Verdict, str]:
     if result.finding is not Finding.COLLAPSES or result.multiplier is None:
         return Verdict.OUTSIDE_TOLERANCE, f"{proved}, and {result.method} gives no multiplier"
     found = f"{result.method} finds {result.multiplier:.9g}"
-    if result.multiplier < lower - ROUNDING * abs(lower):
+    if _below(result, lower):
         return Verdict.VIOLATES_BOUND, f"{proved}, and {found}"
     return Verdict.AGREES, f"{proved}; {found}"
+
+
+def with_certificates(run: ComparisonRun) -> ComparisonRun:
+    """The comparison with what the certificates beside its cases prove, each checked in fractions and against the wall.
+
+    A gate says whether the least state that was found lies at or above the bound, or that the certificate is refused.
+    """
+    return replace(run, cases=[_with_certificate(item) for item in run.cases])
+
+
+def _with_certificate(item: CaseResults) -> CaseResults:
+    path = certificate_of(item.case)
+    if path is None:
+        return item
+    statement = "no collapse state lies below the bound that the certificate of the wall proves in fractions"
+    try:
+        document = read_certificate(path)
+        require_same_wall(document, item.case.assembly)
+        bound, sentence = _not_above(verify(document)[0]), proved(document)
+    except (CertificateError, InputError) as error:
+        gate = Gate(name="certificate", statement=statement, passed=False, sentence=f"{path.name} is refused: {error}")
+        return replace(item, gates=[*item.gates, gate])
+    judged = [each for each in item.results if each.traits.seeks_least and each.judge.accepted]
+    found = [each for each in judged if each.multiplier is not None]
+    low = [each for each in found if _below(each, bound)]
+    told = ", ".join(f"{each.method} {each.multiplier:.9g}" for each in low or found) or "no method has a state"
+    gate = Gate(
+        name="certificate",
+        statement=statement,
+        passed=not low if found else None,
+        sentence=f"{told}; bound {bound:.9g} ({path.name})",
+    )
+    return replace(item, gates=[*item.gates, gate], certified=Certified(bound, sentence, path.name))
+
+
+def _below(result: Result, bound: float) -> bool:
+    return result.multiplier is not None and result.multiplier < bound - ROUNDING * abs(bound)
+
+
+def _not_above(bound: Fraction) -> float:
+    """The greatest float that is not above a fraction: what is proved stays so when it is printed."""
+    nearest = float(bound)
+    return nearest if Fraction(nearest) <= bound else math.nextafter(nearest, -math.inf)

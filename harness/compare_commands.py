@@ -12,6 +12,7 @@ import click
 from drystone.comparing import compare as make_comparison
 from drystone.walls import Wall
 from harness import terminal
+from harness.certificates import with_certificates
 from harness.engine import compare as comparing
 from harness.engine import regression
 from harness.engine.isolate import announce
@@ -164,7 +165,7 @@ def report(report: Path, figures: bool, appendix: str | None, store: Path) -> No
         compared = comparing.recall(opened)
     if compared is None:
         raise InputError("no comparison is in the store", "Run `drystone compare` first", source=str(store))
-    _write_report(compared, report, drawn=figures)
+    _write_report(with_certificates(compared), report, drawn=figures)
     say(f"Report: {report}")
 
 

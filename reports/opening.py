@@ -224,9 +224,11 @@ def which_number(item: CaseResults) -> str:
         )
     else:
         lower = least.bracket
-        proof = (
-            f"; none below {numbers.plain(lower[0])} exists" if lower and "lower bound" in least.bracket_meaning else ""
-        )
+        proof = ""
+        if item.certified is not None:
+            proof = f"; none below {numbers.plain(item.certified.bound)} exists, proved in fractions"
+        elif lower and "lower bound" in least.bracket_meaning:
+            proof = f"; none below {numbers.plain(lower[0])} exists"
         first = (
             f"For safety use {value}, the least multiplier of a collapse state that is known ({least.method}); "
             f"a lower one is not excluded{proof}."

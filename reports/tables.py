@@ -136,10 +136,11 @@ def _multiplier_cell(result: Result) -> Cell:
 
 
 def certified_bound(item: CaseResults, least: Result) -> float | None:
-    """The bound of a certificate in fractions that the least state lies on, of whichever method wrote it."""
+    """The bound of a certificate in fractions that the least state lies on: of a method, or beside the case."""
     value = least.multiplier
     accepted = [r for r in item.results if r.status is Status.OK and r.judge.accepted is not False]
     bounds = [float(r.details["certified_bound"]) for r in accepted if "certified_bound" in r.details]
+    bounds += [item.certified.bound] if item.certified else []
     if value is None:
         return None
     return next((bound for bound in bounds if 0.0 <= value - bound <= CERTIFIED * abs(value)), None)

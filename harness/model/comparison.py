@@ -33,12 +33,35 @@ class Gate(BaseModel):
 
 
 @dataclass(frozen=True)
+class Certified:
+    """What a certificate proves of a wall in fractions.
+
+    Attributes:
+        bound: no collapse state lies from zero to below this multiplier.
+        sentence: what is proved, in words.
+        source: name of the file.
+    """
+
+    bound: float
+    sentence: str
+    source: str
+
+
+@dataclass(frozen=True)
 class CaseResults:
-    """One case with the results of every method asked for, failed ones included."""
+    """One case with the results of every method asked for, failed ones included.
+
+    Attributes:
+        case: the wall and its references.
+        results: of every method.
+        gates: statements of theory tested on them.
+        certified: what the certificate beside the case proves, if there is one that holds.
+    """
 
     case: Case
     results: list[Result]
     gates: list[Gate] = field(default_factory=list)
+    certified: Certified | None = None
 
     def of(self, method: str) -> Result | None:
         """The result of a method, or None."""
