@@ -51,8 +51,8 @@ class Sizes:
     """The sizes at which the budget of normal effort changes, so that the time grows slowly, and what it is there.
 
     Attributes:
-        few_blocks, some_blocks: up to the first the whole ladder is tried, up to the next its first rung, three descents
-            a source on both; above, no rungs but those of rough joints, and one longer descent. With one descent
+        few_blocks, some_blocks: up to the first the whole ladder is tried, to the next its first rung, three descents a
+            source on both; above, no rungs but those of rough joints, and one longer descent. With one descent
             instead of three and 6,000 kinks instead of 9,000 two walls of 44 blocks reach their least value with 3
             seeds of 12 instead of 9.
         descended: interfaces up to which states are descended from; above, a draw takes a second and more.
