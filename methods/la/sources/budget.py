@@ -51,16 +51,15 @@ class Sizes:
     """The sizes at which the budget of normal effort changes, so that the time grows slowly, and what it is there.
 
     Attributes:
-        few_blocks, some_blocks: up to the first the whole ladder is tried, to the next its first rung, three descents a
-            source on both; above, no rungs but those of rough joints, and one longer descent. With one descent
-            instead of three and 6,000 kinks instead of 9,000 two walls of 44 blocks reach their least value with 3
-            seeds of 12 instead of 9.
+        few_blocks, some_blocks: up to the first the whole ladder is tried, up to the next half of it, three descents a
+            source on both; above, no rungs but those of rough joints, and one longer descent. With one descent instead
+            of three and 6,000 kinks instead of 9,000 two walls of 44 blocks reach their least value with 3 seeds of 12
+            instead of 9.
         descended: interfaces up to which states are descended from; above, a draw takes a second and more.
         provable, provable_ring: interfaces up to which a proof is tried, and those of walls with at most two more
             interfaces than blocks. With more, hardly any tree of 1,500 nodes comes to an end.
-        ladder, fine_ladder: factors on friction: mechanisms found at each are carried to the next. Three rungs more,
-            at .65, .75 and .925, changed no value of 97 walls. The fine one first goes down from above the friction of
-            the wall.
+        ladder, fine_ladder: factors on friction: mechanisms found at each are carried to the next. The fine one first
+            goes down from above the friction of the wall.
     """
 
     few_blocks: int = 30
@@ -68,7 +67,7 @@ class Sizes:
     descended: int = 1000
     provable: int = 16
     provable_ring: int = 30
-    ladder: tuple[float, ...] = (0.55, 0.85)
+    ladder: tuple[float, ...] = (0.55, 0.65, 0.75, 0.85, 0.925)
     fine_ladder: tuple[float, ...] = (
         *(1.3, 1.15, 1.0, 0.9, 0.8, 0.7, 0.6, 0.5),
         *(0.55, 0.6, 0.65, 0.7, 0.75, 0.8, 0.85, 0.9, 0.95),
@@ -88,7 +87,7 @@ class Sizes:
         if blocks <= self.few_blocks:
             return Limits(0, 12, 200, 3, self.ladder, nodes)
         if blocks <= self.some_blocks:
-            return Limits(0, 12, 200, 3, self.ladder[:1], nodes)
+            return Limits(0, 12, 200, 3, self.ladder[::2], nodes)
         if descents:
             return Limits(0, 40, kinks=20_000, unbounded_kinks=20_000)
         return Limits(0, 40, descents=0, kinks=60_000, unbounded_kinks=1)
