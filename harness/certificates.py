@@ -79,6 +79,18 @@ def proved(document: Any) -> str:
     return f"{least} {bound}, and one at {state}, proved in fractions"
 
 
+def checked(case: Case, path: Path) -> Certified:
+    """What the certificate of a case proves, checked in fractions and against the wall.
+
+    Raises:
+        CertificateError: it proves nothing, or of another wall.
+        InputError: unreadable.
+    """
+    document = read_certificate(path)
+    require_same_wall(document, case.assembly)
+    return Certified(_not_above(verify(document)[0]), proved(document), path.name)
+
+
 def certificate_runs(cases: Sequence[Case], limits: Limits) -> list[Run]:
     """The runs whose multipliers the certificates of the cases are held to."""
     return [Run(case, library().methods.one, {}, limits) for case in cases if certificate_of(case) is not None]
@@ -95,10 +107,9 @@ def certificate_line(run: Run, result: Result) -> dict[str, Any]:
     assert path is not None
     lower: float | None = None
     try:
-        document = read_certificate(path)
-        require_same_wall(document, run.case.assembly)
-        lower = float(verify(document)[0])
-        verdict, sentence = _held(result, lower, proved(document))
+        certified = checked(run.case, path)
+        lower = certified.bound
+        verdict, sentence = _held(result, certified)
     except (CertificateError, InputError) as error:
         verdict, sentence = Verdict.VIOLATES_BOUND, f"the certificate is refused: {error}"
     return {
@@ -119,13 +130,13 @@ def certificate_line(run: Run, result: Result) -> dict[str, Any]:
     }
 
 
-def _held(result: Result, lower: float, proved: str) -> tuple[Verdict, str]:
+def _held(result: Result, certified: Certified) -> tuple[Verdict, str]:
     if result.finding is not Finding.COLLAPSES or result.multiplier is None:
-        return Verdict.OUTSIDE_TOLERANCE, f"{proved}, and {result.method} gives no multiplier"
+        return Verdict.OUTSIDE_TOLERANCE, f"{certified.sentence}, and {result.method} gives no multiplier"
     found = f"{result.method} finds {result.multiplier:.9g}"
-    if _below(result, lower):
-        return Verdict.VIOLATES_BOUND, f"{proved}, and {found}"
-    return Verdict.AGREES, f"{proved}; {found}"
+    if _below(result, certified.bound):
+        return Verdict.VIOLATES_BOUND, f"{certified.sentence}, and {found}"
+    return Verdict.AGREES, f"{certified.sentence}; {found}"
 
 
 def with_certificates(run: ComparisonRun) -> ComparisonRun:
@@ -142,23 +153,21 @@ def _with_certificate(item: CaseResults) -> CaseResults:
         return item
     statement = "no collapse state lies below the bound that the certificate of the wall proves in fractions"
     try:
-        document = read_certificate(path)
-        require_same_wall(document, item.case.assembly)
-        bound, sentence = _not_above(verify(document)[0]), proved(document)
+        certified = checked(item.case, path)
     except (CertificateError, InputError) as error:
         gate = Gate(name="certificate", statement=statement, passed=False, sentence=f"{path.name} is refused: {error}")
         return replace(item, gates=[*item.gates, gate])
     judged = [each for each in item.results if each.traits.seeks_least and each.judge.accepted]
     found = [each for each in judged if each.multiplier is not None]
-    low = [each for each in found if _below(each, bound)]
+    low = [each for each in found if _below(each, certified.bound)]
     told = ", ".join(f"{each.method} {each.multiplier:.9g}" for each in low or found) or "no method has a state"
     gate = Gate(
         name="certificate",
         statement=statement,
         passed=not low if found else None,
-        sentence=f"{told}; bound {bound:.9g} ({path.name})",
+        sentence=f"{told}; bound {certified.bound:.9g} ({path.name})",
     )
-    return replace(item, gates=[*item.gates, gate], certified=Certified(bound, sentence, path.name))
+    return replace(item, gates=[*item.gates, gate], certified=certified)
 
 
 def _below(result: Result, bound: float) -> bool:
