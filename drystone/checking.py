@@ -15,6 +15,7 @@ from harness.engine import regression
 from harness.engine.plan import Limits, Run, check_methods, gated_runs
 from harness.engine.store import open_store
 from harness.model.case import Case
+from harness.model.result import Result as Record
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -81,16 +82,33 @@ def check(
     True
     """
     chosen = map(library_wall, library_walls()) if walls is None else [walls] if isinstance(walls, Wall) else walls
-    runs, certified = planned([wall.case for wall in chosen], tier)
+    plan = planned([wall.case for wall in chosen], tier)
     with nullcontext() if store is None else open_store(Path(store)) as opened:
-        results = engine.execute([*runs, *certified], opened, jobs, fresh=fresh, told=told)
-    lines = regression.lines(runs, results[: len(runs)])
-    lines += [certificate_line(run, result) for run, result in zip(certified, results[len(runs) :], strict=True)]
-    return Check(lines)
+        return held(plan, engine.execute(plan.runs, opened, jobs, fresh=fresh, told=told))
 
 
-def planned(cases: Sequence[Case], tier: Tier) -> tuple[list[Run], list[Run]]:
-    """The runs that the gated references of cases need, and those that their certificates are held to.
+@dataclass(frozen=True)
+class Plan:
+    """The runs of a check: those that gated references need, and those that certificates are held to."""
+
+    gated: list[Run]
+    certified: list[Run]
+
+    @property
+    def runs(self) -> list[Run]:
+        """All of them, the gated ones first."""
+        return [*self.gated, *self.certified]
+
+
+def held(plan: Plan, results: Sequence[Record]) -> Check:
+    """What the results of the runs of a plan, in its order, are beside what is known."""
+    lines = regression.lines(plan.gated, results[: len(plan.gated)])
+    rest = zip(plan.certified, results[len(plan.gated) :], strict=True)
+    return Check(lines + [certificate_line(run, result) for run, result in rest])
+
+
+def planned(cases: Sequence[Case], tier: Tier) -> Plan:
+    """The runs of a check.
 
     Raises:
         InputError: a method that a reference names does not exist.
@@ -98,4 +116,4 @@ def planned(cases: Sequence[Case], tier: Tier) -> tuple[list[Run], list[Run]]:
     limits = Limits(seconds=SECONDS[tier])
     runs = [run for case in cases for run in gated_runs(case, limits, tier)]
     check_methods(sorted({run.method for run in runs}), "applies_to of a gated reference")
-    return runs, certificate_runs(cases, limits) if tier == "full" else []
+    return Plan(runs, certificate_runs(cases, limits) if tier == "full" else [])

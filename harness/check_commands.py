@@ -9,9 +9,7 @@ from pathlib import Path
 
 import click
 
-from drystone.checking import Tier, planned
-from drystone.checking import check as hold
-from drystone.walls import Wall
+from drystone.checking import Tier, held, planned
 from harness import terminal
 from harness.engine import baseline as recording
 from harness.engine import compare as comparing
@@ -62,9 +60,9 @@ def check(
     chosen = find_cases(cases, suite if cases or suite else "all", folders)
     for case in chosen:
         warn(case)
-    count = sum(map(len, planned(chosen, tier)))
-    with terminal.progress(count, quiet=as_json) as told:
-        checked = hold([Wall(case) for case in chosen], tier=tier, jobs=jobs, store=store, fresh=fresh, told=told)
+    plan = planned(chosen, tier)
+    with open_store(store) as opened, terminal.progress(len(plan.runs), quiet=as_json) as told:
+        checked = held(plan, comparing.execute(plan.runs, opened, jobs, fresh=fresh, told=told))
     lines = checked.lines
     if junit is not None:
         write_junit(f"drystone check, {tier} tier", tests_of_check(lines), junit)
