@@ -49,6 +49,10 @@ class Sweep:
 
     def to_pandas(self) -> pd.DataFrame:
         """One row a run: case, method, what varied, and the answer; `attrs["units"]` names the units."""
+        return self._table.copy()
+
+    @cached_property
+    def _table(self) -> pd.DataFrame:
         from harness.engine.sweep.frame import tidy
         from harness.engine.sweep.summary import varied_of
 
@@ -59,7 +63,7 @@ class Sweep:
         """Statistics that the rows allow, and sentences that a reader should see."""
         from harness.engine.sweep.summary import summarise
 
-        return summarise(self.study, self.to_pandas())
+        return summarise(self.study, self._table)
 
     @property
     def tables(self) -> dict[str, pd.DataFrame]:
@@ -75,7 +79,7 @@ class Sweep:
         """Write the rows and every table as CSV, and as Parquet where pyarrow is installed; the files."""
         from harness.engine.sweep.frame import write
 
-        files = write(self.to_pandas(), Path(folder), "runs")
+        files = write(self._table, Path(folder), "runs")
         for name, table in self.tables.items():
             files += write(table, Path(folder), name)
         return files
@@ -93,7 +97,7 @@ class Sweep:
 
         created = datetime.now(UTC).isoformat(timespec="seconds")
         study, summary = self.study, self.summary
-        about = (study.title, study.question, command, created, self.to_pandas(), grid_of(study))
+        about = (study.title, study.question, command, created, self._table, grid_of(study))
         target = Path(path)
         target.parent.mkdir(parents=True, exist_ok=True)
         write_page(StudyPage(*about, summary.tables, summary.remarks, list(data)), target)
@@ -203,6 +207,11 @@ def shipped_studies() -> dict[str, Path]:
     return {path.stem: path for path in sorted((shipped_cases() / "studies").glob("*.toml"))}
 
 
+def study_file(what: str | Path) -> Path | None:
+    """The file of that path, or of the study of that name that comes with Drystone; None if neither is there."""
+    return Path(what) if Path(what).exists() else shipped_studies().get(str(what))
+
+
 def _asked(
     what: Wall | Study | str | Path,
     vary: Mapping[str, Any] | None,
@@ -225,7 +234,7 @@ def _asked(
 
 
 def _read(what: str | Path) -> tuple[Study, Path]:
-    path = shipped_studies().get(str(what)) if not Path(what).exists() else Path(what)
+    path = study_file(what)
     if path is None:
         known = ", ".join(shipped_studies())
         raise InputError(

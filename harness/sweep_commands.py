@@ -11,7 +11,7 @@ from typing import Any
 
 import click
 
-from drystone.studies import Sweep, changed, rows_of, shipped_studies
+from drystone.studies import Sweep, changed, rows_of, shipped_studies, study_file
 from harness.engine.executors import Executor, LocalExecutor
 from harness.engine.plan import Limits
 from harness.engine.store import open_store
@@ -93,8 +93,7 @@ def sweep_(what: str, dry_run: bool, scheduler: str | None, jobs: int, store: Pa
 
 def _study(what: str, rest: dict[str, Any]) -> tuple[Study, Path | None]:
     quick = {name: rest[name] for name in ("vary", "imperfection", "seeds") if rest[name]}
-    shipped = shipped_studies()
-    file = shipped.get(what) if not Path(what).exists() else Path(what)
+    file = study_file(what)
     methods = [name.strip() for name in rest["methods"].split(",") if name.strip()] if rest["methods"] else None
     settings = method_settings(rest["settings"])
     if file is not None and file.suffix == ".toml" and not quick:
@@ -102,7 +101,7 @@ def _study(what: str, rest: dict[str, Any]) -> tuple[Study, Path | None]:
     if not quick:
         raise InputError(
             f'"{what}" is no study, and nothing varies',
-            f"Give a study file, one of {', '.join(shipped)}, or a case with --vary or --imperfection",
+            f"Give a study file, one of {', '.join(shipped_studies())}, or a case with --vary or --imperfection",
             "sweep",
         )
     limits = Limits(rest["seconds"], rest["memory"] * 2**20)
