@@ -10,12 +10,17 @@ from methods.de.soft_settings import SoftSettings
 from methods.de.uneven_settings import ClosedSettings, UnevenSettings
 
 
-class DeclaredHolds(Declared):
+class DeclaredDistinctElements(Declared):
+    """A method of distinct elements."""
+
+    family: ClassVar[str] = "de"
+
+
+class DeclaredHolds(DeclaredDistinctElements):
     """Damped holds of a wall at frozen geometry, bracketed over body orders."""
 
     solver: ClassVar[str] = "methods.de.hold_adapter:DampedHolds"
     name: ClassVar[str] = "de"
-    family: ClassVar[str] = "de"
     title: ClassVar[str] = "distinct elements (damped holds)"
     tolerance: ClassVar[float] = 1e-6
     traits: ClassVar[Traits] = Traits(
@@ -29,12 +34,11 @@ class DeclaredHolds(Declared):
     shares_work: ClassVar[bool] = True
 
 
-class DeclaredMujoco(Declared):
+class DeclaredMujoco(DeclaredDistinctElements):
     """The holds, the bracket and the orders of `de` on MuJoCo, so that an answer does not hang on one engine."""
 
     solver: ClassVar[str] = "methods.de.hold_adapter:MujocoHolds"
     name: ClassVar[str] = "de-mujoco"
-    family: ClassVar[str] = "de"
     title: ClassVar[str] = "distinct elements (MuJoCo, damped holds)"
     tolerance: ClassVar[float] = 1e-4
     traits: ClassVar[Traits] = Traits(
@@ -50,12 +54,11 @@ class DeclaredMujoco(Declared):
     Settings: ClassVar[type[Settings]] = MujocoSettings
 
 
-class DeclaredRelease(Declared):
+class DeclaredRelease(DeclaredDistinctElements):
     """The bracket of `de`, and the collapse followed through large displacements once the wall is released."""
 
     solver: ClassVar[str] = "methods.de.hold_adapter:ReleasedCollapse"
     name: ClassVar[str] = "de-tilt"
-    family: ClassVar[str] = "de"
     title: ClassVar[str] = "distinct elements, released after the bracket"
     tolerance: ClassVar[float] = 1e-6
     traits: ClassVar[Traits] = Traits(
@@ -69,12 +72,11 @@ class DeclaredRelease(Declared):
     Settings: ClassVar[type[Settings]] = ReleaseSettings
 
 
-class DeclaredUneven(Declared):
+class DeclaredUneven(DeclaredDistinctElements):
     """Distinct elements on a wall with seeded defects of planarity (C. Baggio and P. Trovalusci 1995, section 6)."""
 
     solver: ClassVar[str] = "methods.de.imperfect:UnevenBlocks"
     name: ClassVar[str] = "de-uneven"
-    family: ClassVar[str] = "de"
     title: ClassVar[str] = "distinct elements, uneven blocks"
     tolerance: ClassVar[float] = 1e-6
     traits: ClassVar[Traits] = Traits(
@@ -87,12 +89,11 @@ class DeclaredUneven(Declared):
     Settings: ClassVar[type[Settings]] = UnevenSettings
 
 
-class DeclaredClosed(Declared):
+class DeclaredClosed(DeclaredDistinctElements):
     """Contacts and gaps of an uneven wall from distinct elements, its multiplier from gap springs (`de-closed`)."""
 
     solver: ClassVar[str] = "methods.de.closed:ClosedContacts"
     name: ClassVar[str] = "de-closed"
-    family: ClassVar[str] = "de"
     title: ClassVar[str] = "distinct elements find contacts and gaps, FE loads them"
     tolerance: ClassVar[float] = 1e-6
     traits: ClassVar[Traits] = Traits(
@@ -105,12 +106,11 @@ class DeclaredClosed(Declared):
     Settings: ClassVar[type[Settings]] = ClosedSettings
 
 
-class DeclaredSoft(Declared):
+class DeclaredSoft(DeclaredDistinctElements):
     """Distinct elements with deformable joints and rounded corners (`de-soft`)."""
 
     solver: ClassVar[str] = "methods.de.soft:DeformableJoints"
     name: ClassVar[str] = "de-soft"
-    family: ClassVar[str] = "de"
     title: ClassVar[str] = "distinct elements, deformable joints"
     tolerance: ClassVar[float] = 1e-5
     traits: ClassVar[Traits] = Traits(

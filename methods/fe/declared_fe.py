@@ -8,12 +8,17 @@ from harness.model.method import Declared, Settings, Traits
 from methods.fe.path_settings import ConvexSettings, GapSpringsSettings, NewtonSettings
 
 
-class DeclaredGapSprings(Declared):
+class DeclaredFiniteElements(Declared):
+    """A method of finite elements with gap springs."""
+
+    family: ClassVar[str] = "fe"
+
+
+class DeclaredGapSprings(DeclaredFiniteElements):
     """Gap-spring finite elements with the path traced exactly, kink by kink (`fe`)."""
 
     solver: ClassVar[str] = "methods.fe.gap_spring_adapter:GapSprings"
     name: ClassVar[str] = "fe"
-    family: ClassVar[str] = "fe"
     title: ClassVar[str] = "FE, exact continuation"
     tolerance: ClassVar[float] = 1e-8
     traits: ClassVar[Traits] = Traits(
@@ -25,12 +30,11 @@ class DeclaredGapSprings(Declared):
     Settings: ClassVar[type[Settings]] = GapSpringsSettings
 
 
-class DeclaredNewton(Declared):
+class DeclaredNewton(DeclaredFiniteElements):
     """Ordinary incremental Newton: load control, then displacement control (`fe-newton`)."""
 
     solver: ClassVar[str] = "methods.fe.gap_spring_adapter:IncrementalNewton"
     name: ClassVar[str] = "fe-newton"
-    family: ClassVar[str] = "fe"
     title: ClassVar[str] = "FE, incremental Newton"
     tolerance: ClassVar[float] = 1e-8
     traits: ClassVar[Traits] = Traits(
@@ -43,12 +47,11 @@ class DeclaredNewton(Declared):
     Settings: ClassVar[type[Settings]] = NewtonSettings
 
 
-class DeclaredConvex(Declared):
+class DeclaredConvex(DeclaredFiniteElements):
     """Each step as convex quadratic programmes with frozen friction limits (`fe-qp`)."""
 
     solver: ClassVar[str] = "methods.fe.gap_spring_adapter:ConvexSteps"
     name: ClassVar[str] = "fe-qp"
-    family: ClassVar[str] = "fe"
     title: ClassVar[str] = "FE, convex steps"
     tolerance: ClassVar[float] = 1e-3
     traits: ClassVar[Traits] = Traits(

@@ -18,12 +18,17 @@ from methods.la.core.search_settings import (
 )
 
 
-class DeclaredSearch(Declared):
+class DeclaredLimitAnalysis(Declared):
+    """A method of limit analysis."""
+
+    family: ClassVar[str] = "la"
+
+
+class DeclaredSearch(DeclaredLimitAnalysis):
     """Least collapse state known, under zero dilatancy (`la`): the method to use."""
 
     solver: ClassVar[str] = "methods.la.search_adapter:LimitAnalysis"
     name: ClassVar[str] = "la"
-    family: ClassVar[str] = "la"
     title: ClassVar[str] = "LA, least known"
     tolerance: ClassVar[float] = 1e-10
     traits: ClassVar[Traits] = Traits(
@@ -42,12 +47,11 @@ class DeclaredSearch(Declared):
         return answer
 
 
-class DeclaredBound(Declared):
+class DeclaredBound(DeclaredLimitAnalysis):
     """The state of `la`, and a multiplier below which there is no collapse state (`la-bound`)."""
 
     solver: ClassVar[str] = "methods.la.bound_adapter:BoundedLimitAnalysis"
     name: ClassVar[str] = "la-bound"
-    family: ClassVar[str] = "la"
     title: ClassVar[str] = "LA, least known and lower bound"
     tolerance: ClassVar[float] = 1e-10
     Settings: ClassVar[type[Settings]] = BoundSettings
@@ -56,12 +60,11 @@ class DeclaredBound(Declared):
     )
 
 
-class DeclaredAssociated(Declared):
+class DeclaredAssociated(DeclaredLimitAnalysis):
     """Greatest multiplier of statics, the linear programme of associated limit analysis (`la-associated`)."""
 
     solver: ClassVar[str] = "methods.la.associated_adapter:AssociatedLimitAnalysis"
     name: ClassVar[str] = "la-associated"
-    family: ClassVar[str] = "la"
     title: ClassVar[str] = "LA, associated (greatest)"
     tolerance: ClassVar[float] = 1e-9
     traits: ClassVar[Traits] = Traits(
@@ -76,12 +79,11 @@ class DeclaredAssociated(Declared):
     Settings: ClassVar[type[Settings]] = AssociatedSettings
 
 
-class DeclaredCvxpy(Declared):
+class DeclaredCvxpy(DeclaredLimitAnalysis):
     """The same linear programme written in cvxpy, to be read beside the formulas (`la-associated-cvxpy`)."""
 
     solver: ClassVar[str] = "methods.la.associated_adapter:AssociatedLimitAnalysisCvxpy"
     name: ClassVar[str] = "la-associated-cvxpy"
-    family: ClassVar[str] = "la"
     title: ClassVar[str] = "LA, associated (cvxpy)"
     tolerance: ClassVar[float] = 1e-9
     traits: ClassVar[Traits] = Traits(
@@ -96,12 +98,11 @@ class DeclaredCvxpy(Declared):
     Settings: ClassVar[type[Settings]] = CvxpySettings
 
 
-class DeclaredPaper(Declared):
+class DeclaredPaper(DeclaredLimitAnalysis):
     """The paper's own programme (8)-(11) in reduced unknowns, by Ipopt (`la-paper`)."""
 
     solver: ClassVar[str] = "methods.la.literature.literature_adapters:PaperProgramme"
     name: ClassVar[str] = "la-paper"
-    family: ClassVar[str] = "la"
     title: ClassVar[str] = "LA, programme of 1995"
     tolerance: ClassVar[float] = 1e-9
     traits: ClassVar[Traits] = Traits(
@@ -115,12 +116,11 @@ class DeclaredPaper(Declared):
     Settings: ClassVar[type[Settings]] = PaperSettings
 
 
-class DeclaredTresca(Declared):
+class DeclaredTresca(DeclaredLimitAnalysis):
     """Sequence of programmes with the friction bound of the previous iterate: a baseline (`la-tresca`)."""
 
     solver: ClassVar[str] = "methods.la.literature.literature_adapters:TrescaSequence"
     name: ClassVar[str] = "la-tresca"
-    family: ClassVar[str] = "la"
     title: ClassVar[str] = "LA, friction-bound sequence"
     tolerance: ClassVar[float] = 1e-8
     traits: ClassVar[Traits] = Traits(
@@ -134,12 +134,11 @@ class DeclaredTresca(Declared):
     Settings: ClassVar[type[Settings]] = TrescaSettings
 
 
-class DeclaredFromFe(Declared):
+class DeclaredFromFe(DeclaredLimitAnalysis):
     """Ray descent from the finite-element collapse state, against a cold start (`la-from-fe`)."""
 
     solver: ClassVar[str] = "methods.la.literature.literature_adapters:FromFiniteElements"
     name: ClassVar[str] = "la-from-fe"
-    family: ClassVar[str] = "la"
     title: ClassVar[str] = "LA started from FE"
     tolerance: ClassVar[float] = 1e-10
     traits: ClassVar[Traits] = Traits(

@@ -16,7 +16,7 @@ from harness.model.method import seconds_left
 T = TypeVar("T")
 
 
-class ForkLost(RuntimeError):
+class ForkLost(ChildProcessError):
     """A fork ended without a result, as one that was killed does."""
 
 
