@@ -7,6 +7,7 @@ import os
 from collections.abc import Iterable
 
 from harness.engine.deferred_modules import defer
+from harness.model.errors import InputError
 from harness.model.method import load_method, method_points, prepared
 
 VARIABLE = "DRYSTONE_PRELOAD"
@@ -25,7 +26,7 @@ def shipped(names: Iterable[str]) -> list[str]:
 def load(names: Iterable[str]) -> None:
     """Load methods; one that cannot be loaded is left to the run that needs it, which can say so."""
     for name in names:
-        with contextlib.suppress(Exception):
+        with contextlib.suppress(InputError, KeyError):
             prepared(load_method(name))
 
 

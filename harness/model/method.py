@@ -254,10 +254,8 @@ def load_method(name: str) -> Method:
     """
     for point in method_points():
         if point.name == name:
-            try:
+            with _loading(name):
                 method: Method = point.load()()
-            except Exception as error:
-                raise _not_loaded(name, error) from error
             return method
     raise KeyError(f"no method is called {name!r}; there are: {', '.join(method_names())}")
 
@@ -295,16 +293,19 @@ def prepared(method: Method) -> Method:
     """
     prepare = getattr(method, "prepare", None)
     if prepare is not None:
-        try:
+        with _loading(method.name):
             prepare()
-        except Exception as error:
-            raise _not_loaded(method.name, error) from error
     return method
 
 
-def _not_loaded(name: str, error: Exception) -> InputError:
-    return InputError(
-        f"it cannot be loaded ({type(error).__name__}: {error})",
-        "Install what it needs, or uninstall the package that brings it",
-        f"method {name}",
-    )
+@contextmanager
+def _loading(name: str) -> Iterator[None]:
+    """Whatever goes wrong inside is told as a method that cannot be loaded."""
+    try:
+        yield
+    except Exception as error:
+        raise InputError(
+            f"it cannot be loaded ({type(error).__name__}: {error})",
+            "Install what it needs, or uninstall the package that brings it",
+            f"method {name}",
+        ) from error
