@@ -130,17 +130,12 @@ def _wrong(result: Result) -> str:
 
 def _broken_theory(run: ComparisonRun) -> tuple[list[str], list[str]]:
     """A sentence of walls on which a method is wrong, and one of those on which a search missed a state, if any."""
-    broken = [
-        (item.case.id, gate) for item in run.cases for gate in item.gates if gate.passed is False and not gate.of_search
-    ]
-    missed = [
-        (item.case.id, gate) for item in run.cases for gate in item.gates if gate.passed is False and gate.of_search
-    ]
-    wrong = ", ".join(dict.fromkeys(name for name, _ in broken))
-    found = "; ".join(f"{name} ({gate.sentence})" for name, gate in missed)
+    failed = [(item.case.id, gate) for item in run.cases for gate in item.gates if gate.passed is False]
+    wrong = ", ".join(dict.fromkeys(name for name, gate in failed if not gate.of_search))
+    missed = "; ".join(f"{name} ({gate.sentence})" for name, gate in failed if gate.of_search)
     return (
-        [f"Theory is violated on {wrong}: at least one method is wrong there."] if broken else [],
-        [f"The search for the least state missed one that another method reached: {found}."] if missed else [],
+        [f"Theory is violated on {wrong}: at least one method is wrong there."] if wrong else [],
+        [f"The search for the least state missed one that another method reached: {missed}."] if missed else [],
     )
 
 
