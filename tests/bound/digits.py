@@ -4,10 +4,14 @@ from __future__ import annotations
 
 import json
 import re
+from fractions import Fraction
 from typing import Any
 
 from hypothesis import reject
 from hypothesis import strategies as st
+
+from methods.bound.exact_wall import CertificateError
+from methods.bound.verify import digest, verify
 
 
 def one_digit_changed(data: st.DataObject, document: Any) -> Any:
@@ -19,3 +23,13 @@ def one_digit_changed(data: st.DataObject, document: Any) -> Any:
         return json.loads(text[:where] + digit + text[where + 1 :])
     except json.JSONDecodeError:
         reject()
+
+
+def refused_or_true(least: Fraction, document: dict[str, Any]) -> bool:
+    """Whether a document, its digest made anew, is refused; what it proves otherwise must be true of this minimum."""
+    try:
+        lower, upper = verify(document | {"digest": digest(document)})
+    except CertificateError:
+        return True
+    assert lower <= least <= upper
+    return False
