@@ -35,6 +35,7 @@ from harness.options import (
     store_option,
 )
 from harness.studying import duration, progress
+from harness.terminal import print_rows
 
 OUT = Path("out")
 
@@ -139,10 +140,21 @@ def _leave(done: Sweep, folder: Path, rest: dict[str, Any]) -> None:
     else:
         say(f"{len(done.rows):,} runs: " + ", ".join(f"{count:,} {name}" for name, count in statuses.items())
             + (f"; the judge rejects {rejected:,}" if rejected else ""))  # fmt: skip
+        _print_multipliers(done, folder)
         for sentence in done.summary.remarks:
             say(sentence)
         say(f"Tables: {folder}/" + ("" if rest["no_report"] else f"\nReport: {page}"))
     sys.exit(1 if rejected else 0)
+
+
+def _print_multipliers(done: Sweep, folder: Path, most: int = 40) -> None:
+    """The table of multipliers, as many rows as a screen shows; all are in the files."""
+    rows = done.summary.by_method()
+    if not rows:
+        return
+    print_rows(rows[:most])
+    if len(rows) > most:
+        say(f"and {len(rows) - most:,} rows more in {folder}/quantiles.csv")
 
 
 def _tell_plan(asked: Study, runs: list[SweepRun], store: Path, jobs: int, as_json: bool) -> None:

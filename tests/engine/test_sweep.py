@@ -27,6 +27,7 @@ from harness.engine.sweep.paths import with_values
 from harness.engine.sweep.quick import axis_of, quick_study
 from harness.engine.sweep.running import sweep
 from harness.engine.sweep.study import Study, read_study
+from harness.engine.sweep.summary import summarise
 from harness.model.build import build
 from harness.model.errors import InputError
 from harness.model.reading import parse_wall, validate
@@ -216,6 +217,17 @@ def test_a_rejected_answer_counts_for_nothing():
     assert statistics.quantiles(table, ["case", "method"])["answered"].tolist() == [1]
 
 
+def test_what_the_judge_cannot_decide_counts_and_is_told():
+    table = made_up([0.5, 0.6])
+    table["judge_accepted"] = table["judge_accepted"].astype("boolean")
+    table.loc[0, "judge_accepted"] = pd.NA
+    assert statistics.quantiles(table, ["case", "method"])["answered"].tolist() == [2]
+    study = Study.model_validate(
+        {"name": "x", "title": "x", "cases": ["a"], "methods": ["la"], "vary": {"seed": {"seeds": 2}}}
+    )
+    assert [row for row in summarise(study, table).remarks if row.startswith("1 of 2 runs count though")]
+
+
 def test_fragility_curve_of_a_lognormal_sample_is_that_lognormal_within_its_band():
     rng = np.random.default_rng(3)
     values = np.exp(np.log(0.5) + 0.2 * rng.standard_normal(300))
@@ -273,6 +285,9 @@ def test_the_command_leaves_tables_and_a_page_and_says_what_it_would_do(tmp_path
     done = drystone(*words, "--at", "0.2", cwd=tmp_path)
     assert done.returncode == 0, done.stderr
     assert "5 runs: 5 ok" in done.stdout
+    printed = [line.split() for line in done.stdout.splitlines()]
+    assert ["friction", "la-associated"] in printed
+    assert ["0.1", "0.1"] in printed  # stones of a stack slide at the coefficient of friction
     page = (tmp_path / "out" / "wall-friction.html").read_text()
     assert "wall over friction" in page
     assert "<svg" in page
@@ -280,6 +295,18 @@ def test_the_command_leaves_tables_and_a_page_and_says_what_it_would_do(tmp_path
     assert (tmp_path / "out" / "wall-friction" / "failure.csv").is_file()
     plan = drystone(*words, "--dry-run", "--json", cwd=tmp_path)
     assert json.loads(plan.stdout)["to_run"] == {}
+
+
+def test_defects_of_a_wall_scatter_its_multiplier(tmp_path: Path):
+    (tmp_path / "wall.json").write_text(json.dumps(wall_data(stack(2))))
+    words = ("sweep", "wall.json", "--imperfection", "0.02:0.1:2", "--seeds", "2", "--at", "0.1", "--no-report")
+    done = drystone(*words, cwd=tmp_path)
+    assert done.returncode == 0, done.stderr
+    means = pd.read_csv(tmp_path / "out" / "wall-imperfection-seed" / "quantiles.csv")
+    assert means["answered"].tolist() == [2, 2]
+    assert (means["mean"] > 0.0).all()
+    assert (pd.read_csv(tmp_path / "out" / "wall-imperfection-seed" / "failure.csv")["walls"] == 2).all()
+    assert "4 of 4 runs count though the judge can neither accept nor reject" in " ".join(done.stdout.split())
 
 
 def test_stores_are_merged_without_doubling(tmp_path: Path):

@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+from collections.abc import Hashable
 from dataclasses import dataclass, field
 from importlib.util import find_spec
+from typing import Any
 
 import pandas as pd
 
@@ -30,6 +32,37 @@ class Summary:
     groups: list[str]
     tables: dict[str, pd.DataFrame]
     remarks: list[str] = field(default_factory=list)
+
+    def by_method(self) -> list[dict[str, str]]:
+        """The multipliers as a table to read: one row a wall and point of the grid, one column a method.
+
+        Returns:
+            rows of words: a multiplier, a mean with its deviation where seeds or draws make several, and how many of
+            the runs are lost; `case` is left out where all are one.
+        """
+        found = self.tables["quantiles"]
+        place = [name for name in self.groups if name != "method" and (name != "case" or found["case"].nunique() > 1)]
+        rows: dict[tuple[str, ...], dict[str, str]] = {}
+        for group in found.sort_values("method", key=self._order, kind="stable").to_dict("records"):
+            here = {
+                name: f"{group[name]:.6g}" if isinstance(group[name], float) else str(group[name]) for name in place
+            }
+            row = rows.setdefault(tuple(here.values()), here)
+            row[str(group["method"])] = _words(group)
+        methods = [name for name in self.study.methods if name in set(found["method"])]
+        return [row | {name: row.get(name, "-") for name in methods} for row in rows.values()]
+
+    def _order(self, names: pd.Series) -> pd.Series:
+        return names.map({name: place for place, name in enumerate(self.study.methods)})
+
+
+def _words(group: dict[Hashable, Any]) -> str:
+    """The multipliers of a group in words."""
+    runs, answered = int(group["runs"]), int(group["answered"])
+    if not answered:
+        return "no answer"
+    spread = f" ± {group['deviation']:.2g}" if answered > 1 else ""
+    return f"{group['mean']:.6g}{spread}" + (f" ({runs - answered} of {runs} lost)" if answered < runs else "")
 
 
 def grid_of(study: Study) -> list[str]:
@@ -68,7 +101,14 @@ def summarise(study: Study, rows: pd.DataFrame) -> Summary:
         remarks.append(sentence)
     lost = len(rows) - len(statistics.answered(rows))
     if lost:
-        remarks.append(f"{lost} of {len(rows)} runs gave no multiplier that the judge accepts; they are in the rows.")
+        remarks.append(
+            f"{lost} of {len(rows)} runs gave no multiplier, or one that the judge rejects; they are in the rows."
+        )
+    unjudged = statistics.unjudged(rows)
+    if unjudged:
+        remarks.append(
+            f"{unjudged} of {len(rows)} runs count though the judge can neither accept nor reject their answers."
+        )
     many = int(tables["quantiles"]["answered"].max()) >= statistics.FEWEST if len(rows) else False
     if many:
         curves = statistics.fragility(rows, groups)
