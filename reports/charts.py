@@ -39,6 +39,7 @@ class Series:
         name: for the legend.
         x, y: its points.
         low, high: ends of a bar at every point, or nothing.
+        curve: what is fitted to the points; it is then the line, low and high are its band, and the points stand alone.
         line: whether the points are joined.
         marks: whether every point carries a marker.
         step: whether the line is a staircase (values hold until the next point).
@@ -54,6 +55,7 @@ class Series:
     marks: bool = True
     step: bool = False
     mark: Mark | None = None
+    curve: list[float] = field(default_factory=list)
 
 
 @dataclass(frozen=True)
@@ -175,10 +177,12 @@ def csv_of(chart: Chart) -> str:
     """The data of a chart: one row a point, with the ends of its bar where it has one."""
     stream = io.StringIO()
     writer = csv.writer(stream, quoting=csv.QUOTE_NONNUMERIC, lineterminator="\n")
-    writer.writerow(("series", chart.x_label, chart.y_label, "low", "high"))
+    fitted = ("fitted",) if any(series.curve for series in chart.series) else ()
+    writer.writerow(("series", chart.x_label, chart.y_label, "low", "high", *fitted))
     for series in chart.series:
-        for x, y, low, high in itertools.zip_longest(series.x, series.y, series.low, series.high, fillvalue=""):
-            writer.writerow((series.name, x, y, low, high))
+        columns = (series.x, series.y, series.low, series.high, *((series.curve,) if fitted else ()))
+        for values in itertools.zip_longest(*columns, fillvalue=""):
+            writer.writerow((series.name, *values))
     for name, value in chart.levels:
         writer.writerow((name, "", value, "", ""))
     return stream.getvalue()
@@ -267,13 +271,15 @@ def _series(series: Series, number: int, across: Axis, up: Axis) -> Markup:
     points = [(px, py, x, y) for px, py, x, y in places if px is not None and py is not None]
     drawn = Markup("")
     line, marker, dashes, shape = _look(series, number)
-    if series.line and len(points) > 1:
+    if series.curve:
+        drawn += _fitted(series, number, across, up)
+    elif series.line and len(points) > 1:
         path = f"M{points[0][0]:.1f} {points[0][1]:.1f}"
         for px, py, _, _ in points[1:]:
             path += f"H{px:.1f}V{py:.1f}" if series.step else f"L{px:.1f} {py:.1f}"
         drawn += Markup('<path {} stroke-dasharray="{}" d="{}"/>').format(line, dashes, path)
     bar = Markup(str(line).replace('class="line', 'class="bar'))
-    for x, low, high in zip(series.x, series.low, series.high, strict=False):
+    for x, low, high in zip(series.x, series.low, series.high, strict=False) if not series.curve else ():
         place, bottom, top = across.place(x), up.place(low), up.place(high)
         if place is not None and bottom is not None and top is not None:
             drawn += Markup('<path {} d="M{:.1f} {:.1f}V{:.1f}"/>').format(bar, place, bottom, top)
@@ -285,6 +291,21 @@ def _series(series: Series, number: int, across: Axis, up: Axis) -> Markup:
                 '<path {} transform="translate({:.1f} {:.1f}) scale({})" d="{}"><title>{}</title></path>'
             ).format(marker, px, py, round(size, 2), shape, f"{series.name}: {x:.6g}, {y:.6g}")
     return drawn
+
+
+def _fitted(series: Series, number: int, across: Axis, up: Axis) -> Markup:
+    """The curve of a series with its band behind it."""
+    line, _, dashes, _ = _look(series, number)
+
+    def path(values: list[float]) -> list[str]:
+        places = [(across.place(x), up.place(y)) for x, y in zip(series.x, values, strict=True)]
+        return [f"{px:.1f} {py:.1f}" for px, py in places if px is not None and py is not None]
+
+    band = "L".join([*path(series.low), *reversed(path(series.high))])
+    style = Markup(str(line).replace('class="line', 'class="band'))
+    return Markup('<path {} d="M{}Z"/><path {} stroke-dasharray="{}" d="M{}"/>').format(
+        style, band, line, dashes, "L".join(path(series.curve))
+    )
 
 
 def _legend(series: Series, number: int, per_row: int) -> Markup:

@@ -14,22 +14,23 @@ from markupsafe import Markup
 from harness.model.writing import write_whole
 from reports import charts
 from reports.environment import environment
+from reports.study_findings import findings
 
-MOST_SERIES, MOST_ROWS = 12, 400
-"""Lines in one chart and rows in one table of the page; the files beside it hold all."""
+MOST_SERIES, MOST_ROWS, FOLDED = 12, 400, 20
+"""Lines in one chart and rows in one table of the page, the files beside it hold all; a longer table is folded."""
 
 READ = {
-    "neighbours": "Runs that a mechanism of a neighbouring wall led lower, and what they had found alone. A search "
-    "that misses a state at one point of a study may find it at the next.",
-    "quantiles": "One line a group of walls: how many answered, mean, standard deviation and quantiles of the "
-    "multiplier over seeds and draws.",
     "failure": "Share of walls that collapse at or below a multiplier, with Wilson's score interval at 95 %.",
-    "fragility": "Probability of collapse counted over walls (95 % by Greenwood, log-log) beside a lognormal curve "
-    "(95 % by bootstrap).",
     "sensitivity": "Borgonovo's delta: 0 where a quantity does not matter, 1 where nothing else does; and the share of "
     "the variance it explains alone.",
+    "quantiles": "One line a group of walls: how many answered, mean, standard deviation and quantiles of the "
+    "multiplier over seeds and draws.",
+    "neighbours": "Runs that a mechanism of a neighbouring wall led lower, and what they had found alone. A search "
+    "that misses a state at one point of a study may find it at the next.",
+    "fragility": "Probability of collapse counted over walls (95 % by Greenwood, log-log) beside a lognormal curve "
+    "(95 % by bootstrap).",
 }
-"""How each table is read."""
+"""How each table is read, in the order of the page: answers to questions first, long lists last."""
 
 
 @dataclass(frozen=True)
@@ -74,7 +75,9 @@ def render(page: StudyPage) -> str:
             statuses=[(str(name), int(count)) for name, count in counts.items()],
             seconds=float(page.rows["cpu_seconds"].sum()),
             charts=[(title, Markup(charts.svg(chart))) for title, chart in _charts(page)],
-            tables=[(name, READ.get(name, ""), *_cells(table)) for name, table in page.tables.items() if len(table)],
+            found=findings(page.rows, page.tables, page.grid),
+            tables=[(name, READ[name], *_cells(page.tables[name])) for name in READ if len(page.tables.get(name, ()))],
+            folded=FOLDED,
         )
     )
 
@@ -130,18 +133,15 @@ def _over_axis(table: pd.DataFrame, axis: str, others: Sequence[str]) -> charts.
 
 
 def _fragility(table: pd.DataFrame, by: Sequence[str]) -> charts.Chart:
-    series = [
-        charts.Series(
-            name,
-            group["multiplier"].tolist(),
-            group["probability"].tolist(),
-            low=group["low"].fillna(group["probability"]).tolist(),
-            high=group["high"].fillna(group["probability"]).tolist(),
-            marks=False,
-            step=True,
-        )
-        for name, group in _groups(table, by)
-    ]
+    series = []
+    for name, group in _groups(table, by):
+        x, counted = group["multiplier"].tolist(), group["probability"].tolist()
+        if group["lognormal"].notna().all():
+            low, high = group["lognormal_low"].tolist(), group["lognormal_high"].tolist()
+            series.append(charts.Series(name, x, counted, low, high, curve=group["lognormal"].tolist()))
+        else:  # a wall that falls under its dead load has no logarithm
+            low, high = (group[end].fillna(group["probability"]).tolist() for end in ("low", "high"))
+            series.append(charts.Series(name, x, counted, low, high, marks=False, step=True))
     return charts.Chart("Fragility", "multiplier", "probability of collapse", series[:MOST_SERIES], zero_y=True)
 
 
