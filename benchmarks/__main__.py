@@ -12,6 +12,7 @@ from pathlib import Path
 from pkgutil import iter_modules
 
 from harness.engine.threads import pin
+from harness.options import catching, say
 
 NOT_RUN = {"__main__", "walls"}
 """Modules of this folder that are no benchmarks."""
@@ -22,14 +23,17 @@ def benchmarks() -> list[str]:
     return sorted({module.name for module in iter_modules([str(Path(__file__).parent)])} - NOT_RUN)
 
 
+@catching
 def main(arguments: Sequence[str] | None = None) -> int:
     """Run the benchmark named first with the arguments that follow; 2 if there is none of that name."""
     given = list(sys.argv[1:] if arguments is None else arguments)
     pin()
     if given and given[0] in benchmarks():
-        return int(import_module(f"benchmarks.{given[0]}").main(given[1:]) or 0)
+        code = int(import_module(f"benchmarks.{given[0]}").main(given[1:]) or 0)
+        sys.stdout.flush()  # so that a reader who left is noticed here, and told as the commands do
+        return code
     for name in benchmarks():
-        print(f"{name:<20} {(import_module(f'benchmarks.{name}').__doc__ or '').splitlines()[0]}")
+        say(f"{name:<20} {(import_module(f'benchmarks.{name}').__doc__ or '').splitlines()[0]}")
     return 2 if given else 0
 
 

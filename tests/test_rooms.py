@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import ast
+import os
 import subprocess
 import sys
 from collections import Counter
@@ -42,3 +43,13 @@ def test_unknown_benchmark_is_refused_with_the_list_of_those_there_are():
     done = benchmarks("speed")
     assert done.returncode == 2
     assert "overhead" in done.stdout
+
+
+def test_list_of_benchmarks_ends_without_a_word_where_its_reader_has_left():
+    reading, writing = os.pipe()
+    os.close(reading)
+    done = subprocess.run(
+        [sys.executable, "-m", "benchmarks"], cwd=ROOT, stdout=writing, stderr=subprocess.PIPE, check=False
+    )
+    os.close(writing)
+    assert (done.returncode, done.stderr) == (0, b"")

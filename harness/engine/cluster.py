@@ -27,6 +27,8 @@ CONNECT_SECONDS = 15.0
 """How long a scheduler is waited for at first."""
 RETURN_SECONDS = 300.0
 """How long a scheduler that was lost is waited for."""
+LOST = (OSError, RuntimeError)
+"""What closing a client raises where the scheduler is gone: a closed or silent connection, or an event loop that ended."""
 MISSING = "it needs Dask: pip install 'drystone[cluster]'"
 
 CODE = "code of "
@@ -79,7 +81,7 @@ class ClusterExecutor:
                     f"drystone: the scheduler was lost ({type(error).__name__}): waiting", file=sys.stderr, flush=True
                 )
             finally:
-                with suppress(Exception):
+                with suppress(*LOST):
                     client.close(timeout=5)
 
     def _through(
