@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
+import functools
 import gzip
+import hashlib
 import json
 import math
+import platform
 import zlib
 from collections.abc import Sequence
 from dataclasses import replace
@@ -13,12 +16,13 @@ from pathlib import Path
 from typing import Any
 
 from harness.engine.plan import Limits, Run
+from harness.engine.provenance import sources_version
 from harness.model.case import Case
 from harness.model.comparison import CaseResults, Certified, ComparisonRun, Gate
 from harness.model.errors import InputError
 from harness.model.library import library
 from harness.model.method import Finding
-from harness.model.reading import LARGEST_FILE, json_of, read_bytes, read_json
+from harness.model.reading import LARGEST_FILE, json_of, read_bytes, read_json, wall_json
 from harness.model.result import Result, Verdict
 from methods.bound.exact_wall import CertificateError
 from methods.bound.same_wall import require_same_wall
@@ -143,17 +147,48 @@ def with_certificates(run: ComparisonRun) -> ComparisonRun:
     """The comparison with what the certificates beside its cases prove, each checked in fractions and against the wall.
 
     A gate says whether the least state that was found lies at or above the bound, or that the certificate is refused.
+    What was verified before under the same key is not checked again; what is verified now is in `verified`.
     """
-    return replace(run, cases=[_with_certificate(item) for item in run.cases])
+    verified: dict[str, Certified] = {}
+    cases = [_with_certificate(item, run.verified, verified) for item in run.cases]
+    return replace(run, cases=cases, verified=verified)
 
 
-def _with_certificate(item: CaseResults) -> CaseResults:
+@functools.cache
+def checking_version() -> str:
+    """Hash over the code that says whether a certificate holds."""
+    return sources_version("harness.certificates", "methods.bound", "harness.model", others=[platform.python_version()])
+
+
+def content_key(case: Case, path: Path) -> str:
+    """What the certificate of a case was checked under: its bytes, the wall, and the code that checks.
+
+    Raises:
+        InputError: the certificate cannot be read.
+    """
+    parts = (read_bytes(path), wall_json(case.built.wall).encode(), checking_version().encode())
+    return hashlib.sha256(b"".join(hashlib.sha256(part).digest() for part in parts)).hexdigest()[:32]
+
+
+def _verified(case: Case, path: Path, before: dict[str, Certified], now: dict[str, Certified]) -> Certified:
+    """What a certificate proves, checked now if it was not before; what is known is put down in `now`.
+
+    Raises:
+        CertificateError: it proves nothing, or of another wall.
+        InputError: unreadable.
+    """
+    key = content_key(case, path)
+    now[key] = before.get(key) or checked(case, path)
+    return now[key]
+
+
+def _with_certificate(item: CaseResults, before: dict[str, Certified], now: dict[str, Certified]) -> CaseResults:
     path = certificate_of(item.case)
     if path is None:
         return item
     statement = "no collapse state lies below the bound that the certificate of the wall proves in fractions"
     try:
-        certified = checked(item.case, path)
+        certified = _verified(item.case, path, before, now)
     except (CertificateError, InputError) as error:
         gate = Gate(name="certificate", statement=statement, passed=False, sentence=f"{path.name} is refused: {error}")
         return replace(item, gates=[*item.gates, gate])

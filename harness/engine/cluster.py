@@ -28,7 +28,7 @@ CONNECT_SECONDS = 15.0
 RETURN_SECONDS = 300.0
 """How long a scheduler that was lost is waited for."""
 LOST = (OSError, RuntimeError)
-"""What closing a client raises where the scheduler is gone: a closed or silent connection, or an event loop that ended."""
+"""What closing a client raises where the scheduler is gone: a connection closed or silent, an event loop that ended."""
 MISSING = "it needs Dask: pip install 'drystone[cluster]'"
 
 CODE = "code of "

@@ -9,6 +9,7 @@ import json
 import os
 import platform
 import subprocess
+from collections.abc import Sequence
 from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
 from typing import Any
@@ -91,14 +92,20 @@ def code_version(method: str) -> str:
     point = next((point for point in method_points() if point.name == method), None)
     if point is None:
         raise KeyError(method)
+    packages = sorted({point.module.split(".")[0], "harness.model"})
+    others = [f"{name}={number}" for name, number in sorted(versions().items()) if name not in ("commit", "drystone")]
+    return sources_version(*packages, others=others)
+
+
+def sources_version(*packages: str, others: Sequence[str] = ()) -> str:
+    """Hash over the sources of packages or modules, and over other texts that stand for code."""
     digest = hashlib.sha256()
-    for package in sorted({point.module.split(".")[0], "harness.model"}):
+    for package in packages:
         for path in _sources(package):
             digest.update(path.name.encode())
             digest.update(path.read_bytes())
-    for name, number in sorted(versions().items()):
-        if name not in ("commit", "drystone"):
-            digest.update(f"{name}={number}".encode())
+    for text in others:
+        digest.update(text.encode())
     return digest.hexdigest()[:16]
 
 
@@ -111,10 +118,7 @@ def run_key(wall: str, method: str, settings: dict[str, Any], limits: dict[str, 
 @functools.cache
 def judge_version() -> str:
     """Hash over the sources of the judge, for results that are kept with its word."""
-    digest = hashlib.sha256()
-    for path in _sources("harness.engine.judge"):
-        digest.update(path.read_bytes())
-    return digest.hexdigest()[:16]
+    return sources_version("harness.engine.judge", "harness.engine.residuals")
 
 
 def _sources(package: str) -> list[Path]:

@@ -6,11 +6,19 @@ import gzip
 import json
 import shutil
 from pathlib import Path
+from typing import Any
+
+import pytest
 
 import drystone
-from harness.certificates import with_certificates
+from harness import certificates
+from harness.certificates import checking_version, content_key, with_certificates
+from harness.engine.compare import recall
 from harness.engine.regression import violations
+from harness.engine.store import open_store
 from harness.model.case import read_case, shipped_cases
+from harness.model.comparison import ComparisonRun
+from methods.bound.verify import verify
 from reports.opening import wall_findings, which_number
 from reports.tables import run_row
 
@@ -65,3 +73,50 @@ def test_a_wall_without_a_certificate_has_no_gate_of_it():
     compared = drystone.compare(wall, ["la"], isolated=False)
     assert all(gate.name != "certificate" for gate in compared.run.cases[0].gates)
     assert compared.run.cases[0].certified is None
+
+
+def again_from(store: Path) -> ComparisonRun:
+    with open_store(store, read_only=True) as opened:
+        recalled = recall(opened)
+    assert recalled is not None
+    return with_certificates(recalled)
+
+
+def test_what_a_comparison_verified_is_not_checked_again_until_certificate_wall_or_code_change(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+):
+    folder, store = tmp_path / "slide", tmp_path / "runs.sqlite"
+    shutil.copytree(shipped_cases() / "slide", folder)
+    drystone.compare(drystone.Wall(read_case(folder)), ["la"], store=store)
+    checks: list[str] = []
+
+    def counted(document: Any) -> Any:
+        checks.append(document["bound"])
+        return verify(document)
+
+    monkeypatch.setattr(certificates, "verify", counted)
+    (item,) = again_from(store).cases
+    assert item.certified is not None
+    assert item.certified.bound == pytest.approx(0.3, abs=1e-6)
+    assert checks == []
+    drystone.compare(drystone.Wall(read_case(folder)), ["la"], store=store)
+    assert checks == []
+
+    monkeypatch.setattr(certificates, "checking_version", lambda: "another")
+    again_from(store)
+    assert checks == ["1499997/5000000"]
+    monkeypatch.setattr(certificates, "checking_version", checking_version)
+
+    file = folder / "certificate.json"
+    sound = file.read_text()
+    file.write_text(sound.replace('"1499997/5000000"', '"1499998/5000000"', 1))
+    assert file.read_text() != sound
+    (item,) = again_from(store).cases
+    assert item.certified is None
+    assert any("certificate.json is refused" in sentence for sentence in violations(again_from(store)))
+
+    file.write_text(sound)
+    key = content_key(read_case(folder), file)
+    wall = folder / "wall.json"
+    wall.write_text(wall.read_text().replace("0.3", "0.4", 1))
+    assert content_key(read_case(folder), file) != key
