@@ -12,6 +12,7 @@ from harness.model.comparison import CaseResults
 from harness.model.method import Finding, Status
 from harness.model.result import Result
 from reports import shapes, words
+from reports.once import once
 
 
 @dataclass(frozen=True)
@@ -74,6 +75,7 @@ def _difference(first: Result, second: Result) -> tuple[float | None, bool]:
     return (other[0] / one[1] if other[0] > one[1] else other[1] / one[0]) - 1.0, False
 
 
+@once
 def measure_of(assembly: Assembly) -> FloatArray:
     """(n, 3) weights of (ux, uy, omega) in the inner product of areas; zero on fixed blocks.
 

@@ -5,7 +5,6 @@ from __future__ import annotations
 import base64
 import hashlib
 import json
-from dataclasses import replace
 from datetime import datetime
 from importlib.resources import files
 from pathlib import Path
@@ -22,7 +21,8 @@ from reports.drawing import case_data, fields_drawn, force_unit, result_data, wa
 from reports.environment import environment
 from reports.export import export
 from reports.limits import known_limits
-from reports.opening import in_order, opening
+from reports.once import each_once
+from reports.opening import opening, run_in_order
 from reports.sections import CaseSection, case_section
 from reports.studies import studies
 
@@ -42,8 +42,9 @@ def write_report(run: ComparisonRun, path: Path, *, drawn: bool = False) -> None
         drawn: whether the folder gets a figure of every case as PDF.
     """
     path.parent.mkdir(parents=True, exist_ok=True)
-    text = render(run, data_folder=f"{path.stem}-data")
-    export(run, path.with_name(f"{path.stem}-data"), drawn=drawn)
+    with each_once():
+        text = render(run, data_folder=f"{path.stem}-data")
+        export(run, path.with_name(f"{path.stem}-data"), drawn=drawn)
     write_whole(path, text)
 
 
@@ -54,7 +55,7 @@ def render(run: ComparisonRun, *, data_folder: str) -> str:
         run: the comparison.
         data_folder: name of the folder with the data, for the text.
     """
-    run = replace(run, cases=in_order(run.cases))
+    run = run_in_order(run)
     rows = tables.run_rows(run)
     shown = tables.overview_columns(run)
     scripts = [_static(name) for name in ("table.js", "draw.js")]

@@ -13,6 +13,7 @@ from harness.model.result import Result
 from reports import charts, numbers, words
 from reports.drawing import polygons_svg
 from reports.marks import mark_of
+from reports.once import once
 
 TIMES = ("cpu_seconds", "seconds", "search_seconds")
 """Columns of a path that tell when a value was found [s]."""
@@ -23,6 +24,7 @@ LEVEL = 0.01
 LENGTHS = ("live_displacement", "displacement")
 
 
+@once
 def curves(item: CaseResults) -> list[tuple[str, Markup]]:
     """Captions and charts of a case, as far as its results recorded a path; an empty chart where words say it all."""
     found: list[tuple[str, Markup]] = []

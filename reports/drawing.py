@@ -8,10 +8,11 @@ from __future__ import annotations
 
 import itertools
 import math
+from collections.abc import Iterable, Sequence
 from typing import Any
 
 import numpy as np
-from markupsafe import Markup
+from markupsafe import Markup, escape
 
 from harness.model.assembly import Assembly, FloatArray, polygon_area
 from harness.model.case import Case
@@ -19,6 +20,7 @@ from harness.model.comparison import CaseResults, ComparisonRun
 from harness.model.result import Result
 from harness.model.rings import rings_of
 from reports import flow, joints, numbers, shapes
+from reports.once import once
 
 SIZE = 4000
 MARGIN = 560
@@ -43,6 +45,11 @@ class Frame:
             round((self.extent.top - float(point[1])) * self.scale),
         )
 
+    def places(self, points: FloatArray) -> list[tuple[int, int]]:
+        """Points (k, 2) in drawing units."""
+        away = np.column_stack([points[:, 0] - self.extent.left, self.extent.top - points[:, 1]])
+        return [(x, y) for x, y in np.rint(away * self.scale).astype(int).tolist()]
+
     @property
     def view_box(self) -> str:
         """The part of the plane to show: the wall and room round it for loads and motion."""
@@ -56,13 +63,26 @@ def stroke_factor(assembly: Assembly) -> float:
     return round(min(1.0, max(0.3, block / 450.0)), 2)
 
 
-def path_of(frame: Frame, polygon: FloatArray) -> str:
-    """A polygon as SVG path data, relative after the first vertex; holes are rings that run the other way round."""
-    return "".join(_ring(frame, ring) for ring in rings_of(polygon))
+def paths_of(frame: Frame, polygons: Sequence[FloatArray]) -> list[str]:
+    """Polygons as SVG path data, relative after the first vertex; holes are rings that run the other way round."""
+    rings = [rings_of(polygon) for polygon in polygons]
+    each = [ring for of_one in rings for ring in of_one]
+    places = iter(frame.places(np.concatenate(each)) if each else [])
+    return ["".join(_ring(list(itertools.islice(places, len(ring)))) for ring in of_one) for of_one in rings]
 
 
-def _ring(frame: Frame, ring: FloatArray) -> str:
-    points = [frame.place(vertex) for vertex in ring]
+def data_of(paths: Sequence[str], members: Iterable[bool]) -> str:
+    """Path data of those polygons that are members."""
+    return "".join(itertools.compress(paths, members))
+
+
+@once
+def outlines(assembly: Assembly) -> list[str]:
+    """The path data of every block of a wall."""
+    return paths_of(Frame(assembly), assembly.polygons)
+
+
+def _ring(points: list[tuple[int, int]]) -> str:
     text = f"M{points[0][0]} {points[0][1]}"
     for (x0, y0), (x1, y1) in itertools.pairwise(points):
         if (x0, y0) != (x1, y1):
@@ -77,6 +97,7 @@ def block_labels(assembly: Assembly) -> list[str]:
     return [str(number) for number in range(1, assembly.n_blocks + 1)]
 
 
+@once
 def wall_svg(case: Case) -> Markup:
     """The wall as an inline SVG element: blocks with numbers, interfaces, contact points, loads."""
     assembly = case.assembly
@@ -90,11 +111,7 @@ def wall_svg(case: Case) -> Markup:
         )
     ]
     for still, name in ((True, "held"), (False, "stone")):
-        data = "".join(
-            path_of(frame, polygon)
-            for polygon, fixed in zip(assembly.polygons, assembly.fixed, strict=True)
-            if bool(fixed) is still
-        )
+        data = data_of(outlines(assembly), assembly.fixed == still)
         parts.append(Markup('<path class="{}" d="{}"/>').format(name, data))
     parts.append(_joints(frame, assembly))
     parts.append(_labels(frame, assembly))
@@ -123,12 +140,9 @@ def polygons_svg(case: Case, polygons: list[FloatArray]) -> Markup:
     drawn = Markup('<svg class="wall" style="--k:{}" viewBox="{}" role="img" aria-label="{}">').format(
         stroke_factor(assembly), frame.view_box, f"Displaced blocks of {case.id}"
     )
+    paths = paths_of(frame, polygons)
     for still, name in ((True, "held"), (False, "moves")):
-        data = "".join(
-            path_of(frame, polygon)
-            for polygon, fixed in zip(polygons, assembly.fixed, strict=True)
-            if bool(fixed) is still
-        )
+        data = data_of(paths, assembly.fixed == still)
         drawn += Markup('<path class="{}" d="{}"/>').format(name, data)
     return drawn + Markup("</svg>")
 
@@ -137,8 +151,7 @@ def _joints(frame: Frame, assembly: Assembly) -> Markup:
     if assembly.n_interfaces > DRAWN_INTERFACES:
         return Markup("")
     lines, dots = "", ""
-    for start, end in zip(assembly.end1, assembly.end2, strict=True):
-        (x0, y0), (x1, y1) = frame.place(start), frame.place(end)
+    for (x0, y0), (x1, y1) in zip(frame.places(assembly.end1), frame.places(assembly.end2), strict=True):
         lines += f"M{x0} {y0}l{x1 - x0} {y1 - y0}"
         dots += f"M{x0} {y0}h0M{x1} {y1}h0"
     drawn = Markup('<path class="joint" d="{}"/>').format(lines)
@@ -150,20 +163,24 @@ def _joints(frame: Frame, assembly: Assembly) -> Markup:
 def _labels(frame: Frame, assembly: Assembly) -> Markup:
     if assembly.n_blocks > LABELLED_BLOCKS:
         return Markup("")
-    drawn = Markup("")
-    for label, name, polygon, centroid, fixed in zip(
-        block_labels(assembly), assembly.block_ids, assembly.polygons, assembly.centroid, assembly.fixed, strict=True
+    texts = ""
+    for label, name, polygon, (x, y), fixed in zip(
+        block_labels(assembly),
+        assembly.block_ids,
+        assembly.polygons,
+        frame.places(assembly.centroid),
+        assembly.fixed,
+        strict=True,
     ):
         box = (polygon.max(axis=0) - polygon.min(axis=0)) * frame.scale
         slender = 2.0 * polygon_area(polygon) / _perimeter(polygon) * frame.scale
         size = min(170.0, 0.38 * float(box[1]), 1.2 * slender / max(1.0, 0.55 * len(label)))
         if size < 44.0:
             continue
-        x, y = frame.place(centroid)
-        drawn += Markup('<text x="{}" y="{}" font-size="{:.0f}">{}<title>{}</title></text>').format(
-            x, round(y + (0.35 if fixed else -0.22) * size), size, label, f"block {name}"
-        )
-    return drawn
+        place = f'x="{x}" y="{round(y + (0.35 if fixed else -0.22) * size)}"'
+        named = f"{escape(label)}<title>block {escape(name)}</title>"
+        texts += f'<text {place} font-size="{size:.0f}">{named}</text>'
+    return Markup(texts)
 
 
 def _perimeter(polygon: FloatArray) -> float:
@@ -198,15 +215,15 @@ def case_data(case: Case) -> dict[str, Any]:
     return {
         "box": frame.view_box,
         "ids": list(assembly.block_ids),
-        "path": [path_of(frame, polygon) for polygon in assembly.polygons],
-        "c": [x for centroid in assembly.centroid for x in frame.place(centroid)],
+        "path": outlines(assembly),
+        "c": [x for place in frame.places(assembly.centroid) for x in place],
         "fixed": "".join("1" if fixed else "0" for fixed in assembly.fixed),
         "a": assembly.block_a.tolist(),
         "b": assembly.block_b.tolist(),
         "e": [
             x
-            for start, end in zip(assembly.end1, assembly.end2, strict=True)
-            for x in (*frame.place(start), *frame.place(end))
+            for start, end in zip(frame.places(assembly.end1), frame.places(assembly.end2), strict=True)
+            for x in (*start, *end)
         ],
         "n": [round(1000 * float(x)) for normal in assembly.normal for x in (normal[0], -normal[1])],
         "mu": _run_lengths([round(float(x), 6) for x in assembly.friction]),

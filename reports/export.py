@@ -18,6 +18,7 @@ from harness.model.result import Result
 from harness.model.writing import write_whole
 from reports import charts, shapes, vectors, words
 from reports.curves import curves
+from reports.opening import run_in_order
 from reports.studies import studies
 from reports.tables import reference_of, worst_residual
 
@@ -80,9 +81,18 @@ def export(run: ComparisonRun, folder: Path, *, drawn: bool = False) -> None:
     earlier = _index(folder)
     contents["index.json"] = _json({"files": sorted(contents)})
     for name, content in contents.items():
-        write_whole(folder / name, content)
+        if not _holds(folder / name, content):
+            write_whole(folder / name, content)
     for name in earlier - set(contents):
         (folder / name).unlink(missing_ok=True)
+
+
+def _holds(path: Path, content: bytes) -> bool:
+    """Whether a file is there already as it would be written: most of an earlier report's are."""
+    try:
+        return path.stat().st_size == len(content) and path.read_bytes() == content
+    except OSError:
+        return False
 
 
 def _charts(run: ComparisonRun) -> dict[str, bytes]:
@@ -93,7 +103,7 @@ def _charts(run: ComparisonRun) -> dict[str, bytes]:
         if not shapes.problem(item.case)
         for number, (_, drawing) in enumerate(curves(item), start=1)
     ]
-    for place, study in enumerate(studies(run), start=1):
+    for place, study in enumerate(studies(run_in_order(run)), start=1):
         drawings += [(f"study-{place}-{number}", drawing) for number, (_, drawing) in enumerate(study.charts, start=1)]
     contents: dict[str, bytes] = {}
     for name, drawing in drawings:

@@ -6,13 +6,14 @@ import math
 from collections import defaultdict
 
 import numpy as np
-from markupsafe import Markup
+from markupsafe import Markup, escape
 
 from harness.model.assembly import Assembly, FloatArray
 from harness.model.case import Case
 from harness.model.result import Result
 from reports import flow, numbers, shapes
-from reports.drawing import BELOW, Frame, length_scale, path_of, stroke_factor
+from reports.drawing import BELOW, Frame, data_of, length_scale, outlines, stroke_factor
+from reports.once import once
 
 WIDEST, THINNEST = 0.16, 0.02
 """Width of the largest and of the smallest force, in block sizes."""
@@ -20,6 +21,7 @@ WIDTHS = 12
 """Widths are rounded to so many steps, so that forces of nearly one size share an element of the page."""
 
 
+@once
 def forces_svg(case: Case, result: Result) -> Markup:
     """Resultants of the contact forces (m, 3) of a result at their centres of pressure, with lengths and forces told.
 
@@ -34,11 +36,7 @@ def forces_svg(case: Case, result: Result) -> Markup:
         stroke_factor(assembly), frame.view_box, f"Contact forces of {case.id} by {result.method}"
     )
     for still, name in ((True, "outline held"), (False, "outline")):
-        data = "".join(
-            path_of(frame, polygon)
-            for polygon, fixed in zip(assembly.polygons, assembly.fixed, strict=True)
-            if bool(fixed) is still
-        )
+        data = data_of(outlines(assembly), assembly.fixed == still)
         drawn += Markup('<path class="{}" d="{}"/>').format(name, data)
     found = shapes.thrusts(assembly, forces, smallest=flow.STYLE.smallest)
     drawn += length_scale(frame, case.wall.units.length)
@@ -60,22 +58,22 @@ def _arrows(frame: Frame, assembly: Assembly, found: shapes.Thrusts, forces: Flo
     full = (limit > 0.0) & (abs(forces[found.interface, 2]) >= 0.999 * limit)
     ends, way = flow.drawn_ends(assembly, found), flow.towards_ground(found) * [1.0, -1.0]
     bars: dict[tuple[bool, float], str] = defaultdict(str)
-    heads, rings = {True: "", False: ""}, Markup("")
-    for k, share in enumerate(found.size / found.size.max()):
-        width = _width(frame, assembly, float(share))
-        size = max(0.2 * block, 1.7 * width)
-        tail, tip = (np.array(frame.place(end), dtype=float) for end in ends[k])
-        neck, side = tip - size * way[k], 0.4 * size * np.array([-way[k, 1], way[k, 0]])
-        bars[bool(full[k]), width] += "M{:.0f} {:.0f}L{:.0f} {:.0f}".format(*tail, *(0.3 * tip + 0.7 * neck))
-        heads[bool(full[k])] += "M{:.0f} {:.0f}L{:.0f} {:.0f}L{:.0f} {:.0f}z".format(
-            *tip, *(neck + side), *(neck - side)
-        )
-        if full[k]:
-            place = frame.place(found.point[k])
-            rings += Markup('<circle cx="{}" cy="{}" r="{:.0f}"/>').format(*place, max(0.05 * block, 0.5 * width + 9))
-    drawn = {True: rings, False: Markup("")}
-    for (at_limit, width), data in bars.items():
-        drawn[at_limit] += Markup('<path stroke-width="{:.0f}" d="{}"/>').format(width, data)
+    heads, rings = {True: "", False: ""}, ""
+    width = np.array([_width(frame, assembly, share) for share in (found.size / found.size.max()).tolist()])
+    size = np.maximum(0.2 * block, 1.7 * width)[:, None]
+    tail, tip = (np.array(frame.places(ends[:, end]), dtype=float) for end in (0, 1))
+    neck, side = tip - size * way, 0.4 * size * np.column_stack([-way[:, 1], way[:, 0]])
+    lines = np.column_stack([tail, 0.3 * tip + 0.7 * neck, tip, neck + side, neck - side]).tolist()
+    for at_limit, wide, line, (x, y) in zip(
+        full.tolist(), width.tolist(), lines, frame.places(found.point), strict=True
+    ):
+        bars[at_limit, wide] += "M{:.0f} {:.0f}L{:.0f} {:.0f}".format(*line[:4])
+        heads[at_limit] += "M{:.0f} {:.0f}L{:.0f} {:.0f}L{:.0f} {:.0f}z".format(*line[4:])
+        if at_limit:
+            rings += f'<circle cx="{x}" cy="{y}" r="{max(0.05 * block, 0.5 * wide + 9):.0f}"/>'
+    drawn = {True: Markup(rings), False: Markup("")}
+    for (at_limit, wide), data in bars.items():
+        drawn[at_limit] += Markup('<path stroke-width="{:.0f}" d="{}"/>').format(wide, data)
     for at_limit, data in heads.items():
         if data:
             drawn[at_limit] += Markup('<path class="tip-of" d="{}"/>').format(data)
@@ -87,16 +85,14 @@ def _sizes(frame: Frame, assembly: Assembly, found: shapes.Thrusts) -> Markup:
     """The size of each force beside it, where there is room for all of them."""
     if len(found.size) > flow.STYLE.labelled:
         return Markup("")
-    block, drawn = assembly.length_scale * frame.scale, Markup("")
-    for point, size, p in zip(found.point, found.size, found.interface, strict=True):
-        level = abs(float(assembly.normal[p, 1])) > 0.5
-        x, y = frame.place(point)
+    block, texts = assembly.length_scale * frame.scale, ""
+    levels = abs(assembly.normal[found.interface, 1]) > 0.5
+    for (x, y), size, level in zip(frame.places(found.point), found.size.tolist(), levels.tolist(), strict=True):
         across, up = (0.09, 0.05) if level else (0.0, 0.1)
-        anchor = Markup(' style="text-anchor:start"') if level else Markup("")
-        drawn += Markup('<text x="{:.0f}" y="{:.0f}"{}>{}</text>').format(
-            x + across * block, y - up * block, anchor, numbers.given(float(size), 3)
-        )
-    return Markup('<g font-size="{:.0f}">{}</g>').format(min(110.0, 0.17 * block), drawn)
+        anchor = ' style="text-anchor:start"' if level else ""
+        place = f'x="{x + across * block:.0f}" y="{y - up * block:.0f}"'
+        texts += f"<text {place}{anchor}>{escape(numbers.given(size, 3))}</text>"
+    return Markup('<g font-size="{:.0f}">{}</g>').format(min(110.0, 0.17 * block), Markup(texts))
 
 
 def _force_scale(frame: Frame, assembly: Assembly, largest: float, unit: str) -> Markup:

@@ -8,6 +8,7 @@ import numpy as np
 
 from harness.model.assembly import Assembly
 from harness.model.result import Result, normalised_mechanism, relative_velocities
+from reports.once import once
 
 STILL = 1e-5
 """Relative velocity that counts as none, as in `harness.model.result.contact_states`; the fastest vertex has 1."""
@@ -42,6 +43,7 @@ class Motion:
         return np.asarray(self.slides & ~self.parts)
 
 
+@once
 def _motion(assembly: Assembly, result: Result) -> Motion:
     velocities = normalised_mechanism(assembly, np.asarray(result.mechanism, dtype=float))
     opening, slip = relative_velocities(assembly, velocities)

@@ -10,7 +10,8 @@ from harness.model.case import Case
 from harness.model.result import Result
 from reports import joints, shapes
 from reports.agreement import measure_of
-from reports.drawing import DRAWN_INTERFACES, Frame, length_scale, path_of, stroke_factor
+from reports.drawing import DRAWN_INTERFACES, Frame, data_of, length_scale, paths_of, stroke_factor
+from reports.once import once
 
 MARK_CLASS = {
     joints.SLIDE: "slide",
@@ -32,13 +33,20 @@ def mechanism_svg(case: Case, result: Result, *, measured: bool = False) -> Mark
         result: a result with a mechanism.
         measured: whether a bar of a length stands below, for a drawing that goes about alone.
     """
+    bar = length_scale(Frame(case.assembly), case.wall.units.length) if measured else Markup("")
+    return _mechanism(case, result) + bar + Markup("</svg>")
+
+
+@once
+def _mechanism(case: Case, result: Result) -> Markup:
+    """The element without its end."""
     assembly, frame = case.assembly, Frame(case.assembly)
     mechanism = np.asarray(result.mechanism, dtype=float)
     drawn = _opened(case, frame, result.method)
     drawn += _blocks(frame, assembly, mechanism, shapes.amplitude(assembly, mechanism))
     if assembly.n_interfaces <= DRAWN_INTERFACES:
         drawn += _marks(frame, assembly, result)
-    return drawn + (length_scale(frame, case.wall.units.length) if measured else Markup("")) + Markup("</svg>")
+    return drawn
 
 
 def overlay_svg(case: Case, first: Result, second: Result) -> Markup:
@@ -59,7 +67,8 @@ def overlay_svg(case: Case, first: Result, second: Result) -> Markup:
     drawn += _blocks(frame, assembly, fields[0], scale)
     places = [shapes.displaced(assembly, field, by) for field, by in zip(fields, scales, strict=True)]
     apart = ELSEWHERE * frame.extent.longest
-    data = "".join(path_of(frame, b) for a, b in zip(*places, strict=True) if float(np.abs(a - b).max()) > apart)
+    elsewhere = [b for a, b in zip(*places, strict=True) if float(np.abs(a - b).max()) > apart]
+    data = "".join(paths_of(frame, elsewhere))
     drawn += Markup('<path class="other" d="{}"/>').format(data) if data else Markup("")
     drawn += _joints_of_one(frame, assembly, (first, second), scales)
     return drawn + length_scale(frame, case.wall.units.length) + Markup("</svg>")
@@ -73,10 +82,9 @@ def _opened(case: Case, frame: Frame, by: str) -> Markup:
 
 def _blocks(frame: Frame, assembly: Assembly, mechanism: FloatArray, scale: float) -> Markup:
     moves = shapes.moving(assembly, mechanism) & ~assembly.fixed
-    polygons, drawn = shapes.displaced(assembly, mechanism, scale), Markup("")
+    paths, drawn = paths_of(frame, shapes.displaced(assembly, mechanism, scale)), Markup("")
     for name, members in (("held", assembly.fixed), ("still", ~assembly.fixed & ~moves), ("moves", moves)):
-        data = "".join(path_of(frame, polygon) for polygon, member in zip(polygons, members, strict=True) if member)
-        drawn += Markup('<path class="{}" d="{}"/>').format(name, data)
+        drawn += Markup('<path class="{}" d="{}"/>').format(name, data_of(paths, members))
     return drawn
 
 
@@ -113,7 +121,8 @@ def mark_size(frame: Frame, assembly: Assembly) -> float:
 
 
 def _lines(frame: Frame, ends: FloatArray) -> str:
-    return "".join("M{} {}L{} {}".format(*frame.place(start), *frame.place(end)) for start, end in ends)
+    pairs = zip(frame.places(ends[:, 0]), frame.places(ends[:, 1]), strict=True)
+    return "".join(f"M{x0} {y0}L{x1} {y1}" for (x0, y0), (x1, y1) in pairs)
 
 
 def _marks(frame: Frame, assembly: Assembly, result: Result) -> Markup:
@@ -133,8 +142,8 @@ def _marks(frame: Frame, assembly: Assembly, result: Result) -> Markup:
         if state == joints.DILATANT:
             drawn += Markup('<path class="core" stroke-width="{:.0f}" d="{}"/>').format(0.4 * size, data)
         if state in (joints.ROCK, joints.BOTH):
-            for hinge in shapes.hinges(assembly, mechanism, ends, chosen):
-                drawn += Markup('<circle class="hinge" cx="{}" cy="{}" r="{:.0f}"/>').format(
-                    *frame.place(hinge), 1.1 * size
-                )
+            hinges = frame.places(shapes.hinges(assembly, mechanism, ends, chosen))
+            drawn += Markup(
+                "".join(f'<circle class="hinge" cx="{x}" cy="{y}" r="{1.1 * size:.0f}"/>' for x, y in hinges)
+            )
     return drawn

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from markupsafe import Markup
@@ -15,6 +15,7 @@ from reports.agreement import agreement, mains, spread
 from reports.facts import friction_text, value_in_words
 from reports.joints import joints_in_words, motion
 from reports.mechanism_drawing import mechanism_svg, overlay_svg
+from reports.once import once
 from reports.reasons import SAME_MOTION, least_known, mechanism_in_words
 from reports.tables import anchor_of, certified_bound
 
@@ -78,6 +79,12 @@ def opening(run: ComparisonRun) -> Opening:
         figure=figure,
         caption=caption,
     )
+
+
+@once
+def run_in_order(run: ComparisonRun) -> ComparisonRun:
+    """The comparison with its cases in the order of the page."""
+    return replace(run, cases=in_order(run.cases))
 
 
 def in_order(items: list[CaseResults]) -> list[CaseResults]:
@@ -276,6 +283,7 @@ def _focus(items: list[CaseResults], one: bool) -> CaseResults | None:
     )
 
 
+@once
 def figure_of(item: CaseResults) -> tuple[Markup, str]:
     """The mechanism of the least state with that of another family dashed over it, and its caption; empty if none."""
     least = least_known(item)

@@ -49,12 +49,15 @@ class Extent:
 
 def extent(assembly: Assembly) -> Extent:
     """The rectangle round all blocks."""
-    return extent_of(assembly.polygons)
+    return _round(assembly.corners[0])
 
 
 def extent_of(polygons: Sequence[FloatArray]) -> Extent:
     """The rectangle round polygons (k, 2)."""
-    points = np.concatenate(list(polygons))
+    return _round(np.concatenate(list(polygons)))
+
+
+def _round(points: FloatArray) -> Extent:
     low, high = points.min(axis=0), points.max(axis=0)
     return Extent(float(low[0]), float(low[1]), float(high[0]), float(high[1]))
 
@@ -120,12 +123,10 @@ def amplitude(assembly: Assembly, mechanism: FloatArray) -> float:
 
 def displaced(assembly: Assembly, mechanism: FloatArray, scale: float) -> list[FloatArray]:
     """Polygons moved along a velocity field for a `scale` of time, without large rotations."""
-    return [
-        polygon + scale * vertex_velocities(polygon, centroid, motion)
-        for polygon, centroid, motion in zip(
-            assembly.polygons, assembly.centroid, np.asarray(mechanism, dtype=float), strict=True
-        )
-    ]
+    points, block = assembly.corners
+    motion = np.asarray(mechanism, dtype=float)[block]
+    moved = points + scale * vertex_velocities(points, assembly.centroid[block], motion)
+    return np.split(moved, np.cumsum([len(polygon) for polygon in assembly.polygons])[:-1])
 
 
 def moved_ends(assembly: Assembly, mechanism: FloatArray, scale: float, chosen: IntArray) -> FloatArray:
@@ -146,9 +147,9 @@ def hinges(assembly: Assembly, mechanism: FloatArray, ends: FloatArray, chosen: 
 
 def moving(assembly: Assembly, mechanism: FloatArray, smallest: float = 1e-3) -> np.ndarray:
     """(n,) whether any vertex of a block moves faster than `smallest` of the fastest vertex of the wall."""
-    block = np.repeat(np.arange(assembly.n_blocks), [len(polygon) for polygon in assembly.polygons])
+    points, block = assembly.corners
     motion = np.asarray(mechanism, dtype=float)[block]
-    arm = np.concatenate(assembly.polygons) - assembly.centroid[block]
+    arm = points - assembly.centroid[block]
     speeds = np.hypot(motion[:, 0] - motion[:, 2] * arm[:, 1], motion[:, 1] + motion[:, 2] * arm[:, 0])
     speed = np.zeros(assembly.n_blocks)
     np.maximum.at(speed, block, speeds)

@@ -21,8 +21,10 @@ from reports.facts import friction_text
 from reports.families import Study, families, methods_of, solved
 from reports.grid import grids
 from reports.marks import Mark, mark_of
+from reports.once import once
 
 
+@once
 def studies(run: ComparisonRun) -> list[Study]:
     """All studies the results allow, then those the comparison brought."""
     found = [study for study in (cost_against_size(run), performance_profile(run)) if study is not None]

@@ -128,6 +128,12 @@ class Assembly:
         return np.asarray((self.end2 - self.end1) / self.length[:, None])
 
     @cached_property
+    def corners(self) -> tuple[FloatArray, IntArray]:
+        """(v, 2) vertices of all blocks, one block after the other [length], and (v,) the block of each."""
+        block = np.repeat(np.arange(self.n_blocks), [len(polygon) for polygon in self.polygons])
+        return np.concatenate(self.polygons), block
+
+    @cached_property
     def radius(self) -> FloatArray:
         """(n,) largest distance of a vertex of every block from its centroid [length]."""
         pairs = zip(self.polygons, self.centroid, strict=True)

@@ -121,9 +121,9 @@ class Result(BaseModel):
 
 def fastest_vertex(assembly: Assembly, mechanism: FloatArray) -> float:
     """The largest speed of a vertex of the wall under a mechanism (n, 3)."""
-    moving = np.flatnonzero(mechanism.any(axis=1))
-    speeds = (vertex_velocities(assembly.polygons[i], assembly.centroid[i], mechanism[i]) for i in moving)
-    return max((float(np.hypot(speed[:, 0], speed[:, 1]).max()) for speed in speeds), default=0.0)
+    points, block = assembly.corners
+    speed = vertex_velocities(points, assembly.centroid[block], mechanism[block])
+    return float(np.hypot(speed[:, 0], speed[:, 1]).max(initial=0.0))
 
 
 def normalised_mechanism(assembly: Assembly, mechanism: FloatArray) -> FloatArray:
@@ -137,9 +137,12 @@ def normalised_mechanism(assembly: Assembly, mechanism: FloatArray) -> FloatArra
 
 
 def vertex_velocities(points: FloatArray, centroid: FloatArray, motion: FloatArray) -> FloatArray:
-    """Velocities (k, 2) of points (k, 2) of a block with centroid (2,) and motion (ux, uy, omega)."""
+    """Velocities (k, 2) of points (k, 2) of a block with centroid (2,) and motion (ux, uy, omega), or each of its own.
+
+    Points of many blocks come with the centroid (k, 2) and the motion (k, 3) of the block of each.
+    """
     arm = points - centroid
-    return np.asarray(motion[:2] + motion[2] * np.stack([-arm[:, 1], arm[:, 0]], axis=1))
+    return np.asarray(motion[..., :2] + motion[..., 2:] * np.stack([-arm[:, 1], arm[:, 0]], axis=1))
 
 
 def relative_velocities(assembly: Assembly, mechanism: FloatArray) -> tuple[FloatArray, FloatArray]:
