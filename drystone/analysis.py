@@ -126,6 +126,19 @@ def analyse(
         InputError: an unknown method or setting, a wall that the method refuses (isolated: the result says so), or one
             of your own is to be isolated.
     """
+    return analyse_by(
+        wall, method, settings, isolated=isolated, limits=Limits(seconds, memory_bytes), processes=processes
+    )
+
+
+def analyse_by(
+    wall: Wall, method: str | Method, settings: dict[str, Any], *, isolated: bool, limits: Limits, processes: int
+) -> Result:
+    """As `analyse`, with settings that may have any name, `seconds` among them.
+
+    Raises:
+        InputError: as `analyse`.
+    """
     if isinstance(method, str):
         check_methods([method], "method")
         loaded = load_method(method)
@@ -137,7 +150,7 @@ def analyse(
     chosen = validate(loaded.Settings, settings, "settings")
     references = tuple(item for item in wall.case.file.references if loaded.name in item.applies_to)
     fitting = tuple(item for item in references if item.settings == settings)
-    run = Run(wall.case, loaded.name, settings, Limits(seconds, memory_bytes), fitting, processes)
+    run = Run(wall.case, loaded.name, settings, limits, fitting, processes)
     if isolated:
         (record,) = engine.execute([run], None, 1)
         return Result.on(wall, record)

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from drystone.analysis import Result, analyse
+from drystone.analysis import Result, analyse_by
 from drystone.walls import Wall
 from harness.certificates import with_certificates
 from harness.engine import compare as engine
@@ -147,4 +147,9 @@ def compare(
 
 def _here(walls: list[Wall], planned: list[Run]) -> list[Record]:
     by_case = {id(wall.case): wall for wall in walls}
-    return [analyse(by_case[id(run.case)], run.method, **run.settings) for run in planned]
+    return [
+        analyse_by(
+            by_case[id(run.case)], run.method, run.settings, isolated=False, limits=run.limits, processes=run.processes
+        )
+        for run in planned
+    ]

@@ -7,10 +7,10 @@ from pathlib import Path
 
 import click
 
-from drystone.analysis import analyse
+from drystone.analysis import analyse_by
 from drystone.walls import Wall
 from harness import terminal
-from harness.engine.plan import check_methods, find_cases
+from harness.engine.plan import Limits, check_methods, find_cases
 from harness.given_settings import settings_of
 from harness.model.method import Status
 from harness.options import (
@@ -58,10 +58,8 @@ def run(
     (found,) = find_cases([case], None, folders)
     chosen = settings_of(method, settings)
     warn(found)
-    bytes_allowed = memory * 2**20
-    result = analyse(
-        Wall(found), method, isolated=True, seconds=seconds, memory_bytes=bytes_allowed, processes=jobs, **chosen
-    )
+    limits = Limits(seconds, memory * 2**20)
+    result = analyse_by(Wall(found), method, chosen, isolated=True, limits=limits, processes=jobs)
     if as_json:
         print_json(result.model_dump(mode="json") if fields else result.summary())
     else:

@@ -11,7 +11,11 @@ Item = TypeVar("Item")
 Made = TypeVar("Made")
 
 MOST_FAULTS = 100
-"""Faults of one file that are told; the rest are counted."""
+"""Lines about one file that are told; the rest are counted."""
+LIKE_MEANING = {"polygon": ("vertices", "corners", "points", "coordinates", "coords", "outline", "shape")}
+"""Words of other formats for fields of a wall."""
+MOST_ALIKE = 3
+"""Elements with the same fault that are told one by one."""
 
 
 def visible(text: str) -> str:
@@ -92,12 +96,21 @@ class InputFaults(InputError):
         if count == 1:
             return str(self.faults[0])
         head = f"{visible(self.source)}: {count} faults" if self.source else f"{count} faults"
-        lines = [
-            visible(_sentence(fault, "" if fault.source == self.source else fault.source))
-            for fault in self.faults[:MOST_FAULTS]
-        ]
-        more = [f"and {count - MOST_FAULTS} more"] if count > MOST_FAULTS else []
-        return "\n  ".join([head, *lines, *more])
+        alike: dict[tuple[object, ...], list[InputError]] = {}
+        for number, fault in enumerate(self.faults):
+            same = (fault.source, fault.problem, fault.remedy, number if fault.spot or not fault.element else None)
+            alike.setdefault(same, []).append(fault)
+        lines = [line for faults in alike.values() for line in self._lines(faults)]
+        more = [f"and {len(lines) - MOST_FAULTS} lines more"] if len(lines) > MOST_FAULTS else []
+        return "\n  ".join([head, *lines[:MOST_FAULTS], *more])
+
+    def _lines(self, alike: Sequence[InputError]) -> list[str]:
+        """Faults that differ by their element alone: a line each, or one line where there are many."""
+        source = "" if alike[0].source == self.source else alike[0].source
+        if len(alike) <= MOST_ALIKE:
+            return [visible(_sentence(fault, source)) for fault in alike]
+        places = first_few([fault.element for fault in alike], MOST_ALIKE)
+        return [visible(_sentence(InputError(alike[0].problem, alike[0].remedy, places), source))]
 
     def __reduce__(self) -> tuple[type[InputError], tuple[object, ...]]:
         return InputFaults, (self._faults, self.source)
@@ -147,8 +160,9 @@ def sorted_out(make: Callable[[Item], Made], items: Iterable[Item]) -> tuple[lis
 
 
 def did_you_mean(word: str, known: Iterable[str]) -> str:
-    """The question whether a known word that is near was meant; empty where none is near."""
+    """The question whether a known word that is near, or of like meaning, was meant; empty where none is."""
     names = {name.lower(): name for name in known}
+    names |= {other: names[name] for name, others in LIKE_MEANING.items() if name in names for other in others}
     near = get_close_matches(word.lower(), names, n=1, cutoff=0.6)
     return f'Did you mean "{names[near[0]]}"?' if near else ""
 

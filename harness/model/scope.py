@@ -30,7 +30,7 @@ _OUTSIDE = {
         "damping", "mass", "time", "time_history", "accelerogram", "ground_motion", "velocity", "acceleration",
         "frequency", "restitution",
     ),
-    "a third dimension": ("z", "depth", "polyhedron", "vertices", "faces", "mesh", "out_of_plane"),
+    "a third dimension": ("z", "depth", "polyhedron", "faces", "mesh", "out_of_plane"),
     "temperature": ("temperature", "thermal", "thermal_expansion"),
 }  # fmt: skip
 _WORDS = {word: model for model, words in _OUTSIDE.items() for word in words}

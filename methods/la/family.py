@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
+from dataclasses import replace
 from typing import Any, ClassVar
 
 from harness.model.assembly import Assembly
-from harness.model.method import Answer
+from harness.model.method import Answer, Finding
 from methods.la.core.newton_matrix import NewtonMatrix
 from methods.la.core.problem import Problem, make_problem
 from methods.la.state_answers import dead_load_answer
@@ -17,14 +18,54 @@ Answering = Callable[[Assembly, Problem, NewtonMatrix, Any], Answer]
 """Answers for a component that stands under its dead load and carries a live load, by the settings."""
 
 
+def proved_of_all(answer: Answer, parts: Sequence[Answer]) -> Answer:
+    """The answer for a wall with the lower bound that holds of all of its components, not of the deciding one alone.
+
+    A component that fails at a higher multiplier, as far as is known, may fail below too. A certificate of one
+    component is none of the wall.
+
+    Args:
+        answer: for the wall.
+        parts: those for the components that were analysed; a component whose analysis was stopped is missing.
+    """
+    components = answer.details.get("components", ())
+    own = answer.details.get("lower_bound")
+    if len(components) < 2 or own is None or answer.multiplier is None:
+        return answer
+    lower = 0.0
+    if len(parts) == len(components):
+        bounds = [part.details.get("lower_bound", 0.0) for part in parts if part.finding is not Finding.STANDS]
+        lower = min([own, *bounds])
+    proved = bool(answer.details["proved_least"]) and lower >= min(own, answer.multiplier)
+    kept = {name: value for name, value in answer.details.items() if name not in ("certificate", "certified_bound")}
+    details = kept | {"lower_bound": lower, "proved_least": proved}
+    rest = f"there is none below {lower:.7g}" if lower > 0.0 else "nothing is proved"
+    said = ""
+    if not proved and (answer.details["proved_least"] or own > lower):
+        said = f" What is proved is proved of that component alone; of the whole wall {rest}."
+    elif len(kept) < len(answer.details):
+        said = " That the other components bear more is found to rounding."
+    return replace(answer, sentence=answer.sentence + said, details=details)
+
+
 class LimitAnalysisFamily(ABC):
     """Base of the adapters: a wall that falls under its dead load, or has no live load, is answered here."""
 
     family: ClassVar[str] = "la"
 
     def solve(self, assembly: Assembly, settings: Any) -> Answer:
-        """The answer from those for the independent components of the wall."""
-        return analysed(assembly, lambda part: self._of_component(part, settings))
+        """The answer from those for the independent components of the wall, with what is proved of all of them."""
+        return self._of_components(assembly, settings)
+
+    def _of_components(self, assembly: Assembly, settings: Any, answer: Answering | None = None) -> Answer:
+        """As `solve`, each component answered by `answer`, by default the method's own."""
+        parts: list[Answer] = []
+
+        def solve_part(part: Assembly) -> Answer:
+            parts.append(self._of_component(part, settings, answer))
+            return parts[-1]
+
+        return proved_of_all(analysed(assembly, solve_part), parts)
 
     def _of_component(self, assembly: Assembly, settings: Any, answer: Answering | None = None) -> Answer:
         """The answer of the dead load where it decides, else that of `answer`, by default the method's own."""

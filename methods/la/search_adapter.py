@@ -14,7 +14,6 @@ from methods.la.declared_la import DeclaredSearch
 from methods.la.family import LimitAnalysisFamily
 from methods.la.least import least_known
 from methods.la.sources import from_motions
-from methods.numerics.statics import analysed
 from methods.springs.warm_up import load_kernels
 
 load_kernels()
@@ -24,8 +23,13 @@ class LimitAnalysis(LimitAnalysisFamily, DeclaredSearch):
     """Least collapse state known, under zero dilatancy (`la`): the method to use."""
 
     def answer(self, assembly: Assembly, problem: Problem, newton: NewtonMatrix, settings: Any) -> Answer:
-        """Interior point, exact programme, ray descent, restarts and continuation, as the settings say."""
-        return least_known(problem, newton, settings, self.tolerance)
+        """The search that the settings ask for, and a lower bound where they ask for one."""
+        known = least_known(problem, newton, settings, self.tolerance)
+        if settings.bound is None:
+            return known
+        from methods.la.bounds import with_bound  # the relaxation, which most searches do without
+
+        return with_bound(assembly, problem, known, settings.bound)
 
     def solve_from(self, assembly: Assembly, settings: Any, motions: Sequence[FloatArray]) -> Answer:
         """The least of the states that given motions of the joints (m, 3) lead to, without a search of its own.
@@ -37,4 +41,4 @@ class LimitAnalysis(LimitAnalysisFamily, DeclaredSearch):
             sources = from_motions([motion[joints_of(part, assembly)] for motion in motions])
             return least_known(problem, newton, settings, self.tolerance, sources)
 
-        return analysed(assembly, lambda part: self._of_component(part, settings, answered))
+        return self._of_components(assembly, settings, answered)

@@ -12,6 +12,8 @@ from hypothesis import strategies as st
 
 from benchmarks.bounds import small_wall
 from harness.model.assembly import Assembly
+from harness.model.build import build
+from harness.model.wall import Wall
 from methods.bound.bracket import bracket
 from methods.bound.relaxation import Relaxation
 from methods.bound.slack_bounds import SlackProgramme
@@ -20,12 +22,13 @@ from methods.la.bound_adapter import BoundedLimitAnalysis
 from methods.la.certify.window_certificate import equations_of
 from methods.la.core.newton_matrix import NewtonMatrix
 from methods.la.core.problem import Problem, make_problem
-from methods.la.core.search_settings import BoundSettings
+from methods.la.core.search_settings import BoundSettings, SearchSettings
+from methods.la.search_adapter import LimitAnalysis
 from methods.la.sources.search import Search
 from tests.bound.by_cases import in_cases
 from tests.enumeration import least_by_enumeration
 from tests.la.bodies import column, running_bond
-from tests.walls import assembly
+from tests.walls import assembly, wall_data
 
 
 def in_windows(problem: Problem, upper: float, seconds: float) -> Bracket:
@@ -80,7 +83,7 @@ def test_no_case_loses_a_state() -> None:
     [(2, 2, 0.65), pytest.param(3, 2, 7 / 11, marks=pytest.mark.slow), pytest.param(4, 2, 0.6, marks=pytest.mark.slow)],
 )
 def test_the_bracket_of_a_bonded_wall_closes(courses: int, bricks: int, least: float) -> None:
-    settings = BoundSettings(seconds=60.0, effort="quick")
+    settings = BoundSettings(bound_seconds=60.0, effort="quick")
     answer = BoundedLimitAnalysis().solve(running_bond(courses, bricks, 0.2, 0.65), settings)
     assert answer.multiplier == pytest.approx(least, rel=1e-9)
     assert answer.details["lower_bound"] == pytest.approx(least, rel=1e-6)  # CLOSED
@@ -128,7 +131,44 @@ def test_products_of_collapse_states_satisfy_the_relaxation(wall: Assembly) -> N
 def test_the_bound_of_a_wall_of_two_components_is_the_lesser_of_theirs() -> None:
     panel = {"type": "panel", "cell_length": 0.3, "cell_height": 1.0, "layout": ["A.B", "A.C", "GGG"], "fixed": "G"}
     wall = assembly(panel, 0.5)
-    answer = BoundedLimitAnalysis().solve(wall, BoundSettings(seconds=5.0))
+    answer = BoundedLimitAnalysis().solve(wall, BoundSettings(bound_seconds=5.0))
     assert len(answer.details["components"]) == 2
     assert answer.multiplier is not None
     assert 0.0 < answer.details["lower_bound"] <= answer.multiplier * (1.0 + 1e-9)
+
+
+def test_a_deep_search_has_the_bound_too() -> None:
+    wall = running_bond(3, 2, 0.2, 0.65)
+    assert not LimitAnalysis().solve(wall, SearchSettings()).details["proved_least"]
+    deep = LimitAnalysis().solve(wall, SearchSettings(effort="deep"))
+    assert deep.details["certified_bound"] == pytest.approx(7 / 11, rel=2e-6)
+    assert "certificate" in deep.details
+
+
+def rectangle(x: float, y: float, width: float, height: float) -> list[list[float]]:
+    return [[x, y], [x + width, y], [x + width, y + height], [x, y + height]]
+
+
+def test_what_is_proved_of_the_component_that_fails_is_not_said_of_a_wall_with_a_harder_one() -> None:
+    """A column that rocks at .6 beside three courses of three bricks, whose 7/11 no search proves."""
+    courses = [[(0.0, 0.2), (0.2, 0.4), (0.6, 0.4), (1.0, 0.2)], [(0.0, 0.4), (0.4, 0.4), (0.8, 0.4)]]
+    blocks = [
+        {"id": f"{row}-{x}", "polygon": rectangle(x, 0.2 * row, width, 0.2)}
+        for row in range(3)
+        for x, width in courses[row % 2]
+    ]
+    blocks.append({"id": "column", "polygon": rectangle(2.5, 0.0, 0.3, 0.5)})
+    blocks.append({"id": "floor", "polygon": rectangle(-1.0, -0.2, 5.0, 0.2), "fixed": True})
+    data = {name: value for name, value in wall_data({}).items() if name != "pattern"}
+    wall = build(Wall.model_validate(data | {"blocks": blocks})).assembly
+    alone = LimitAnalysis().solve(wall, SearchSettings())
+    assert alone.multiplier == pytest.approx(0.6)
+    assert len(alone.details["components"]) == 2
+    assert not alone.details["proved_least"]
+    assert alone.details["lower_bound"] == 0.0
+    assert "of the whole wall nothing is proved" in alone.sentence
+    both = BoundedLimitAnalysis().solve(wall, BoundSettings(bound_seconds=30.0))
+    assert both.details["proved_least"]
+    assert both.details["lower_bound"] == pytest.approx(0.6, rel=2e-6)  # the margin of the tree
+    assert "certificate" not in both.details
+    assert "found to rounding" in both.sentence

@@ -137,12 +137,12 @@ def test_the_full_check_shows_a_certificate_of_another_wall_in_red(tmp_path: Pat
 
 def test_the_bound_hands_over_a_certificate_and_says_so() -> None:
     wall = assembly(stack(2), 0.5)
-    answer = BoundedLimitAnalysis().solve(wall, BoundSettings(seconds=20.0))
+    answer = BoundedLimitAnalysis().solve(wall, BoundSettings(bound_seconds=20.0))
     document = answer.details["certificate"]
     require_same_wall(document, wall)
     assert verify(document) == (Fraction(499999, 10**6), Fraction(1, 2))
     assert answer.details["certified_bound"] == 0.499999
     assert "proved in fractions" in answer.sentence
-    hurried = BoundedLimitAnalysis().solve(wall, BoundSettings(seconds=1e-9))
+    hurried = BoundedLimitAnalysis().solve(wall, BoundSettings(bound_seconds=1e-9))
     assert "certificate" not in hurried.details
     assert "proved in fractions" not in hurried.sentence

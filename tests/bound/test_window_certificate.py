@@ -134,7 +134,7 @@ def test_the_certificates_of_windows_of_library_walls_hold(file: Path) -> None:
     ("courses", "bricks", "least"), [(3, 2, Fraction(7, 11)), (4, 2, Fraction(3, 5)), (3, 3, Fraction(7, 11))]
 )
 def test_larger_bonds_are_proved(courses: int, bricks: int, least: Fraction) -> None:
-    answer = BoundedLimitAnalysis().solve(running_bond(courses, bricks, 0.2, 0.65), BoundSettings(seconds=120.0))
+    answer = BoundedLimitAnalysis().solve(running_bond(courses, bricks, 0.2, 0.65), BoundSettings(bound_seconds=120.0))
     assert answer.multiplier == pytest.approx(float(least), rel=1e-9)
     assert float(least) * (1 - 1e-6) <= answer.details["certified_bound"] <= least
     assert answer.sentence.startswith(f"The minimum collapse multiplier is {least}")

@@ -44,6 +44,22 @@ def test_all_faults_are_told_at_once_in_the_order_of_the_file():
     assert all(fault.source == "many.json" for fault in caught.value.faults)
 
 
+def test_the_same_fault_of_many_elements_is_one_line():
+    square = [[0, 0], [1, 0], [1, 1], [0, 1]]
+    blocks = [{"id": f"b{k}", "vertices": square} for k in range(20)]
+    with pytest.raises(InputFaults) as caught:
+        parse_wall({"format": "wall/1", "friction": 0.5, "blocks": blocks}, "many.json")
+    said = str(caught.value).splitlines()
+    assert said[0] == "many.json: 40 faults"
+    assert len(said) == 3
+    assert (
+        said[1]
+        .strip()
+        .startswith('blocks[0].polygon ("b0"), blocks[1].polygon ("b1"), blocks[2].polygon ("b2") and 17')
+    )
+    assert 'Did you mean "polygon"?' in said[2]
+
+
 def test_one_fault_is_an_error_of_its_own():
     with pytest.raises(InputError) as caught:
         parse_wall({"format": "wall/1", "friction": -1}, "wall.json")

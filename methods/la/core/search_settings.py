@@ -43,6 +43,8 @@ class SearchSettings(Settings):
         ladder: factors on friction for the continuation, in order; None as `effort` says, empty for none.
         failures: draws without success that end a ray descent; None as `effort` says.
         rational_interfaces: interfaces up to which the result is confirmed in fractions.
+        bound_seconds: of CPU time for a lower bound as of `la-bound`, where no tree proves the state to be the least;
+            None: 60 for "deep", else none. The multiplier does not depend on it.
     """
 
     seed: int = Field(default=0, ge=0)
@@ -51,6 +53,13 @@ class SearchSettings(Settings):
     ladder: tuple[PositiveFactor, ...] | None = None
     failures: int | None = Field(default=None, ge=1)
     rational_interfaces: int = Field(default=100, ge=0)
+    bound_seconds: float | None = Field(default=None, ge=0.0)
+
+    @property
+    def bound(self) -> BoundSettings | None:
+        """The settings of the bound; None where none is asked for."""
+        seconds = self.bound_seconds if self.bound_seconds is not None else 60.0 * (self.effort == "deep")
+        return BoundSettings(bound_seconds=seconds) if seconds > 0.0 else None
 
 
 class BoundSettings(Settings):
@@ -58,7 +67,7 @@ class BoundSettings(Settings):
 
     Attributes:
         seed, effort: of the search of `la` that comes first.
-        seconds: of CPU time for the bound, which is the best one reached by then.
+        bound_seconds: of CPU time for the bound, which is the best one reached by then.
         most_interfaces: walls with more have no bound, because the matrices of products are dense.
         largest_certificate: characters of a certificate above which the answer holds its bound only, because results
             are kept and copied; `drystone bound` writes it whatever its size.
@@ -66,7 +75,7 @@ class BoundSettings(Settings):
 
     seed: int = Field(default=0, ge=0)
     effort: Literal["quick", "normal", "deep"] = "normal"
-    seconds: float = Field(default=120.0, gt=0.0)
+    bound_seconds: float = Field(default=120.0, gt=0.0)
     most_interfaces: int = Field(default=120, ge=0)
     largest_certificate: int = Field(default=500_000, ge=0)
 

@@ -1,0 +1,95 @@
+"""A lower bound for the answer of a search: by the tree where that ended, else by windows, with its certificate."""
+
+from __future__ import annotations
+
+import json
+from dataclasses import replace
+from fractions import Fraction
+from typing import Any
+
+from harness.model.assembly import Assembly
+from harness.model.method import Answer, Finding, Status
+from methods.bound.tuning import PRECISION, WINDOWS
+from methods.bound.verify import verify
+from methods.bound.window_search import Bracket
+from methods.la.certify.tree_certificate import certificate
+from methods.la.certify.window_certificate import certified_bracket
+from methods.la.core.problem import Problem
+from methods.la.core.search_settings import BoundSettings
+from methods.la.least import SAME_MULTIPLIER
+
+
+def with_bound(assembly: Assembly, problem: Problem, known: Answer, settings: BoundSettings) -> Answer:
+    """The answer of a search with what is proved below its state, within the seconds of the settings.
+
+    Args:
+        assembly: a wall of one component; problem: the same, scaled.
+        known: the answer of the whole search.
+        settings: time and size of the bound.
+    """
+    multiplier = known.multiplier
+    if known.status is not Status.OK or known.finding is not Finding.COLLAPSES or multiplier is None:
+        return known
+    if known.details.get("stopped_by_limit"):
+        return known
+    if known.details["proved_least"]:
+        return certified(known, certificate(assembly, seconds=settings.bound_seconds))
+    if multiplier <= 0.0 or problem.n_interfaces > settings.most_interfaces:
+        return known
+    assert known.mechanism is not None
+    found, document = certified_bracket(problem, multiplier, known.mechanism, settings.bound_seconds)
+    answer = certified(bounded(problem, known, found), document)
+    if document is not None and len(json.dumps(document)) > settings.largest_certificate:
+        return replace(answer, details={k: v for k, v in answer.details.items() if k != "certificate"})
+    return answer
+
+
+def certified(known: Answer, document: dict[str, Any] | None) -> Answer:
+    """The answer of `la` with a certificate that its state is the least; unchanged where there is none for it.
+
+    Args:
+        known: a collapse.
+        document: the certificate, or None.
+
+    Raises:
+        CertificateError: it proves nothing.
+    """
+    if document is None or known.multiplier is None:
+        return known
+    lower, upper = verify(document)
+    if lower < upper * (1 - Fraction(WINDOWS.proved)):
+        return replace(
+            known,
+            sentence=f"The least collapse multiplier known is {known.multiplier:.7g}; there is none from zero to below "
+            f"{float(lower):.7g}, proved in fractions.",
+            details=known.details | {"certificate": document, "certified_bound": float(lower)},
+        )
+    if abs(float(upper) - known.multiplier) > SAME_MULTIPLIER * max(abs(known.multiplier), SAME_MULTIPLIER):
+        return known
+    exact = str(upper) if len(str(upper)) <= PRECISION.shown else f"{float(upper):.9g}"
+    state = "" if "state" in document else " (its forces to rounding)"
+    sentence = (
+        f"The minimum collapse multiplier is {exact} to two millionths, proved in fractions: "
+        f"there is a collapse state there{state}, and none below {float(lower):.9g}."
+    )
+    details = known.details | {"certificate": document, "certified_bound": float(lower)}
+    return replace(known, sentence=sentence, details=details)
+
+
+def bounded(problem: Problem, known: Answer, found: Bracket) -> Answer:
+    """The answer of `la` with the bracket, which holds to rounding and is therefore not called a proof."""
+    lower = max(found.lower * problem.unit_multiplier, float(known.details["lower_bound"]))
+    details = known.details | {
+        "lower_bound": lower,
+        "bound_windows": [value * problem.unit_multiplier for value in found.windows],
+        "bound_iterations": found.iterations,
+        "bound_closed": found.closed,
+    }
+    least = f"The least collapse multiplier known is {known.multiplier:.7g}"
+    if found.closed:
+        sentence = f"{least}; a relaxation solved in floating point leaves none below {lower:.7g}."
+    elif lower > 0.0:
+        sentence = f"{least}; the least is at least {lower:.7g}, by a relaxation solved in floating point."
+    else:
+        sentence = f"{least}; in this time no lower bound above zero was found."
+    return replace(known, sentence=sentence, details=details)
