@@ -9,7 +9,7 @@ import numpy as np
 from harness.model.assembly import Assembly, FloatArray
 from harness.model.errors import first_few
 from harness.model.method import Answer, Finding, Status
-from methods.la.core.extremes import VERTICES, standing
+from methods.la.core.extremes import standing, uneven
 from methods.la.core.newton_matrix import NewtonMatrix
 from methods.la.core.problem import Problem
 from methods.la.core.programmes import KinematicSolution
@@ -90,8 +90,7 @@ def unbounded_answer(sentence: str, iterations: int = 0, details: dict[str, Any]
 
 def dead_load_answer(problem: Problem, newton: NewtonMatrix, has_live_load: bool) -> Answer | None:
     """Falls with its mechanism, or stands if there is no live load; None if there is a live load to study."""
-    large = has_live_load and problem.n_interfaces > VERTICES.simplex_up_to
-    if large and standing_forces(problem, newton) is not None:
+    if has_live_load and not uneven(problem) and standing_forces(problem, newton) is not None:
         return None
     found = standing(problem)
     if isinstance(found, str):

@@ -17,8 +17,18 @@ LEAST_WORK = 1e-7
 """Work of the dead load that shows a fall, as total weight times speed: a programme to 1e-9 makes up less."""
 
 
+Entries = tuple[FloatArray, IntArray, IntArray]
+"""Values, rows and columns of a sparse matrix."""
+
+
 def shear_limits(friction: FloatArray) -> sp.csr_matrix:
-    """Sparse (2m, 3m) matrix of the slacks mu (n1 + n2) +- s of forces (n1, n2, s), over mu where that is above one.
+    """The sparse (2m, 3m) matrix of `entries_of_shear_limits`."""
+    values, rows, columns = entries_of_shear_limits(friction)
+    return sp.csr_matrix((values, (rows, columns)), shape=(2 * len(friction), 3 * len(friction)))
+
+
+def entries_of_shear_limits(friction: FloatArray) -> Entries:
+    """Entries of the (2m, 3m) slacks mu (n1 + n2) +- s of forces (n1, n2, s), over mu where that is above one.
 
     Shears themselves are the unknowns, because their difference from a large strength would cost digits.
     """
@@ -28,7 +38,7 @@ def shear_limits(friction: FloatArray) -> sp.csr_matrix:
     rows = np.concatenate([pair, pair, pair, pair + 1, pair + 1, pair + 1])
     columns = np.concatenate([base, base + 1, base + 2] * 2)
     values = np.concatenate([part, part, share, part, part, -share])
-    return sp.csr_matrix((values, (rows, columns)), shape=(2 * m, 3 * m))
+    return values, rows, columns
 
 
 def rows_of_blocks(n_free: int, m: int) -> IntArray:

@@ -10,6 +10,7 @@ the vertex, its violations are magnified to one, and it goes on from the basis (
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
 
@@ -110,9 +111,16 @@ class StandardForm:
         groups: IntArray | None = None,
     ) -> None:
         self._rows, self._columns = matrix.shape
-        self._matrix = sp.csc_matrix(sp.hstack([matrix, -sp.identity(self._rows)]))
-        self._transposed = sp.csr_matrix(self._matrix.T)
-        self._by_row = sp.csr_matrix(self._matrix)
+        own = np.arange(self._rows, dtype=matrix.indices.dtype)
+        parts = (
+            np.append(matrix.data, np.full(self._rows, -1.0)),
+            np.append(matrix.indices, own),
+            np.append(matrix.indptr, matrix.indptr[-1] + 1 + own),
+        )
+        self._matrix = sp.csc_matrix(parts, shape=(self._rows, self._columns + self._rows))
+        self._transposed: sp.csr_matrix = self._matrix.T
+        self._by_row = self._matrix.tocsr()
+        self._column_of = np.repeat(np.arange(self._columns + self._rows), np.diff(self._matrix.indptr))
         self._cost = np.append(cost, np.zeros(self._rows))
         self._lower, self._upper = (np.concatenate(pair) for pair in zip(column, row, strict=True))
         bounds = abs(np.concatenate([self._lower, self._upper]))
@@ -148,8 +156,9 @@ class StandardForm:
         if int(basic.sum()) != self._rows:
             return None
         try:
-            value[basic] = refined(self._matrix[:, basic], -extended_product(self._by_row, value))
-            dual = refined(sp.csc_matrix(self._transposed[basic]), self._cost[basic].astype(np.longdouble))
+            basis = Basis(self._matrix[:, basic])
+            value[basic] = basis.solved(-extended_product(self._by_row, value))
+            dual = basis.multipliers(self._cost[basic])
         except NumericalFailure:
             return None
         reduced = (self._cost - extended_product(self._transposed, dual)).astype(float)
@@ -172,19 +181,20 @@ class StandardForm:
 
     def _terms_beside(self, value: FloatArray) -> FloatArray:
         """(c + r,) for every column the size of the terms in the row of least terms it stands in."""
-        by_row = abs(self._by_row) @ abs(value)
+        row_of, sizes = self._matrix.indices, abs(self._matrix.data)
+        by_row = np.bincount(row_of, sizes * abs(value)[self._column_of], self._rows)
         largest = np.zeros(int(self._groups.max(initial=-1)) + 1)
         np.maximum.at(largest, self._groups, by_row)
-        entries = self._matrix.tocoo()
         least = np.full(len(value), np.inf)
-        np.minimum.at(least, entries.col, largest[self._groups][entries.row])
+        np.minimum.at(least, self._column_of, largest[self._groups][row_of])
         return least
 
     def _speeds_beside(self, dual: FloatArray) -> FloatArray:
         """(c + r,) for every column the size of the terms of its reduced cost; of a row, of the columns beside it."""
-        own = abs(self._transposed) @ abs(dual) + abs(self._cost)
-        entries = self._by_row[:, : self._columns].tocoo()
-        np.maximum.at(own, self._columns + entries.row, own[entries.col])
+        row_of, sizes = self._matrix.indices, abs(self._matrix.data)
+        own = np.bincount(self._column_of, sizes * abs(dual)[row_of], len(self._cost)) + abs(self._cost)
+        entries = slice(0, self._matrix.indptr[self._columns])  # of the columns that are no rows
+        np.maximum.at(own, self._columns + row_of[entries], own[self._column_of[entries]])
         return np.asarray(own)
 
     def _magnified(self, at: _Solution) -> _Solution | None:
@@ -227,28 +237,60 @@ class StandardForm:
 _STATUS = {int(status): status for status in highspy.HighsBasisStatus.__members__.values()}
 
 
-def refined(matrix: sp.csc_matrix, right: Any) -> FloatArray:
-    """The solution (k,) of a square sparse system, every row to rounding of its own terms.
+class Basis:
+    """The factors of a square sparse matrix, once, and what they solve: every row to rounding of its own terms.
+
+    Rows and columns are scaled by powers of two, which rounds nothing.
 
     Raises:
         SingularMatrix: the matrix is singular.
     """
-    by_row = sp.csr_matrix(matrix)
-    rows = _powers(abs(by_row).max(axis=1).toarray().ravel())
-    scaled = sp.diags(rows) @ by_row
-    columns = _powers(abs(scaled).max(axis=0).toarray().ravel())
-    factor = sparse_lu(sp.csc_matrix(scaled @ sp.diags(columns)))
+
+    def __init__(self, matrix: sp.csc_matrix) -> None:
+        size = matrix.shape[0]
+        column_of = np.repeat(np.arange(size), np.diff(matrix.indptr))
+        self._by_column: sp.csr_matrix = matrix.T
+        self._by_row = matrix.tocsr()
+        self._rows = _powers(_largest(matrix.indices, abs(matrix.data), size))
+        scaled = matrix.data * self._rows[matrix.indices]
+        self._columns = _powers(_largest(column_of, abs(scaled), size))
+        parts = (scaled * self._columns[column_of], matrix.indices, matrix.indptr)
+        self._factor: Any = sparse_lu(sp.csc_matrix(parts, shape=matrix.shape))
+
+    def solved(self, right: Any) -> FloatArray:
+        """x (k,) with B x = right.
+
+        Raises:
+            SingularMatrix: the matrix is singular to rounding.
+        """
+        return _refined(self._by_row, right, lambda left: self._columns * self._factor.solve(self._rows * left))
+
+    def multipliers(self, right: Any) -> FloatArray:
+        """y (k,) with B' y = right; raises as `solved`."""
+        return _refined(
+            self._by_column, right, lambda left: self._rows * self._factor.solve(self._columns * left, trans="T")
+        )
+
+
+def _refined(by_row: sp.csr_matrix, right: Any, approximate: Callable[[FloatArray], FloatArray]) -> FloatArray:
     right = np.asarray(right, dtype=np.longdouble)
     solution = np.zeros(len(right), dtype=np.longdouble)
     for _ in range(VERTEX.rounds):
         residual = right - extended_product(by_row, solution)
-        change = columns * factor.solve(rows * residual.astype(float))
+        change = approximate(residual.astype(float))
         if not np.isfinite(change).all():
             raise SingularMatrix("the basis is singular to rounding")
         solution = solution + change
         if np.all(abs(change) <= 1e-17 * abs(solution)):
             break
     return solution.astype(float)
+
+
+def _largest(place: Any, values: FloatArray, count: int) -> FloatArray:
+    """(count,) the largest of the values at each place; zero where there are none."""
+    found = np.zeros(count)
+    np.maximum.at(found, place, values)
+    return found
 
 
 def extended_product(matrix: sp.csr_matrix, vector: Any) -> Any:
