@@ -11,6 +11,8 @@ import pytest
 
 from harness.engine.preload import shipped
 from harness.model.method import Declared, load_method, method_names, prepared
+from methods.numerics import built
+from methods.springs.path import kinks
 
 SOLVERS = {"scipy", "numba", "llvmlite", "highspy", "osqp", "pymunk", "casadi", "cvxpy", "mujoco"}
 COMMAND = """
@@ -49,6 +51,15 @@ def test_a_run_imports_the_solver_of_its_method_alone():
     assert {"scipy", "highspy", "methods.la.associated_adapter"} <= modules
     assert not modules & {"numba", "osqp", "pymunk", "sqlite3", "pandas", "matplotlib"}
     assert not {"numpy.f2py.crackfortran", "numpy.testing._private"} & modules, "no run uses them"
+
+
+@pytest.mark.parametrize("method", ["fe", "la", "de"])
+def test_a_run_with_kernels_imports_no_numba_where_their_library_is_built(method: str):
+    if not built.holds(kinks.next_kink):
+        pytest.skip("the kernels of this installation are left to numba")
+    modules = imported(COMMAND, "run", method, "single-block")
+    assert built.NAME in modules
+    assert not modules & {"numba", "llvmlite", "osqp", "pandas", "matplotlib"}
 
 
 def test_a_deferred_module_is_the_module_once_it_is_used():
