@@ -26,8 +26,8 @@ from harness.model.reading import LARGEST_FILE, json_of, read_bytes, read_json, 
 from harness.model.result import Result, Verdict
 from methods.bound.exact_wall import CertificateError
 from methods.bound.same_wall import require_same_wall
-from methods.bound.tuning import PRECISION
 from methods.bound.verify import verify
+from methods.bound.words import in_words
 
 CERTIFICATE = "certificate.json"
 PACKED = ".gz"
@@ -74,10 +74,7 @@ def write_certificate(path: Path, document: dict[str, Any]) -> None:
 def proved(document: Any) -> str:
     """What a certificate that holds proves, as the main clause of a sentence."""
     least = "no collapse state lies from zero to below" if "windows" in document else "no collapse state lies below"
-    bound, state = (
-        text if len(text) <= PRECISION.shown else f"{float(Fraction(text)):.9g}"
-        for text in (str(document["bound"]), str(document["multiplier"]))
-    )
+    bound, state = (in_words(Fraction(document[name])) for name in ("bound", "multiplier"))
     if "state" not in document:
         return f"{least} {bound}, proved in fractions, and one at {state} to rounding"
     return f"{least} {bound}, and one at {state}, proved in fractions"

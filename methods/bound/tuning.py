@@ -102,7 +102,7 @@ class Precision:
         the first with which it is at most `enough_size` times that of the search.
         multipliers: of those that bound the multiplier, at first and at most, with as many more as what is lost needs.
         refinements: of what the multipliers of products leave, before they are rounded.
-        shown: characters of a fraction up to which a sentence shows it, not its value.
+        short, shown: characters of a fraction up to which a sentence shows it alone, and beside its value.
     """
 
     numbers: int = 44
@@ -114,6 +114,7 @@ class Precision:
     enough_size: float = 1.1
     multipliers: tuple[int, int] = (28, 54)
     refinements: int = 2
+    short: int = 9
     shown: int = 40
 
 

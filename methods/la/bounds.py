@@ -9,9 +9,10 @@ from typing import Any
 
 from harness.model.assembly import Assembly
 from harness.model.method import Answer, Finding, Status
-from methods.bound.tuning import PRECISION, WINDOWS
+from methods.bound.tuning import WINDOWS
 from methods.bound.verify import verify
 from methods.bound.window_search import Bracket
+from methods.bound.words import in_words
 from methods.la.certify.tree_certificate import certificate
 from methods.la.certify.window_certificate import certified_bracket
 from methods.la.core.problem import Problem
@@ -66,10 +67,9 @@ def certified(known: Answer, document: dict[str, Any] | None) -> Answer:
         )
     if abs(float(upper) - known.multiplier) > SAME_MULTIPLIER * max(abs(known.multiplier), SAME_MULTIPLIER):
         return known
-    exact = str(upper) if len(str(upper)) <= PRECISION.shown else f"{float(upper):.9g}"
     state = "" if "state" in document else " (its forces to rounding)"
     sentence = (
-        f"The minimum collapse multiplier is {exact} to two millionths, proved in fractions: "
+        f"The minimum collapse multiplier is {in_words(upper)} to two millionths, proved in fractions: "
         f"there is a collapse state there{state}, and none below {float(lower):.9g}."
     )
     details = known.details | {"certificate": document, "certified_bound": float(lower)}

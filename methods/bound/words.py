@@ -1,0 +1,23 @@
+"""Multipliers of certificates in words."""
+
+from __future__ import annotations
+
+from fractions import Fraction
+
+from methods.bound.tuning import PRECISION
+
+
+def in_words(value: Fraction) -> str:
+    """A multiplier as a fraction where that is short, else as a decimal: all of it, or cut off after nine decimals.
+
+    >>> in_words(Fraction(7, 11)), in_words(Fraction(499999, 1250000))
+    ('7/11', '0.3999992')
+    >>> in_words(Fraction(1567589759, 2809311829))
+    '0.557997778 (1567589759/2809311829)'
+    """
+    if len(str(value)) <= PRECISION.short:
+        return str(value)
+    places = next((k for k in (9, 12) if 10**k % value.denominator == 0), 0)
+    cut = value.numerator * 10 ** (places or 9) // value.denominator
+    decimal = f"{cut // 10 ** (places or 9)}.{cut % 10 ** (places or 9):0{places or 9}d}".rstrip("0")
+    return decimal if places or len(str(value)) > PRECISION.shown else f"{decimal} ({value})"
