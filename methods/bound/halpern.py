@@ -1,6 +1,8 @@
 """Reflected Douglas-Rachford splitting, anchored (Halpern) and restarted, on the products of a window.
 
-Source of the anchoring and restarts: Chen, Sun, Yuan, Zhang and Zhao (2024), HPR-LP, section 3.
+Source of the anchoring and restarts: Chen, Sun, Yuan, Zhang and Zhao (2024), HPR-LP, section 3. The step balances what
+the safe bound loses to the dual with the distance of primal and dual cost, and the norms of both parts as the weight of
+Applegate et al. (2021), PDLP, section 3.3, does.
 """
 
 from __future__ import annotations
@@ -8,69 +10,149 @@ from __future__ import annotations
 import time
 from collections.abc import Callable
 from dataclasses import dataclass, field
+from typing import Any
 
 import numpy as np
+import numpy.typing as npt
 
 from harness.model.assembly import FloatArray, IntArray
 from methods.bound.dual import DualBound, dual_bound
 from methods.bound.relaxation import Relaxation
 from methods.bound.tuning import RESTARTS
 
+Products = npt.NDArray[np.floating[Any]]
+"""(a, c) products of a relaxation in the precision of a sweep."""
+
 
 @dataclass
 class Splitting:
-    """The state of the splitting on one relaxation and one cost, which can be run on."""
+    """The state of the splitting on one relaxation and one cost, which can be run on.
+
+    Attributes:
+        step: step size of the primal part, which every check balances; steps: the least and the greatest.
+        size: of mechanisms, for which the bound is to be good; None for that of the dual itself.
+        iterate: (a, c) what it stands at, empty at first; iterations: made so far.
+        single: whether it sweeps in single precision, as long as that can tell the residual from rounding.
+    """
 
     relaxation: Relaxation
     cost: FloatArray
     step: float
-    least_step: float
+    steps: tuple[float, float] = (0.0, np.inf)
+    size: float | None = None
     iterate: FloatArray = field(default_factory=lambda: np.zeros(0))
     iterations: int = 0
+    single: bool = True
 
     def run(self, until: float, stop: Callable[[DualBound | None, float], bool]) -> None:
         """Iterate to this CPU time, or until `stop(bound, primal cost)` says so at a check."""
-        problem = self.relaxation
-        where = np.nonzero(self.cost)
-        slope = self.cost[where]
-        iterate = self.iterate if self.iterate.size else np.zeros(problem.lower.shape)
-        anchor, count, first, before = iterate.copy(), 0, 0.0, np.inf
-        start_point = start_dual = iterate
+        sweep = self._sweep()
         check = self.iterations + RESTARTS.checked_every
+        first, before = 0.0, np.inf
         while True:
-            projected = problem.project(iterate)
-            reflected = 2.0 * projected - iterate
-            reflected[where] -= self.step * slope
-            np.clip(reflected, problem.lower, problem.upper, out=reflected)
-            gap = reflected - projected
-            residual = float(np.linalg.norm(gap))
-            if count == 0:
-                first, start_point, start_dual = residual, projected, (projected - iterate) / self.step
+            residual = sweep.advance(self.step)
             self.iterations += 1
-            weight = 1.0 / (count + 2)
-            iterate = (1.0 - weight) * (iterate + 2.0 * gap) + weight * anchor
-            count += 1
+            first = residual if sweep.count == 1 else first
             if self.iterations >= check:
-                self.iterate = iterate
                 check = self.iterations + max(RESTARTS.checked_every, int(RESTARTS.checked_later * self.iterations))
-                bound = dual_bound(problem, iterate, self.step, self.cost)
-                if stop(bound, float((reflected[where] * slope).sum())) or time.process_time() > until:
+                self.iterate = sweep.iterate.astype(np.float64)
+                bound, primal = dual_bound(self.relaxation, self.iterate, self.step, self.cost), sweep.primal
+                if stop(bound, primal) or time.process_time() > until:
                     return
+                if self.single and sweep.rounds(residual):
+                    self.single = False
+                    sweep = self._sweep()
+                if bound is not None:
+                    self._balance(sweep, bound, primal)
             stale = residual <= RESTARTS.necessary * first and residual > before
-            long = count > RESTARTS.long * self.iterations + RESTARTS.patience
-            if count > 1 and (residual <= RESTARTS.sufficient * first or stale or long):
-                iterate = self._restarted(iterate, start_point, start_dual)
-                anchor, count = iterate.copy(), 0
+            long = sweep.count > RESTARTS.long * self.iterations + RESTARTS.patience
+            if sweep.count > 1 and (residual <= RESTARTS.sufficient * first or stale or long):
+                sweep.restart()
             before = residual
 
-    def _restarted(self, iterate: FloatArray, point: FloatArray, dual: FloatArray) -> FloatArray:
-        """The iterate for a new step size, from how far the two parts moved since the last restart."""
-        here = self.relaxation.project(iterate)
-        own = (here - iterate) / self.step
-        moved, turned = float(np.linalg.norm(here - point)), float(np.linalg.norm(own - dual))
-        if min(moved, turned) > 1e-14:
-            self.step = min(max(float(np.sqrt(moved / turned * self.step)), self.least_step), 1e6)
-        return np.asarray(here - self.step * own)
+    def _sweep(self) -> Sweep:
+        return Sweep(self.relaxation, self.cost, self.iterate, np.float32 if self.single else np.float64)
+
+    def _balance(self, sweep: Sweep, bound: DualBound, primal: float) -> None:
+        """Change the step by what the bound loses to the dual over the distance of primal and dual cost, and by the
+        norm of the products over that of the dual part of the iterate.
+
+        A larger step lets the dual change less from one iterate to the next, so less of it is left to be paid. Either
+        ratio alone runs away where its terms answer late; their mean does not.
+        """
+        size = abs(bound.value) if self.size is None else self.size
+        tiny = RESTARTS.tiny * (1.0 + abs(bound.value))
+        lost, apart = max(bound.value - bound.of(size), tiny), max(abs(primal - bound.value), tiny)
+        point = self.relaxation.project(self.iterate)
+        parts = float(np.linalg.norm(point)) / max(float(np.linalg.norm(point - self.iterate)), tiny)
+        ratio = (lost / apart * parts) ** 0.25
+        ratio = min(max(ratio, 1.0 / RESTARTS.step_change), RESTARTS.step_change)
+        step = min(max(ratio * self.step, self.steps[0]), self.steps[1])
+        if abs(np.log(step / self.step)) > np.log(RESTARTS.step_kept):
+            sweep.restart(step / self.step)
+            self.step = step
+
+
+class Sweep:
+    """The arrays of the splitting in one precision, changed in place: large new ones cost as much as the arithmetic.
+
+    Attributes:
+        iterate: (a, c) present iterate; count: iterations since the last restart; primal: cost of the products.
+    """
+
+    def __init__(
+        self, relaxation: Relaxation, cost: FloatArray, iterate: FloatArray, kind: type[np.float32] | type[np.float64]
+    ) -> None:
+        self._rows, self._columns = relaxation.row_basis.astype(kind), relaxation.column_basis.astype(kind)
+        self._lower, self._upper = relaxation.lower.astype(kind), relaxation.upper.astype(kind)
+        self._where = np.nonzero(cost)
+        self._slope: Products = cost[self._where].astype(kind)
+        self.iterate: Products = iterate.astype(kind) if iterate.size else np.zeros(cost.shape, dtype=kind)
+        self._anchor, self._projected, self._gap = (self.iterate.copy() for _ in range(3))
+        self._half = np.empty((len(self._rows), self._columns.shape[1]), dtype=kind)
+        self._inner = np.empty((self._rows.shape[1], self._columns.shape[1]), dtype=kind)
+        self._noise = float(np.finfo(kind).eps) * RESTARTS.rounding
+        self.count, self.primal = 0, 0.0
+
+    def _project(self) -> None:
+        np.matmul(self.iterate, self._columns, out=self._half)
+        np.matmul(self._rows.T, self._half, out=self._inner)
+        np.matmul(self._rows, self._inner, out=self._half)
+        np.matmul(self._half, self._columns.T, out=self._projected)
+
+    def advance(self, step: float) -> float:
+        """One anchored iteration; the norm of the difference of both projections."""
+        self._project()
+        gap, where = self._gap, self._where
+        np.multiply(self._projected, 2.0, out=gap)
+        gap -= self.iterate
+        gap[where] -= step * self._slope
+        np.clip(gap, self._lower, self._upper, out=gap)
+        self.primal = float((gap[where] * self._slope).sum())
+        gap -= self._projected
+        residual = float(np.linalg.norm(gap))
+        weight = 1.0 / (self.count + 2)
+        gap *= 2.0
+        self.iterate += gap
+        self.iterate *= 1.0 - weight
+        np.multiply(self._anchor, weight, out=gap)
+        self.iterate += gap
+        self.count += 1
+        return residual
+
+    def restart(self, factor: float = 1.0) -> None:
+        """Anchor at the present iterate, with its dual part times a factor: that of the step, which keeps the dual."""
+        if factor != 1.0:
+            self._project()
+            self.iterate -= self._projected
+            self.iterate *= factor
+            self.iterate += self._projected
+        self._anchor[...] = self.iterate
+        self.count = 0
+
+    def rounds(self, residual: float) -> bool:
+        """Whether a residual is next to the rounding of the iterate in this precision."""
+        return residual < self._noise * float(np.linalg.norm(self.iterate))
 
 
 def carried_over(new: Relaxation, old: Relaxation, iterate: FloatArray, step: float) -> FloatArray:

@@ -171,7 +171,7 @@ class WindowSearch:
         new = Relaxation(self.equations, low, high, bounds, self.case)
         costs: dict[str, FloatArray] = {"size": new.size_cost(), "multiplier": new.multiplier_cost()}
         for name, cost in costs.items():
-            run = Splitting(new, cost, STEPS[name].first, STEPS[name].least)
+            run = Splitting(new, cost, STEPS[name].first, (STEPS[name].least, STEPS[name].most))
             before = self._runs.get(name)
             if before is not None and before.iterate.size:
                 run.step = before.step
@@ -232,7 +232,7 @@ class WindowSearch:
     def _bound_multiplier(self) -> bool:
         """Bound the multipliers of this window; whether the relaxation has no more to give."""
         found, run = self.found, self._runs["multiplier"]
-        relaxation = run.relaxation
+        relaxation, run.size = run.relaxation, self._size
         start, last = found.lower, self._is_last(relaxation)
         agreeing, mark, since = 0, found.upper - found.lower, run.iterations
         patience = WINDOWS.patience if self._rates is None else WINDOWS.patience_of_parts
@@ -273,4 +273,3 @@ class WindowSearch:
         run, before = self._runs[name], self._runs[name].iterations
         run.run(min(self.until, time.process_time() + seconds), stop)
         self.found.iterations += run.iterations - before
-        run.step = max(run.step, STEPS[name].later)
