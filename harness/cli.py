@@ -10,6 +10,7 @@ import importlib
 import click
 
 from harness import formats
+from harness.engine import collector
 from harness.engine.deferred_modules import defer
 from harness.engine.threads import pin
 
@@ -58,10 +59,12 @@ class Commands(click.Group):
         if cmd_name not in COMMANDS:
             return None
         pin()
-        defer()
-        formats.register()
         module, name, _ = COMMANDS[cmd_name]
-        command: click.Command = getattr(importlib.import_module(f"harness.{module}"), name)
+        with collector.paused():
+            defer()
+            formats.register()
+            command: click.Command = getattr(importlib.import_module(f"harness.{module}"), name)
+        collector.keep()
         return command
 
     def format_commands(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:

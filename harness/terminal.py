@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import math
+import shutil
 import sys
+import textwrap
 from collections import Counter
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -11,9 +13,6 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from rich.console import Console
-from rich.markup import escape as literal
-from rich.table import Table
 
 from harness.engine.compare import Told
 from harness.engine.judge import worst_residual
@@ -42,12 +41,16 @@ MARKS = {
 
 def escape(text: str) -> str:
     """Text of any origin for a table or a line: control characters made visible, brackets no markup."""
+    from rich.markup import escape as literal
+
     return literal(visible(text))
 
 
 @contextmanager
 def progress(total: int, *, quiet: bool = False) -> Iterator[Told]:
     """Something to call after each run: a bar on a terminal, plain lines on standard error otherwise."""
+    from rich.console import Console
+
     console = Console(stderr=True)
     if quiet or not console.is_terminal:
 
@@ -118,6 +121,9 @@ def _residual(result: Result) -> str:
 
 def print_comparison(compared: ComparisonRun, report: Path | None) -> None:
     """The table of a comparison, what does not hold, and where the report is."""
+    from rich.console import Console
+    from rich.table import Table
+
     console = Console()
     if not console.is_terminal:
         console = Console(width=140)
@@ -197,26 +203,32 @@ def comparison_json(compared: ComparisonRun, report: Path | None) -> dict[str, A
 
 def print_result(result: Result, case: Case) -> None:
     """One result, for a person."""
-    console = Console()
-    rows = Table.grid(padding=(0, 2))
-    rows.add_row("wall", escape(f"{case.file.title} (free blocks: {result.blocks}, interfaces: {result.interfaces})"))
-    rows.add_row("units", escape(case.wall.units_sentence))
-    rows.add_row("method", escape(result.method))
-    rows.add_row("finding", f"{_value(result)}" if result.finding is Finding.COLLAPSES else str(result.finding))
-    rows.add_row("", escape(result.sentence))
+    rows = [
+        ("wall", f"{case.file.title} (free blocks: {result.blocks}, interfaces: {result.interfaces})"),
+        ("units", case.wall.units_sentence),
+        ("method", result.method),
+        ("finding", _value(result) if result.finding is Finding.COLLAPSES else str(result.finding)),
+        ("", result.sentence),
+    ]
     if result.bracket is not None:
-        rows.add_row("bracket", f"[{result.bracket[0]:.7g}, {result.bracket[1]:.7g}] {escape(result.bracket_meaning)}")
-    rows.add_row("status", str(result.status))
-    rows.add_row("judge", escape(result.judge.sentence))
-    for name, value in result.judge.residuals.items():
-        rows.add_row("", f"{name} {value:.2e}")
+        rows.append(("bracket", f"[{result.bracket[0]:.7g}, {result.bracket[1]:.7g}] {result.bracket_meaning}"))
+    rows += [("status", str(result.status)), ("judge", result.judge.sentence)]
+    rows += [("", f"{name} {value:.2e}") for name, value in result.judge.residuals.items()]
     for comparison in result.comparisons:
-        found = f"{MARKS[str(comparison.verdict)]}: {comparison.reference}: {comparison.sentence}"
-        rows.add_row("reference", escape(found))
+        rows.append(("reference", f"{MARKS[str(comparison.verdict)]}: {comparison.reference}: {comparison.sentence}"))
     if result.cpu_seconds is not None:
         memory = (result.peak_memory_bytes or 0) / 2**20
-        rows.add_row("cost", f"{result.cpu_seconds:.3f} s of CPU, {memory:.0f} MiB")
-    console.print(rows, highlight=False)
+        rows.append(("cost", f"{result.cpu_seconds:.3f} s of CPU, {memory:.0f} MiB"))
+    _print_named(rows)
+
+
+def _print_named(rows: list[tuple[str, str]]) -> None:
+    """Names and sentences side by side, as wide as the terminal; what a table of rich needs is half a small run."""
+    indent = max(len(name) for name, _ in rows) + 2
+    width = max(shutil.get_terminal_size().columns - indent, 20)
+    for name, sentence in rows:
+        lines = textwrap.wrap(visible(sentence), width, break_on_hyphens=False) or [""]
+        print(f"\n{' ' * indent}".join([name.ljust(indent) + lines[0], *lines[1:]]).rstrip())
 
 
 def print_judgement(judgement: Judgement) -> None:
@@ -265,6 +277,9 @@ def print_difference(found: Difference) -> None:
 
 def print_rows(rows: list[dict[str, Any]]) -> None:
     """Rows with equal names as a table."""
+    from rich.console import Console
+    from rich.table import Table
+
     console = Console()
     if not console.is_terminal:
         console = Console(width=160)

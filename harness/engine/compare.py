@@ -191,13 +191,13 @@ def remember(store: Store, compared: ComparisonRun, runs: Sequence[Run]) -> None
     )
 
 
-class _KeptCase(BaseModel):
+class _KeptCase(BaseModel, defer_build=True):
     file: CaseFile
     wall: dict[str, Any]
     origin: str
 
 
-class _KeptRun(BaseModel):
+class _KeptRun(BaseModel, defer_build=True):
     case: str
     method: str
     settings: dict[str, Any]
@@ -205,7 +205,7 @@ class _KeptRun(BaseModel):
     references: list[Reference]
 
 
-class _Kept(BaseModel):
+class _Kept(BaseModel, defer_build=True):
     """What `remember` leaves in a store."""
 
     title: str

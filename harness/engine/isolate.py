@@ -18,17 +18,15 @@ from multiprocessing import forkserver
 from multiprocessing.connection import wait
 from multiprocessing.context import BaseContext
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from harness.engine import preload, worker
 from harness.engine.provenance import machine, versions
 from harness.engine.threads import pin
+from harness.engine.usage import usage
 from harness.engine.worker import Task
 from harness.model.method import Answer, Finding, Status, Traits
 from harness.model.result import Result, result_of
-
-if TYPE_CHECKING:
-    import psutil
 
 LOOK_SECONDS, LOOKS_AT_CHILDREN = 0.05, 10
 """How often memory and time of a run are looked at, and at which look those of what it started as well."""
@@ -257,7 +255,6 @@ class _UnderWay:
         self._clock = time.perf_counter()
         self._deadline = self._clock + LOADING_SECONDS
         self._pid = pid
-        self._leader: psutil.Process | None = None
         self._looks, self._next_look = 0, self._clock + LOOK_SECONDS
         self._cpu_before: float | None = None
         self.cpu_seconds: float | None = None
@@ -277,22 +274,11 @@ class _UnderWay:
         """Take stock of memory and CPU time if it is time to, and see whether a limit is passed."""
         if (now := time.perf_counter()) < self._next_look:
             return
-        import psutil  # no run that ends before the first look needs it
-
         self._next_look = now + LOOK_SECONDS
         self._looks += 1
-        memory, cpu = 0, 0.0
-        with contextlib.suppress(psutil.Error):
-            self._leader = self._leader or psutil.Process(self._pid)
-            members = [self._leader]
-            if self._looks % LOOKS_AT_CHILDREN == 0:
-                members += self._leader.children(recursive=True)
-            for member in members:
-                with contextlib.suppress(psutil.Error):
-                    memory += member.memory_info().rss
-                    times = member.cpu_times()
-                    cpu += times.user + times.system
-        if memory:
+        found = usage(self._pid, with_children=self._looks % LOOKS_AT_CHILDREN == 0)
+        if found is not None:
+            memory, cpu = found
             self._cpu_before = cpu if self._cpu_before is None else self._cpu_before
             self.peak_memory = max(self.peak_memory or 0, memory)
             self.cpu_seconds = max(self.cpu_seconds or 0.0, cpu - self._cpu_before)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import functools
 import hashlib
 import importlib.util
@@ -9,6 +10,7 @@ import json
 import os
 import platform
 import subprocess
+import sys
 from collections.abc import Sequence
 from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
@@ -37,7 +39,7 @@ def versions() -> dict[str, str]:
     found = {"python": platform.python_version()}
     for package in PACKAGES:
         try:
-            found[package] = version(package)
+            found[package] = _installed().get(package) or version(package)
         except PackageNotFoundError:
             continue
     commit = _commit()
@@ -46,21 +48,28 @@ def versions() -> dict[str, str]:
     return found
 
 
+@functools.cache
+def _installed() -> dict[str, str]:
+    """Versions of the distributions on Python's path, by the names of their folders: reading each would take longer."""
+    found: dict[str, str] = {}
+    for place in sys.path:
+        with contextlib.suppress(OSError):
+            for folder in os.listdir(place or "."):
+                if folder.endswith(".dist-info"):
+                    name, _, number = folder.removesuffix(".dist-info").rpartition("-")
+                    found.setdefault(name.lower(), number)
+    return found
+
+
 def _commit() -> str:
     folder = Path(__file__).resolve().parents[2]
     if not (folder / ".git").exists():
         return ""
     try:
-        head = _git(folder, "rev-parse", "--short=12", "HEAD")
-        dirty = _git(folder, "status", "--porcelain", "--untracked-files=no")
+        words = ["git", "-C", str(folder), "describe", "--always", "--exclude=*", "--abbrev=12", "--dirty=-modified"]
+        return subprocess.run(words, capture_output=True, text=True, timeout=10, check=True).stdout.strip()
     except (OSError, subprocess.SubprocessError):
         return ""
-    return head + ("-modified" if dirty else "")
-
-
-def _git(folder: Path, *words: str) -> str:
-    done = subprocess.run(["git", "-C", str(folder), *words], capture_output=True, text=True, timeout=10, check=True)
-    return done.stdout.strip()
 
 
 @functools.cache

@@ -24,7 +24,7 @@ class Gate(BaseModel):
         of_search: whether it fails where a search missed a state that another method reached, and no answer is wrong.
     """
 
-    model_config = ConfigDict(extra="forbid")
+    model_config = ConfigDict(defer_build=True, extra="forbid")
     name: str
     statement: str
     passed: bool | None

@@ -120,7 +120,9 @@ class Answer:
 class Settings(BaseModel):
     """Base of every method's settings: immutable, unknown names refused, NaN refused."""
 
-    model_config = ConfigDict(frozen=True, extra="forbid", allow_inf_nan=False, ser_json_inf_nan="constants")
+    model_config = ConfigDict(
+        defer_build=True, frozen=True, extra="forbid", allow_inf_nan=False, ser_json_inf_nan="constants"
+    )
 
 
 class Traits(BaseModel):
@@ -145,7 +147,7 @@ class Traits(BaseModel):
         line: "solid", "dashed", "dotted" or "dashdot".
     """
 
-    model_config = ConfigDict(frozen=True, extra="forbid")
+    model_config = ConfigDict(defer_build=True, frozen=True, extra="forbid")
     caption: str = ""
     brackets: bool = False
     accuracy: float = Field(default=5e-3, gt=0.0, lt=1.0)

@@ -34,7 +34,7 @@ class Judgement(BaseModel):
             where that was not shown.
     """
 
-    model_config = ConfigDict(extra="forbid")
+    model_config = ConfigDict(defer_build=True, extra="forbid")
     residuals: dict[str, float] = Field(default_factory=dict)
     tolerance: float = 0.0
     accepted: bool | None = None
@@ -55,7 +55,7 @@ class Judgement(BaseModel):
 class Comparison(BaseModel):
     """One result held against one reference."""
 
-    model_config = ConfigDict(extra="forbid")
+    model_config = ConfigDict(defer_build=True, extra="forbid")
     reference: str
     quantity: str
     value: float | list[float] | str | None
@@ -72,7 +72,7 @@ class Result(BaseModel):
     Field names are a promise to scripts (`drystone run --json`); docs/json.md describes them.
     """
 
-    model_config = ConfigDict(extra="forbid")
+    model_config = ConfigDict(defer_build=True, extra="forbid")
     case: str
     method: str
     family: str

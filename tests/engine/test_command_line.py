@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import os
 import subprocess
 import sys
 from pathlib import Path
@@ -288,3 +289,12 @@ def test_a_rejected_answer_is_a_failure_of_the_comparison(wall: Path):
     done = drystone("compare", wall.name, "--methods", "dummy,la-associated", cwd=wall.parent)
     assert done.returncode == 1, done.stdout
     assert "dummy: the judge rejects the answer" in " ".join(done.stdout.split())
+
+
+def test_a_result_is_as_wide_as_the_terminal(wall: Path):
+    done = drystone("run", "la-associated", wall.name, cwd=wall.parent, env=os.environ | {"COLUMNS": "60"})
+    lines = done.stdout.splitlines()
+    assert max(map(len, lines)) <= 60
+    column = lines[0].index(lines[0].split(maxsplit=1)[1])
+    assert {line[:column].strip() for line in lines} >= {"wall", "units", "method", "finding", "status", "judge", ""}
+    assert all(line[column - 1] == " " != line[column] for line in lines if line.strip())
