@@ -179,9 +179,11 @@ def build(kernels: Iterable[Dispatcher]) -> Path:
     modules = set()
     for kernel in kernels:
         modules.add(kernel.py_func.__module__)
-        if len(kernel.signatures) > 1:
+        # Constants are what compiled code passes, never a call from outside.
+        called = [each for each in kernel.signatures if not any(isinstance(kind, types.Literal) for kind in each)]
+        if len(called) > 1:
             raise CannotBuild(f"{kernel.py_func.__qualname__} is called with arguments of several kinds")
-        for arguments in kernel.signatures:
+        for arguments in called:
             returned = kernel.overloads[arguments].signature.return_type
             library.export(built.symbol(kernel.py_func), returned(Arguments(arguments)))(_entry(kernel))
     try:

@@ -42,6 +42,15 @@ def room(values: Any, size: int) -> float:
     return made[0]
 
 
+@numba.njit
+def chosen(values: Any, which: int) -> float:
+    return values[which]
+
+
+def ends(values: Any) -> float:
+    return chosen(values, 0) + chosen(values, 2)
+
+
 def look_in(folder: Path, patch: pytest.MonkeyPatch) -> None:
     """Take libraries from a folder; the sources lie beside this module."""
     patch.setattr(built, "FOLDER", folder)
@@ -64,7 +73,7 @@ def afresh() -> Any:
 
 @pytest.fixture(scope="module")
 def library(tmp_path_factory: pytest.TempPathFactory) -> Any:
-    """A library of two functions, beside a list of what it was made of."""
+    """A library of three functions, beside a list of what it was made of."""
     folder = tmp_path_factory.mktemp("library")
     with pytest.MonkeyPatch.context() as patch:
         look_in(folder, patch)
@@ -76,14 +85,16 @@ def library(tmp_path_factory: pytest.TempPathFactory) -> Any:
         for function, arguments in calls:
             kernels.append(numba.njit(function))
             kernels[-1](*arguments)
-        ahead.build(kernels)
+        kernels.append(numba.njit(ends))
+        kernels[-1](np.ones(3))
+        ahead.build([*kernels, chosen])  # which was compiled for two constants
     return folder
 
 
 @pytest.fixture
 def entries(library: Path, afresh: None, monkeypatch: pytest.MonkeyPatch) -> dict[str, Any]:
     look_in(library, monkeypatch)
-    return {function.__name__: built.entry(function) for function in (total, room)}
+    return {function.__name__: built.entry(function) for function in (total, room, ends)}
 
 
 def test_functions_are_compiled_without_a_cache_where_no_folder_can_be_written(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -138,6 +149,12 @@ def test_the_library_refuses_arrays_that_it_was_not_built_for(entries: dict[str,
 
 
 @needs_compiler
+def test_what_compiled_code_calls_with_constants_is_inside_its_callers_alone(entries: dict[str, Any]) -> None:
+    assert entries["ends"]((np.array([3.0, 0.0, 0.5]),)) == 3.5
+    assert built.entry(chosen.py_func) is None
+
+
+@needs_compiler
 def test_numba_takes_what_the_library_refuses(entries: dict[str, Any]) -> None:
     assert built.holds(room)
     assert Kernel(room, False)(np.arange(6.0)[::2], 1) == 4.0
@@ -171,9 +188,9 @@ print("numba" in sys.modules, found.multiplier.hex(), found.forces, found.mechan
 """
 
 
+@needs_compiler
 def test_the_library_gives_the_bits_of_numba() -> None:
-    if not built.holds(kinks.next_kink):
-        pytest.skip("the kernels of this installation are left to numba")
+    assert built.holds(kinks.next_kink), "build the library for these sources: python -m harness.kernels"
     said = {}
     for way in ("library", "numba"):
         done = subprocess.run(
