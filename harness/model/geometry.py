@@ -33,7 +33,7 @@ def centroids(polygons: Sequence[FloatArray]) -> FloatArray:
     """
     sizes = np.array([len(polygon) for polygon in polygons])
     found = np.empty((len(polygons), 2))
-    for size in np.unique(sizes):
+    for size in sorted(set(sizes.tolist())):
         same = np.flatnonzero(sizes == size)
         outlines = np.stack([polygons[k] for k in same.tolist()])
         x, y = np.ascontiguousarray((outlines - outlines[:, :1]).transpose(2, 0, 1))

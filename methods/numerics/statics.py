@@ -11,7 +11,6 @@ import scipy.sparse as sp
 from harness.model.assembly import Assembly, FloatArray, IntArray
 from harness.model.components import analysed_apart
 from harness.model.method import Answer, Finding, OutOfTime, Status
-from methods.numerics.linear_programme import INFINITY, Programme
 
 LEAST_WORK = 1e-7
 """Work of the dead load that shows a fall, as total weight times speed: a programme to 1e-9 makes up less."""
@@ -80,6 +79,8 @@ def admissible_forces(assembly: Assembly, load: FloatArray) -> FloatArray | None
         assembly: the wall.
         load: (n, 3) generalised loads on the blocks [force, force, moment].
     """
+    from methods.numerics.linear_programme import INFINITY, Programme  # HiGHS, which few answers need
+
     length = assembly.length_scale or 1.0
     column = np.tile([1.0, 1.0, 1.0 / length], assembly.n_free)
     own = load[assembly.free].ravel() * column
@@ -117,6 +118,8 @@ def dilatant_mechanism(
         about: (n, 3) velocities [length, length, radian], or None for rest.
         within: largest difference from `about` of a speed, or of a rotation times the length scale.
     """
+    from methods.numerics.linear_programme import INFINITY, Programme  # HiGHS, which few answers need
+
     length = assembly.length_scale or 1.0
     column = np.tile([1.0, 1.0, 1.0 / length], assembly.n_free)
     pull = load[assembly.free].ravel() * column / assembly.force_scale

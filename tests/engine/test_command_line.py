@@ -298,3 +298,23 @@ def test_a_result_is_as_wide_as_the_terminal(wall: Path):
     column = lines[0].index(lines[0].split(maxsplit=1)[1])
     assert {line[:column].strip() for line in lines} >= {"wall", "units", "method", "finding", "status", "judge", ""}
     assert all(line[column - 1] == " " != line[column] for line in lines if line.strip())
+
+
+@pytest.mark.parametrize(
+    ("words", "code"), [(("list", "cases", "--json"), 0), (("run", "la-associated", "stack.json"), 0), (("run",), 2)]
+)
+def test_the_process_of_a_command_ends_with_its_exit_code_and_all_that_it_wrote(
+    words: tuple[str, ...], code: int, wall: Path
+):
+    program = "import atexit, sys; from drystone.__main__ import main; sys.argv = ['drystone', *sys.argv[1:]]\n"
+    program += "import harness.cli; old = harness.cli.main\n"
+    program += "def late(**more): atexit.register(print, 'last words'); old(**more)\n"
+    program += "harness.cli.main = late; main()"
+    for command in (["-m", "drystone"], ["-c", program]):
+        run = [sys.executable, *command, *words]
+        done = subprocess.run(run, cwd=wall.parent, capture_output=True, text=True, timeout=120, check=False)
+        assert done.returncode == code, done.stderr
+        assert done.stderr.count("Usage") == (code == 2)
+        assert ("last words\n" in done.stdout) is (command[0] == "-c")
+        if "--json" in words:
+            assert len(json.loads(done.stdout.removesuffix("last words\n"))) > 50
