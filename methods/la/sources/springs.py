@@ -25,7 +25,7 @@ import numpy as np
 
 from harness.model.assembly import FloatArray
 from methods.la.core.problem import Problem
-from methods.la.core.state import CollapseState, moving_contacts
+from methods.la.core.state import CollapseState, friction_work, moving_contacts
 from methods.la.interior.interior_point import PathSettings, follow_path, start_point
 from methods.la.sources.gravity import SPRINGS, Gravity, gravity_of
 from methods.la.sources.record import LEAST_IMPROVEMENT
@@ -114,6 +114,9 @@ class LittleSelfStress:
             right-angled joints where gravity leads above what is known: on none of ten walls of courses, nor of 25 of
             rectangular stones of many sizes, did one lead to anything lower. Gravity is no such sign where joints have
             many directions.
+            Up to there none is where gravity leads to nothing lower and the least state rubs: on 103 walls of courses
+            with such a state no path from a vertex led to anything lower, on 8 of 96 without one did, by up to 6 %.
+        rubs: share of the work of the live load that friction takes in such a state; rounding leaves 1e-15.
         gravity_alone: interfaces above which there is no other path: committed histories take 60,000 kinks on a facade
             of 863 bricks and end 1e-4 lower, and lead nowhere on 900 irregular blocks.
         vertex: shares of a vertex, of gravity's forces and of central ones up to there.
@@ -125,6 +128,7 @@ class LittleSelfStress:
     name: ClassVar[str] = "springs with little self-stress"
     most: int = 6000
     vertices_up_to: int = 200
+    rubs: float = 1e-6
     gravity_alone: int = 2000
     committed: CommittedHistories = CommittedHistories()
     vertex: tuple[tuple[float, float, float], ...] = ((1.0, 0.0, 0.0),)
@@ -142,12 +146,19 @@ class LittleSelfStress:
 
     def states(self, search: Search) -> Iterator[CollapseState]:
         """One state a path that ends, until the kinks are spent."""
-        problem = search.problem
+        right_angled = _right_angled(search.problem)
         for k, state in ends(search, self._starts(search)):
+            known = search.record.least
             yield state
-            above = k == 0 and state.multiplier > search.record.least + LEAST_IMPROVEMENT
-            if above and problem.n_interfaces > self.vertices_up_to and _right_angled(problem):
+            if k == 0 and right_angled and self._gravity_is_enough(search, known, state.multiplier):
                 return
+
+    def _gravity_is_enough(self, search: Search, known: float, gravity: float) -> bool:
+        """Whether no path is begun after that of gravity, which led to a state, from the least one `known` before."""
+        if search.problem.n_interfaces > self.vertices_up_to:
+            return gravity > known + LEAST_IMPROVEMENT
+        least = search.record.improvements[-1].state
+        return gravity >= known - LEAST_IMPROVEMENT and friction_work(search.problem, least) > self.rubs
 
     def _starts(self, search: Search) -> Iterator[Start]:
         problem = search.problem
