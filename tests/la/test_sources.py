@@ -120,6 +120,23 @@ def test_larger_walls_are_given_no_more_draws() -> None:
             assert counts == sorted(counts, reverse=True)
 
 
+def springs_on(wall: Any) -> tuple[int, float]:
+    answer = LimitAnalysis().solve(wall, SearchSettings())
+    (row,) = [row for row in answer.details["sources"] if row["source"] == LittleSelfStress.name]
+    assert answer.multiplier is not None
+    return row["states"], answer.multiplier
+
+
+def test_springs_end_with_gravity_where_the_least_state_rubs_and_go_on_where_none_does() -> None:
+    """Bricks 1:1 on friction 1.2: what is known before rocks only, and the tenth path leads from .28261 to .26696."""
+    states, multiplier = springs_on(running_bond(6, 3, 0.2, 0.65))
+    assert states == 1
+    assert multiplier == pytest.approx(0.5579977782523)
+    states, multiplier = springs_on(running_bond(6, 3, 0.4, 1.2))
+    assert states > 10
+    assert multiplier == pytest.approx(0.2669565217391)
+
+
 def test_deep_search_begins_with_a_normal_one() -> None:
     """So it never ends above it: it keeps what that finds, from the same draws, and goes on."""
     wall = build(random_wall(105)).assembly
