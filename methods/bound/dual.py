@@ -16,6 +16,7 @@ class DualBound:
     """cost >= value - constant - per_size * G for every collapse state of the window, G the size of its mechanism.
 
     Attributes:
+        prices: (m,) greatest price of a rate of each interface; lift_price: of the lift.
         products: multipliers of the unscaled products, as `Relaxation` orders them.
     """
 
@@ -23,6 +24,8 @@ class DualBound:
     constant: float
     per_size: float
     products: FloatArray = field(repr=False)
+    prices: FloatArray = field(repr=False)
+    lift_price: float
 
     def of(self, size: float) -> float:
         """The least cost of collapse states whose mechanism is of this size or smaller."""
@@ -51,8 +54,13 @@ def dual_bound(relaxation: Relaxation, iterate: FloatArray, step: float, cost: F
     paid[relaxation.unit_row, relaxation.work_column] = 0.0
     limit = np.where(paid > 0.0, relaxation.row_limit[:, None], 0.0)
     price = (limit * paid).sum(axis=0)
-    per_size = max(float(price[:f].max(initial=0.0)), float(price[-1])) + _paid_for_signed_slips(relaxation, true)
-    return DualBound(value, float(price[f]), per_size, true)
+    weights, lift_weight = relaxation.weights[relaxation.free // 4], relaxation.weights[-1]
+    lift_price = float(price[-1])
+    per_size = max(float((price[:f] / weights).max(initial=0.0)), lift_price / float(lift_weight))
+    per_size += _paid_for_signed_slips(relaxation, true)
+    prices = np.zeros(m)
+    np.maximum.at(prices, relaxation.free // 4, price[:f])
+    return DualBound(value, float(price[f]), per_size, true, prices, lift_price)
 
 
 def _paid_for_signed_slips(relaxation: Relaxation, true: FloatArray) -> float:
@@ -66,8 +74,9 @@ def _paid_for_signed_slips(relaxation: Relaxation, true: FloatArray) -> float:
     minus, plus = -true[4 * q + 2, column], true[4 * q + 3, column]
     first, second = true[local, column], true[local + len(q), column]
     worst = max(0.0, -float(np.min([plus + first, plus + second, minus + second, minus + first])))
-    strength = float(relaxation.friction_work().max(initial=0.0)) * equations.n_blocks
-    return 2.0 * worst * (equations.n_blocks + strength)
+    strength = relaxation.friction_work() / relaxation.weights[relaxation.free // 4]
+    most = 1.0 / float(relaxation.weights[-1]) + float(strength.max(initial=0.0))
+    return 2.0 * worst * equations.n_blocks * most
 
 
 def _repaired(relaxation: Relaxation, matrix: FloatArray) -> FloatArray:

@@ -155,8 +155,9 @@ class Sweep:
         return residual < self._noise * float(np.linalg.norm(self.iterate))
 
 
-def carried_over(new: Relaxation, old: Relaxation, iterate: FloatArray, step: float) -> FloatArray:
-    """The iterate of one window in the coordinates of the next."""
+def carried_over(new: Relaxation, step: float, before: Splitting) -> FloatArray:
+    """The iterate of one window in the coordinates of the next, for this step there."""
+    old, iterate = before.relaxation, before.iterate
     m, n = new.equations.n_interfaces, len(new.equations.dead)
     point = old.project(iterate)
     inner = old.row_basis.T @ point @ old.column_basis
@@ -166,7 +167,8 @@ def carried_over(new: Relaxation, old: Relaxation, iterate: FloatArray, step: fl
     inside = new.statics.T @ physical @ np.linalg.pinv(new.motions[:n]).T
     point_now = new.rows @ inside @ new.columns.T * new.row_scale[:, None] * new.column_scale
     every = np.zeros((6 * m + 3, 5 * m + 2))
-    every[np.ix_(*_places(old))] = (old.project(iterate) - iterate) / step * old.row_scale[:, None] * old.column_scale
+    dual = (point - iterate) / before.step * old.row_scale[:, None] * old.column_scale
+    every[np.ix_(*_places(old))] = dual
     every[4 * m] += (new.low - old.low) * every[4 * m + 1] - (new.high - old.high) * every[4 * m + 2]
     dual = every[np.ix_(*_places(new))] / new.row_scale[:, None] / new.column_scale
     return np.asarray(point_now - step * (dual - new.project(dual)))

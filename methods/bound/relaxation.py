@@ -33,11 +33,21 @@ class Relaxation:
         row_scale, column_scale: (a,), (c,) factors that make rows of A and B unit vectors.
         n_rows: 4m + 3, rows that are not local.
         free: (f,) contacts; unloadable: (q,) interfaces that slip either way; normal: (m,) least normal forces.
+        weights: (m + 1,) of the rates of each interface, and of the lift, in the size of a mechanism.
     """
 
-    def __init__(self, equations: Equations, low: float, high: float, bounds: SlackBounds, case: Case = EVERY) -> None:
+    def __init__(
+        self,
+        equations: Equations,
+        low: float,
+        high: float,
+        bounds: SlackBounds,
+        case: Case = EVERY,
+        weights: FloatArray | None = None,
+    ) -> None:
         self.equations, self.low, self.high, self.bounds, self.case = equations, low, high, bounds, case
         m = equations.n_interfaces
+        self.weights = np.ones(m + 1) if weights is None else weights
         positive = bounds.least > ROUNDING.margin
         self.normal = bounds.normal_least
         loaded = (self.normal > ROUNDING.margin) | positive.reshape(-1, 4)[:, 2:].any(axis=1)
@@ -145,10 +155,11 @@ class Relaxation:
         return cost
 
     def size_cost(self) -> FloatArray:
-        """Cost of minus the size of a mechanism, G = sum of free rates + lift."""
+        """Cost of minus the size of a mechanism, G = weighted sum of free rates and lift."""
         cost = np.zeros(self.lower.shape)
         columns = np.append(np.arange(len(self.free)), self.lift_column)
-        cost[self.unit_row, columns] = -1.0 / (self.row_scale[self.unit_row] * self.column_scale[columns])
+        weights = np.append(self.weights[self.free // 4], self.weights[-1])
+        cost[self.unit_row, columns] = -weights / (self.row_scale[self.unit_row] * self.column_scale[columns])
         return cost
 
 

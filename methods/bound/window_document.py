@@ -174,8 +174,9 @@ class WindowDocument:
     @cached_property
     def _weights(self) -> tuple[FloatArray, int]:
         """Whole weights (m,) of rates in the size of a mechanism, and of the lift, over 2^`Precision.weights`."""
-        scales, unit = self.scales, 2**PRECISION.weights
-        return np.round(scales.blocks / (scales.multiplier * scales.length) * unit), round(unit / scales.multiplier)
+        scales, unit, weights = self.scales, 2**PRECISION.weights, self.relaxation.weights
+        rates = scales.blocks / (scales.multiplier * scales.length) * weights[:-1]
+        return np.round(rates * unit), round(float(weights[-1]) / scales.multiplier * unit)
 
     def _motions(self) -> dict[str, Any]:
         """Strains that give the velocities: bounded ones, then slips of courses."""

@@ -104,6 +104,8 @@ class WindowSearch:
         self._slow = False
         self._size = np.inf
         self._size_products: FloatArray | None = None
+        self._weights: FloatArray | None = None
+        self._gaps: list[tuple[float, float]] = []
 
     def parts(self, contact: int, rates: RateProgramme) -> list[WindowSearch]:
         """The searches of both halves of the states of this one, which begin where this one is.
@@ -117,7 +119,7 @@ class WindowSearch:
             certify = None if self._certify is None else self._certify.part(contact, tight)
             known = Bracket(self.found.lower, self.found.upper)
             part = WindowSearch(self.equations, self._slacks, known, self.until, certify, case)
-            part._runs, part._rates = dict(self._runs), rates
+            part._runs, part._rates, part._weights = dict(self._runs), rates, self._weights
             parts.append(part)
         return parts
 
@@ -162,20 +164,21 @@ class WindowSearch:
     def _build(self) -> bool:
         """Build the relaxation of the present bracket; False if no state is left in it that is not bounded."""
         found, high = self.found, self.found.upper * (1.0 + WINDOWS.above)
+        self._gaps = [(time.process_time(), found.upper - found.lower)]
         bounds = self._slack_bounds(high, self.case)
         if bounds is not None and self._rates is not None:
             bounds = self._tightened(self._rates, high, bounds)
         low = found.lower
         if bounds is None or found.closed:
             return False
-        new = Relaxation(self.equations, low, high, bounds, self.case)
+        new = Relaxation(self.equations, low, high, bounds, self.case, self._weights)
         costs: dict[str, FloatArray] = {"size": new.size_cost(), "multiplier": new.multiplier_cost()}
         for name, cost in costs.items():
             run = Splitting(new, cost, STEPS[name].first, (STEPS[name].least, STEPS[name].most))
             before = self._runs.get(name)
             if before is not None and before.iterate.size:
-                run.step = before.step
-                run.iterate = carried_over(new, before.relaxation, before.iterate, run.step)
+                run.step = before.step if STEPS[name].kept else run.step
+                run.iterate = carried_over(new, run.step, before)
             self._runs[name] = run
         self._relaxation, self._size = new, np.inf
         found.windows.append(low)
@@ -245,10 +248,10 @@ class WindowSearch:
             self._slow = run.iterations - since > max(patience, WINDOWS.share * run.iterations)
             if bound is None or self._slow:
                 return self._slow
-            before, gap = found.lower, found.upper - found.lower
+            self._weigh(bound)
             self._keep(relaxation, bound)
             gained = found.lower > start + WINDOWS.gain * (found.upper - start)
-            fast = found.lower > before + WINDOWS.gain * gap
+            fast = self._gains(found.upper - found.lower)
             if found.lower >= found.upper * (1.0 - WINDOWS.finished) or (gained and not fast and not last):
                 return True
             close = 0.05 * (found.upper - found.lower)
@@ -258,6 +261,23 @@ class WindowSearch:
 
         self._run("multiplier", np.inf, stop)
         return agreeing >= 5
+
+    def _gains(self, gap: float) -> bool:
+        """Whether the gap of the bracket, now this, has lost `Windows.gain` in the last half of the window's time."""
+        now = time.process_time()
+        self._gaps.append((now, gap))
+        half = 0.5 * (self._gaps[0][0] + now)
+        earlier = next(gap for when, gap in reversed(self._gaps) if when <= half)
+        return gap < (1.0 - WINDOWS.gain) * earlier
+
+    def _weigh(self, bound: DualBound) -> None:
+        """Let the size of the next window's mechanisms weigh rates as duals price them, so that a few do not pay for
+        all."""
+        prices = np.append(bound.prices, bound.lift_price)
+        if prices.max() > 0.0:
+            weights = np.maximum(prices / prices.max(), WINDOWS.least_weight)
+            share = WINDOWS.newest_weight
+            self._weights = weights if self._weights is None else (1 - share) * self._weights + share * weights
 
     def _keep(self, relaxation: Relaxation, bound: DualBound) -> None:
         """Raise the bound to what the dual of this window proves, and keep the dual."""

@@ -15,10 +15,17 @@ from methods.la.core.search_settings import SearchSettings
 from methods.la.search_adapter import LimitAnalysis
 
 
+class Short(WindowSearch):
+    """Windows that end once they gained something, so that cases have something left to prove."""
+
+    def _gains(self, gap: float) -> bool:
+        return False
+
+
 def in_cases(problem: Problem, upper: float, seconds: float, certify: Certify | None = None) -> Bracket:
     """The bracket of one window and, from there, of cases of contacts only."""
     equations, until = equations_of(problem), time.process_time() + seconds
-    root = WindowSearch(equations, SlackProgramme(equations), Bracket(0.0, upper), until, certify)
+    root = Short(equations, SlackProgramme(equations), Bracket(0.0, upper), until, certify)
     root.window()
     return branched(root)
 
