@@ -23,9 +23,9 @@ class Windows:
             decided one by one. Two irregular walls of 20 and 28 interfaces close, and are certified, after 25,000 and
             46,000 iterations; what cases prove is not certified. Parts close after 400 to 4,000 or go on being divided.
         share: of its iterations that a window may spend so.
-        least_weight: of a rate in the size of mechanisms, the greatest price being one. On 83 interfaces twenty rates of
-            172 bear most of the price: with .3 less than half as much is lost to it, and the bound comes to .54 % below
-            the state in 41 s of CPU time. With .1 sizes of 21 bricks were not bounded any more.
+        least_weight: of a rate in the size of mechanisms, the greatest price being one. On 83 interfaces few of 172
+            rates bear most of the price: with .3 a third is lost to it of what is with one. With .1 sizes of 21 bricks
+            were not bounded any more.
         newest_weight: share of the weights that the last check has, since prices change from one to the next.
     """
 
