@@ -75,7 +75,7 @@ def _command(folder: Path, *words: str, repeats: int = 3) -> float:
     costs = []
     for _ in range(repeats):
         before = _children()
-        program = "from harness.cli import main; main()"
+        program = "from drystone.__main__ import main; main()"
         command = [sys.executable, "-c", program, *words]
         environment = os.environ | {"PYTHONPATH": str(Path(__file__).resolve().parents[1])}
         environment.pop("PYTHONDONTWRITEBYTECODE", None)  # with it every command compiles all that it imports again

@@ -6,9 +6,10 @@ the library look at the header of every array first, by the layout that NumPy ke
 
 from __future__ import annotations
 
+import hashlib
 import json
-import os
 import sys
+import tempfile
 import warnings
 from collections.abc import Callable, Iterable
 from contextlib import ExitStack
@@ -175,7 +176,10 @@ def build(kernels: Iterable[Dispatcher]) -> Path:
     Raises:
         CannotBuild: there is no compiler of C, a kernel was called in two ways, or the folder takes no file.
     """
-    library = _Library(built.NAME, source_module=__name__)
+    try:
+        library = _Library(built.NAME, source_module=__name__)
+    except RuntimeError as error:
+        raise CannotBuild("there is no compiler of C") from error
     modules = set()
     for kernel in kernels:
         modules.add(kernel.py_func.__module__)
@@ -186,29 +190,25 @@ def build(kernels: Iterable[Dispatcher]) -> Path:
         for arguments in called:
             returned = kernel.overloads[arguments].signature.return_type
             library.export(built.symbol(kernel.py_func), returned(Arguments(arguments)))(_entry(kernel))
+    told = {"conditions": built.conditions(), "sources": {name: built.digest(name) for name in sorted(modules)}}
+    stamp = hashlib.sha256(json.dumps(told).encode()).hexdigest()[:16]
+    file = built.FOLDER / f"{built.NAME}.{sys.implementation.cache_tag}-{stamp}.so"
     try:
         built.FOLDER.mkdir(exist_ok=True)
-        library.output_dir = str(built.FOLDER)
-        suffix = f".{sys.implementation.cache_tag}-{os.getpid()}.so"
-        library.output_file = built.NAME + suffix
-        library.compile()
-        sources = {module: built.digest(module) for module in sorted(modules)}
-        told = {"file": library.output_file, "conditions": built.conditions(), "sources": sources}
-        draft = built.LIST.with_suffix(f".{os.getpid()}")
-        draft.write_text(json.dumps(told, indent=1), encoding="utf-8")
-        _remove_others(library.output_file)
-        draft.replace(built.LIST)
+        with tempfile.TemporaryDirectory(dir=built.FOLDER) as folder:
+            library.output_dir, library.output_file = folder, file.name
+            library.compile()
+            draft = Path(folder, built.LIST.name)
+            draft.write_text(json.dumps({"file": file.name} | told, indent=1), encoding="utf-8")
+            Path(folder, file.name).replace(file)
+            draft.replace(built.LIST)
     except Exception as error:  # distutils raises what it likes
         raise CannotBuild(f"{type(error).__name__}: {error}") from error
+    for other in built.FOLDER.glob(f"{built.NAME}.{sys.implementation.cache_tag}-*.so"):
+        if other != file:
+            other.unlink(missing_ok=True)  # of earlier sources; a process that has loaded it keeps it
     return built.LIST
 
 
 def _entry(kernel: Dispatcher) -> Callable[[Any], Any]:
     return lambda arguments: kernel(*arguments)
-
-
-def _remove_others(file: str) -> None:
-    """Libraries of earlier sources; a process that has loaded one keeps it."""
-    for other in built.FOLDER.glob(f"{built.NAME}.{sys.implementation.cache_tag}-*.so"):
-        if other.name != file:
-            other.unlink(missing_ok=True)
