@@ -60,6 +60,9 @@ def main(arguments: Sequence[str] | None = None) -> int:
         if full:
             _, _, spent = _many(folder, 5000, ["la-associated", "fe"])
             _line("10,000 runs of la-associated and fe, wall s", spent, 600.0)
+            seconds, size = _expansion(folder)
+            _line("50,000 blocks: expansion and contacts, CPU s", seconds, 10.0)
+            _line("memory that takes, GB", size, 1.0)
         seconds, size = _store(folder)
         _line("store of 100,000 runs: open, filter, aggregate, s", seconds, 2.0)
         _line("size of each of them without fields, byte", size, 2000.0)
@@ -87,6 +90,20 @@ def _command(folder: Path, *words: str, repeats: int = 3) -> float:
         if costs[0] > 10.0:
             break
     return min(costs)
+
+
+def _expansion(folder: Path, courses: int = 200, bricks: int = 250) -> tuple[float, float]:
+    """CPU seconds of expanding a wall of so many blocks and finding its contacts, and GB of its process at most."""
+    program = (
+        "import resource; from benchmarks.walls import bond; "
+        f"bond({courses}, {bricks}, 0.65); used = resource.getrusage(resource.RUSAGE_SELF); "
+        "print(used.ru_utime + used.ru_stime, used.ru_maxrss)"
+    )
+    environment = os.environ | {"PYTHONPATH": str(Path(__file__).resolve().parents[1])}
+    command = [sys.executable, "-c", program]
+    done = subprocess.run(command, cwd=folder, env=environment, capture_output=True, text=True, check=True)
+    seconds, kilobytes = (float(word) for word in done.stdout.split())
+    return seconds, kilobytes / 2**20
 
 
 def _children() -> float:
