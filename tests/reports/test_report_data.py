@@ -7,11 +7,13 @@ import json
 from pathlib import Path
 from xml.etree import ElementTree
 
+import pandas as pd
 import pyarrow.parquet as pq
 import pytest
 
+from harness.model import columns
 from harness.model.comparison import CaseResults, ComparisonRun
-from reports.export import export
+from reports.export import export, result_frame
 from tests.reports import samples
 
 
@@ -44,6 +46,13 @@ def test_parquet_has_typed_columns(folder: Path):
     assert table.num_rows == 12
     assert str(table.schema.field("multiplier").type) == "double"
     assert table.column("multiplier").null_count == 2, "the failed runs have none"
+
+
+def test_parquet_is_read_by_pandas_as_the_table_of_the_results(folder: Path):
+    results = [result for item in samples.typical().cases for result in item.results]
+    read = pd.read_parquet(folder / "results.parquet")
+    pd.testing.assert_frame_equal(read, result_frame(results), check_column_type=False)
+    assert dict(read.dtypes.astype(str)) == columns.TYPES
 
 
 def test_comparisons_name_type_and_source(folder: Path):
