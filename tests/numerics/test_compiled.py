@@ -199,3 +199,16 @@ def test_the_library_gives_the_bits_of_numba() -> None:
         imported, _, said[way] = done.stdout.partition(" ")
         assert imported == str(way == "numba")
     assert said["library"] == said["numba"]
+
+
+@needs_compiler
+def test_a_wall_of_many_blocks_finds_its_kernels_in_the_library_too() -> None:
+    program = (
+        "import sys, drystone\n"
+        "found = drystone.analyse(drystone.new_wall('running-bond', length=9.0, height=2.6), 'la-associated')\n"
+        "print(found.blocks, found.status, 'drystone_kernels' in sys.modules, 'numba' in sys.modules)"
+    )
+    done = subprocess.run(
+        [sys.executable, "-c", program], cwd=HERE, capture_output=True, text=True, timeout=120, check=True
+    )
+    assert done.stdout.split() == ["241", "ok", "True", "False"]
