@@ -34,9 +34,9 @@ def bracket(
 
 
 def branched(root: WindowSearch) -> Bracket:
-    """The bracket of a search that has no more to give: divided at a contact, and again, the lowest part first.
+    """The bracket of a search that has no more to give: its states divided, and again, the lowest part first.
 
-    In a collapse state a contact has no slack or no rate, so the least bound of both parts is one of the whole.
+    Every state lies in one of both parts, so the least bound of both is one of the whole.
     """
     found, leaves, rates = root.found, [root], RateProgramme(root.equations)
     while not found.closed and time.process_time() < root.until:
@@ -48,11 +48,11 @@ def branched(root: WindowSearch) -> Bracket:
         if leaf.found.closed:
             leaf.found.lower = leaf.found.upper
         elif not more and time.process_time() < root.until:
-            contact = leaf.undecided()
-            if contact is None:
+            at = leaf.division()
+            if at is None:
                 break
             leaves.remove(leaf)
-            leaves += leaf.parts(contact, rates)
+            leaves += leaf.parts(at, rates)
             found.branches += 1
         found.lower = max(found.lower, min(each.found.lower for each in leaves))
     return found

@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 
 from harness.model.assembly import FloatArray
+from methods.bound.case import AtContact, Division
 from methods.bound.equations import Equations
 from methods.bound.exact_wall import CertificateError, ExactWall
 from methods.bound.rate_bounds import RateProof
@@ -70,13 +71,13 @@ class Certifier:
             self._last = proof.relaxation, states_of(writer.limits, greatest, bound)
         return self.scales.scaled(self._proved)
 
-    def part(self, contact: int, tight: bool) -> CaseCertifier | None:
+    def part(self, at: Division, first: bool) -> CaseCertifier | None:
         """The certificate of half of the states of the last window; None if none is proved."""
         if self._last is None:
             return None
         if self.cases is None:
             self.cases = CaseCertifier(self.scales, self._programme, self._last[1])
-        return self.cases.part(contact, tight)
+        return self.cases.part(at, first)
 
     def slacks(self, bounds: SlackBounds) -> None:
         """Nothing: windows of all states bring this with them."""
@@ -103,7 +104,7 @@ class CaseCertifier:
         self._scales, self._programme, self._states = scales, programme, states
         self._steps: list[dict[str, Any]] = []
         self._halves: dict[bool, CaseCertifier] = {}
-        self._contact = -1
+        self._at: dict[str, Any] = {}
         self._before = states
         self._last: Relaxation | None = None
 
@@ -122,8 +123,8 @@ class CaseCertifier:
         node: dict[str, Any] = {}
         needs: set[Fact] = set()
         if len(self._halves) == 2:
-            parts = [self._halves[tight]._needed() for tight in (True, False)]
-            node |= {"contact": self._contact, "parts": [part for part, _ in parts]}
+            parts = [self._halves[first]._needed() for first in (True, False)]
+            node |= self._at | {"parts": [part for part, _ in parts]}
             needs = parts[0][1] | parts[1][1]
         steps = []
         for step in reversed(self._steps):
@@ -133,11 +134,16 @@ class CaseCertifier:
                 needs |= _needs_of(step, self._states)
         return node | {"steps": steps[::-1]}, needs
 
-    def part(self, contact: int, tight: bool) -> CaseCertifier:
-        """Of the states without slack, or without a rate, at a contact."""
-        self._contact = contact
-        self._halves[tight] = CaseCertifier(self._scales, self._programme, self._states.half(contact, tight))
-        return self._halves[tight]
+    def part(self, at: Division, first: bool) -> CaseCertifier:
+        """Of the first or the second half of a division."""
+        if isinstance(at, AtContact):
+            self._at = {"contact": at.contact}
+        else:
+            normal = below(at.normal / float(self._scales.length[at.interface]))
+            self._at = {"interface": at.interface, "normal": str(normal)}
+        half = self._states.halves(self._at)[0 if first else 1]
+        self._halves[first] = CaseCertifier(self._scales, self._programme, half)
+        return self._halves[first]
 
     def window(self, proof: WindowProof, needed: float) -> float:
         """The bound after a window, of which so much is needed."""

@@ -46,10 +46,10 @@ def dual_bound(relaxation: Relaxation, iterate: FloatArray, step: float, cost: F
     reduced = cost - matrix
     if left > ROUNDING.unused * max(1.0, float(abs(reduced).max())):
         return None
-    m, f, columns = relaxation.equations.n_interfaces, len(relaxation.free), relaxation.lift_column + 1
+    f, columns = len(relaxation.free), relaxation.lift_column + 1
     value = float(reduced[relaxation.unit_row, relaxation.work_column] * relaxation.unit)
     true = reduced * relaxation.row_scale[:, None] * relaxation.column_scale
-    paid = np.maximum(-true[: 4 * m + 3, :columns], 0.0)
+    paid = np.maximum(-true[: relaxation.n_rows, :columns], 0.0)
     paid[relaxation.free, np.arange(f)] = 0.0
     paid[relaxation.unit_row, relaxation.work_column] = 0.0
     limit = np.where(paid > 0.0, relaxation.row_limit[:, None], 0.0)
@@ -58,7 +58,7 @@ def dual_bound(relaxation: Relaxation, iterate: FloatArray, step: float, cost: F
     lift_price = float(price[-1])
     per_size = max(float((price[:f] / weights).max(initial=0.0)), lift_price / float(lift_weight))
     per_size += _paid_for_signed_slips(relaxation, true)
-    prices = np.zeros(m)
+    prices = np.zeros(relaxation.equations.n_interfaces)
     np.maximum.at(prices, relaxation.free // 4, price[:f])
     return DualBound(value, float(price[f]), per_size, true, prices, lift_price)
 
@@ -68,9 +68,9 @@ def _paid_for_signed_slips(relaxation: Relaxation, true: FloatArray) -> float:
     q = relaxation.unloadable
     if not len(q):
         return 0.0
-    equations, m = relaxation.equations, relaxation.equations.n_interfaces
+    equations = relaxation.equations
     column = relaxation.lift_column + 1 + np.arange(len(q))
-    local = 4 * m + 3 + np.arange(len(q))
+    local = relaxation.n_rows + np.arange(len(q))
     minus, plus = -true[4 * q + 2, column], true[4 * q + 3, column]
     first, second = true[local, column], true[local + len(q), column]
     worst = max(0.0, -float(np.min([plus + first, plus + second, minus + second, minus + first])))

@@ -10,6 +10,9 @@ from typing import Any
 
 from methods.bound.exact_wall import ZERO, CertificateError, ExactWall, Form, integers, paired, whole, whole_numbers
 
+Sides = Mapping[int, tuple[Fraction, Fraction | None]]
+"""{interface: (least, greatest normal force)}; None where there is no limit from above."""
+
 
 class Forces:
     """Bounds of normal forces in all states of a window, each from virtual velocities.
@@ -19,10 +22,17 @@ class Forces:
     """
 
     def __init__(
-        self, wall: ExactWall, low: Fraction, high: Fraction, document: Any, tight: Collection[int] = ()
+        self,
+        wall: ExactWall,
+        low: Fraction,
+        high: Fraction,
+        document: Any,
+        tight: Collection[int] = (),
+        sides: Sides | None = None,
     ) -> None:
         self.wall, self.low, self.high = wall, low, high
         self.tight, self.rays = frozenset(tight), rays_of(wall, tight)
+        self.sides: Sides = {} if sides is None else sides
         self.unit = 2 ** whole(document["exponent"], 0, 200)
         m = wall.n_interfaces
         self._rows, self._row_unit = integers([dict(row) for row in wall.sparse])
@@ -43,14 +53,33 @@ class Forces:
         part.low, part.tight, part.rays = low, frozenset(tight), rays_of(self.wall, tight)
         return part
 
+    def beside(self, interface: int, normal: Fraction, above: bool) -> Forces:
+        """The same bounds for the states whose normal force at an interface is at most, or at least, so much."""
+        part = copy.copy(self)
+        least, most = self.sides.get(interface, (ZERO, None))
+        lower = (least, normal if most is None else min(most, normal))
+        part.sides = {**self.sides, interface: (max(least, normal), most) if above else lower}
+        return part
+
+    def limits(self) -> list[tuple[int, int, Fraction]]:
+        """(interface, side, limit) of normal forces, sorted: side * (N - limit) >= 0."""
+        found: list[tuple[int, int, Fraction]] = []
+        for p, (least, most) in sorted(self.sides.items()):
+            found += [(p, 1, least)] if least > 0 else []
+            found += [(p, -1, most)] if most is not None else []
+        return found
+
     def least_multiplier(self, velocities: Any) -> Fraction | None:
         """A lower bound of the multiplier of these states; None if velocities show that there are none."""
+        if any(least > 0 and not self.rays[p] for p, (least, _) in self.sides.items()):
+            return None
         v = whole_numbers(velocities, len(self.wall.dead))
         live, dead = (
             Fraction(sum([value * v[d] for d, value in load.items()]), self.unit * self._load_unit)
             for load in self._loads
         )
-        most = self._above_form({}, v)[1] * (self.total or ZERO) - dead  # of live times the multiplier
+        paid, worst = self._beyond({}, v)
+        most = paid + worst * (self.total or ZERO) - dead  # of live times the multiplier
         if live < 0:
             least = most / live
             return least if least <= self.high else None
@@ -77,7 +106,20 @@ class Forces:
     def _above_form(self, form: Form, velocities: Any) -> tuple[Fraction, Fraction]:
         """(a, b) such that the form of forces is at most a + b times the sum of normal forces."""
         v = whole_numbers(velocities, len(self.wall.dead))
+        paid, worst = self._beyond(form, v)
+        live, dead = (
+            Fraction(-sum([value * v[d] for d, value in load.items()]), self.unit * self._load_unit)
+            for load in self._loads
+        )
+        return paid + dead + max(self.low * live, self.high * live), worst
+
+    def _beyond(self, form: Form, v: list[int]) -> tuple[Fraction, Fraction]:
+        """(a, b) such that the form less the work of velocities is at most a + b times the sum of normal forces.
+
+        At an interface it is at most a multiple of its normal force, which may have limits of its own.
+        """
         scale, mu_unit = self.unit * self._row_unit * self._friction_unit, self._friction_unit
+        paid: Fraction = ZERO
         worst = 0
         for p, mu in self._friction.items():
             first, second, shear = (
@@ -85,13 +127,16 @@ class Forces:
                 - mu_unit * sum([value * v[d] for d, value in self._rows[k].items()])
                 for k in range(3 * p, 3 * p + 3)
             )
-            for end, side in self.rays[p]:
-                worst = max(worst, (second if end else first) * mu_unit + side * mu * shear)
-        live, dead = (
-            Fraction(-sum([value * v[d] for d, value in load.items()]), self.unit * self._load_unit)
-            for load in self._loads
-        )
-        return dead + max(self.low * live, self.high * live), Fraction(worst, scale * mu_unit)
+            multiples = [(second if end else first) * mu_unit + side * mu * shear for end, side in self.rays[p]]
+            multiple = max(multiples, default=0)
+            least, most = self.sides.get(p, (ZERO, None))
+            if multiple < 0:
+                paid += multiple * least
+            elif most is not None:
+                paid += multiple * most
+            else:
+                worst = max(worst, multiple)
+        return paid / (scale * mu_unit), Fraction(worst, scale * mu_unit)
 
 
 def rays_of(wall: ExactWall, tight: Collection[int]) -> list[list[tuple[int, int]]]:

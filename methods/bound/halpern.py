@@ -166,10 +166,13 @@ def carried_over(new: Relaxation, step: float, before: Splitting) -> FloatArray:
     physical = old.statics @ weights @ old.motions[:n].T
     inside = new.statics.T @ physical @ np.linalg.pinv(new.motions[:n]).T
     point_now = new.rows @ inside @ new.columns.T * new.row_scale[:, None] * new.column_scale
-    every = np.zeros((6 * m + 3, 5 * m + 2))
+    every = np.zeros((8 * m + 3, 5 * m + 2))
     dual = (point - iterate) / before.step * old.row_scale[:, None] * old.column_scale
     every[np.ix_(*_places(old))] = dual
     every[4 * m] += (new.low - old.low) * every[4 * m + 1] - (new.high - old.high) * every[4 * m + 2]
+    limits = {(p, side): limit for p, side, limit in new.limits}
+    for (p, side, limit), place in zip(old.limits, _limit_places(old), strict=True):
+        every[4 * m] += side * (limits[p, side] - limit) * every[place]
     dual = every[np.ix_(*_places(new))] / new.row_scale[:, None] / new.column_scale
     return np.asarray(point_now - step * (dual - new.project(dual)))
 
@@ -177,5 +180,11 @@ def carried_over(new: Relaxation, step: float, before: Splitting) -> FloatArray:
 def _places(relaxation: Relaxation) -> tuple[IntArray, IntArray]:
     """Rows and columns of a relaxation within one that has a row and a column for everything."""
     m, q = relaxation.equations.n_interfaces, relaxation.unloadable
-    rows = np.concatenate([np.arange(4 * m + 3), 4 * m + 3 + q, 5 * m + 3 + q])
+    rows = np.concatenate([np.arange(4 * m + 3), _limit_places(relaxation), 4 * m + 3 + q, 5 * m + 3 + q])
     return rows, np.concatenate([relaxation.free, [4 * m, 4 * m + 1], 4 * m + 2 + q])
+
+
+def _limit_places(relaxation: Relaxation) -> IntArray:
+    """Rows of limits of normal forces: those from below, then those from above."""
+    m = relaxation.equations.n_interfaces
+    return np.array([(6 if side > 0 else 7) * m + 3 + p for p, side, _ in relaxation.limits], dtype=np.int64)

@@ -2,15 +2,16 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Literal
 
 import numpy as np
 import scipy.sparse as sp
 
 from harness.model.assembly import FloatArray
+from methods.bound.case import Case
 from methods.bound.equations import Equations
-from methods.bound.slack_bounds import Case, SlackBounds
+from methods.bound.slack_bounds import SlackBounds
 from methods.bound.tuning import ROUNDING
 from methods.numerics.linear_programme import INFINITY, Programme
 
@@ -108,7 +109,7 @@ class RateProgramme:
             if status == "optimal" and -greatest < ROUNDING.no_row:
                 held.add(int(contact))
                 proofs.append(self._proof("slow", dual, int(contact)))
-        return Case(frozenset(tight), frozenset(held)), proofs
+        return replace(case, tight=frozenset(tight), still=frozenset(held)), proofs
 
     def _least(self, cost: FloatArray) -> tuple[str, float, FloatArray]:
         self._programme.set_costs(self._n, cost)

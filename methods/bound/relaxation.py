@@ -15,8 +15,9 @@ import numpy as np
 import scipy.linalg
 
 from harness.model.assembly import FloatArray, IntArray
+from methods.bound.case import EVERY, Case
 from methods.bound.equations import Equations
-from methods.bound.slack_bounds import EVERY, Case, SlackBounds
+from methods.bound.slack_bounds import SlackBounds
 from methods.bound.tuning import ROUNDING
 
 
@@ -24,14 +25,15 @@ class Relaxation:
     """Spaces, inequalities and bounds of the products of one window.
 
     m = interfaces, f = openings and slips that may move (`free`), q = interfaces that may be unloaded.
-    Rows: 4m slacks, s, multiplier - low s, high s - multiplier, and two local rows per unloadable interface.
+    Rows: 4m slacks, s, multiplier - low s, high s - multiplier, one per limit of a normal force of the case, and two
+    local rows per unloadable interface.
     Columns: f rates, live work b, the lift, and q signed slips.
 
     Attributes:
         rows, columns: (a, .) and (c, .) matrices A and B over orthonormal bases of statics and mechanisms.
         lower, upper: (a, c) bounds of the scaled products; -inf and inf where a product is not used.
         row_scale, column_scale: (a,), (c,) factors that make rows of A and B unit vectors.
-        n_rows: 4m + 3, rows that are not local.
+        n_rows: rows that are not local.
         free: (f,) contacts; unloadable: (q,) interfaces that slip either way; normal: (m,) least normal forces.
         weights: (m + 1,) of the rates of each interface, and of the lift, in the size of a mechanism.
     """
@@ -58,7 +60,8 @@ class Relaxation:
         self.unloadable: IntArray = np.flatnonzero(~loaded & may[:, 2:].all(axis=1))
         may[self.unloadable, 2:] = False
         self.free: IntArray = np.flatnonzero(may.ravel())
-        self.unit_row, self.multiplier_row, self.n_rows = 4 * m, 4 * m + 1, 4 * m + 3
+        self.limits = case.limits()
+        self.unit_row, self.multiplier_row, self.n_rows = 4 * m, 4 * m + 1, 4 * m + 3 + len(self.limits)
         self.work_column, self.lift_column = len(self.free), len(self.free) + 1
         self.rows, self.columns = self._static_rows(), self._kinematic_columns()
         self.row_scale, self.column_scale = _scales(self.rows), _scales(self.columns)
@@ -67,7 +70,8 @@ class Relaxation:
         self.unit = float(self.row_scale[self.unit_row] * self.column_scale[self.work_column])
         self.lower, self.upper = self._product_bounds()
         self.unused = np.isneginf(self.lower) & np.isposinf(self.upper)
-        self.row_limit = np.concatenate([bounds.greatest, [1.0, high - low, high - low]])
+        within = [bounds.normal_greatest[p] - v if side > 0 else v for p, side, v in self.limits]
+        self.row_limit = np.concatenate([bounds.greatest, [1.0, high - low, high - low], within])
 
     def _static_rows(self) -> FloatArray:
         equations, m, q = self.equations, self.equations.n_interfaces, self.unloadable
@@ -76,6 +80,7 @@ class Relaxation:
         self.statics = scipy.linalg.null_space(np.vstack([balance, np.pad(tight, ((0, 0), (0, 2)))]))
         forces, multiplier, unit = self.statics[: 3 * m], self.statics[3 * m], self.statics[3 * m + 1]
         window = [unit, multiplier - self.low * unit, self.high * unit - multiplier]
+        window += [side * (forces[3 * p] + forces[3 * p + 1] - limit * unit) for p, side, limit in self.limits]
         difference = equations.friction[q, None] * (forces[3 * q] - forces[3 * q + 1])
         shear = forces[3 * q + 2]
         return np.vstack([equations.slack @ forces, *window, difference - shear, -difference - shear])
@@ -100,17 +105,17 @@ class Relaxation:
         return np.where(self.free % 4 >= 2, strength, 0.0)
 
     def _product_bounds(self) -> tuple[FloatArray, FloatArray]:
-        m, q, f = self.equations.n_interfaces, self.unloadable, len(self.free)
+        q, f = self.unloadable, len(self.free)
         lower = np.zeros((len(self.rows), len(self.columns)))
         upper = np.full(lower.shape, np.inf)
         upper[self.free, np.arange(f)] = 0.0
-        lower[4 * m + 3 :] = -np.inf
+        lower[self.n_rows :] = -np.inf
         lower[:, f + 2 :] = -np.inf
         column = f + 2 + np.arange(len(q))
         upper[4 * q + 2, column] = 0.0
         lower[4 * q + 3, column] = 0.0
         for first in (0, len(q)):
-            lower[4 * m + 3 + first + np.arange(len(q)), column] = 0.0
+            lower[self.n_rows + first + np.arange(len(q)), column] = 0.0
         lower[self.unit_row, self.work_column] = upper[self.unit_row, self.work_column] = self.unit
         return lower, upper
 

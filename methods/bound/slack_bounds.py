@@ -2,34 +2,16 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 import scipy.sparse as sp
 
 from harness.model.assembly import FloatArray
+from methods.bound.case import EVERY, Case
 from methods.bound.equations import Equations
 from methods.bound.tuning import ROUNDING
 from methods.numerics.linear_programme import INFINITY, Programme
-
-
-@dataclass(frozen=True)
-class Case:
-    """Collapse states of some contacts without slack and some without a rate; in every state a contact is one of both.
-
-    Attributes:
-        tight: contacts 4 p + k whose slack is zero; still: whose rate is zero.
-    """
-
-    tight: frozenset[int] = frozenset()
-    still: frozenset[int] = frozenset()
-
-    def halves(self, contact: int) -> tuple[Case, Case]:
-        """The two cases of a contact, which hold every state of this one."""
-        return replace(self, tight=self.tight | {contact}), replace(self, still=self.still | {contact})
-
-
-EVERY = Case()
 
 
 @dataclass(frozen=True, eq=False)
@@ -61,19 +43,25 @@ class SlackProgramme:
         self._m, self._n, self._friction = m, n, equations.friction
         statics = sp.hstack([equations.kinematic.T, sp.csc_matrix((n, 4 * m)), sp.csc_matrix(equations.live[:, None])])
         yields = sp.hstack([sp.csc_matrix(equations.slack), -sp.eye(4 * m), sp.csc_matrix((4 * m, 1))])
-        right = np.append(-equations.dead, np.zeros(4 * m))
-        lower = np.concatenate([np.full(3 * m, -INFINITY), np.zeros(4 * m + 1)])
-        upper = np.full(7 * m + 1, INFINITY)
-        self._programme = Programme(
-            sp.csc_matrix(sp.vstack([statics, yields])), np.zeros(7 * m + 1), (lower, upper), (right, right)
-        )
+        ends = np.repeat(np.eye(m), 4, axis=1) * np.tile([1.0, 1.0, 0.0, 0.0], m)
+        normals = sp.csc_matrix(np.pad(ends, [(0, 0), (3 * m, 1)]))
+        values = sp.vstack([sp.csc_matrix((n + 4 * m, m)), -sp.eye(m)])
+        matrix = sp.hstack([sp.vstack([statics, yields, normals]), values])
+        right = np.append(-equations.dead, np.zeros(5 * m))
+        lower = np.concatenate([np.full(3 * m, -INFINITY), np.zeros(5 * m + 1)])
+        upper = np.full(8 * m + 1, INFINITY)
+        self._programme = Programme(sp.csc_matrix(matrix), np.zeros(8 * m + 1), (lower, upper), (right, right))
 
     def window(self, low: float, high: float, case: Case = EVERY) -> None:
-        """Keep multipliers within a window, and the tight slacks of a case at zero, from now on."""
+        """Keep multipliers within a window, and slacks and normal forces within a case, from now on."""
         greatest = np.full(4 * self._m, INFINITY)
         greatest[list(case.tight)] = 0.0
         self._programme.set_columns(3 * self._m, np.zeros(4 * self._m), greatest)
         self._programme.set_columns(7 * self._m, np.array([low]), np.array([high]))
+        normal = np.tile([0.0, INFINITY], (self._m, 1))
+        for p, side, limit in case.limits():
+            normal[p, 0 if side > 0 else 1] = limit
+        self._programme.set_columns(7 * self._m + 1, normal[:, 0].copy(), normal[:, 1].copy())
 
     def least(self, slacks: FloatArray) -> tuple[str, float, FloatArray]:
         """(status, least weighted sum of slacks (4m,), virtual velocities (3n,) that prove it)."""
@@ -88,7 +76,7 @@ class SlackProgramme:
         self._programme.set_costs(7 * self._m, np.zeros(1))
         if status == "infeasible":
             return np.inf, self.excluding()
-        return (float(value[-1]), dual[: self._n]) if status == "optimal" else (0.0, np.zeros(self._n))
+        return (float(value[7 * self._m]), dual[: self._n]) if status == "optimal" else (0.0, np.zeros(self._n))
 
     def excluding(self) -> FloatArray:
         """(3n,) virtual velocities, of either sign, that exclude all forces, where there were none."""

@@ -1,7 +1,8 @@
-"""Check in fractions of the cases of a certificate: windows whose states are divided at contacts, and divided again.
+"""Check in fractions of the cases of a certificate: windows whose states are divided, and divided again.
 
-In a collapse state every contact has no slack or no rate, so what holds of both halves holds of all states. Within a
-half, virtual velocities and virtual forces show more of contacts. docs/theory-bound.md holds the proofs.
+In a collapse state every contact has no slack or no rate, and every normal force is at most so much or at least so
+much: what holds of both halves holds of all states. Within a half, virtual velocities and virtual forces show more of
+contacts. docs/theory-bound.md holds the proofs.
 """
 
 from __future__ import annotations
@@ -12,7 +13,7 @@ from dataclasses import dataclass, replace
 from fractions import Fraction
 from typing import Any
 
-from methods.bound.exact_wall import ZERO, CertificateError, ExactWall, Form, Vector, whole, whole_numbers
+from methods.bound.exact_wall import ZERO, CertificateError, ExactWall, Form, Vector, paired, whole, whole_numbers
 from methods.bound.force_limits import Forces, Known
 from methods.bound.verify_window import WindowLimits
 from methods.bound.window_limits import most_of
@@ -49,6 +50,20 @@ class States:
         if tight:
             return replace(self, forces=self.forces.within(self.low, self.forces.tight | {contact}))
         return replace(self, known=replace(self.known, still=self.known.still | {contact}))
+
+    def beside(self, interface: int, normal: Fraction, above: bool) -> States:
+        """Those whose normal force at an interface is at most, or at least, so much."""
+        return replace(self, forces=self.forces.within(self.low, self.forces.tight).beside(interface, normal, above))
+
+    def halves(self, node: Any) -> tuple[States, States]:
+        """Both parts of a node: without slack or without a rate at its contact, or below and above a normal force."""
+        if "contact" in node:
+            contact = self.contact(node)
+            return self.half(contact, True), self.half(contact, False)
+        interface, normal = whole(node["interface"], 0, self.wall.n_interfaces - 1), Fraction(node["normal"])
+        if normal < 0:
+            raise CertificateError("a normal force is not below zero")
+        return self.beside(interface, normal, False), self.beside(interface, normal, True)
 
     def after(self, step: Any) -> States:
         """The same states with what a step shows.
@@ -106,7 +121,7 @@ class States:
         low = Fraction(document["low"])
         if not low <= self.low:
             raise CertificateError(f"a window begins at {float(low):.9g}, where {float(self.low):.9g} is proved")
-        forces = Forces(self.wall, low, self.high, document["forces"], self.forces.tight)
+        forces = Forces(self.wall, low, self.high, document["forces"], self.forces.tight, self.forces.sides)
         return WindowLimits(self.wall, document, (forces, self.known, self.reach))
 
     def contact(self, step: Any) -> int:
@@ -137,9 +152,7 @@ def case_bound(states: States, node: Any) -> Fraction:
         if "parts" not in node:
             least.append(states.low)
             continue
-        contact = states.contact(node)
-        tight, still = node["parts"]
-        left += [(states.half(contact, True), tight), (states.half(contact, False), still)]
+        left += paired(states.halves(node), node["parts"])
     return min(least)
 
 

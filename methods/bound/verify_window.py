@@ -93,7 +93,9 @@ class _Products:
         m = self.wall.n_interfaces
         self.unit = 2 ** whole(document["exponent"], 0, 400)
         names = [*columns.rates, "work", "lift"]
-        multipliers = dict(paired(names, [whole_numbers(c, 4 * m + 3) for c in document["columns"]]))
+        self.limits = self.forces.limits()
+        rows = 4 * m + 3 + len(self.limits)
+        multipliers = dict(paired(names, [whole_numbers(c, rows) for c in document["columns"]]))
         signed = [whole_numbers(three, 3) for three in document["signed"]]
         still = [whole_numbers(form, 3 * m + 2) for form in document["still"]]
         balance = [whole_numbers(row, columns.n + len(self.tight)) for row in document["balance"]]
@@ -115,7 +117,10 @@ class _Products:
             a, b, s = 3 * p, 3 * p + 1, 3 * p + 2
             rows += [{a: one}, {b: one}, {a: mu, b: mu, s: one}, {a: mu, b: mu, s: -one}]
         load, unit = 3 * m, 3 * m + 1
-        return [*rows, {unit: one}, {load: one, unit: -low}, {load: -one, unit: high}]
+        within: list[Form] = [
+            {3 * p: side * one, 3 * p + 1: side * one, unit: -side * limit} for p, side, limit in self.limits
+        ]
+        return [*rows, {unit: one}, {load: one, unit: -low}, {load: -one, unit: high}, *within]
 
     def _pay(self, multipliers: dict[Any, list[int]], signed: list[list[int]], still: list[list[int]]) -> None:
         """Lost and price for negative multipliers: each product is at most the greatest slack times the column."""
@@ -124,6 +129,7 @@ class _Products:
         for mu, normal in zip(self.wall.friction, self.forces.normal, strict=True):
             limit += [normal, normal, 2 * mu * normal, 2 * mu * normal]
         limit += [Fraction(1), width, width]
+        limit += [max(ZERO, self.forces.normal[p] - v) if side > 0 else v for p, side, v in self.limits]
         for k in self.tight:
             limit[k] = ZERO
         whole_limit, grain = _not_below(limit)

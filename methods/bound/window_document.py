@@ -229,14 +229,16 @@ class WindowDocument:
 
     @cached_property
     def _static(self) -> FloatArray:
-        """(4m + 3, 3m + 2) static inequalities over forces, multiplier and one."""
+        """(a, 3m + 2) static inequalities, those that are not local, over forces, multiplier and one."""
         m = self.wall.n_interfaces
-        rows = np.zeros((4 * m + 3, 3 * m + 2))
+        rows = np.zeros((self.relaxation.n_rows, 3 * m + 2))
         for p, mu in enumerate(self.friction):
             rows[4 * p, 3 * p] = rows[4 * p + 1, 3 * p + 1] = 1.0
             rows[4 * p + 2 : 4 * p + 4, 3 * p : 3 * p + 2] = mu
             rows[4 * p + 2 : 4 * p + 4, 3 * p + 2] = 1.0, -1.0
-        rows[4 * m :, 3 * m :] = [[0.0, 1.0], [1.0, -float(self.low)], [-1.0, float(self.high)]]
+        rows[4 * m : 4 * m + 3, 3 * m :] = [[0.0, 1.0], [1.0, -float(self.low)], [-1.0, float(self.high)]]
+        for row, (p, side, limit) in zip(rows[4 * m + 3 :], self.limits.forces.limits(), strict=True):
+            row[3 * p : 3 * p + 2], row[3 * m + 1] = side, -side * float(limit)
         return rows
 
     @cached_property
@@ -277,7 +279,7 @@ class WindowDocument:
         own = self._signed(products, of_size)
         static, (equations, basis) = self._static, self._equilibrium
         static_inverse, rate_inverse, still_inverse = self._inverses
-        cost = np.zeros((4 * m + 3, rates.shape[0]))
+        cost = np.zeros((len(static), rates.shape[0]))
         if of_size:
             cost[4 * m, :-2] = [-float(weight) for weight in columns.weights.values()]
             cost[4 * m, -1] = -float(columns.lift_weight)
@@ -324,16 +326,18 @@ class WindowDocument:
         return np.asarray(np.linalg.lstsq(image, (rest @ alone).ravel(), rcond=None)[0].reshape(-1, 3))
 
     def _unscaled(self, products: FloatArray, of_size: bool) -> FloatArray:
-        """(4m + 3, f + 2) multipliers of products of the certificate's quantities."""
-        scales, relaxation, m = self.scales, self.relaxation, self.wall.n_interfaces
-        row = np.concatenate([np.repeat(scales.length, 4), [1.0, 1.0 / scales.multiplier, 1.0 / scales.multiplier]])
+        """(a, f + 2) multipliers of products of the certificate's quantities."""
+        scales, relaxation = self.scales, self.relaxation
+        within = [scales.length[p] for p, _, _ in relaxation.limits]
+        load = 1.0 / scales.multiplier
+        row = np.concatenate([np.repeat(scales.length, 4), [1.0, load, load], within])
         rate = scales.blocks / (scales.multiplier * scales.length[relaxation.free // 4])
         column = np.concatenate([rate, [1.0, 1.0 / scales.multiplier]])
-        given = products[: 4 * m + 3, : len(column)] * row[:, None] * column
+        given = products[: relaxation.n_rows, : len(column)] * row[:, None] * column
         place: dict[int | str, int] = {contact: k for k, contact in enumerate(relaxation.free.tolist())}
         names: list[int | str] = [*self.limits.columns.rates, "work", "lift"]
         place |= {"work": relaxation.work_column, "lift": relaxation.lift_column}
-        used = np.zeros((4 * m + 3, len(names)))
+        used = np.zeros((relaxation.n_rows, len(names)))
         for k, name in enumerate(names):
             if name in place:
                 used[:, k] = given[:, place[name]]
@@ -342,7 +346,7 @@ class WindowDocument:
     def _signed(self, products: FloatArray, of_size: bool) -> FloatArray:
         """(q, 3) multipliers of n1, n2 and s times the slip of interfaces that may be unloaded."""
         relaxation, m, q = self.relaxation, self.wall.n_interfaces, self.relaxation.unloadable
-        column, local = relaxation.lift_column + 1 + np.arange(len(q)), 4 * m + 3 + np.arange(len(q))
+        column, local = relaxation.lift_column + 1 + np.arange(len(q)), relaxation.n_rows + np.arange(len(q))
         plus, minus = products[4 * q + 2, column], products[4 * q + 3, column]
         first, second = products[local, column], products[local + len(q), column]
         mu = self.friction[q]

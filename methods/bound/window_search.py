@@ -10,12 +10,14 @@ from typing import Protocol
 import numpy as np
 
 from harness.model.assembly import FloatArray
+from methods.bound.case import EVERY, Case, Division
+from methods.bound.dividing import division_of
 from methods.bound.dual import DualBound
 from methods.bound.equations import Equations
 from methods.bound.halpern import Splitting, carried_over
 from methods.bound.rate_bounds import RateProgramme, RateProof
 from methods.bound.relaxation import Relaxation
-from methods.bound.slack_bounds import EVERY, Case, SlackBounds, SlackProgramme
+from methods.bound.slack_bounds import SlackBounds, SlackProgramme
 from methods.bound.tuning import ROUNDING, STEPS, WINDOWS
 
 
@@ -45,7 +47,7 @@ class Bracket:
         windows: lower ends of the windows, in order.
         iterations: of the splitting.
         proofs: of the windows, in order.
-        branches: contacts at which windows that had no more to give were divided; not covered by `proofs`.
+        branches: divisions of windows that had no more to give; not covered by `proofs`.
     """
 
     lower: float
@@ -67,8 +69,8 @@ class Certify(Protocol):
     def window(self, proof: WindowProof, needed: float) -> float:
         """The bound after a window, of which so much is needed."""
 
-    def part(self, contact: int, tight: bool) -> Certify | None:
-        """The same for the states without slack or without a rate at a contact; None if there is none for parts."""
+    def part(self, at: Division, first: bool) -> Certify | None:
+        """The same for the first or the second half of a division; None if there is none for parts."""
 
     def slacks(self, bounds: SlackBounds) -> None:
         """Take note of slacks and normal forces of a part."""
@@ -83,7 +85,7 @@ class Certify(Protocol):
 class WindowSearch:
     """The windows of one bracket, with what each hands to the next.
 
-    In a case of contacts that are tight or still, virtual work decides more of them before the relaxation is built.
+    In a case, virtual work decides more contacts before the relaxation is built.
     """
 
     def __init__(
@@ -98,6 +100,8 @@ class WindowSearch:
         self.equations, self.found, self.until, self.case = equations, found, until, case
         self._slacks, self._certify = slacks, certify
         self._rates: RateProgramme | None = None
+        self._made_by: Division | None = None
+        self._made_at = found.lower
         self._began = time.process_time()
         self._runs: dict[str, Splitting] = {}
         self._relaxation: Relaxation | None = None
@@ -107,37 +111,27 @@ class WindowSearch:
         self._weights: FloatArray | None = None
         self._gaps: list[tuple[float, float]] = []
 
-    def parts(self, contact: int, rates: RateProgramme) -> list[WindowSearch]:
+    def parts(self, at: Division, rates: RateProgramme) -> list[WindowSearch]:
         """The searches of both halves of the states of this one, which begin where this one is.
 
         Args:
-            contact: without slack in the first, without a rate in the second.
+            at: where they are divided.
             rates: the programme that decides more, which all parts share.
         """
         parts = []
-        for case, tight in zip(self.case.halves(contact), (True, False), strict=True):
-            certify = None if self._certify is None else self._certify.part(contact, tight)
+        for case, first in zip(self.case.halves(at), (True, False), strict=True):
+            certify = None if self._certify is None else self._certify.part(at, first)
             known = Bracket(self.found.lower, self.found.upper)
             part = WindowSearch(self.equations, self._slacks, known, self.until, certify, case)
             part._runs, part._rates, part._weights = dict(self._runs), rates, self._weights
+            part._made_by = at
             parts.append(part)
         return parts
 
-    def undecided(self) -> int | None:
-        """The contact whose slack and rate do most work in the present iterate; None if all are decided."""
-        run = self._runs["multiplier"]
-        relaxation, m = run.relaxation, self.equations.n_interfaces
-        slack, rate = np.zeros(4 * m), np.zeros(4 * m)
-        if run.iterate.size:
-            products = relaxation.project(run.iterate) / relaxation.row_scale[:, None] / relaxation.column_scale
-            motion = products[relaxation.unit_row]
-            slip = motion[relaxation.lift_column + 1 :]
-            slack, rate[relaxation.free] = products[: 4 * m, relaxation.work_column], motion[: len(relaxation.free)]
-            rate[4 * relaxation.unloadable + 2], rate[4 * relaxation.unloadable + 3] = slip, -slip
-        decided = (relaxation.bounds.least > ROUNDING.margin) | (relaxation.bounds.greatest <= ROUNDING.margin)
-        decided[list(self.case.tight | self.case.still)] = True
-        work = np.where(decided, -np.inf, np.maximum(slack, 0.0) * np.maximum(rate, 0.0))
-        return None if decided.all() else int(work.argmax())
+    def division(self) -> Division | None:
+        """Where the states of this search are best divided; None if every contact is decided."""
+        gained = self.found.lower - self._made_at > WINDOWS.worth * (self.found.upper - self._made_at)
+        return division_of(self._runs["multiplier"], None if gained else self._made_by)
 
     def window(self) -> bool:
         """Bound the multipliers of one window, or go on with the last one; whether another may gain more."""
@@ -156,7 +150,7 @@ class WindowSearch:
             found.lower = min(found.lower, max(before, self._certify.window(found.proofs[-1], needed)))
         if self._slow and found.lower - before < WINDOWS.gain * (found.upper - before):
             return False
-        return found.lower - before > 1e-3 * (found.upper - before) or not (stalled and last)
+        return found.lower - before > WINDOWS.worth * (found.upper - before) or (last and not stalled)
 
     def _is_last(self, relaxation: Relaxation) -> bool:
         return self.found.upper - relaxation.low < WINDOWS.narrow * self.found.upper
@@ -238,14 +232,13 @@ class WindowSearch:
         relaxation, run.size = run.relaxation, self._size
         start, last = found.lower, self._is_last(relaxation)
         agreeing, mark, since = 0, found.upper - found.lower, run.iterations
-        patience = WINDOWS.patience if self._rates is None else WINDOWS.patience_of_parts
         self._slow = False
 
         def stop(bound: DualBound | None, primal: float) -> bool:
             nonlocal agreeing, mark, since
             if found.upper - found.lower < (1.0 - WINDOWS.gain) * mark:
                 mark, since = found.upper - found.lower, run.iterations
-            self._slow = run.iterations - since > max(patience, WINDOWS.share * run.iterations)
+            self._slow = run.iterations - since > max(WINDOWS.patience, WINDOWS.share * run.iterations)
             if bound is None or self._slow:
                 return self._slow
             self._weigh(bound)

@@ -14,10 +14,11 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from benchmarks.bounds import small_wall
+from methods.bound.case import AtContact, Case
 from methods.bound.exact_wall import CertificateError, ExactWall
 from methods.bound.rate_bounds import RateProgramme
 from methods.bound.same_wall import require_same_wall
-from methods.bound.slack_bounds import Case, SlackProgramme
+from methods.bound.slack_bounds import SlackProgramme
 from methods.bound.verify import digest, verify
 from methods.bound.verify_cases import STEPS, states_of
 from methods.bound.verify_window import WindowLimits
@@ -121,8 +122,7 @@ def test_forces_show_how_little_a_contact_moves_and_opposite_ones_do_not() -> No
                 found += 1
             states = states.after(step)
         if "parts" in node:
-            tight, still = node["parts"]
-            left += [(states.half(node["contact"], True), tight), (states.half(node["contact"], False), still)]
+            left += zip(states.halves(node), node["parts"], strict=True)
     assert found > 0
 
 
@@ -133,16 +133,16 @@ def test_a_case_in_which_nothing_moves_is_empty() -> None:
     upper = float(LEAST) / problem.unit_multiplier
     search = WindowSearch(equations, SlackProgramme(equations), Bracket(0.0, upper), np.inf, certifier)
     search.window()
-    part = certifier.part(1, False)
+    part = certifier.part(AtContact(1), False)
     assert part is not None
     held = frozenset(range(1, 4 * problem.n_interfaces))
     for contact in sorted(held):
-        part = part.part(contact, False)
+        part = part.part(AtContact(contact), False)
     bounds = SlackProgramme(equations).bounds(search.found.lower, upper)
     assert bounds is not None
     decided, proofs = RateProgramme(equations).decided(upper, bounds, Case(still=held))
     assert (decided, [proof.shows for proof in proofs]) == (None, ["no mechanism"])
-    other = certifier.part(0, False)
+    other = certifier.part(AtContact(0), False)
     assert other is not None
     assert other.rates(proofs) < upper
     assert part.rates(proofs) == pytest.approx(upper, rel=1e-8)
