@@ -2,7 +2,7 @@
 
 Run as `python -m benchmarks bounds [count [seconds [first]]]`. A line a wall: seed,
 blocks, interfaces, least state known, bound to rounding and how far it is below, relatively, certified bound and how
-far, CPU seconds of search and bound, contacts at which windows were divided.
+far, CPU seconds of search and bound, divisions of windows.
 """
 
 from __future__ import annotations

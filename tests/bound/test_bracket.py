@@ -15,6 +15,7 @@ from harness.model.assembly import Assembly
 from harness.model.build import build
 from harness.model.wall import Wall
 from methods.bound.bracket import bracket
+from methods.bound.case import Case
 from methods.bound.relaxation import Relaxation
 from methods.bound.slack_bounds import SlackProgramme
 from methods.bound.window_search import Bracket
@@ -108,11 +109,13 @@ def test_products_of_collapse_states_satisfy_the_relaxation(wall: Assembly) -> N
     programme = SlackProgramme(equations)
     states = [state for state in (search.interior(spread=2.0) for _ in range(3)) if state is not None]
     assert states
-    for state, share in itertools.product(states, (0.0, 0.97)):
+    for state, share, limited in itertools.product(states, (0.0, 0.97), (0, 3)):
         low, high = share * state.multiplier, 1.01 * state.multiplier
-        bounds = programme.bounds(low, high)
+        normal = state.forces.reshape(-1, 3)[:limited, :2].sum(axis=1)
+        case = Case(normal={p: (0.9 * force, 1.1 * force + 0.01) for p, force in enumerate(normal.tolist())})
+        bounds = programme.bounds(low, high, case)
         assert bounds is not None
-        relaxation = Relaxation(equations, low, high, bounds)
+        relaxation = Relaxation(equations, low, high, bounds, case)
         rates = problem.rates_of_velocities(state.velocities, False)
         scale = equations.n_blocks / float(problem.live @ state.velocities)
         statics = np.concatenate([state.forces.ravel(), [state.multiplier, 1.0]])

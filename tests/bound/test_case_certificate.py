@@ -14,7 +14,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from benchmarks.bounds import small_wall
-from methods.bound.case import AtContact, Case
+from methods.bound.case import AtContact, AtNormalForce, Case
 from methods.bound.exact_wall import CertificateError, ExactWall
 from methods.bound.rate_bounds import RateProgramme
 from methods.bound.same_wall import require_same_wall
@@ -23,8 +23,10 @@ from methods.bound.verify import digest, verify
 from methods.bound.verify_cases import STEPS, states_of
 from methods.bound.verify_window import WindowLimits
 from methods.bound.window_search import Bracket, WindowSearch
-from methods.la.certify.window_certificate import certifier_of, equations_of
+from methods.la.certify.window_certificate import certificate_of, certifier_of, equations_of
 from methods.la.core.problem import make_problem
+from methods.la.core.search_settings import SearchSettings
+from methods.la.search_adapter import LimitAnalysis
 from tests.bound.by_cases import certificate_of_cases
 from tests.bound.digits import one_digit_changed, refused_or_true
 from tests.bound.test_bracket import IRREGULAR
@@ -80,6 +82,55 @@ def test_a_half_that_is_left_out_or_in_the_place_of_the_other_is_refused() -> No
         document = copy.deepcopy(of_bond())
         document["cases"]["parts"] = parts
         assert refused_or_true(LEAST, document)
+
+
+HIGHER = Fraction(7, 11)
+"""Least multiplier of 3 courses of 2 bricks."""
+
+
+@cache
+def of_two_normal_forces() -> dict[str, Any]:
+    """A bond whose states are divided at half of the widest normal force of one window."""
+    wall = running_bond(3, 2, 0.2, 0.65)
+    problem, known = make_problem(wall), LimitAnalysis().solve(wall, SearchSettings())
+    equations, certifier, upper = equations_of(problem), certifier_of(problem), float(HIGHER) / problem.unit_multiplier
+    search = WindowSearch(equations, SlackProgramme(equations), Bracket(0.0, upper), 0.0, certifier)
+    while search.found.lower == 0.0:
+        search.window()  # to its first check
+    assert not search.found.closed
+    search.until = np.inf
+    bounds = SlackProgramme(equations).bounds(search.found.lower, upper)
+    assert bounds is not None
+    widest = int((bounds.normal_greatest - bounds.normal_least).argmax())
+    at = AtNormalForce(widest, 0.5 * float(bounds.normal_greatest[widest]))
+    for part in search.parts(at, RateProgramme(equations)):
+        while part.window() and not part.found.closed:
+            pass
+        assert part.found.closed
+    assert known.multiplier is not None
+    assert known.mechanism is not None
+    document = certificate_of(problem, known.multiplier, known.mechanism, certifier)
+    assert document is not None
+    return document
+
+
+def test_states_divided_at_a_normal_force_are_proved_on_both_sides_of_it() -> None:
+    document = of_two_normal_forces()
+    node = document["cases"]
+    assert {"interface", "normal"} <= node.keys()
+    lower, upper = verify(document)
+    assert upper == HIGHER
+    assert lower >= HIGHER * (1 - Fraction(2, 10**6))
+    few, many = node["parts"]
+    for parts in ([many, few], [few, few], [many, many], [few]):
+        assert refused_or_true(HIGHER, document | {"cases": node | {"parts": parts}})
+
+
+@settings(max_examples=40, deadline=None, derandomize=True)
+@given(st.data())
+def test_one_digit_changed_in_parts_of_a_normal_force_proves_nothing_false(data: st.DataObject) -> None:
+    part = {"cases": of_two_normal_forces()["cases"]}
+    refused_or_true(HIGHER, of_two_normal_forces() | one_digit_changed(data, part))
 
 
 def test_every_part_is_needed_to_its_end() -> None:
