@@ -1,8 +1,8 @@
 """Reflected Douglas-Rachford splitting, anchored (Halpern) and restarted, on the products of a window.
 
 Source of the anchoring and restarts: Chen, Sun, Yuan, Zhang and Zhao (2024), HPR-LP, section 3. The step balances what
-the safe bound loses to the dual with the distance of primal and dual cost, and the norms of both parts as the weight of
-Applegate et al. (2021), PDLP, section 3.3, does.
+the safe bound loses to the dual with the distance of primal and dual cost, and the movements of both parts as the
+weight of Applegate et al. (2021), PDLP, section 3.3, does.
 """
 
 from __future__ import annotations
@@ -43,6 +43,7 @@ class Splitting:
     iterate: FloatArray = field(default_factory=lambda: np.zeros(0))
     iterations: int = 0
     single: bool = True
+    _checked: tuple[FloatArray, FloatArray] | None = field(default=None, repr=False)
 
     def run(self, until: float, stop: Callable[[DualBound | None, float], bool]) -> None:
         """Iterate to this CPU time, or until `stop(bound, primal cost)` says so at a check."""
@@ -74,8 +75,8 @@ class Splitting:
         return Sweep(self.relaxation, self.cost, self.iterate, np.float32 if self.single else np.float64)
 
     def _balance(self, sweep: Sweep, bound: DualBound, primal: float) -> None:
-        """Change the step by what the bound loses to the dual over the distance of primal and dual cost, and by the
-        norm of the products over that of the dual part of the iterate.
+        """Change the step by what the bound loses to the dual over the distance of primal and dual cost, and by how far
+        the primal part moved since the last check over how far the dual part did.
 
         A larger step lets the dual change less from one iterate to the next, so less of it is left to be paid. Either
         ratio alone runs away where its terms answer late; their mean does not.
@@ -84,8 +85,11 @@ class Splitting:
         tiny = RESTARTS.tiny * (1.0 + abs(bound.value))
         lost, apart = max(bound.value - bound.of(size), tiny), max(abs(primal - bound.value), tiny)
         point = self.relaxation.project(self.iterate)
-        parts = float(np.linalg.norm(point)) / max(float(np.linalg.norm(point - self.iterate)), tiny)
-        ratio = (lost / apart * parts) ** 0.25
+        dual = (point - self.iterate) / self.step
+        before = self._checked or (np.zeros_like(point), np.zeros_like(dual))
+        self._checked = point, dual
+        moved, turned = (float(np.linalg.norm(a - b)) for a, b in zip((point, dual), before, strict=True))
+        ratio = (lost / apart * max(moved, tiny) / max(turned * self.step, tiny)) ** 0.25
         ratio = min(max(ratio, 1.0 / RESTARTS.step_change), RESTARTS.step_change)
         step = min(max(ratio * self.step, self.steps[0]), self.steps[1])
         if abs(np.log(step / self.step)) > np.log(RESTARTS.step_kept):
