@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import os
 import shutil
 import subprocess
 import sys
@@ -15,7 +16,7 @@ import numpy as np
 import pytest
 from numba.core.caching import CacheImpl
 
-from methods.numerics import ahead, built
+from methods.numerics import built
 from methods.numerics.compiled import Kernel, compiled, fused
 from methods.springs.path import kinks
 
@@ -71,23 +72,31 @@ def afresh() -> Any:
     forget()
 
 
-@pytest.fixture(scope="module")
-def library(tmp_path_factory: pytest.TempPathFactory) -> Any:
-    """A library of three functions, beside a list of what it was made of."""
-    folder = tmp_path_factory.mktemp("library")
+def build_three(folder: Path) -> None:
+    """Build a library of three functions, beside a list of what it was made of."""
+    from methods.numerics import ahead
+
     with pytest.MonkeyPatch.context() as patch:
         look_in(folder, patch)
         calls: list[tuple[Callable[..., Any], tuple[Any, ...]]] = [
             (total, (Pair(np.ones(1), np.ones((1, 1))), 1.0)),
             (room, (np.ones(3), 1)),
+            (ends, (np.ones(3),)),
         ]
-        kernels = []
-        for function, arguments in calls:
-            kernels.append(numba.njit(function))
-            kernels[-1](*arguments)
-        kernels.append(numba.njit(ends))
-        kernels[-1](np.ones(3))
+        kernels = [numba.njit(function) for function, _ in calls]
+        for kernel, (_, arguments) in zip(kernels, calls, strict=True):
+            kernel(*arguments)
         ahead.build([*kernels, chosen])  # which was compiled for two constants
+
+
+@pytest.fixture(scope="module")
+def library(tmp_path_factory: pytest.TempPathFactory) -> Any:
+    """The folder of such a library, built in a process of its own as `harness.kernels` does."""
+    folder = tmp_path_factory.mktemp("library")
+    program = f"from pathlib import Path; from {__name__} import build_three; build_three(Path({str(folder)!r}))"
+    places = os.pathsep.join([str(Path(__file__).parent), str(HERE)])
+    environment = os.environ | {"PYTHONPATH": places}
+    subprocess.run([sys.executable, "-c", program], env=environment, timeout=300, check=True)
     return folder
 
 
