@@ -140,12 +140,15 @@ def test_the_bound_of_a_wall_of_two_components_is_the_lesser_of_theirs() -> None
     assert 0.0 < answer.details["lower_bound"] <= answer.multiplier * (1.0 + 1e-9)
 
 
-def test_a_deep_search_has_the_bound_too() -> None:
+def test_a_search_that_is_asked_for_a_bound_has_it_and_deep_ones_are() -> None:
     wall = running_bond(3, 2, 0.2, 0.65)
     assert not LimitAnalysis().solve(wall, SearchSettings()).details["proved_least"]
-    deep = LimitAnalysis().solve(wall, SearchSettings(effort="deep"))
-    assert deep.details["certified_bound"] == pytest.approx(7 / 11, rel=2e-6)
-    assert "certificate" in deep.details
+    asked = LimitAnalysis().solve(wall, SearchSettings(bound_seconds=30.0))
+    assert asked.details["certified_bound"] == pytest.approx(7 / 11, rel=2e-6)
+    assert "certificate" in asked.details
+    assert SearchSettings().bound is None
+    assert SearchSettings(effort="deep").bound == BoundSettings(bound_seconds=60.0)
+    assert SearchSettings(effort="deep", bound_seconds=0.0).bound is None
 
 
 def rectangle(x: float, y: float, width: float, height: float) -> list[list[float]]:
