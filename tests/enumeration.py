@@ -20,24 +20,45 @@ STATES = tuple(itertools.product(ENDS, SLIPS))
 """All states of an interface: a closed end may carry compression, an open one carries none."""
 
 
+States = tuple[tuple[tuple[bool, bool], int], ...]
+
+
 def least_by_enumeration(wall: Assembly) -> float:
-    """The least multiplier of all combinations of states for which a mechanism and forces exist."""
-    values = (_multiplier(wall, states) for states in itertools.product(STATES, repeat=wall.n_interfaces))
-    return min((value for value in values if value is not None), default=np.inf)
+    """The least multiplier of all combinations of states for which a mechanism and forces exist.
+
+    States of the first interfaces for which there is no mechanism, no forces, or none below what is known, whatever the
+    others do, are gone through no further.
+    """
+    least, open_states = np.inf, [()]
+    while open_states:
+        states = open_states.pop()
+        if states:
+            value = _multiplier(wall, states)
+            if value is None or value >= least:
+                continue
+            if len(states) == wall.n_interfaces:
+                least = value
+                continue
+        open_states += [(*states, state) for state in STATES]
+    return least
 
 
-def _multiplier(wall: Assembly, states: tuple[tuple[tuple[bool, bool], int], ...]) -> float | None:
+def _multiplier(wall: Assembly, states: States) -> float | None:
     return _least_multiplier(wall, states) if _moves(wall, states) else None
 
 
-def _moves(wall: Assembly, states: tuple[tuple[tuple[bool, bool], int], ...]) -> bool:
-    """Whether a mechanism with live work moves in these states: closed ends stay closed, open ends may open."""
+def _moves(wall: Assembly, states: States) -> bool:
+    """Whether a mechanism with live work moves in these states: closed ends stay closed, open ends may open.
+
+    Interfaces without a state may open and slip.
+    """
     rows = wall.kinematic_matrix.toarray()
     closed, signed = [], []
     for p, (ends, slip) in enumerate(states):
         for row, free in ((3 * p, ends[0]), (3 * p + 1, ends[1])):
             (signed if free else closed).append(rows[row])
         (signed if slip else closed).append((slip or 1) * rows[3 * p + 2])
+    signed += [row for k, row in enumerate(rows[3 * len(states) :]) if k % 3 < 2]
     live = wall.free_loads()[1]
     none = np.zeros((0, rows.shape[1]))
     answer = linprog(
@@ -51,12 +72,16 @@ def _moves(wall: Assembly, states: tuple[tuple[tuple[bool, bool], int], ...]) ->
     return bool(answer.status == 0)
 
 
-def _least_multiplier(wall: Assembly, states: tuple[tuple[tuple[bool, bool], int], ...]) -> float | None:
-    """The least multiplier of forces without compression at open ends, at the friction limit against each slip."""
+def _least_multiplier(wall: Assembly, states: States) -> float | None:
+    """The least multiplier of forces without compression at open ends, at the friction limit against each slip.
+
+    Interfaces without a state carry any forces within yield.
+    """
     dead, live = wall.free_loads()
     m = wall.n_interfaces
     cone, limit, bounds = [], [], []
-    for p, (ends, slip) in enumerate(states):
+    anything = [((False, False), 0)] * (m - len(states))
+    for p, (ends, slip) in enumerate([*states, *anything]):
         bounds += [(0.0, 0.0 if free else None) for free in ends] + [(None, None)]
         for sense in (1, -1):
             row = np.zeros(3 * m + 1)
