@@ -13,11 +13,10 @@ MOST_GROUPS = 6
 """Groups told in sentences; more are read from charts and tables."""
 
 
-def findings(rows: pd.DataFrame, tables: Mapping[str, pd.DataFrame], grid: Sequence[str]) -> list[str]:
+def findings(tables: Mapping[str, pd.DataFrame], grid: Sequence[str]) -> list[str]:
     """The sentences that open the page of a study.
 
     Args:
-        rows: one row a run.
         tables: statistics by name, as `harness.engine.sweep.summary` makes them.
         grid: names of the quantities on the grid.
     """

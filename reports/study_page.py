@@ -75,7 +75,7 @@ def render(page: StudyPage) -> str:
             statuses=[(str(name), int(count)) for name, count in counts.items()],
             seconds=float(page.rows["cpu_seconds"].sum()),
             charts=[(title, Markup(charts.svg(chart))) for title, chart in _charts(page)],
-            found=findings(page.rows, page.tables, page.grid),
+            found=findings(page.tables, page.grid),
             tables=[(name, READ[name], *_cells(page.tables[name])) for name in READ if len(page.tables.get(name, ()))],
             folded=FOLDED,
         )

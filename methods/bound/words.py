@@ -17,7 +17,8 @@ def in_words(value: Fraction) -> str:
     """
     if len(str(value)) <= PRECISION.short:
         return str(value)
-    places = next((k for k in (9, 12) if 10**k % value.denominator == 0), 0)
-    cut = value.numerator * 10 ** (places or 9) // value.denominator
-    decimal = f"{cut // 10 ** (places or 9)}.{cut % 10 ** (places or 9):0{places or 9}d}".rstrip("0")
-    return decimal if places or len(str(value)) > PRECISION.shown else f"{decimal} ({value})"
+    exact = next((places for places in (9, 12) if 10**places % value.denominator == 0), None)
+    places = 9 if exact is None else exact
+    whole, part = divmod(value.numerator * 10**places // value.denominator, 10**places)
+    decimal = f"{whole}.{part:0{places}d}".rstrip("0")
+    return f"{decimal} ({value})" if exact is None and len(str(value)) <= PRECISION.shown else decimal

@@ -23,6 +23,7 @@ from numba.core.boxing import unbox_tuple
 from numba.core.codegen import AOTCodeLibrary, AOTCPUCodegen
 from numba.core.cpu import CPUContext
 from numba.core.dispatcher import Dispatcher
+from numba.core.errors import NumbaError
 from numba.core.types.containers import BaseTuple, Tuple
 from numba.extending import NativeValue, models, register_model, unbox
 
@@ -32,9 +33,9 @@ with warnings.catch_warnings():
     warnings.simplefilter("ignore")  # numba means to replace it one day; the lock holds the version that has it
     from numba.pycc import CC
     from numba.pycc.compiler import ModuleCompiler
+    from numba.pycc.platform import external_compiler_works
+    from setuptools.errors import BaseError, CCompilerError
 
-CONTIGUOUS_ALIGNED_WRITEABLE = 0x1 | 0x100 | 0x400
-"""NPY_ARRAY_C_CONTIGUOUS, NPY_ARRAY_ALIGNED, NPY_ARRAY_WRITEABLE."""
 BYTE, WORD, POINTER = ir.IntType(8), ir.IntType(32), ir.IntType(8).as_pointer()
 OBJECT = ir.LiteralStructType([ir.IntType(64), POINTER])
 """PyObject: references, type."""
@@ -98,8 +99,8 @@ def _look_at_array(kind: types.Array, given: Any, c: Any, refuse_unless: Callabl
     array = builder.bitcast(given, ARRAY.as_pointer())
     refuse_unless(builder.icmp_unsigned("==", field(array, 0, 1), _array_class(c)))
     refuse_unless(builder.icmp_signed("==", field(array, 2), WORD(kind.ndim)))
-    flags = builder.and_(field(array, 7), WORD(CONTIGUOUS_ALIGNED_WRITEABLE))
-    refuse_unless(builder.icmp_signed("==", flags, WORD(CONTIGUOUS_ALIGNED_WRITEABLE)))
+    needed = WORD(0x1 | 0x100 | 0x400)  # NPY_ARRAY_C_CONTIGUOUS, NPY_ARRAY_ALIGNED, NPY_ARRAY_WRITEABLE
+    refuse_unless(builder.icmp_signed("==", builder.and_(field(array, 7), needed), needed))
     items, wanted = field(array, 6), np.dtype(str(kind.dtype))
     refuse_unless(builder.icmp_signed("==", field(items, 6), WORD(wanted.num)))
     refuse_unless(builder.icmp_signed("==", field(items, 4), BYTE(ord(wanted.byteorder))))
@@ -176,10 +177,9 @@ def build(kernels: Iterable[Dispatcher]) -> Path:
     Raises:
         CannotBuild: there is no compiler of C, a kernel was called in two ways, or the folder takes no file.
     """
-    try:
-        library = _Library(built.NAME, source_module=__name__)
-    except RuntimeError as error:
-        raise CannotBuild("there is no compiler of C") from error
+    if not external_compiler_works():
+        raise CannotBuild("there is no compiler of C")
+    library = _Library(built.NAME, source_module=__name__)
     modules = set()
     for kernel in kernels:
         modules.add(kernel.py_func.__module__)
@@ -202,7 +202,7 @@ def build(kernels: Iterable[Dispatcher]) -> Path:
             draft.write_text(json.dumps({"file": file.name} | told, indent=1), encoding="utf-8")
             Path(folder, file.name).replace(file)
             draft.replace(built.LIST)
-    except Exception as error:  # distutils raises what it likes
+    except (OSError, BaseError, CCompilerError, NumbaError) as error:
         raise CannotBuild(f"{type(error).__name__}: {error}") from error
     for other in built.FOLDER.glob(f"{built.NAME}.{sys.implementation.cache_tag}-*.so"):
         if other != file:

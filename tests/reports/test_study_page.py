@@ -29,14 +29,14 @@ def page_of(rows: pd.DataFrame, tables: dict[str, pd.DataFrame]) -> str:
 
 def test_scatter_is_told_with_its_interval():
     rows = walls([0.40, 0.44, 0.50, 0.55, 0.62])
-    said = " ".join(findings(rows, tables_of(rows, multipliers=(0.5,)), []))
+    said = " ".join(findings(tables_of(rows, multipliers=(0.5,)), []))
     assert "mean multiplier 0.502, standard deviation 0.087 over 5 walls" in said
     assert "At multiplier 0.5, 60 % of 5 walls have collapsed; 95 % interval 23 to 88 %." in said
 
 
 def test_the_ends_of_a_grid_are_told_by_their_multipliers():
     rows = walls([0.3, 0.5, 0.4], friction=[0.3, 0.5, 0.9])
-    said = findings(rows, tables_of(rows, "friction"), ["friction"])
+    said = findings(tables_of(rows, "friction"), ["friction"])
     assert said == ["fe: multipliers from 0.30000 (friction 0.3) to 0.50000 (friction 0.5)."]
 
 
@@ -47,9 +47,9 @@ def test_what_matters_is_told_only_where_intervals_part():
         delta=[0.6, 0.2], delta_confidence=0.1, first_order=0.5, first_order_confidence=0.1
     )
     tables = tables_of(rows) | {"sensitivity": sensitivity}
-    assert "Most depends on friction (Borgonovo's delta 0.60) by fe." in findings(rows, tables, [])
+    assert "Most depends on friction (Borgonovo's delta 0.60) by fe." in findings(tables, [])
     tables["sensitivity"] = sensitivity.assign(delta_confidence=0.3)
-    assert "200 walls do not tell" in findings(rows, tables, [])[-1]
+    assert "200 walls do not tell" in findings(tables, [])[-1]
 
 
 def test_a_fitted_curve_lies_in_its_band_and_a_wall_that_falls_leaves_a_staircase():

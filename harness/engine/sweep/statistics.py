@@ -26,18 +26,13 @@ def answered(table: pd.DataFrame) -> pd.DataFrame:
     """The rows that say at which multiplier a wall collapses: ended well, and not rejected by the judge.
 
     A wall that falls under its dead load collapses at multiplier zero. What the judge can neither accept nor reject
-    counts, as measurements on uneven blocks do, whose forces are not those of the wall: `unjudged` says how many.
+    counts, as measurements on uneven blocks do, whose forces are not those of the wall.
     """
     good = (table["status"] == str(Status.OK)) & table["judge_accepted"].ne(False).fillna(True)
     falls = table["finding"] == str(Finding.FALLS)
     kept = table[good & (falls | table["multiplier"].notna())].copy()
     kept.loc[kept["finding"] == str(Finding.FALLS), "multiplier"] = 0.0
     return kept
-
-
-def unjudged(table: pd.DataFrame) -> int:
-    """How many of the rows that count have an answer that the judge can neither accept nor reject."""
-    return int(answered(table)["judge_accepted"].isna().sum())
 
 
 def quantiles(table: pd.DataFrame, by: Sequence[str]) -> pd.DataFrame:

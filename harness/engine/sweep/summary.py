@@ -42,18 +42,15 @@ class Summary:
         """
         found = self.tables["quantiles"]
         place = [name for name in self.groups if name != "method" and (name != "case" or found["case"].nunique() > 1)]
-        rows: dict[tuple[str, ...], dict[str, str]] = {}
-        for group in found.sort_values("method", key=self._order, kind="stable").to_dict("records"):
-            here = {
-                name: f"{group[name]:.6g}" if isinstance(group[name], float) else str(group[name]) for name in place
-            }
-            row = rows.setdefault(tuple(here.values()), here)
-            row[str(group["method"])] = _words(group)
+        said: dict[tuple[str, ...], dict[str, str]] = {}
+        for group in found.to_dict("records"):
+            here = tuple(f"{group[name]:.6g}" if isinstance(group[name], float) else str(group[name]) for name in place)
+            said.setdefault(here, {})[str(group["method"])] = _words(group)
         methods = [name for name in self.study.methods if name in set(found["method"])]
-        return [row | {name: row.get(name, "-") for name in methods} for row in rows.values()]
-
-    def _order(self, names: pd.Series) -> pd.Series:
-        return names.map({name: place for place, name in enumerate(self.study.methods)})
+        return [
+            dict(zip(place, here, strict=True)) | {name: words.get(name, "-") for name in methods}
+            for here, words in said.items()
+        ]
 
 
 def _words(group: dict[Hashable, Any]) -> str:
@@ -99,12 +96,13 @@ def summarise(study: Study, rows: pd.DataFrame) -> Summary:
     if study.neighbours:
         tables["neighbours"], sentence = _taken_over(rows, ["case", "method", *varied_of(study)])
         remarks.append(sentence)
-    lost = len(rows) - len(statistics.answered(rows))
+    counted = statistics.answered(rows)
+    lost = len(rows) - len(counted)
     if lost:
         remarks.append(
             f"{lost} of {len(rows)} runs gave no multiplier, or one that the judge rejects; they are in the rows."
         )
-    unjudged = statistics.unjudged(rows)
+    unjudged = int(counted["judge_accepted"].isna().sum())
     if unjudged:
         remarks.append(
             f"{unjudged} of {len(rows)} runs count though the judge can neither accept nor reject their answers."
@@ -113,7 +111,7 @@ def summarise(study: Study, rows: pd.DataFrame) -> Summary:
     if many:
         curves = statistics.fragility(rows, groups)
         tables["fragility"] = curves
-    if study.multipliers and len(statistics.answered(rows)):
+    if study.multipliers and len(counted):
         tables["failure"] = statistics.failure_probability(rows, groups, study.multipliers)
     if study.draw:
         if find_spec("SALib") is None:

@@ -26,11 +26,13 @@ class Weights:
         rigid: weight of a slack that may not change.
         penalty: stiffness of contacts that may not move, against a unit stiffness of the velocities; near-singular sets
             need it.
+        softest: least weight g/y in the matrix of a path, far below what any reaches, so that no stiffness overflows.
         diverged: velocities above this come from a matrix singular to rounding; their products would overflow.
     """
 
     rigid: float = 1e40
     penalty: float = 1e13
+    softest: float = 1e-25
     diverged: float = 1e100
 
 

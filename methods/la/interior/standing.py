@@ -17,12 +17,14 @@ from methods.la.core.problem import Problem
 from methods.la.interior.interior_point import PathSettings, follow_path, start_point
 from methods.numerics.failures import NumericalFailure
 
-LARGEST_IMBALANCE = 1e-9
-"""Largest imbalance, in mean block weights, of forces that certify."""
 
+def standing_forces(problem: Problem, newton: NewtonMatrix, imbalance: float = 1e-9) -> FloatArray | None:
+    """Forces (m, 3) in equilibrium with the dead load within yield, or None if the path does not find any.
 
-def standing_forces(problem: Problem, newton: NewtonMatrix) -> FloatArray | None:
-    """Forces (m, 3) in equilibrium with the dead load within yield, or None if the path does not find any."""
+    Args:
+        problem: the scaled wall; newton: its Newton matrix.
+        imbalance: largest one, and largest excess over yield, of forces that certify, in mean block weights.
+    """
     start = start_point(problem)
     first = problem.forces_of_slacks(start.slack)
     easy = -np.asarray(problem.statics @ first.ravel())
@@ -38,6 +40,6 @@ def standing_forces(problem: Problem, newton: NewtonMatrix) -> FloatArray | None
     if not result.point.multiplier >= 1.0:
         return None
     forces = first + (problem.forces_of_slacks(result.point.slack) - first) / result.point.multiplier
-    within = float(problem.slacks(forces).min(initial=0.0)) >= -LARGEST_IMBALANCE
-    balanced = float(abs(problem.imbalance(forces, 0.0)).max(initial=0.0)) <= LARGEST_IMBALANCE
+    within = float(problem.slacks(forces).min(initial=0.0)) >= -imbalance
+    balanced = float(abs(problem.imbalance(forces, 0.0)).max(initial=0.0)) <= imbalance
     return forces if within and balanced else None
