@@ -3,33 +3,30 @@ PYTHON ?=
 VENV := .venv
 BIN := $(VENV)/bin
 READY := $(VENV)/.ready
-# The library of compiled loops, built again after a change of theirs; without it numba compiles and loads them.
-BUILT := $(VENV)/.built
-LOOPS := $(shell grep -rlE --include=*.py '^@compiled' methods)
 # Processes keep the code that they compile, whatever the environment says: a command takes half the time with it.
 unexport PYTHONDONTWRITEBYTECODE
 RUN := OMP_NUM_THREADS=1 OPENBLAS_NUM_THREADS=1 $(BIN)
 
 .PHONY: compare test check bench lint full docs schema lock clean
 
-compare: $(BUILT)  ## run the main job: three methods on suite "small", judged, with a report
+compare: $(READY)  ## run the main job: three methods on suite "small", judged, with a report
 	$(RUN)/drystone compare --suite small --study imperfections:60s
 
 # Tests of the report in a browser need Debian's chromium; without it they are left out, and said to be.
 BROWSER := $(shell command -v chromium 2>/dev/null)
 
-test: $(BUILT)  ## pass the tests
+test: $(READY)  ## pass the tests
 	$(if $(BROWSER),,@echo "chromium is not installed: the browser tests are left out")
 	$(RUN)/python -m pytest -n 2 --dist loadfile -m "not slow$(if $(BROWSER),, and not browser)"
 
-full: $(BUILT)  ## every test and every reference, the slow ones too
+full: $(READY)  ## every test and every reference, the slow ones too
 	$(RUN)/python -m pytest
 	$(RUN)/drystone check --tier full
 
-check: $(BUILT)  ## the reference regression, quick tier
+check: $(READY)  ## the reference regression, quick tier
 	$(RUN)/drystone check
 
-bench: $(BUILT)  ## measured values and CPU seconds of every method, beside the figures to beat
+bench: $(READY)  ## measured values and CPU seconds of every method, beside the figures to beat
 	$(RUN)/python -m benchmarks overhead --full
 	$(RUN)/python -m benchmarks limit_analysis
 	$(RUN)/python -m benchmarks finite_elements
@@ -54,12 +51,8 @@ lock: $(READY)  ## resolve the dependencies anew (versions and hashes only)
 
 $(READY): requirements.lock pyproject.toml .ci/set-up
 	@.ci/set-up "$(VENV)" $(PYTHON)
-	rm -f $(BUILT)
-	touch $(READY)
-
-$(BUILT): $(LOOPS) | $(READY)
 	$(RUN)/python -m harness.kernels
-	touch $(BUILT)
+	touch $(READY)
 
 clean:
 	rm -rf $(VENV) out

@@ -10,8 +10,6 @@ import importlib
 import click
 
 from harness import formats
-from harness.engine import collector
-from harness.engine.deferred_modules import defer
 from harness.engine.threads import pin
 
 COMMANDS = {
@@ -60,11 +58,8 @@ class Commands(click.Group):
             return None
         pin()
         module, name, _ = COMMANDS[cmd_name]
-        with collector.paused():
-            defer()
-            formats.register()
-            command: click.Command = getattr(importlib.import_module(f"harness.{module}"), name)
-        collector.keep()
+        formats.register()
+        command: click.Command = getattr(importlib.import_module(f"harness.{module}"), name)
         return command
 
     def format_commands(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:

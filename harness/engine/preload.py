@@ -6,8 +6,6 @@ import contextlib
 import os
 from collections.abc import Iterable
 
-from harness.engine import collector
-from harness.engine.deferred_modules import defer
 from harness.model.errors import InputError
 from harness.model.method import load_method, method_points, prepared
 
@@ -26,13 +24,10 @@ def shipped(names: Iterable[str]) -> list[str]:
 
 def load(names: Iterable[str]) -> None:
     """Load methods; one that cannot be loaded is left to the run that needs it, which can say so."""
-    with collector.paused():
-        for name in names:
-            with contextlib.suppress(InputError, KeyError):
-                prepared(load_method(name))
+    for name in names:
+        with contextlib.suppress(InputError, KeyError):
+            prepared(load_method(name))
 
 
 if os.environ.get(VARIABLE):
-    defer()
     load(os.environ[VARIABLE].split(","))
-    collector.keep()

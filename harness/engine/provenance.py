@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import contextlib
 import functools
 import hashlib
 import importlib.util
@@ -10,7 +9,6 @@ import json
 import os
 import platform
 import subprocess
-import sys
 from collections.abc import Sequence
 from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
@@ -39,25 +37,12 @@ def versions() -> dict[str, str]:
     found = {"python": platform.python_version()}
     for package in PACKAGES:
         try:
-            found[package] = _installed().get(package) or version(package)
+            found[package] = version(package)
         except PackageNotFoundError:
             continue
     commit = _commit()
     if commit:
         found["commit"] = commit
-    return found
-
-
-@functools.cache
-def _installed() -> dict[str, str]:
-    """Versions of the distributions on Python's path, by the names of their folders: reading each would take longer."""
-    found: dict[str, str] = {}
-    for place in sys.path:
-        with contextlib.suppress(OSError):
-            for folder in os.listdir(place or "."):
-                if folder.endswith(".dist-info"):
-                    name, _, number = folder.removesuffix(".dist-info").rpartition("-")
-                    found.setdefault(name.lower(), number)
     return found
 
 

@@ -27,7 +27,6 @@ from typing import Any
 
 import numpy as np
 
-from harness.engine import collector
 from harness.model.assembly import Assembly, FloatArray
 from harness.model.errors import InputError
 from harness.model.method import (
@@ -90,7 +89,6 @@ def serve(engine: connection.Connection, folder: str) -> None:
     os.chdir(folder)  # what a library drops in the working directory goes with the run
     _send_output_to(Path(folder) / "output.txt")
     resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
-    collector.keep()
     used = False
     try:
         while True:

@@ -6,7 +6,6 @@ from functools import cache
 
 import numpy as np
 
-from methods.numerics.built import holds
 from methods.springs.model.exact_rates import exact_gap_rates
 from methods.springs.model.factor import SparseFactor
 from methods.springs.model.gap_law import STICK, neighbour_states
@@ -22,12 +21,7 @@ from methods.springs.rest.equilibrium import first_step, gravity_state
 
 @cache
 def load_kernels() -> None:
-    """Trace a single block to its collapse with the sparse factor, and call what that leaves out, once in a process.
-
-    The library of kernels needs none of this: it is loaded as a whole.
-    """
-    if holds(exact_gap_rates):
-        return
+    """Trace a single block to its collapse with the sparse factor, and call what that leaves out, once in a process."""
     model = build_model(block_on_halves((0.6, 0.4)), GapSettings())
     factor = SparseFactor(model)
     gravity = gravity_state(model, factor)

@@ -1,4 +1,4 @@
-"""What is told of processes and packages without the library that is slow to load says the same as that library."""
+"""Resident memory and CPU time of processes."""
 
 from __future__ import annotations
 
@@ -6,24 +6,20 @@ import os
 import subprocess
 import sys
 import time
-from importlib import metadata
 
 import numpy as np
 import pytest
 
-from harness.engine import provenance, usage
+from harness.engine import usage
 
 PROGRAM = "import subprocess, sys; subprocess.Popen([sys.executable, '-c', 'input()']); print(flush=True); input()"
 
 
-def test_the_file_of_linux_tells_what_psutil_does():
+def test_memory_and_time_of_this_process_are_those_that_it_has_used():
     room = np.ones(4_000_000)
-    found, expected = usage.usage(os.getpid()), usage._by_psutil(os.getpid(), False)
+    found = usage.usage(os.getpid())
     assert found is not None
-    assert expected is not None
-    assert found[0] == pytest.approx(expected[0], rel=0.02)
     assert found[0] > room.nbytes
-    assert found[1] == pytest.approx(expected[1], abs=0.05)
     assert found[1] == pytest.approx(time.process_time(), abs=0.05)
 
 
@@ -39,12 +35,3 @@ def test_children_are_counted_when_asked_for_and_an_ended_process_uses_nothing()
         process.stdin.close()
     assert usage.usage(process.pid) is None
     assert usage.usage(process.pid, with_children=True) is None
-
-
-def test_folders_tell_the_versions_that_the_packages_do():
-    named = {package: provenance._installed().get(package) for package in provenance.PACKAGES}
-    assert named["numpy"]
-    assert named["drystone"]
-    assert {name: number for name, number in named.items() if number} == {
-        name: metadata.version(name) for name, number in named.items() if number
-    }
