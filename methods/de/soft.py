@@ -16,6 +16,7 @@ from harness.model.assembly import Assembly, FloatArray
 from harness.model.method import Answer, Finding, OutOfTime, Status
 from methods.de.declared_de import DeclaredSoft
 from methods.de.engines.courses import courses, number_of_courses
+from methods.de.engines.engine import motion_units
 from methods.de.engines.soft_wall import SoftWall
 from methods.de.holds.hold import Hold, State, Watch
 from methods.de.holds.loading import FALL, raise_until_it_falls
@@ -85,15 +86,16 @@ class Holds:
         beyond what any had moved until then, and at the end.
         """
         wall, settings = self.wall, self.settings
-        before, size = self.rest[0], wall.assembly.length_scale
+        before = self.rest[0]
         load = wall.assembly.dead + wall.multiplier * wall.assembly.live
         away = SOFT_HOLDS.away * float(np.abs(before[:, :2]).max()) if np.any(before[:, :2]) else np.inf
-        watch, places, start = Watch(settings.held_residual, settings.held_residual), before, wall.steps
+        watch = Watch(settings.held_residual, settings.held_residual, motion_units(wall.assembly))
+        places, start = before, wall.steps
         affordable = settings.relaxations * looks
         while True:
             residual = wall.advance(SOFT_HOLDS.look)
             moved, places = wall.places - places, wall.places.copy()
-            watch.note(moved / [size, size, 1.0], residual)
+            watch.note(moved, residual)
             if residual < settings.held_residual or not np.all(np.isfinite(places)):
                 state = State.HELD if residual < settings.held_residual else State.UNDECIDED
                 return Hold(state, residual, wall.steps - start, places - before)

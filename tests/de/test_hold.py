@@ -20,7 +20,7 @@ MECHANISM = np.random.default_rng(0).normal(size=(12, 3))
 def goes_on(speeds, shaking):
     """What `Trend` says of a motion along one mechanism at these speeds, with random ones on top."""
     generator = np.random.default_rng(1)
-    watch = Watch(1e-6, 2e-5)
+    watch = Watch(1e-6, 2e-5, np.ones(3))
     for speed in speeds:
         watch.note(speed * MECHANISM + shaking * generator.normal(size=MECHANISM.shape), 1.0)
     return Trend().goes_on(watch.quarters)
@@ -52,7 +52,7 @@ def test_what_shakes_or_slows_down_is_not_moving(speeds, shaking):
 
 
 def test_a_hold_follows_a_slow_relaxation_and_not_a_residual_that_stays():
-    falling, staying = Watch(1e-6, 2e-5), Watch(1e-6, 2e-5)
+    falling, staying = (Watch(1e-6, 2e-5, np.ones(3)) for _ in range(2))
     for k in range(60):
         falling.note(MECHANISM, 1e-3 * np.exp(-0.05 * k))
         staying.note(MECHANISM, 1e-3 + 0.1 * np.exp(-0.5 * k))

@@ -4,7 +4,17 @@ from __future__ import annotations
 
 from typing import Protocol
 
+import numpy as np
+
 from harness.model.assembly import Assembly, FloatArray
+
+
+def motion_units(assembly: Assembly) -> FloatArray:
+    """(3,) the units in which engines compute displacements and velocities (ux, uy, omega) of blocks.
+
+    They are the length scale, twice [length], and a radian: what an engine returns is multiplied by them.
+    """
+    return np.array([assembly.length_scale, assembly.length_scale, 1.0])
 
 
 class Measured(Protocol):
@@ -47,17 +57,20 @@ class Engine(Measured, Protocol):
         ...
 
     def velocity(self) -> FloatArray:
-        """(n, 3) velocities (ux, uy, omega) of all blocks; zero on fixed blocks.
+        """(n, 3) velocities (ux, uy, omega) of all blocks [length, length, radian]; zero on fixed blocks.
 
-        Scaled such that the largest entry is the out-of-balance acceleration as a part of gravity, (ux, uy) in unit
-        lengths and omega in radians.
+        Scaled such that the largest of ux, uy and omega x length scale, over the length scale, is the out-of-balance
+        acceleration as a part of gravity.
         """
         ...
 
     def unbalance(self, velocity: FloatArray) -> float:
-        """Largest out-of-balance force that goes with this velocity field, as a part of the mean dead load of a block.
+        """Largest out-of-balance force that goes with velocities, as a part of the mean dead load of a block.
 
-        Moments count divided by the unit length.
+        Moments count divided by the length scale.
+
+        Args:
+            velocity: (n, 3) as `velocity` gives it.
         """
         ...
 

@@ -18,6 +18,7 @@ import numpy as np
 
 from harness.model.assembly import Assembly, FloatArray, IntArray
 from methods.de.engines.courses import Tuning, courses, is_chain, light_top, masses, number_of_courses
+from methods.de.engines.engine import motion_units
 from methods.de.engines.space import polygon_gyration
 from methods.de.engines.strips import STRIP, require_lengths
 from methods.de.hold_settings import MujocoSettings
@@ -269,7 +270,7 @@ class MujocoWall:
             passed = SOFT_CONTACTS.time_step * (self.steps - self._read_at)
             moved = (self._data.qpos - self._place).reshape(-1, 3) / passed
             self._mean = np.zeros((self.assembly.n_blocks, 3))
-            self._mean[self._blocks] = moved * self._drag
+            self._mean[self._blocks] = moved * self._drag * motion_units(self.assembly)
             self._read()
         return self._mean
 
@@ -278,7 +279,7 @@ class MujocoWall:
 
     def unbalance(self, velocity: FloatArray) -> float:
         """Largest out-of-balance force of this velocity field, see `Engine.unbalance`."""
-        return float(np.abs(self._mass * velocity[self._blocks]).max(initial=0.0))
+        return float(np.abs(self._mass * velocity[self._blocks] / motion_units(self.assembly)).max(initial=0.0))
 
     def save(self) -> FloatArray:
         """(9 n_free,) displacements, velocities and accelerations: penetrations and creep carry the forces."""

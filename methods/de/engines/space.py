@@ -18,6 +18,7 @@ from pymunk import batch
 
 from harness.model.assembly import Assembly, FloatArray, IntArray
 from methods.de.engines.courses import Tuning, courses, masses, number_of_courses
+from methods.de.engines.engine import motion_units
 from methods.de.engines.strips import STRIP, build_strips
 
 
@@ -141,12 +142,13 @@ class StripSpace:
         batch.get_space_bodies(self._space, _VELOCITY, self._out)
         result = np.zeros((self.assembly.n_blocks, 3))
         read = np.frombuffer(self._out.float_buf()).reshape(-1, 3)
-        result[self._blocks] = read[: len(self._blocks)] / (self.relaxation * STRIPS.gravity * STRIPS.time_step)
+        own = read[: len(self._blocks)] / (self.relaxation * STRIPS.gravity * STRIPS.time_step)
+        result[self._blocks] = own * motion_units(self.assembly)
         return result
 
     def unbalance(self, velocity: FloatArray) -> float:
         """Largest out-of-balance force of this velocity field, see `Engine.unbalance`."""
-        return float(np.abs(self._mass * velocity).max(initial=0.0))
+        return float(np.abs(self._mass * velocity / motion_units(self.assembly)).max(initial=0.0))
 
     def save(self) -> FloatArray:
         """(m, 2, 2) normal and tangential impulse of both contact points of every interface."""

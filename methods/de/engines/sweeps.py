@@ -14,6 +14,7 @@ import numpy as np
 
 from harness.model.assembly import Assembly, FloatArray, IntArray
 from methods.de.engines.courses import Tuning, courses, masses, number_of_courses
+from methods.de.engines.engine import motion_units
 from methods.de.engines.space import polygon_gyration
 from methods.de.engines.strips import require_lengths
 from methods.numerics.compiled import compiled
@@ -117,12 +118,12 @@ class SweptWall:
     def velocity(self) -> FloatArray:
         """(n, 3) velocities as out-of-balance accelerations, see `Engine.velocity`."""
         result = np.zeros((self.assembly.n_blocks, 3))
-        result[self._blocks] = self._velocity[:-1] / self.relaxation
+        result[self._blocks] = self._velocity[:-1] / self.relaxation * motion_units(self.assembly)
         return result
 
     def unbalance(self, velocity: FloatArray) -> float:
         """Largest out-of-balance force of this velocity field, see `Engine.unbalance`."""
-        return float(np.abs(self._mass * velocity).max(initial=0.0))
+        return float(np.abs(self._mass * velocity / motion_units(self.assembly)).max(initial=0.0))
 
     def save(self) -> FloatArray:
         """(2m, 2) normal and tangential impulse of every contact point in the order of the sweeps."""

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from enum import StrEnum
 
 import numpy as np
 
 from harness.model.assembly import FloatArray
-from methods.de.engines.engine import Engine, Measured
+from methods.de.engines.engine import Engine, Measured, motion_units
 from methods.de.hold_settings import HoldSettings
 from methods.de.holds.motion import Motion, MotionProof, Trend, by_power, by_virtual_work
 
@@ -29,7 +29,7 @@ class Hold:
         state: held, moving or undecided.
         residual: largest out-of-balance force at the end, as a part of the mean dead load of a block.
         steps: time steps made.
-        velocity: (n, 3) velocity field at the end, its mean if unsteady, scaled as `Engine.velocity`.
+        velocity: (n, 3) velocity field at the end [length, length, radian], its mean if unsteady, as `Engine.velocity`.
         proof: what shows that it moves; None unless it does.
     """
 
@@ -46,20 +46,22 @@ class Watch:
 
     Attributes:
         held, moving: residuals below which a wall rests, and from which it may move.
-        velocities: (n, 3) velocity fields, lengths in length scales.
+        units: (3,) by which velocities are divided to be compared (`motion_units`).
+        velocities: (n, 3) velocity fields without dimension.
         residuals: largest forces out of balance, as parts of the mean dead load of a block.
         trend: when a motion counts as one that goes on.
     """
 
     held: float
     moving: float
+    units: FloatArray
     trend: Trend = field(default_factory=Trend)
     velocities: list[FloatArray] = field(default_factory=list)
     residuals: list[float] = field(default_factory=list)
 
     def note(self, velocity: FloatArray, residual: float) -> None:
-        """Add a check."""
-        self.velocities.append(velocity)
+        """Add a check: velocities (n, 3) [length, length, radian] and the residual that goes with them."""
+        self.velocities.append(velocity / self.units)
         self.residuals.append(residual)
 
     @property
@@ -121,11 +123,11 @@ class Watch:
             return None
         wall, load = engine.assembly, engine.assembly.dead + engine.multiplier * engine.assembly.live
         quarters = self.quarters
-        last = self.velocities[-1] if self.steady else quarters[-1]
-        motion = by_virtual_work(wall, load, last * [wall.length_scale, wall.length_scale, 1.0])
+        last = (self.velocities[-1] if self.steady else quarters[-1]) * self.units
+        motion = by_virtual_work(wall, load, last)
         if motion is None and self.trend.goes_on(quarters):
-            motion = by_power(wall, load, last * [wall.length_scale, wall.length_scale, 1.0], engine.contact_forces())
-        return None if motion is None else replace(motion, field=last)
+            motion = by_power(wall, load, last, engine.contact_forces())
+        return motion
 
 
 def hold(engine: Engine, settings: HoldSettings, patience: int = 1) -> Hold:
@@ -143,7 +145,8 @@ def hold(engine: Engine, settings: HoldSettings, patience: int = 1) -> Hold:
     """
     check = max(10, round(engine.relaxation / 3.0))
     usual = patience * hold_limit(engine, settings) / check
-    start, watch = engine.steps, Watch(settings.held_residual, settings.moving_residual)
+    units = motion_units(engine.assembly)
+    start, watch = engine.steps, Watch(settings.held_residual, settings.moving_residual, units)
     affordable = (watch.trend.followed * settings.work / max(engine.interfaces, 1) - engine.steps) / check
     while True:
         engine.advance(check)
