@@ -15,7 +15,6 @@ from typing import Any
 import numpy as np
 
 from harness.engine.compare import Told
-from harness.engine.judge import worst_residual
 from harness.engine.plan import Run
 from harness.engine.regression import violations
 from harness.model.assembly import Assembly
@@ -114,7 +113,7 @@ def _expected(result: Result) -> str:
 
 
 def _residual(result: Result) -> str:
-    worst = worst_residual(result.judge)
+    worst = result.judge.worst
     mark = {True: "", False: " ✗", None: " not judged" if result.status is Status.OK else ""}[result.judge.accepted]
     return ("-" if worst is None and not mark else "" if worst is None else f"{worst:.1e}") + mark
 

@@ -25,7 +25,6 @@ from reports.figures import results_figure, style, wall_figure
 from reports.opening import wall_findings, which_number
 from reports.reactions import Reaction, out_of_balance, reactions
 from reports.reasons import least_known
-from reports.tables import worst_residual
 
 
 @dataclass(frozen=True)
@@ -178,7 +177,7 @@ def _pair(load: FloatArray) -> str:
 
 
 def _method_row(result: Result) -> MethodRow:
-    worst = worst_residual(result)
+    worst = result.judge.worst
     answered = result.status is Status.OK
     return MethodRow(
         method=result.method,

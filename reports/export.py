@@ -20,7 +20,7 @@ from reports import charts, shapes, vectors, words
 from reports.curves import curves
 from reports.opening import run_in_order
 from reports.studies import studies
-from reports.tables import reference_of, worst_residual
+from reports.tables import reference_of
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -150,7 +150,7 @@ def _json(data: Any) -> bytes:
 
 
 def _result_row(result: Result) -> dict[str, Any]:
-    worst = worst_residual(result)
+    worst = result.judge.worst
     row = result.model_dump(mode="json", include=set(columns.TYPES))
     return row | {
         "bracket_low": result.bracket[0] if result.bracket else None,

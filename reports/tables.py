@@ -15,8 +15,6 @@ from harness.model.method import Status
 from harness.model.result import Comparison, Result, Verdict
 from reports import numbers, words
 
-NOT_SMALL = ("live_work", "dead_work")
-"""Residuals of the judge that ought to be positive, not small."""
 CERTIFIED = 3e-6
 """Relative height above a certified bound up to which a state is called the minimum: certificates leave 2e-6, and the
 rest is for rounding of the state."""
@@ -76,15 +74,6 @@ class RunRow:
 def anchor_of(case_number: int, result_number: int) -> str:
     """The id of a run in the page; numbers, so that no name from a file becomes part of it."""
     return f"run-{case_number}-{result_number}"
-
-
-def worst_residual(result: Result) -> tuple[str, float] | None:
-    """The largest of the judge's residuals that ought to vanish, with its name."""
-    small = {name: value for name, value in result.judge.residuals.items() if name not in NOT_SMALL}
-    if not small:
-        return None
-    name = max(small, key=lambda item: small[item])
-    return name, small[name]
 
 
 def reference_of(case: Case, identifier: str) -> Reference | None:
@@ -149,7 +138,7 @@ def certified_bound(item: CaseResults, least: Result) -> float | None:
 def run_row(case_number: int, result_number: int, item: CaseResults) -> RunRow:
     """The row of one result."""
     case, result = item.case, item.results[result_number]
-    worst = worst_residual(result)
+    worst = result.judge.worst
     accepted = result.judge.accepted
     failed = result.status is not Status.OK
     return RunRow(

@@ -6,7 +6,8 @@ collapses at lambda  forces in equilibrium with dead + lambda x live at the mult
                      a mechanism at rest on the supports, without interpenetration, of the stated flow rule,
                      complementary to the forces, on which the live load does positive work
 bracket              (flow "approximate") forces in equilibrium within yield at its lower end or above; the upper end is
-                     measured and is not judged
+                     measured and is not judged; nor is it shown that the motion is the one at collapse, but it must
+                     be one that the joints allow (`harness.engine.measured_motion`)
 stands               forces in equilibrium within yield under the dead load, where no live load was given; with a live
                      load they show no multiplier, and the answer is not judged
 falls                a dilatant mechanism, at rest on the supports, on which the dead load does positive work: no
@@ -26,6 +27,7 @@ from typing import Any
 
 import numpy as np
 
+from harness.engine.measured_motion import motion_faults
 from harness.engine.residuals import collapse_residuals, displaced_residuals, force_residuals, moving_parts, power
 from harness.model.assembly import Assembly, FloatArray
 from harness.model.displaced import DisplacedState
@@ -48,6 +50,16 @@ def judge(assembly: Assembly, result: Result, tolerance: float) -> Judgement:
     for name, array in (("forces", forces), ("mechanism", mechanism)):
         if array is not None and not np.isfinite(array).all():
             return _said(tolerance, False, f"Its {name} hold numbers that are not finite.")
+    said = _judge_finding(assembly, forces, mechanism, result, tolerance)
+    if result.flow == "approximate" and mechanism is not None and len(mechanism) == assembly.n_blocks:
+        return _with_motion(said, *motion_faults(assembly, mechanism, result.multiplier or 0.0, result.details))
+    return said
+
+
+def _judge_finding(
+    assembly: Assembly, forces: FloatArray | None, mechanism: FloatArray | None, result: Result, tolerance: float
+) -> Judgement:
+    """What is said of the finding of a result."""
     match result.finding:
         case Finding.FALLS:
             return _judge_fall(assembly, mechanism, result, tolerance)
@@ -58,6 +70,15 @@ def judge(assembly: Assembly, result: Result, tolerance: float) -> Judgement:
     if result.flow == "approximate":
         return _judge_bracket(assembly, forces, result, tolerance)
     return _judge_collapse(assembly, forces, mechanism, result, tolerance)
+
+
+def _with_motion(said: Judgement, residuals: dict[str, float], fault: str) -> Judgement:
+    """The judgement, with the residuals of a measured motion, and rejected where it is none of this wall."""
+    said.residuals = said.residuals | residuals
+    if fault:
+        said.accepted = False
+        said.sentence += f" {fault}"
+    return said
 
 
 def answered(method: Method, assembly: Assembly, **settings: Any) -> tuple[Result, Judgement]:
@@ -200,9 +221,3 @@ def _decide(residuals: dict[str, float], tolerance: float, what: str) -> Judgeme
         f"; not within {tolerance:.3g}: {', '.join(failed)}." if failed else f" and holds within {tolerance:.3g}."
     )
     return Judgement(residuals=residuals, tolerance=tolerance, accepted=not failed, sentence=sentence)
-
-
-def worst_residual(judgement: Judgement) -> float | None:
-    """The largest of the residuals that ought to vanish, or None if nothing was judged."""
-    values = [value for name, value in judgement.residuals.items() if name not in ("live_work", "dead_work")]
-    return max(values) if values else None

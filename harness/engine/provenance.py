@@ -112,7 +112,7 @@ def run_key(wall: str, method: str, settings: dict[str, Any], limits: dict[str, 
 @functools.cache
 def judge_version() -> str:
     """Hash over the sources of the judge, for results that are kept with its word."""
-    return sources_version("harness.engine.judge", "harness.engine.residuals")
+    return sources_version("harness.engine.judge", "harness.engine.measured_motion", "harness.engine.residuals")
 
 
 def _sources(package: str) -> list[Path]:

@@ -15,7 +15,7 @@ import numpy as np
 from harness.model.assembly import Assembly, BoolArray, FloatArray, IntArray
 from harness.model.errors import first_few
 from harness.model.groups import groups_of
-from harness.model.method import Answer, Finding, OutOfTime, Status
+from harness.model.method import MOVING_FORCES, Answer, Finding, OutOfTime, Status
 
 NAMED = 8
 """Blocks of a component that are named at most."""
@@ -156,7 +156,7 @@ def joined(assembly: Assembly, parts: list[Component], answers: list[Answer], be
         mechanism=_mechanism(assembly, parts[deciding], chosen),
         forces=None,
         iterations=sum(each.iterations for each in answers),
-        details=chosen.details | _details(parts, answers, deciding),
+        details=chosen.details | _moving_forces(assembly, parts[deciding], chosen) | _details(parts, answers, deciding),
     )
     if falls or failed:
         return replace(answer, forces_multiplier=None)
@@ -215,6 +215,15 @@ def _mechanism(assembly: Assembly, part: Component, answer: Answer) -> FloatArra
     motion = np.zeros((assembly.n_blocks, 3))
     motion[part.blocks] = answer.mechanism
     return motion
+
+
+def _moving_forces(assembly: Assembly, part: Component, answer: Answer) -> dict[str, Any]:
+    """The contact forces that were measured with the mechanism of a component, as details of the whole wall."""
+    if MOVING_FORCES not in answer.details:
+        return {}
+    forces = np.zeros((assembly.n_interfaces, 3))
+    forces[part.interfaces] = answer.details[MOVING_FORCES]
+    return {MOVING_FORCES: forces.tolist()}
 
 
 def _sentence(parts: list[Component], answers: list[Answer], deciding: int) -> str:

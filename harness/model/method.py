@@ -81,6 +81,10 @@ class Finding(StrEnum):
     """Nothing was found."""
 
 
+MOVING_FORCES = "moving_forces"
+"""Name under which an answer's details hold the (m, 3) contact forces that were measured with its mechanism [force]."""
+
+
 @dataclass
 class Answer:
     """What a method found. n = number of blocks (fixed ones included), m = number of interfaces.
@@ -96,10 +100,12 @@ class Answer:
         forces_multiplier: the multiplier the forces belong to; None means `multiplier`.
         mechanism: (n, 3) block velocities (ux, uy, omega) at any scale, zero on fixed blocks; or None.
         flow: which flow rule the mechanism obeys: "non-associated" (zero dilatancy), "associated" (dilatancy mu),
-            or "approximate" (a measured velocity field, as of a distinct-element run; its flow is not judged).
+            or "approximate" (a measured velocity field, as of a distinct-element run; it must be a motion that the
+            joints allow, to the tolerances of `harness.engine.measured_motion`).
         iterations: iterations of the method's main loop.
         path: columns of equal length that record the way, e.g. {"multiplier": [...], "live_displacement": [...]}.
-        details: further findings by name; JSON values only.
+        details: further findings by name; JSON values only. `MOVING_FORCES` are those of a measured mechanism, which is
+            then judged more sharply.
     """
 
     status: Status

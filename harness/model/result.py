@@ -42,6 +42,16 @@ class Judgement(BaseModel):
     multiplier_error: float | None = None
 
     @property
+    def worst(self) -> tuple[str, float] | None:
+        """Name and value of the largest of the residuals that ought to vanish; None if nothing was judged.
+
+        Work is no residual, and those of a measured motion have a tolerance of their own.
+        """
+        work = ("live_work", "dead_work")
+        small = [item for item in self.residuals.items() if item[0] not in work and not item[0].startswith("motion_")]
+        return max(small, key=lambda item: item[1], default=None)
+
+    @property
     def decimals(self) -> int | None:
         """Decimals of the multiplier of which the last stands for more than twice its error; None: no bound on it."""
         return None if not self.multiplier_error else math.floor(-math.log10(2.0 * self.multiplier_error))

@@ -267,7 +267,7 @@ def test_least_known_history_never_rises():
 
 def test_worst_residual_leaves_out_what_ought_to_be_large():
     result = samples.solved(samples.bond(), "la", 0.5)
-    assert tables.worst_residual(result) == ("equilibrium", 3e-16)
+    assert result.judge.worst == ("equilibrium", 3e-16)
 
 
 def test_released_blocks_turn_without_changing_their_shape():

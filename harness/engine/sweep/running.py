@@ -7,7 +7,7 @@ from contextlib import closing
 from typing import Any
 
 from harness.engine.executors import Executor, Job
-from harness.engine.judge import judge, worst_residual
+from harness.engine.judge import judge
 from harness.engine.store import Store
 from harness.engine.sweep.expand import SweepRun, Walls
 from harness.model.assembly import Assembly
@@ -85,7 +85,7 @@ def row_of(run: SweepRun, summary: Mapping[str, Any]) -> Row:
         _place(run)
         | {name: summary.get(name) for name in TAKEN}
         | {"bracket_low": low, "bracket_high": high, "judge_accepted": judgement.accepted}
-        | {"judge_worst_residual": worst_residual(judgement)}
+        | {"judge_worst_residual": judgement.worst[1] if judgement.worst else None}
     )
 
 

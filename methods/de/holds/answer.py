@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from harness.model.assembly import Assembly, IntArray
-from harness.model.method import Answer, Finding, OutOfTime, Status
+from harness.model.method import MOVING_FORCES, Answer, Finding, OutOfTime, Status
 from methods.de.engines.courses import Tuning, courses, insertion_orders, tunings
 from methods.de.engines.engine import Engine
 from methods.de.hold_settings import HoldSettings
@@ -91,7 +91,9 @@ def _with_state(answer: Answer, engine: Engine, settings: HoldSettings, best: Or
         path=best.path,
     )
     if answer.finding is Finding.COLLAPSES:
-        answer.mechanism, answer.flow = mechanism_at(engine, settings, best), "approximate"
+        answer.mechanism, forces = mechanism_at(engine, settings, best)
+        answer.flow = "approximate"
+        answer.details[MOVING_FORCES] = forces.tolist()
     answer.iterations += engine.steps
     return answer
 
@@ -181,6 +183,8 @@ def _at_zero(assembly: Assembly, brackets: list[OrderBracket], fallen: list[Orde
         sentence = f"falls under its dead load: it moved in all {len(brackets)} body orders at multiplier 0"
         answer = Answer(Status.OK, Finding.FALLS, sentence)
         answer.mechanism, answer.flow = moved[0].velocity, "approximate"
+        if moved[0].moving_forces is not None:
+            answer.details[MOVING_FORCES] = moved[0].moving_forces.tolist()
         return answer
     sentence = (
         f"whether the dead load is held is not decided: of {len(brackets)} body orders {len(brackets) - len(fallen)} "

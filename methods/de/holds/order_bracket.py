@@ -55,6 +55,7 @@ class OrderBracket:
         undecided: multipliers of holds that could not be told, none of them called held.
         state: contact state of the engine at `held`.
         moving_residual: of that motion; velocity: (n, 3) its field.
+        moving_forces: (m, 3) contact forces of the motion under the dead load alone [force].
         proof: what shows that it moved there.
         nothing: whether none of the live load is held as far as residuals tell: half of `moving` would leave less out
             of balance than shows a motion. The multiplier is then zero.
@@ -72,6 +73,7 @@ class OrderBracket:
     state: FloatArray | None = None
     moving_residual: float = 0.0
     velocity: FloatArray | None = None
+    moving_forces: FloatArray | None = None
     proof: MotionProof | None = None
     nothing: bool = False
     holds: int = 0
@@ -161,6 +163,8 @@ class BracketSearch:
         elif end.state is State.MOVING and (found.moving is None or multiplier < found.moving):
             found.moving, found.velocity, found.proof = multiplier, end.velocity, end.proof
             found.moving_residual = end.residual
+            if multiplier == 0.0:
+                found.moving_forces = self.engine.contact_forces()
         elif end.state is State.UNDECIDED:
             found.undecided.append(multiplier)
         return end
@@ -243,12 +247,15 @@ def held_forces(engine: Engine, settings: HoldSettings, found: OrderBracket) -> 
 
 def mechanism_at(
     engine: Engine, settings: HoldSettings, found: OrderBracket, excess: float = BRACKET.excess
-) -> FloatArray:
-    """Velocity field (n, 3) at `excess` times the middle of the bracket, from the highest held state."""
-    if found.nothing and found.velocity is not None:
-        return found.velocity
+) -> tuple[FloatArray, FloatArray]:
+    """Velocity field (n, 3) from the highest held state and the contact forces (m, 3) that were measured with it.
+
+    It is that at `excess` times the middle of the bracket, or where it moves if nothing is held.
+    """
     assert found.middle is not None
+    assert found.moving is not None
     assert found.state is not None
     engine.restore(found.state)
-    engine.load(excess * found.middle)
-    return hold(engine, settings).velocity
+    engine.load(found.moving if found.nothing else excess * found.middle)
+    velocity = hold(engine, settings).velocity
+    return velocity, engine.contact_forces()

@@ -1,0 +1,113 @@
+"""Whether a measured field of velocities can be a motion of the wall, by arithmetic of its own.
+
+A method that measures (flow "approximate") proves its multiplier by forces at rest; its field of velocities is what
+pictures, joint states and comparisons of mechanisms are made of. It is held against the law of the joints: rigid blocks
+on supports at rest do not penetrate each other; and where the contact forces of the motion itself are given
+(`details["moving_forces"]`, (m, 3)), a contact that opens carries none of them, and a joint slips only where friction
+is at its limit, against it. The forces at rest below are not those: they change before a wall moves.
+
+All are relative: velocities to the fastest vertex of the component, forces to the loads and contact forces on the
+lighter of the two blocks. A force times nothing and a velocity under no force count for nothing, so of each force and
+velocity the smaller counts.
+
+motion_supports         fastest vertex of a fixed block
+motion_interpenetration closing velocity at a contact point
+motion_opening          opening of a contact point that carries force: min(force, velocity)
+motion_sliding          slip of a joint whose friction is not at its limit against it: min(slack, velocity)
+
+Source: the conditions of Signorini and Coulomb in velocities; J. J. Moreau, Unilateral contact and dry friction in
+finite freedom dynamics, 1988.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from harness.engine.residuals import acting, between, moving_parts
+from harness.model.assembly import Assembly, FloatArray
+from harness.model.method import MOVING_FORCES
+from harness.model.result import relative_velocities
+
+TOLERANCE = 0.02
+"""Of a field with the forces of the motion: it is a mean over time steps, they are those of the last, and contacts
+chatter in between. A block that rocks with its rotation wrong by a quarter exceeds it."""
+TOLERANCE_ALONE = 0.05
+"""Of a field without: it may be a displacement, in which blocks that turn by an angle seem to close by its square."""
+
+
+class NotOfThisWall(ValueError):
+    """The forces of a motion are not three finite numbers an interface."""
+
+
+def motion_faults(
+    assembly: Assembly, mechanism: FloatArray, multiplier: float, details: dict[str, Any]
+) -> tuple[dict[str, float], str]:
+    """Residuals of a measured motion by name, and what of them is too large in words; empty where nothing is.
+
+    Args:
+        assembly: the wall.
+        mechanism: (n, 3) velocities (ux, uy, omega) of the blocks [length, length, radian] at any scale.
+        multiplier: of the live load under which it moves.
+        details: of the answer, which may hold the contact forces of the motion.
+    """
+    given = details.get(MOVING_FORCES)
+    try:
+        forces = None if given is None else _forces(assembly, given)
+    except NotOfThisWall as error:
+        return {}, str(error)
+    residuals = motion_residuals(assembly, mechanism, multiplier, forces)
+    tolerance = TOLERANCE_ALONE if forces is None else TOLERANCE
+    failed = [f"{name} {value:.3g}" for name, value in residuals.items() if not value <= tolerance]
+    if not failed:
+        return residuals, ""
+    return residuals, f"Its measured motion is none of this wall within {tolerance:g}: {', '.join(failed)}."
+
+
+def _forces(assembly: Assembly, given: Any) -> FloatArray:
+    """The forces of a motion as an array (m, 3).
+
+    Raises:
+        NotOfThisWall: they are no such array.
+    """
+    count = assembly.n_interfaces
+    try:
+        forces = np.asarray(given, dtype=float)
+    except (TypeError, ValueError):
+        forces = np.empty(0)
+    if forces.shape != (count, 3) or not np.isfinite(forces).all():
+        raise NotOfThisWall(f"`{MOVING_FORCES}` are not {count} finite triples.")
+    return forces
+
+
+def motion_residuals(
+    assembly: Assembly, mechanism: FloatArray, multiplier: float, forces: FloatArray | None
+) -> dict[str, float]:
+    """The residuals of a measured motion, see this module's docstring.
+
+    Args:
+        assembly: the wall; mechanism, multiplier: as for `motion_faults`.
+        forces: (m, 3) contact forces (n1, n2, s) measured with the motion [force], or None.
+    """
+    supports, parts = moving_parts(assembly, mechanism)
+    residuals = {"motion_supports": supports, "motion_interpenetration": 0.0}
+    scale = None if forces is None else between(assembly, acting(assembly, forces, multiplier))
+    for part, interfaces, motion in parts:
+        opening, slip = relative_velocities(part, motion)
+        found = {"motion_interpenetration": max(0.0, float((-opening).max(initial=0.0)))}
+        if forces is not None and scale is not None:
+            found |= _under_force(part, forces[interfaces] / scale[interfaces, None], opening, slip)
+        for name, value in found.items():
+            residuals[name] = max(residuals.get(name, 0.0), value)
+    return residuals
+
+
+def _under_force(assembly: Assembly, forces: FloatArray, opening: FloatArray, slip: FloatArray) -> dict[str, float]:
+    """What opens under force and what slips within friction, of relative forces (m, 3) and velocities (m, 2), (m,)."""
+    # Friction opposes slip: slip > 0 goes with s = -mu (n1 + n2).
+    slack = assembly.friction * forces[:, :2].sum(axis=1) + np.sign(slip) * forces[:, 2]
+    return {
+        "motion_opening": float(np.minimum(abs(forces[:, :2]), np.maximum(opening, 0.0)).max(initial=0.0)),
+        "motion_sliding": float(np.minimum(abs(slack), abs(slip)).max(initial=0.0)),
+    }
