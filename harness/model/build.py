@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import cached_property, partial
@@ -33,6 +32,9 @@ from harness.model.wall import (
     Wall,
     coefficient_of,
 )
+
+SMALLEST = float(np.finfo(float).tiny / np.finfo(float).eps)
+"""Least sum of loads, whatever its unit: a share of it as small as rounding still has all its digits."""
 
 
 @dataclass(frozen=True)
@@ -109,8 +111,7 @@ def build(wall: Wall, name: str = "wall") -> Built:
             "Load a block, or leave loads.live out to ask only whether the wall stands",
             "loads.live",
         )
-    if not math.isfinite(assembly.force_scale):
-        raise InputError("its loads are too large to compute with", "Check the units", "loads")
+    _check_sizes(assembly)
     warnings = [
         *contact_warnings(assembly, joints_found.corners, size),
         *near_misses(names, joints_found.missed, joints_found.missed_gap, joints_found.gap),
@@ -121,6 +122,24 @@ def build(wall: Wall, name: str = "wall") -> Built:
         warnings += interface_warnings(assembly, size, trusted)
     explicit = partial(_explicit, wall, blocks, weight, interfaces, joints, assembly.law)
     return Built(assembly, tuple(warnings), explicit)
+
+
+def _check_sizes(assembly: Assembly) -> None:
+    """Every load, and every multiplier of about the dead over the live load, is a number that keeps its digits.
+
+    Raises:
+        InputError: one is so large or so small that its products or its parts leave the range of numbers.
+    """
+
+    def check(element: str, what: str, size: float) -> None:
+        if not SMALLEST <= size <= 1.0 / SMALLEST:
+            wrong = "small" if size < 1.0 else "large"
+            raise InputError(f"{what} too {wrong} to compute with", "Check the units", element)
+
+    check("loads", "its loads are", assembly.force_scale)
+    if assembly.has_live_load:
+        check("loads.live", "beside the dead load it is", 1.0 / assembly.load_unit)
+        check("loads.live", "it is", assembly.force_scale / assembly.load_unit)
 
 
 def typical_block_size(wall: Wall) -> float:
