@@ -79,7 +79,7 @@ def _value(result: Result) -> str:
     if result.finding is not Finding.COLLAPSES:
         return str(result.finding)
     if result.traits.brackets and result.bracket is not None:
-        return f"[{_number(result.bracket[0], 5)}, {_number(result.bracket[1], 5)}]"
+        return f"[{_number(result.bracket[0], 5)}, {_number(result.bracket[1], 5)}]{result.width_in_words}"
     return "-" if result.multiplier is None else _number(result.multiplier, 7, result.judge.decimals)
 
 

@@ -64,5 +64,5 @@ def value_in_words(result: Result) -> str:
     if result.finding is not Finding.COLLAPSES or result.multiplier is None:
         return words.FINDING[result.finding]
     if result.flow == "approximate" and result.bracket is not None:
-        return numbers.interval(result.bracket)
+        return numbers.interval(result.bracket) + result.width_in_words
     return numbers.multiplier(result.multiplier)

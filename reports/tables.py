@@ -118,7 +118,8 @@ def _multiplier_cell(result: Result) -> Cell:
     if result.multiplier is None:
         return Cell(words.FINDING[result.finding])
     if result.flow == "approximate" and result.bracket is not None:
-        return Cell(numbers.interval(result.bracket), numbers.every_digit(result.bracket), result.multiplier)
+        text = numbers.interval(result.bracket) + result.width_in_words
+        return Cell(text, numbers.every_digit(result.bracket), result.multiplier)
     return Cell(
         numbers.multiplier(result.multiplier, result.judge.decimals), repr(result.multiplier), result.multiplier
     )

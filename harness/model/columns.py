@@ -54,6 +54,8 @@ RESULTS: tuple[ResultColumn, ...] = (
     ResultColumn("bracket_low", "Float64", "1", "lower end of the bracket"),
     ResultColumn("bracket_high", "Float64", "1", "upper end of the bracket"),
     _text("bracket_meaning", "what the ends of the bracket are"),
+    ResultColumn("bracket_width", "Float64", "1", "of a measured bracket, as a share of its upper end"),
+    ResultColumn("bracket_wide", "boolean", "", "whether a measured bracket is so wide that its middle says little"),
     _text("verdict", "how the value stands to its references"),
     ResultColumn("judge_accepted", "boolean", "", "whether the judge accepts the answer; missing: not judged"),
     ResultColumn("judge_tolerance", "Float64", "1", "the largest relative residual that was acceptable"),

@@ -13,6 +13,11 @@ from harness.model.assembly import Assembly, FloatArray
 from harness.model.method import Answer, Finding, Status, Traits
 
 
+WIDE = 0.02
+"""Width of a measured bracket, as a share of its upper end, above which every output says that it is wide: four times
+the accuracy that methods state, so that it is a finding and not the last step of a search."""
+
+
 class Verdict(StrEnum):
     """How a value stands to what is known. It says nothing about how the run ended: that is the status."""
 
@@ -93,6 +98,8 @@ class Result(BaseModel):
     multiplier: float | None = None
     bracket: tuple[float, float] | None = None
     bracket_meaning: str = ""
+    bracket_width: float | None = None
+    bracket_wide: bool = False
     verdict: Verdict = Verdict.NO_REFERENCE
     comparisons: list[Comparison] = Field(default_factory=list)
     judge: Judgement = Field(default_factory=Judgement)
@@ -124,9 +131,22 @@ class Result(BaseModel):
         """Whether its method is the main one of its family, which bears the family's name."""
         return self.method == self.family
 
+    @property
+    def width_in_words(self) -> str:
+        """What follows a bracket that is wide, empty for others."""
+        return f" ({100.0 * self.bracket_width:.2g} % wide)" if self.bracket_wide and self.bracket_width else ""
+
     def summary(self) -> dict[str, Any]:
         """The result as JSON values, without fields per block or interface and without the path."""
         return self.model_dump(mode="json", exclude={"forces", "mechanism", "states", "path"})
+
+
+def measured_width(answer: Answer) -> float | None:
+    """Width of the bracket of a measured multiplier as a share of its upper end; None without one, or at zero."""
+    if answer.flow != "approximate" or answer.bracket is None or not answer.multiplier:
+        return None
+    low, high = answer.bracket
+    return abs(high - low) / max(abs(low), abs(high))
 
 
 def fastest_vertex(assembly: Assembly, mechanism: FloatArray) -> float:
@@ -192,6 +212,7 @@ def result_of(
     mechanism = (
         None if answer.mechanism is None else normalised_mechanism(assembly, np.asarray(answer.mechanism, float))
     )
+    width = measured_width(answer)
     unknowns = answer.details.get("unknowns")
     return Result(
         case=case,
@@ -203,6 +224,8 @@ def result_of(
         multiplier=answer.multiplier,
         bracket=answer.bracket,
         bracket_meaning=answer.bracket_meaning,
+        bracket_width=width,
+        bracket_wide=width is not None and width > WIDE,
         blocks=assembly.n_free,
         interfaces=assembly.n_interfaces,
         iterations=int(answer.iterations),
