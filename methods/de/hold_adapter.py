@@ -8,7 +8,7 @@ from harness.model.assembly import Assembly, IntArray
 from harness.model.method import Answer, Finding, OutOfTime, Status
 from methods.de.declared_de import DeclaredHolds, DeclaredMujoco, DeclaredRelease
 from methods.de.engines.courses import Tuning
-from methods.de.engines.engine import Engine
+from methods.de.engines.engine import Engine, motion_units
 from methods.de.engines.mujoco_wall import MujocoWall, SolverFailed, load_mujoco, mujoco_tunings
 from methods.de.engines.space import StripSpace
 from methods.de.engines.strips import CannotModel
@@ -102,7 +102,7 @@ class ReleasedCollapse(DeclaredRelease):
             "multiplier": multiplier,
             "reached": collapse.reached,
             "separated": [list(pair) for pair in pairs],
-            "frames": np.round(collapse.places, 6).tolist(),
+            "frames": (np.round(collapse.places / motion_units(assembly), 6) * motion_units(assembly)).tolist(),
             "time_unit": "sqrt(length scale / gravity)",
         }
         end = (

@@ -16,6 +16,7 @@ from harness.model.assembly import Assembly, FloatArray
 from harness.model.displaced import DisplacedState
 from methods.de.engines.bodies import BODIES
 from methods.de.engines.edges import FacingEdges
+from methods.de.engines.engine import motion_units
 from methods.de.holds.loading import raise_until_it_falls, shown_to_fall
 from methods.de.holds.motion import by_travel
 from methods.springs.model.factor import make_factor
@@ -102,14 +103,14 @@ class GappedWall:
 
     def rests(self, multiplier: float) -> bool:
         """Whether the wall comes to rest at a multiplier; if not it stays where it rested last."""
-        unit, before = self.assembly.length_scale, self.rest.moved
+        unit, units, before = self.assembly.length_scale, motion_units(self.assembly), self.rest.moved
         places, shear, rest = before, self.rest.shear, None
         for _ in range(GAPPED.moves):
             structure, openings = self._edges.at(places)
             model = self._model(structure, openings, shear)
             found = _at_rest(model, multiplier)
             step = model.block_displacements(found.u)
-            size = float(np.abs(step).max(initial=0.0)) / unit
+            size = float(np.abs(step / units).max(initial=0.0))
             if found.found:
                 pressed, shear = model.forces(found.u, found.history, found.state)
                 rest = GappedRest(places, places + step, structure, pressed, shear)

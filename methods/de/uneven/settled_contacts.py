@@ -13,6 +13,7 @@ import numpy as np
 
 from harness.model.assembly import Assembly, FloatArray
 from methods.de.engines.bodies import BlockSpace
+from methods.de.engines.engine import motion_units
 from methods.de.holds.loading import FALL, raise_until_it_falls, shown_to_fall
 from methods.de.holds.motion import by_travel
 from methods.de.uneven.defects import Faces, block_height
@@ -25,7 +26,7 @@ class SettlingTuning:
     Attributes:
         damping: part of the velocity kept by a unit of time sqrt(length scale / gravity).
         look: time steps from one look at the places to the next.
-        still, slow: change of the places [length scales] from look to look, and velocity [unit lengths per unit time],
+        still, slow: change of the places [length scales, radians] from look to look, and velocity [unit lengths per unit time],
             below which the wall is at rest.
         point: length given to a contact at a single point, as a part of the length scale: methods need two contact
             points.
@@ -104,12 +105,12 @@ def come_to_rest(space: BlockSpace, most_steps: int, reach: float) -> tuple[Floa
     Returns:
         The places (n, 3) at the end, and whether the wall is at rest there.
     """
-    unit = space.assembly.length_scale
+    unit, units = space.assembly.length_scale, motion_units(space.assembly)
     start = before = space.places()
     for _ in range(max(1, most_steps // SETTLING.look)):
         space.advance(SETTLING.look)
         now = space.places()
-        if float(np.abs(now - before).max()) < SETTLING.still * unit and space.speed() < SETTLING.slow:
+        if float(np.abs((now - before) / units).max()) < SETTLING.still and space.speed() < SETTLING.slow:
             return now, True
         before = now
         if float(np.abs(now - start)[:, :2].max()) >= reach * unit:
