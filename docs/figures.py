@@ -177,5 +177,18 @@ def friction_figure(folder: Path) -> None:
         axes.legend(frameon=False)
 
 
+def readme_figure(folder: Path) -> None:
+    """The 21-brick wall in three methods, as the README shows it: `python docs/figures.py` draws it again."""
+    import drystone
+    from reports.figures import figure
+
+    wall = drystone.library_wall("wall-21")
+    answers: list[Any] = [drystone.analyse(wall, name) for name in ("fe", "la", "de")]
+    figure(wall.case, answers, "comparison", folder / "wall-21.svg")
+
+
 ALL = (signs_figure, laws_figure, block_figure, friction_figure)
 """Every figure."""
+
+if __name__ == "__main__":
+    readme_figure(Path(__file__).parent)
