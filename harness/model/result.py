@@ -12,7 +12,6 @@ from pydantic import BaseModel, ConfigDict, Field
 from harness.model.assembly import Assembly, FloatArray
 from harness.model.method import Answer, Finding, Status, Traits
 
-
 WIDE = 0.02
 """Width of a measured bracket, as a share of its upper end, above which every output says that it is wide: four times
 the accuracy that methods state, so that it is a finding and not the last step of a search."""

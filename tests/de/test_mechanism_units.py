@@ -62,7 +62,9 @@ def scaled(data, factor):
 
 
 @pytest.mark.parametrize(
-    ("method", "pattern"), [*((name, stack(3)) for name in MEASURED), ("de", running_bond(3, 2))], ids=[*MEASURED, "bond"]
+    ("method", "pattern"),
+    [*((name, stack(3)) for name in MEASURED), ("de", running_bond(3, 2))],
+    ids=[*MEASURED, "bond"],
 )
 def test_the_unit_of_length_changes_rotations_alone(method, pattern):
     data, solver = wall_data(pattern), prepared(load_method(method))

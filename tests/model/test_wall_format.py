@@ -268,6 +268,27 @@ def test_published_schema_is_the_one_of_the_code():
     assert published == Wall.model_json_schema(by_alias=True), "run `make schema`"
 
 
+@pytest.mark.parametrize(
+    ("push", "weight", "words"),
+    [
+        (5e-324, 20.0, "beside the dead load it is too small"),
+        (1e-300, 20.0, "beside the dead load it is too small"),
+        (1.0, 1e-310, "its loads are too small"),
+        (1e-150, 1e-150, "it is too small"),
+    ],
+)
+def test_loads_that_lose_digits_are_refused(push, weight, words):
+    wall = BOND | {"unit_weight": weight, "loads": {"live": {"body": [{"per_weight": [push, 0]}]}}}
+    with pytest.raises(InputError, match=words):
+        build(Wall.model_validate(wall))
+
+
+def test_small_and_large_loads_that_keep_their_digits_are_taken():
+    for push, weight in ((1e-200, 20.0), (1e15, 1e-150), (1.0, 1e-250)):
+        wall = BOND | {"unit_weight": weight, "loads": {"live": {"body": [{"per_weight": [push, 0]}]}}}
+        assert build(Wall.model_validate(wall)).assembly.has_live_load
+
+
 def test_wall_without_live_load_is_asked_only_whether_it_stands():
     assert not assembly_of(two_blocks()).has_live_load
     assert parse_wall(two_blocks(), "x").loads.live is None

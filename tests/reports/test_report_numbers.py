@@ -23,7 +23,6 @@ from reports import (
     sections,
     shapes,
     studies,
-    tables,
 )
 from tests.reports import samples
 

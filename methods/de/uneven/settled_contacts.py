@@ -26,8 +26,8 @@ class SettlingTuning:
     Attributes:
         damping: part of the velocity kept by a unit of time sqrt(length scale / gravity).
         look: time steps from one look at the places to the next.
-        still, slow: change of the places [length scales, radians] from look to look, and velocity [unit lengths per unit time],
-            below which the wall is at rest.
+        still, slow: change of the places [length scales, radians] from look to look, and velocity [unit lengths per
+            unit time], below which the wall is at rest.
         point: length given to a contact at a single point, as a part of the length scale: methods need two contact
             points.
         segment: least distance of two contact points, as a part of the length scale, that makes them a segment.

@@ -1,0 +1,53 @@
+"""A measured bracket that is wide is marked so in the result, and from there in every output."""
+
+from __future__ import annotations
+
+import pytest
+
+from harness.model import columns
+from harness.model.comparison import CaseResults
+from harness.model.method import Answer, Finding, Status
+from harness.model.result import WIDE, result_of
+from harness.terminal import _value
+from reports.export import _result_row
+from reports.facts import value_in_words
+from reports.tables import run_row
+from tests.reports import samples
+from tests.walls import assembly, stack
+
+
+def result(low, high, flow="approximate", multiplier=None):
+    wall = assembly(stack(1))
+    middle = 0.5 * (low + high) if multiplier is None else multiplier
+    answer = Answer(Status.OK, Finding.COLLAPSES, "", middle, (low, high), flow=flow)
+    return result_of(answer, wall, case="made-up", method="de", family="de")
+
+
+@pytest.mark.parametrize(
+    ("found", "width", "wide"),
+    [
+        (result(0.445, 0.5), 0.11, True),
+        (result(0.4899, 0.5), 0.0202, True),
+        (result(0.4901, 0.5), 0.0198, False),
+        (result(0.0, 1e-5, multiplier=0.0), None, False),  # at zero there is nothing to be a share of
+        (result(0.1, 0.5, flow="non-associated"), None, False),  # a proved bound below a state that is exact
+    ],
+)
+def test_a_measured_bracket_is_wide_above_two_percent(found, width, wide):
+    assert found.bracket_width == (None if width is None else pytest.approx(width))
+    assert found.bracket_wide is wide
+    assert (found.width_in_words != "") is wide
+    assert WIDE == 0.02
+
+
+def test_every_output_says_that_a_bracket_is_wide():
+    found = result(0.445, 0.5)
+    found.traits = found.traits.model_copy(update={"brackets": True})
+    assert "11 % wide" in _value(found)
+    assert "11 % wide" in value_in_words(found)
+    assert "11 % wide" in run_row(0, 0, CaseResults(samples.bond(), [found])).multiplier.text
+    row = _result_row(found)
+    assert row["bracket_width"] == pytest.approx(0.11)
+    assert row["bracket_wide"] is True
+    assert {"bracket_width", "bracket_wide"} <= set(columns.TYPES)
+    assert found.summary()["bracket_wide"] is True
