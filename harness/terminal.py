@@ -115,7 +115,7 @@ def _expected(result: Result) -> str:
 def _residual(result: Result) -> str:
     worst = result.judge.worst
     mark = {True: "", False: " ✗", None: " not judged" if result.status is Status.OK else ""}[result.judge.accepted]
-    return ("-" if worst is None and not mark else "" if worst is None else f"{worst:.1e}") + mark
+    return ("-" if worst is None and not mark else "" if worst is None else f"{worst[1]:.1e}") + mark
 
 
 def print_comparison(compared: ComparisonRun, report: Path | None) -> None:
