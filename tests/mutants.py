@@ -1,0 +1,233 @@
+"""How much the tests assert: one-token mutants of a package, and those that survive its tests.
+
+    python -m tests.mutants map PACKAGE...      find which tests run which lines; again after tests change
+    python -m tests.mutants PACKAGE --count 60  a sample of mutants; survivors are printed
+
+A mutant changes one operator or doubles one number. It is held against the tests that run the changed line, and a
+survivor of those against all tests of the package. Each is made in a copy of the checkout, never here.
+"""
+
+from __future__ import annotations
+
+import ast
+import contextlib
+import json
+import os
+import random
+import shutil
+import signal
+import subprocess
+import sys
+import tempfile
+from collections.abc import Iterator
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import dataclass
+from pathlib import Path
+from queue import Queue
+
+import click
+from coverage import CoverageData
+
+ROOT = Path(__file__).parents[1]
+KEPT = ROOT / "out" / "mutants"
+PACKAGES = {
+    "judge": ("harness/engine/judge.py harness/engine/residuals.py", "tests/engine tests/conformance"),
+    "proof": (
+        "methods/bound/*.py methods/la/certify/*.py harness/certificates.py",
+        "tests/bound tests/la/test_proof.py",
+    ),
+    "model": ("harness/model/*.py", "tests/model"),
+    "formats": ("harness/formats/*.py", "tests/formats"),
+    "engine": ("harness/engine/*.py", "tests/engine tests/faults"),
+    "studies": ("harness/engine/sweep/*.py drystone/studies.py", "tests/engine tests/reports"),
+    "reports": ("reports/*.py", "tests/reports"),
+    "fe": ("methods/fe/*.py methods/springs/**/*.py", "tests/fe tests/springs"),
+    "la": ("methods/la/*.py methods/la/core/*.py methods/la/interior/*.py methods/la/sources/*.py", "tests/la"),
+    "de": ("methods/de/**/*.py", "tests/de"),
+}
+"""Sources of each package and the tests that are its own."""
+SECONDS = 300
+"""After which a mutant counts as found: its tests take no more than half of this without it."""
+COMPARED = {
+    ast.Lt: "<=", ast.LtE: "<", ast.Gt: ">=", ast.GtE: ">", ast.Eq: "!=", ast.NotEq: "==",
+    ast.Is: "is not", ast.IsNot: "is", ast.In: "not in", ast.NotIn: "in",
+}  # fmt: skip
+COMPUTED = {ast.Add: "-", ast.Sub: "+", ast.Mult: "/", ast.Div: "*"}
+
+
+@dataclass(frozen=True)
+class Mutant:
+    """One change of one token.
+
+    Attributes:
+        path: of the source, from the root of the checkout.
+        line: its number, from one on.
+        begin, end: bytes of the line that are replaced.
+        new: what stands there instead.
+    """
+
+    path: str
+    line: int
+    begin: int
+    end: int
+    new: str
+
+    def applied(self, source: str) -> str:
+        """The source with the change."""
+        lines = source.splitlines(keepends=True)
+        line = lines[self.line - 1].encode()
+        lines[self.line - 1] = (line[: self.begin] + self.new.encode() + line[self.end :]).decode()
+        return "".join(lines)
+
+    def shown(self, source: str) -> str:
+        """The line before and after."""
+        old, new = (text.splitlines()[self.line - 1].strip() for text in (source, self.applied(source)))
+        return f"{self.path}:{self.line}  {old}  ->  {new}"
+
+
+def mutants_of(path: str, source: str) -> Iterator[Mutant]:
+    """All mutants of a source; annotations and texts have none."""
+    lines = [line.encode() for line in source.splitlines()]
+
+    def between(left: ast.expr, right: ast.expr, new: str) -> Iterator[Mutant]:
+        begin, end = left.end_col_offset or 0, right.col_offset
+        if left.end_lineno == right.lineno and not set(lines[right.lineno - 1][begin:end]) & set(b"()"):
+            yield Mutant(path, right.lineno, begin, end, f" {new} ")
+
+    tree = ast.parse(source)
+    typed = {id(part) for node in ast.walk(tree) for field in ("annotation", "returns")
+             if (kind := getattr(node, field, None)) is not None for part in ast.walk(kind)}  # fmt: skip
+    for node in ast.walk(tree):
+        if id(node) in typed:
+            continue
+        match node:
+            case ast.Compare(left=left, ops=[operator], comparators=[right]) if type(operator) in COMPARED:
+                yield from between(left, right, COMPARED[type(operator)])
+            case ast.BinOp(left=left, op=operator, right=right) if type(operator) in COMPUTED:
+                yield from between(left, right, COMPUTED[type(operator)])
+            case ast.BoolOp(op=operator, values=[left, right]):
+                yield from between(left, right, "or" if isinstance(operator, ast.And) else "and")
+            case ast.Constant(value=int() | float() as value) if value and not isinstance(value, bool):
+                if node.end_lineno == node.lineno:
+                    yield Mutant(path, node.lineno, node.col_offset, node.end_col_offset or 0, repr(value * 2))
+
+
+def sources(package: str) -> list[str]:
+    """Paths of the sources of a package, from the root of the checkout."""
+    found = {path for pattern in PACKAGES[package][0].split() for path in ROOT.glob(pattern)}
+    return sorted(str(path.relative_to(ROOT)) for path in found if path.name != "__init__.py")
+
+
+def sample(package: str, count: int, seed: int) -> list[Mutant]:
+    """So many mutants of a package, drawn from all of them."""
+    every = [mutant for path in sources(package) for mutant in mutants_of(path, (ROOT / path).read_text("utf-8"))]
+    return random.Random(seed).sample(every, min(count, len(every)))
+
+
+def copy_of_checkout(folder: Path) -> Path:
+    """A copy of the files that git knows of here."""
+    listed = subprocess.run(
+        ["git", "ls-files", "-z", "-co", "--exclude-standard"], cwd=ROOT, capture_output=True, check=True
+    )
+    for name in listed.stdout.decode().split("\0"):
+        if name and (ROOT / name).is_file():
+            (folder / name).parent.mkdir(parents=True, exist_ok=True)
+            shutil.copy2(ROOT / name, folder / name)
+    return folder
+
+
+def pytest(folder: Path, tests: list[str], *words: str, seconds: float | None = None) -> int:
+    """Exit code of tests in a copy of the checkout; 99 where the time was over."""
+    command = [sys.executable, "-m", "pytest", "-q", "-p", "no:cacheprovider", "-m", "not slow and not browser", *words]
+    environment = os.environ | {"PYTHONPATH": str(folder), "OMP_NUM_THREADS": "1", "OPENBLAS_NUM_THREADS": "1"}
+    process = subprocess.Popen(
+        [*command, *tests], cwd=folder, env=environment, start_new_session=True,
+        stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL,
+    )  # fmt: skip
+    try:
+        return process.wait(seconds)
+    except subprocess.TimeoutExpired:
+        return 99
+    finally:
+        with contextlib.suppress(ProcessLookupError):
+            os.killpg(process.pid, signal.SIGKILL)
+        process.wait()
+
+
+def make_map(package: str) -> None:
+    """Run the tests of a package once, and keep which lines each runs and how long it takes."""
+    KEPT.mkdir(parents=True, exist_ok=True)
+    settings = KEPT / f"{package}.coveragerc"
+    data = KEPT / f"{package}.coverage"
+    settings.write_text(f"[run]\ndata_file = {data}\ndynamic_context = test_function\nsource = .\nomit = tests/*\n")
+    words = ["-m", "coverage", "run", f"--rcfile={settings}", "-m", "pytest", "-q", "-m", "not slow and not browser"]
+    subprocess.run([sys.executable, *words, *PACKAGES[package][1].split()], cwd=ROOT, check=False)
+
+
+def tests_by_line(package: str) -> dict[str, dict[int, list[str]]]:
+    """Functions of tests that run each line of each source, as the map has them."""
+    data = CoverageData(str(KEPT / f"{package}.coverage"))
+    data.read()
+    found: dict[str, dict[int, list[str]]] = {}
+    for file in data.measured_files():
+        if Path(file).is_relative_to(ROOT):
+            lines = data.contexts_by_lineno(file)
+            path = str(Path(file).relative_to(ROOT))
+            found[path] = {line: [test for test in tests if test] for line, tests in lines.items()}
+    return found
+
+
+def node(test: str) -> list[str]:
+    """What pytest calls a test that coverage calls `module.function` or `tests.room.module.function`."""
+    *_, module, function = test.split(".")
+    return [f"{path.relative_to(ROOT)}::{function}" for path in ROOT.glob(f"tests/**/{module}.py")]
+
+
+def survives(package: str, mutant: Mutant, folder: Path, lines: dict[str, dict[int, list[str]]]) -> bool:
+    """Whether a mutant passes the tests that run its line, and then all tests of its package."""
+    place = folder / mutant.path
+    source = place.read_text("utf-8")
+    place.write_text(mutant.applied(source), "utf-8")
+    if "@compiled" in source:  # numba keeps callers of a changed loop too
+        for kept in folder.rglob("*.nb[ic]"):
+            kept.unlink()
+    try:
+        near = [name for test in lines.get(mutant.path, {}).get(mutant.line, [])[:40] for name in node(test)]
+        rounds = [near, PACKAGES[package][1].split()] if near else [PACKAGES[package][1].split()]
+        return all(pytest(folder, tests, "-x", seconds=SECONDS) == 0 for tests in rounds)
+    finally:
+        place.write_text(source, "utf-8")
+
+
+@click.command()
+@click.argument("words", nargs=-1, required=True)
+@click.option("--count", default=60, show_default=True, help="Mutants a package.")
+@click.option("--seed", default=1, show_default=True, help="Of the sample.")
+@click.option("--jobs", default=1, show_default=True, help="Mutants tried at a time.")
+def main(words: tuple[str, ...], count: int, seed: int, jobs: int) -> None:
+    """Make the map of PACKAGES (`map PACKAGE...`), or try mutants of them."""
+    if words[0] == "map":
+        for package in words[1:]:
+            make_map(package)
+        return
+    for package in words:
+        lines, drawn = tests_by_line(package), sample(package, count, seed)
+        with tempfile.TemporaryDirectory() as room, ThreadPoolExecutor(jobs) as pool:
+            free: Queue[Path] = Queue()
+            for number in range(jobs):
+                free.put(copy_of_checkout(Path(room, str(number))))
+
+            def tried(mutant: Mutant, package: str = package, lines: object = lines, free: Queue[Path] = free) -> bool:
+                folder = free.get()
+                alive = survives(package, mutant, folder, lines)  # type: ignore[arg-type]
+                free.put(folder)
+                if alive:
+                    print("ALIVE", mutant.shown((ROOT / mutant.path).read_text("utf-8")), flush=True)
+                return alive
+
+            alive = sum(pool.map(tried, drawn))
+        print(json.dumps({"package": package, "mutants": len(drawn), "seed": seed, "survivors": alive}), flush=True)
+
+
+if __name__ == "__main__":
+    main()
