@@ -133,8 +133,7 @@ def compare(
             results = engine.execute(planned, opened, jobs, fresh=fresh, told=told)
         else:
             results = _here(chosen, planned)
-        verified = {} if opened is None or fresh else engine.verified_before(opened)
-        run = engine.comparison_run(title or ", ".join(names), command, cases, planned, results, verified)
+        run = engine.comparison_run(title or ", ".join(names), command, cases, planned, results)
         run = with_certificates(run)
         if studies:
             run.provenance["studies"] = list(studies)

@@ -80,7 +80,8 @@ def verify_bound(certificate: Path, wall: str | None, as_json: bool, folders: tu
             say(f"Refused: {error}.")
         sys.exit(1)
     if as_json:
-        print_json({"holds": True, "bound": str(lower), "multiplier": str(upper), "value": float(upper)})
+        at = {} if upper is None else {"multiplier": str(upper), "value": float(upper)}
+        print_json({"holds": True, "bound": str(lower)} | at)
     else:
         say(f"{proved(document).capitalize()}.")
         if wall is not None:

@@ -2,13 +2,9 @@
 
 from __future__ import annotations
 
-import functools
 import gzip
-import hashlib
 import json
 import math
-import platform
-import zlib
 from collections.abc import Sequence
 from dataclasses import replace
 from fractions import Fraction
@@ -16,15 +12,15 @@ from pathlib import Path
 from typing import Any
 
 from harness.engine.plan import Limits, Run
-from harness.engine.provenance import sources_version
 from harness.model.case import Case
 from harness.model.comparison import CaseResults, Certified, ComparisonRun, Gate
 from harness.model.errors import InputError
 from harness.model.library import library
 from harness.model.method import Finding
-from harness.model.reading import LARGEST_FILE, json_of, read_bytes, read_json, wall_json
+from harness.model.reading import json_of, read_bytes
 from harness.model.result import Result, Verdict
-from methods.bound.exact_wall import CertificateError
+from methods.bound.document import MOST_BYTES, unpacked
+from methods.bound.exact_wall import CertificateError, number
 from methods.bound.same_wall import require_same_wall
 from methods.bound.verify import verify
 from methods.bound.words import in_words
@@ -48,18 +44,14 @@ def read_certificate(path: Path) -> Any:
     """The content of a certificate, compressed or not.
 
     Raises:
-        InputError: unreadable, not JSON, or larger than files may be, unpacked too.
+        InputError: unreadable, not JSON, or more than a certificate may be, unpacked too.
     """
-    if path.suffix != PACKED:
-        return read_json(path)
-    packed, unpacker = read_bytes(path), zlib.decompressobj(wbits=zlib.MAX_WBITS | 16)
     try:
-        content = unpacker.decompress(packed, LARGEST_FILE)
-        text = content.decode()
-    except (zlib.error, UnicodeDecodeError) as error:
-        raise InputError(f"it cannot be unpacked ({error})", "Give a gzip file", source=str(path)) from None
-    if not unpacker.eof:
-        raise InputError("it is cut short or unpacks to too much", "Give the whole file", source=str(path))
+        text = unpacked(read_bytes(path, MOST_BYTES)).decode("utf-8-sig")
+    except CertificateError as error:
+        raise InputError(str(error), "Give the whole file, as `drystone bound` wrote it", source=str(path)) from None
+    except UnicodeDecodeError as error:
+        raise InputError(f"it cannot be read ({error})", "Give a UTF-8 text file", source=str(path)) from None
     return json_of(text, str(path))
 
 
@@ -72,12 +64,12 @@ def write_certificate(path: Path, document: dict[str, Any]) -> None:
 
 
 def proved(document: Any) -> str:
-    """What a certificate that holds proves, as the main clause of a sentence."""
+    """What a certificate that holds proves, as the main clause of a sentence: of a multiplier only with its state."""
     least = "no collapse state lies from zero to below" if "windows" in document else "no collapse state lies below"
-    bound, state = (in_words(Fraction(document[name])) for name in ("bound", "multiplier"))
+    least = f"{least} {in_words(number(document['bound']))}"
     if "state" not in document:
-        return f"{least} {bound}, proved in fractions, and one at {state} to rounding"
-    return f"{least} {bound}, and one at {state}, proved in fractions"
+        return f"{least}, proved in fractions"
+    return f"{least}, and one at {in_words(number(document['multiplier']))}, proved in fractions"
 
 
 def checked(case: Case, path: Path) -> Certified:
@@ -144,48 +136,18 @@ def with_certificates(run: ComparisonRun) -> ComparisonRun:
     """The comparison with what the certificates beside its cases prove, each checked in fractions and against the wall.
 
     A gate says whether the least state that was found lies at or above the bound, or that the certificate is refused.
-    What was verified before under the same key is not checked again; what is verified now is in `verified`.
+    Nothing that was checked before is taken for checked: what a store holds may have been edited.
     """
-    verified: dict[str, Certified] = {}
-    cases = [_with_certificate(item, run.verified, verified) for item in run.cases]
-    return replace(run, cases=cases, verified=verified)
+    return replace(run, cases=[_with_certificate(item) for item in run.cases])
 
 
-@functools.cache
-def checking_version() -> str:
-    """Hash over the code that says whether a certificate holds."""
-    return sources_version("harness.certificates", "methods.bound", "harness.model", others=[platform.python_version()])
-
-
-def content_key(case: Case, path: Path) -> str:
-    """What the certificate of a case was checked under: its bytes, the wall, and the code that checks.
-
-    Raises:
-        InputError: the certificate cannot be read.
-    """
-    parts = (read_bytes(path), wall_json(case.built.wall).encode(), checking_version().encode())
-    return hashlib.sha256(b"".join(hashlib.sha256(part).digest() for part in parts)).hexdigest()[:32]
-
-
-def _verified(case: Case, path: Path, before: dict[str, Certified], now: dict[str, Certified]) -> Certified:
-    """What a certificate proves, checked now if it was not before; what is known is put down in `now`.
-
-    Raises:
-        CertificateError: it proves nothing, or of another wall.
-        InputError: unreadable.
-    """
-    key = content_key(case, path)
-    now[key] = before.get(key) or checked(case, path)
-    return now[key]
-
-
-def _with_certificate(item: CaseResults, before: dict[str, Certified], now: dict[str, Certified]) -> CaseResults:
+def _with_certificate(item: CaseResults) -> CaseResults:
     path = certificate_of(item.case)
     if path is None:
         return item
     statement = "no collapse state lies below the bound that the certificate of the wall proves in fractions"
     try:
-        certified = _verified(item.case, path, before, now)
+        certified = checked(item.case, path)
     except (CertificateError, InputError) as error:
         gate = Gate(name="certificate", statement=statement, passed=False, sentence=f"{path.name} is refused: {error}")
         return replace(item, gates=[*item.gates, gate])

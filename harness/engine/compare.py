@@ -4,11 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Callable, Generator, Sequence
 from contextlib import closing
-from dataclasses import asdict
 from datetime import UTC, datetime
 from typing import TYPE_CHECKING, Any
 
-from pydantic import BaseModel, Field
+from pydantic import BaseModel
 
 from harness.engine.executors import Executor, LocalExecutor
 from harness.engine.judge import judge
@@ -16,7 +15,7 @@ from harness.engine.plan import Run
 from harness.engine.provenance import machine, versions
 from harness.engine.verdict import compare, overall, theory_gates
 from harness.model.case import Case, CaseFile, Reference
-from harness.model.comparison import CaseResults, Certified, ComparisonRun
+from harness.model.comparison import CaseResults, ComparisonRun
 from harness.model.errors import InputError
 from harness.model.reading import parse_wall, validate
 from harness.model.result import Result
@@ -145,16 +144,14 @@ def comparison_run(
     cases: Sequence[Case],
     runs: Sequence[Run],
     results: Sequence[Result],
-    verified: dict[str, Certified] | None = None,
 ) -> ComparisonRun:
-    """What the report is made of; `verified` are the certificates that were checked before, by their keys."""
+    """What the report is made of."""
     return ComparisonRun(
         title=title,
         command=command,
         created=datetime.now(UTC).isoformat(timespec="seconds"),
         cases=gather(cases, runs, results),
         provenance={"versions": versions(), "machine": machine()},
-        verified=verified or {},
     )
 
 
@@ -175,7 +172,6 @@ def remember(store: Store, compared: ComparisonRun, runs: Sequence[Run]) -> None
             "command": compared.command,
             "created": compared.created,
             "provenance": compared.provenance,
-            "verified": {key: asdict(certified) for key, certified in compared.verified.items()},
             "cases": cases,
             "runs": [
                 {
@@ -214,7 +210,6 @@ class _Kept(BaseModel, defer_build=True):
     provenance: dict[str, Any]
     cases: dict[str, _KeptCase]
     runs: list[_KeptRun]
-    verified: dict[str, Certified] = Field(default_factory=dict)
 
 
 def recall(store: Store) -> ComparisonRun | None:
@@ -227,9 +222,10 @@ def recall(store: Store) -> ComparisonRun | None:
     """
     from harness.engine.plan import Limits
 
-    kept = _kept(store)
-    if kept is None:
+    content = store.last_comparison()
+    if content is None:
         return None
+    kept = validate(_Kept, content, f"{store.path}: the last comparison in it")
     cases = {
         name: Case(item.file, parse_wall(item.wall, item.origin), item.origin) for name, item in kept.cases.items()
     }
@@ -250,20 +246,4 @@ def recall(store: Store) -> ComparisonRun | None:
         created=kept.created,
         cases=gather(list(cases.values()), runs, results),
         provenance=kept.provenance,
-        verified=kept.verified,
     )
-
-
-def verified_before(store: Store) -> dict[str, Certified]:
-    """What the certificates prove that the comparison made last checked, by their keys.
-
-    Raises:
-        InputError: the store or what it keeps is damaged.
-    """
-    kept = _kept(store)
-    return {} if kept is None else kept.verified
-
-
-def _kept(store: Store) -> _Kept | None:
-    content = store.last_comparison()
-    return None if content is None else validate(_Kept, content, f"{store.path}: the last comparison in it")

@@ -116,7 +116,6 @@ class ComparisonRun:
         created: ISO time of the run [UTC].
         cases: in the order asked for.
         provenance: versions, commit, machine, limits of the comparison as a whole.
-        verified: what certificates prove that were checked before, by a hash of certificate, wall and checking code.
     """
 
     title: str
@@ -124,4 +123,3 @@ class ComparisonRun:
     created: str
     cases: list[CaseResults]
     provenance: dict[str, Any] = field(default_factory=dict)
-    verified: dict[str, Certified] = field(default_factory=dict)

@@ -8,7 +8,17 @@ from dataclasses import dataclass
 from fractions import Fraction
 from typing import Any
 
-from methods.bound.exact_wall import ZERO, CertificateError, ExactWall, Form, integers, paired, whole, whole_numbers
+from methods.bound.exact_wall import (
+    ZERO,
+    CertificateError,
+    ExactWall,
+    Form,
+    integers,
+    number,
+    paired,
+    whole,
+    whole_numbers,
+)
 
 Sides = Mapping[int, tuple[Fraction, Fraction | None]]
 """{interface: (least, greatest normal force)}; None where there is no limit from above."""
@@ -121,6 +131,7 @@ class Forces:
         scale, mu_unit = self.unit * self._row_unit * self._friction_unit, self._friction_unit
         paid: Fraction = ZERO
         worst = 0
+        self.wall.in_time()
         for p, mu in self._friction.items():
             first, second, shear = (
                 (int(form[k] * scale) if k in form else 0)
@@ -179,7 +190,7 @@ def known_of(forces: Forces, document: Any) -> Known:
     loaded = [whole(p, 0, m - 1) for p in document["loaded"]]
     least: Form = {}
     for (p, claimed), velocities in paired(list(paired(loaded, document["least"])), document["least_velocities"]):
-        least[p] = Fraction(claimed)
-        if -forces.greatest({p: Fraction(-1)}, velocities) < least[p]:
+        least[p] = number(claimed)
+        if least[p] < 0 or -forces.greatest({p: Fraction(-1)}, velocities) < least[p]:
             raise CertificateError("a normal force may be less than is said")
     return Known(frozenset(still), least, {})

@@ -1,4 +1,10 @@
-"""Whether the wall in a certificate is a given wall: the same blocks, loads, interfaces and friction."""
+"""Whether the wall in a certificate is a given wall: the same blocks, loads, interfaces and friction.
+
+A number of the certificate is that of the wall if it is the same float, or if both differ, in fractions, by next to
+nothing of what the number belongs to: the size of the block for its centroid, the length of the interface for its ends,
+the load of the block for that, the friction itself. So no number counts as the same because another is large: no
+coordinate far from the origin, no heavy block elsewhere.
+"""
 
 from __future__ import annotations
 
@@ -8,7 +14,7 @@ from typing import Any
 import numpy as np
 
 from harness.model.assembly import Assembly, FloatArray
-from methods.bound.exact_wall import CertificateError
+from methods.bound.exact_wall import CertificateError, fractions_of, number
 from methods.bound.tuning import ROUNDING
 
 
@@ -38,12 +44,24 @@ def _compare_blocks(blocks: Any, assembly: Assembly) -> None:
     ids = [assembly.block_ids[i] for i in free]
     if [block["id"] for block in blocks] != ids:
         raise CertificateError("it is of another wall: the free blocks are not the same")
-    _require("centroids", _numbers([block["centroid"] for block in blocks]), assembly.centroid[free])
-    given = _numbers([[*block["dead"], *block["live"]] for block in blocks])
-    loads = np.hstack([assembly.dead[free], assembly.live[free]])
-    unit = float(np.abs(loads).max()) / float(np.abs(given).max())
-    for name, columns in (("dead loads", slice(0, 3)), ("live loads", slice(3, 6))):
-        _require(name, unit * given[:, columns], loads[:, columns])
+    sizes = block_sizes(assembly)[free]
+    for block, centroid, size in zip(blocks, assembly.centroid[free], sizes, strict=True):
+        _require("centroids", fractions_of(block["centroid"], 2), centroid, size)
+    unit = _unit_of_loads(blocks, np.hstack([assembly.dead[free], assembly.live[free]]))
+    for name, loads in (("dead", assembly.dead[free]), ("live", assembly.live[free])):
+        for block, load, size in zip(blocks, loads, sizes, strict=True):
+            given = [unit * value for value in fractions_of(block[name], 3)]
+            _require(f"{name} loads", given, load, load_sizes(load, size))
+
+
+def _unit_of_loads(blocks: Any, loads: FloatArray) -> Fraction:
+    """What a load of the certificate is multiplied with, from the largest of all."""
+    i, k = np.unravel_index(np.abs(loads).argmax(), loads.shape)
+    given = [*fractions_of(blocks[i]["dead"], 3), *fractions_of(blocks[i]["live"], 3)]
+    unit = Fraction(float(loads[i, k])) / given[k]
+    if unit <= 0:
+        raise CertificateError("it is of another wall: the loads are not the same")
+    return unit
 
 
 def _compare_interfaces(items: Any, assembly: Assembly) -> None:
@@ -53,25 +71,38 @@ def _compare_interfaces(items: Any, assembly: Assembly) -> None:
     joined = [[place.get(int(a)), place.get(int(b))] for a, b in zip(assembly.block_a, assembly.block_b, strict=True)]
     if [[item["a"], item["b"]] for item in items] != joined:
         raise CertificateError("it is of another wall: the interfaces do not join the same blocks")
-    _require(
-        "ends of interfaces", _numbers([item["ends"] for item in items]), np.hstack([assembly.end1, assembly.end2])
-    )
-    tangent, normal = assembly.tangent, assembly.normal
-    side = np.sign(tangent[:, 0] * normal[:, 1] - tangent[:, 1] * normal[:, 0])
-    _require("sides of interfaces", _numbers([[item["side"]] for item in items])[:, 0], side)
-    _require("friction", _numbers([[item["friction"]] for item in items])[:, 0], assembly.friction)
+    ends, tangent, normal = np.hstack([assembly.end1, assembly.end2]), assembly.tangent, assembly.normal
+    sides = np.sign(tangent[:, 0] * normal[:, 1] - tangent[:, 1] * normal[:, 0])
+    lengths = interface_lengths(assembly)
+    for item, end, length, side, mu in zip(items, ends, lengths, sides, assembly.friction, strict=True):
+        _require("ends of interfaces", fractions_of(item["ends"], 4), end, length)
+        _require("sides of interfaces", [number(item["side"])], side[None], 0.0)
+        _require("friction", [number(item["friction"])], mu[None], mu)
 
 
-def _numbers(rows: list[list[Any]]) -> FloatArray:
-    return np.array([[float(Fraction(str(value))) for value in row] for row in rows])
+def block_sizes(assembly: Assembly) -> FloatArray:
+    """(n,) distances of the farthest vertex of every block from its centroid."""
+    pairs = zip(assembly.polygons, assembly.centroid, strict=True)
+    return np.array([np.linalg.norm(polygon - centroid, axis=1).max() for polygon, centroid in pairs])
 
 
-def _require(name: str, given: FloatArray, wanted: FloatArray) -> None:
-    if given.shape != wanted.shape or not np.allclose(
-        given, wanted, rtol=0.0, atol=ROUNDING.wall * max(1e-300, _size(wanted))
-    ):
+def interface_lengths(assembly: Assembly) -> FloatArray:
+    """(m,) distances of the two ends of every interface."""
+    return np.asarray(np.linalg.norm(assembly.end2 - assembly.end1, axis=1))
+
+
+def load_sizes(load: FloatArray, size: float) -> FloatArray:
+    """(3,) what the forces and the moment of the load of a block of this size are measured by."""
+    force = max(abs(load[0]), abs(load[1]), abs(load[2]) / size)
+    return np.array([force, force, force * size])
+
+
+def same_number(given: Fraction, wanted: float, size: float, part: float) -> bool:
+    """Whether a fraction is a float, or differs from it by at most this part of a size."""
+    return float(given) == wanted or abs(given - Fraction(wanted)) <= Fraction(part) * Fraction(size)
+
+
+def _require(name: str, given: list[Fraction], wanted: FloatArray, sizes: FloatArray | float) -> None:
+    numbers = zip(given, wanted.tolist(), np.broadcast_to(sizes, wanted.shape).tolist(), strict=True)
+    if not all(same_number(value, float_value, size, ROUNDING.wall) for value, float_value, size in numbers):
         raise CertificateError(f"it is of another wall: the {name} are not the same")
-
-
-def _size(values: FloatArray) -> float:
-    return float(np.abs(values).max()) if values.size else 0.0

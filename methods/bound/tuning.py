@@ -102,7 +102,7 @@ class Rounding:
         margin: added to both sides of a bound from a linear programme, in mean block weights: a thousand times its
             tolerances.
         halvings: of the range of a normal force, to where it is divided.
-        wall: difference of a number in a certificate from that of the wall, relative to the largest of its kind: short
+        wall: difference of a number in a certificate from that of the wall, relative to what it belongs to: short
             fractions lie within 1e-13 of the float they were read from, and loads are once divided by a unit besides.
         programme: what the value of a programme may be wrong by, in load units: its tolerance.
         below: relative distance below a fraction at which a float is not above it, whatever the conversion rounds.

@@ -2,34 +2,47 @@
 
 A certificate holds blocks, interfaces and loads as fractions, and a tree over contacts: each leaf holds some slacks at
 zero (tight) and some rates at zero (still), with velocities or forces that exclude every collapse state below the
-multiplier within it. Only the standard library is used. docs/theory-bound.md says why the conditions suffice.
+multiplier within it; or windows, which `verify_window` checks, and cases, which `verify_cases` does. Only the standard
+library is used. docs/theory-bound.md says why the conditions suffice.
+
+What each statement of a certificate stands for, a definition or a theorem that is checked here:
+
+- blocks, interfaces: the wall, of which all else is said (`ExactWall`). That it is a given one is for `same_wall`.
+- state: definition of a collapse state (`check_state`); without it no multiplier is shown, and none is handed on.
+- bound: no collapse state of the wall has a smaller multiplier; with windows, none from zero on. Nothing is assumed of
+  the wall under its dead load.
+- leaves: in a collapse state every contact is tight or still, so leaves that divide at one contact after the other hold
+  all states (`_check_cover`). No contact of a leaf is both, else it would count for both halves of a division and
+  exclude only what lies in both.
+- velocities of a leaf: virtual work, and Farkas' lemma for the forces at each interface.
+- forces of a leaf: virtual work, and the sign of each force for the rates that it works on.
+- windows: each begins where all below is excluded, from zero on.
+- digest: nothing; it shows accidents.
 """
 
 from __future__ import annotations
 
-import hashlib
-import json
 import sys
 from collections.abc import Sequence
 from fractions import Fraction
 from pathlib import Path
 from typing import Any
 
-from methods.bound.exact_wall import CertificateError, ExactWall, Vector, dot, fractions_of
+from methods.bound.document import FORMAT, digest, read
+from methods.bound.exact_wall import CertificateError, ExactWall, Vector, contacts, dot, fractions_of, number
 from methods.bound.verify_cases import States, case_bound, states_of
 from methods.bound.verify_window import WindowLimits
 
-
-def digest(document: Any) -> str:
-    """SHA-256 of all that a certificate holds but the digest itself: it shows accidents, the fractions show errors."""
-    content = {name: value for name, value in document.items() if name != "digest"}
-    return hashlib.sha256(json.dumps(content, sort_keys=True).encode()).hexdigest()
+SECONDS = 600.0
+"""CPU time that a check may take. The longest of the library takes six seconds."""
 
 
-def verify(document: Any) -> tuple[Fraction, Fraction]:
-    """(lower bound, multiplier of the collapse state) that a certificate proves.
+def verify(document: Any, seconds: float = SECONDS) -> tuple[Fraction, Fraction | None]:
+    """(lower bound, multiplier of the collapse state) that a certificate proves; no multiplier without a state.
 
-    A certificate without a state says its multiplier to rounding, and proves the bound only.
+    Args:
+        document: the certificate.
+        seconds: of CPU time after which it is refused.
 
     Raises:
         CertificateError: it proves nothing of the kind.
@@ -37,27 +50,32 @@ def verify(document: Any) -> tuple[Fraction, Fraction]:
     try:
         if document["digest"] != digest(document):
             raise CertificateError("its digest is not that of its content")
-        wall = ExactWall(document)
-        bound, upper = Fraction(str(document["bound"])), Fraction(str(document["multiplier"]))
+        if document["format"] != FORMAT:
+            raise CertificateError(f"its format is not {FORMAT}")
+        wall = ExactWall(document, seconds)
+        bound, upper = number(document["bound"]), None
         if "state" in document:
+            upper = number(document["multiplier"])
             check_state(wall, upper, document["state"])
+            if bound > upper:
+                raise CertificateError("the bound is above the collapse state")
+        elif "multiplier" in document:
+            number(document["multiplier"])
         if "windows" in document:
             _check_windows(wall, bound, document)
-            leaves = []
         else:
-            leaves = [_Leaf(wall, leaf) for leaf in document["leaves"]]
-            _check_cover([(leaf.tight, leaf.still) for leaf in leaves])
-    except (LookupError, TypeError, ValueError, ArithmeticError, AttributeError) as error:
+            _check_leaves(wall, bound, document["leaves"])
+    except (LookupError, TypeError, ValueError, ArithmeticError, AttributeError, RecursionError) as error:
         raise CertificateError(str(error)) from error
-    for leaf in leaves:
-        leaf.check(wall, bound)
-    if bound > upper:
-        raise CertificateError("the bound is above the collapse state")
     return bound, upper
 
 
 def _check_windows(wall: ExactWall, bound: Fraction, document: Any) -> None:
     """Whether the windows, one above the other from zero, and cases of the last leave no state below the bound."""
+    if "leaves" in document:
+        raise CertificateError("it has leaves and windows")
+    if bound < 0:
+        raise CertificateError("windows say nothing of multipliers below zero")
     proved = Fraction(0)
     states: States | None = None
     for window in document["windows"]:
@@ -90,7 +108,7 @@ def check_state(wall: ExactWall, multiplier: Fraction, state: Any) -> None:
         raise CertificateError("the live load does no work in the collapse state")
     for p, mu in enumerate(wall.friction):
         n1, n2, s = forces[3 * p : 3 * p + 3]
-        open1, open2, slip = (dot(row, velocities) for row in wall.rows[3 * p : 3 * p + 3])
+        open1, open2, slip = wall.strains(p, velocities)
         strength = mu * (n1 + n2)
         if min(n1, n2, strength - abs(s), open1, open2) < 0 or n1 * open1 or n2 * open2:
             raise CertificateError("the collapse state violates yield or passes through a joint")
@@ -98,10 +116,25 @@ def check_state(wall: ExactWall, multiplier: Fraction, state: Any) -> None:
             raise CertificateError("the collapse state slips below the friction limit")
 
 
-def _check_cover(leaves: list[tuple[frozenset[int], frozenset[int]]]) -> None:
-    """Whether every choice of tight or still contacts lies in a leaf: all leaves of a node divide at one contact."""
+def _check_leaves(wall: ExactWall, bound: Fraction, documents: Any) -> None:
+    """Whether the leaves hold all states, and each excludes those below the bound."""
+    if not isinstance(documents, list):
+        raise CertificateError("leaves are a list")
+    leaves = [_Leaf(wall, leaf) for leaf in documents]
+    _check_cover(wall, [(leaf.tight, leaf.still) for leaf in leaves])
+    for leaf in leaves:
+        leaf.check(wall, bound)
+
+
+def _check_cover(wall: ExactWall, leaves: list[tuple[frozenset[int], frozenset[int]]]) -> None:
+    """Whether every choice of tight or still contacts lies in a leaf: all leaves of a node divide at one contact.
+
+    Since no contact of a leaf is both, a leaf goes to one half only, and the nodes are at most as many as the contacts
+    that the leaves name.
+    """
     open_nodes = [leaves]
     while open_nodes:
+        wall.in_time()
         node = open_nodes.pop()
         if any(not tight and not still for tight, still in node):
             continue
@@ -115,10 +148,12 @@ def _check_cover(leaves: list[tuple[frozenset[int], frozenset[int]]]) -> None:
 
 class _Leaf:
     def __init__(self, wall: ExactWall, document: Any) -> None:
-        self.tight, self.still = frozenset(document["tight"]), frozenset(document["still"])
-        if not all(type(k) is int and 0 <= k < 4 * len(wall.friction) for k in self.tight | self.still):
-            raise CertificateError("a leaf names a contact that is not there")
+        self.tight, self.still = (contacts(document[name], wall.n_interfaces) for name in ("tight", "still"))
+        if self.tight & self.still:
+            raise CertificateError("a leaf holds a contact both tight and still")
         self.velocities = self.forces = None
+        if ("velocities" in document) == ("forces" in document):
+            raise CertificateError("a leaf has either velocities or forces")
         if "velocities" in document:
             self.velocities = fractions_of(document["velocities"], len(wall.dead))
         else:
@@ -138,7 +173,7 @@ class _Leaf:
         if live < 0 or rest < 0 or live + rest <= 0:
             raise CertificateError("the velocities of a leaf exclude nothing")
         for p, mu in enumerate(wall.friction):
-            open1, open2, slip = (dot(row, velocities) for row in wall.rows[3 * p : 3 * p + 3])
+            open1, open2, slip = wall.strains(p, velocities)
             above, below = [], []
             for k, opening in ((4 * p, open1), (4 * p + 1, open2)):
                 if k not in self.tight:
@@ -170,12 +205,15 @@ def main(arguments: Sequence[str] | None = None) -> int:
     failed = 0
     for name in sys.argv[1:] if arguments is None else arguments:
         try:
-            lower, upper = verify(json.loads(Path(name).read_text()))
-        except (CertificateError, OSError, json.JSONDecodeError) as error:
+            document = read(Path(name).read_bytes())
+            lower, upper = verify(document)
+        except (CertificateError, OSError) as error:
             print(f"{name}: refused: {error}")
             failed = 1
         else:
-            print(f"{name}: no collapse state below {lower} = {float(lower):.9g}; one at {upper} = {float(upper):.9g}")
+            least = "no collapse state from zero to below" if "windows" in document else "no collapse state below"
+            one = "" if upper is None else f"; one at {upper} = {float(upper):.9g}"
+            print(f"{name}: {least} {lower} = {float(lower):.9g}{one}")
     return failed
 
 

@@ -3,6 +3,14 @@
 In a collapse state every contact has no slack or no rate, and every normal force is at most so much or at least so
 much: what holds of both halves holds of all states. Within a half, virtual velocities and virtual forces show more of
 contacts. docs/theory-bound.md holds the proofs.
+
+What each statement of a case stands for:
+
+- contact, interface and normal with two parts: y g = 0 at a contact, and N <= v or N >= v; both halves are needed.
+- still, loaded, statics: virtual work with velocities on the forces within yield of the case.
+- slow, tight, no mechanism: virtual work with forces on the mechanisms of the case, whose live work is one; a rate
+  above zero leaves no slack.
+- window: as of all states, with the velocities that these bound already.
 """
 
 from __future__ import annotations
@@ -13,7 +21,17 @@ from dataclasses import dataclass, replace
 from fractions import Fraction
 from typing import Any
 
-from methods.bound.exact_wall import ZERO, CertificateError, ExactWall, Form, Vector, paired, whole, whole_numbers
+from methods.bound.exact_wall import (
+    ZERO,
+    CertificateError,
+    ExactWall,
+    Form,
+    Vector,
+    number,
+    paired,
+    whole,
+    whole_numbers,
+)
 from methods.bound.force_limits import Forces, Known
 from methods.bound.verify_window import WindowLimits
 from methods.bound.window_limits import most_of
@@ -60,7 +78,7 @@ class States:
         if "contact" in node:
             contact = self.contact(node)
             return self.half(contact, True), self.half(contact, False)
-        interface, normal = whole(node["interface"], 0, self.wall.n_interfaces - 1), Fraction(node["normal"])
+        interface, normal = whole(node["interface"], 0, self.wall.n_interfaces - 1), number(node["normal"])
         if normal < 0:
             raise CertificateError("a normal force is not below zero")
         return self.beside(interface, normal, False), self.beside(interface, normal, True)
@@ -118,7 +136,7 @@ class States:
 
     def window(self, document: Any) -> WindowLimits:
         """What a window of these states says of their forces and mechanisms, checked."""
-        low = Fraction(document["low"])
+        low = number(document["low"])
         if not low <= self.low:
             raise CertificateError(f"a window begins at {float(low):.9g}, where {float(self.low):.9g} is proved")
         forces = Forces(self.wall, low, self.high, document["forces"], self.forces.tight, self.forces.sides)
@@ -165,7 +183,7 @@ def _still(states: States, step: Any) -> States:
 
 def _loaded(states: States, step: Any) -> States:
     p = whole(step["interface"], 0, states.wall.n_interfaces - 1)
-    least = Fraction(step["least"])
+    least = number(step["least"])
     if not ZERO <= least <= -states.forces.greatest({p: Fraction(-1)}, step["velocities"]):
         raise CertificateError("a normal force may be less than is said")
     return replace(states, known=replace(states.known, least={**states.known.least, p: least}))

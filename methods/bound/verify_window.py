@@ -3,6 +3,17 @@
 A window holds dual multipliers in binary fractions. The bilinear identity between them and the cost is evaluated
 exactly; what is left of it, since the multipliers are rounded, is paid with bounds of the forces and of the mechanism
 that the window proves too. Only the standard library is used. docs/theory-bound.md holds the proofs.
+
+What each statement of a window stands for:
+
+- low, high: the multipliers of the states that are spoken of, 0 <= lambda - low <= high - low.
+- forces: virtual work with the virtual velocities given (`force_limits.Forces`).
+- still, loaded: a slack or normal force that is positive in all states, by the same; a slack above zero leaves no rate.
+- weights: definition of the size of a mechanism; any above zero will do.
+- motions: velocities are a matrix times strains, with a remainder that is paid (`window_limits.Motions`); courses:
+  friction work is at most the lift.
+- size, multiplier: the bilinear identity of products, each of which is at least zero (or zero: complementarity), with
+  everything that is negative or left over paid by the bounds above. No sign, multiple or remainder is taken on trust.
 """
 
 from __future__ import annotations
@@ -18,6 +29,7 @@ from methods.bound.exact_wall import (
     Form,
     Vector,
     integers,
+    number,
     paired,
     whole,
     whole_numbers,
@@ -43,7 +55,7 @@ class WindowLimits:
                 considered; a window of all states proves these itself.
         """
         if case is None:
-            low, high = Fraction(document["low"]), Fraction(document["high"])
+            low, high = number(document["low"]), number(document["high"])
             if not low < high:
                 raise CertificateError("a window has no width")
             self.forces = Forces(wall, low, high, document["forces"])
@@ -188,6 +200,7 @@ class _Products:
         return {k: -weight for k, weight in columns.weights.items()} | {"lift": -columns.lift_weight}
 
     def _combined(self, column: list[int], rows: list[dict[int, int]]) -> list[int]:
+        self.wall.in_time()
         total = [0] * (3 * self.wall.n_interfaces + 2)
         for value, row in zip(column, rows, strict=True):
             if value:
@@ -226,6 +239,7 @@ class _Products:
         matrix, left_unit = left
         price: Fraction = ZERO
         for (static, multiples), limit in paired(paired(matrix, balance), motions.limits):
+            self.wall.in_time()
             rest = 0
             for value, row, size in zip(static, rows, whole_sizes, strict=True):
                 vanishing = sum(entry * multiples[d] for d, entry in row.items())

@@ -57,7 +57,8 @@ def certified(known: Answer, document: dict[str, Any] | None) -> Answer:
     """
     if document is None or known.multiplier is None:
         return known
-    lower, upper = verify(document)
+    lower, shown = verify(document)
+    upper = Fraction(known.multiplier) if shown is None else shown
     if lower < upper * (1 - Fraction(WINDOWS.proved)):
         return replace(
             known,

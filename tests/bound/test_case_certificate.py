@@ -15,11 +15,12 @@ from hypothesis import strategies as st
 
 from benchmarks.bounds import small_wall
 from methods.bound.case import AtContact, AtNormalForce, Case
+from methods.bound.document import digest
 from methods.bound.exact_wall import CertificateError, ExactWall
 from methods.bound.rate_bounds import RateProgramme
 from methods.bound.same_wall import require_same_wall
 from methods.bound.slack_bounds import SlackProgramme
-from methods.bound.verify import digest, verify
+from methods.bound.verify import verify
 from methods.bound.verify_cases import STEPS, states_of
 from methods.bound.verify_window import WindowLimits
 from methods.bound.window_search import Bracket, WindowSearch

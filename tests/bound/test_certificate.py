@@ -17,9 +17,10 @@ from hypothesis import strategies as st
 from harness.certificates import CERTIFICATE, read_certificate
 from harness.cli import main as drystone
 from harness.model.case import read_case, shipped_cases
+from methods.bound.document import digest
 from methods.bound.exact_wall import CertificateError
 from methods.bound.same_wall import require_same_wall
-from methods.bound.verify import digest, main, verify
+from methods.bound.verify import main, verify
 from methods.la.bound_adapter import BoundedLimitAnalysis
 from methods.la.certify.tree_certificate import certificate
 from methods.la.core.search_settings import BoundSettings

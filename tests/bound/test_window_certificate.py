@@ -18,9 +18,10 @@ from harness.certificates import CERTIFICATE, PACKED, read_certificate
 from harness.cli import main as drystone
 from harness.model.assembly import Assembly
 from harness.model.case import read_case, shipped_cases
+from methods.bound.document import digest
 from methods.bound.exact_wall import CertificateError
 from methods.bound.same_wall import require_same_wall
-from methods.bound.verify import digest, verify
+from methods.bound.verify import verify
 from methods.la.bound_adapter import BoundedLimitAnalysis
 from methods.la.certify.window_certificate import certified_bracket
 from methods.la.core.newton_matrix import NewtonMatrix

@@ -15,16 +15,21 @@ import numpy as np
 import scipy.sparse as sp
 
 from harness.model.assembly import Assembly, BoolArray, FloatArray
+from methods.bound.document import FORMAT, digest
 from methods.bound.exact_wall import CertificateError
-from methods.bound.verify import digest, verify
+from methods.bound.same_wall import block_sizes, interface_lengths, load_sizes, same_number
+from methods.bound.verify import verify
 from methods.la.certify.proof import prove
-from methods.la.certify.rational import NotShortError, Row, short_fraction, solve_sparse
+from methods.la.certify.rational import DENOMINATOR, Row, solve_sparse
 from methods.la.core.newton_matrix import NewtonMatrix
 from methods.la.core.problem import make_problem
 from methods.la.sources.search import Search
 from methods.numerics.linear_programme import INFINITY, Programme
 from methods.numerics.vertex import BASIC
 
+SHORT = 1e-13
+"""Difference of a short fraction from the float that stands for it, relative to what it belongs to: a hundredth of
+what a certificate may differ by from its wall."""
 BELOW = Fraction(2, 10**6)
 """Relative distance of the certified bound below the state: twice what the tree closes to."""
 
@@ -61,7 +66,7 @@ def certificate(assembly: Assembly, nodes: int = 1500, seconds: float = math.inf
         document |= {"multiplier": str(upper), "bound": str(bound), "state": state, "leaves": leaves}
         document["digest"] = digest(document)
         verify(document)
-    except (NotShortError, ArithmeticError, CertificateError):
+    except (ArithmeticError, CertificateError):
         return None
     return document
 
@@ -70,18 +75,20 @@ def wall_document(assembly: Assembly, unit: float) -> dict[str, Any]:
     """The part of a certificate that says which wall it is of, with loads in this unit of force."""
     place = {int(block): k for k, block in enumerate(assembly.free)}
 
-    def text(values: FloatArray) -> list[str]:
-        return [str(exact(value)) for value in values.tolist()]
+    def text(values: FloatArray, sizes: FloatArray) -> list[str]:
+        return [str(exact(*pair)) for pair in zip(values.tolist(), np.broadcast_to(sizes, values.shape), strict=True)]
 
+    size = block_sizes(assembly)
     blocks = [
         {
             "id": assembly.block_ids[i],
-            "centroid": text(assembly.centroid[i]),
-            "dead": text(assembly.dead[i] / unit),
-            "live": text(assembly.live[i] / unit),
+            "centroid": text(assembly.centroid[i], size[i]),
+            "dead": text(assembly.dead[i] / unit, load_sizes(assembly.dead[i] / unit, size[i])),
+            "live": text(assembly.live[i] / unit, load_sizes(assembly.live[i] / unit, size[i])),
         }
         for i in assembly.free
     ]
+    length = interface_lengths(assembly)
     interfaces = []
     for p in range(assembly.n_interfaces):
         tangent, normal = assembly.tangent[p], assembly.normal[p]
@@ -90,20 +97,23 @@ def wall_document(assembly: Assembly, unit: float) -> dict[str, Any]:
             {
                 "a": place.get(int(assembly.block_a[p])),
                 "b": place.get(int(assembly.block_b[p])),
-                "ends": text(np.concatenate([assembly.end1[p], assembly.end2[p]])),
+                "ends": text(np.concatenate([assembly.end1[p], assembly.end2[p]]), length[p]),
                 "side": side,
-                "friction": str(exact(float(assembly.friction[p]))),
+                "friction": str(exact(float(assembly.friction[p]), float(assembly.friction[p]))),
             }
         )
-    return {"format": "drystone-bound/1", "wall": assembly.name, "blocks": blocks, "interfaces": interfaces}
+    return {"format": FORMAT, "wall": assembly.name, "blocks": blocks, "interfaces": interfaces}
 
 
-def exact(value: float) -> Fraction:
-    """The short fraction that a float was written as, or the binary fraction that it is."""
-    try:
-        return short_fraction(value)
-    except NotShortError:
-        return Fraction(value)
+def exact(value: float, size: float) -> Fraction:
+    """The short fraction that a float was written as, or the binary fraction that it is.
+
+    Args:
+        value: the float.
+        size: what it is small against where it is rounding: of the block, its load, or the length of the interface.
+    """
+    short = Fraction(value).limit_denominator(DENOMINATOR)
+    return short if same_number(short, value, size, SHORT) else Fraction(value)
 
 
 class Fractions:

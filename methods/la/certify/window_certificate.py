@@ -10,9 +10,10 @@ import numpy as np
 from harness.model.assembly import FloatArray
 from methods.bound.bracket import bracket
 from methods.bound.certifier import Certifier
+from methods.bound.document import digest
 from methods.bound.equations import Equations
 from methods.bound.exact_wall import CertificateError, ExactWall
-from methods.bound.verify import check_state, digest
+from methods.bound.verify import check_state
 from methods.bound.window_document import Scales
 from methods.bound.window_search import Bracket
 from methods.la.certify.tree_certificate import Fractions, exact_state, wall_document
