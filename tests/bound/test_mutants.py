@@ -29,7 +29,8 @@ from methods.bound.verify import verify
 from tests.bound import test_case_certificate as of_cases
 from tests.bound import test_window_certificate as of_windows
 from tests.bound.by_cases import certificate_of_cases
-from tests.bound.second_checker import Refused, check
+from tests.bound.second_checker import check
+from tests.bound.second_wall import Refused
 from tests.la.bodies import running_bond
 
 MUTANTS = int(os.environ.get("DRYSTONE_MUTANTS", "60"))
@@ -55,11 +56,19 @@ def certificates_of(kind: str) -> list[Certificate]:
         bond = (of_windows.of_bond(), running_bond(2, 2, 0.2, 0.65), of_windows.LEAST)
         return [bond, of_library("incline-up", PACKED), of_library("incline-down", PACKED)]
     small = [of_library("two-frictions"), of_library("single-block"), of_library("incline-up", PACKED)]
+    divided = [(certificate_of_cases(wall), wall, least) for _, wall, least in small]
     return [
-        *((certificate_of_cases(wall), wall, least) for _, wall, least in small),
+        *divided,
+        *((at_a_normal_force(document), wall, least) for document, wall, least in divided),
         (of_cases.of_bond(), running_bond(2, 2, 0.2, 0.65), of_cases.LEAST),
-        (of_cases.of_two_normal_forces(), running_bond(3, 2, 0.2, 0.65), of_cases.HIGHER),
     ]
+
+
+def at_a_normal_force(document: dict[str, Any]) -> dict[str, Any]:
+    """A certificate whose cases are divided at a normal force first: what proves the whole proves both parts."""
+    cases = document["cases"]
+    divided = document | {"cases": {"steps": [], "interface": 0, "normal": "1/2", "parts": [cases, cases]}}
+    return divided | {"digest": digest(divided)}
 
 
 Place = tuple[Any, Any]
