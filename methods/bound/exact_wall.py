@@ -47,7 +47,7 @@ def fractions_of(values: Any, count: int) -> Vector:
     Raises:
         CertificateError: it is none.
     """
-    if not isinstance(values, list) or len(values) != count:
+    if len(listed(values)) != count:
         raise CertificateError(f"{count} numbers are needed")
     found = [number(value) for value in values]
     common_denominator(found)
@@ -89,9 +89,9 @@ class ExactWall:
 
     def __init__(self, document: Any, seconds: float = math.inf) -> None:
         self._until = time.process_time() + seconds
-        blocks, interfaces = document["blocks"], document["interfaces"]
-        if not isinstance(blocks, list) or not isinstance(interfaces, list) or not blocks:
-            raise CertificateError("a certificate has a list of free blocks and one of interfaces")
+        blocks, interfaces = listed(document["blocks"]), listed(document["interfaces"])
+        if not blocks:
+            raise CertificateError("a wall has free blocks")
         n = len(blocks)
         centroid = [fractions_of(block["centroid"], 2) for block in blocks]
         self.dead = [x for block in blocks for x in fractions_of(block["dead"], 3)]
@@ -175,9 +175,20 @@ def paired(first: Iterable[Any], second: Any) -> list[tuple[Any, Any]]:
         CertificateError: they are not.
     """
     first = list(first)
-    if not isinstance(second, list) or len(first) != len(second):
+    if len(first) != len(listed(second)):
         raise CertificateError(f"{len(first)} entries are needed")
     return list(zip(first, second, strict=True))
+
+
+def listed(values: Any) -> list[Any]:
+    """A list, no object or text that might be gone through like one.
+
+    Raises:
+        CertificateError: it is none.
+    """
+    if not isinstance(values, list):
+        raise CertificateError(f"{repr(values)[:40]} stands where a list should")
+    return values
 
 
 def whole(value: Any, least: int = -(10**MOST_DIGITS), most: int = 10**MOST_DIGITS) -> int:
@@ -197,7 +208,7 @@ def whole_numbers(values: Any, count: int) -> list[int]:
     Raises:
         CertificateError: it is none.
     """
-    if not isinstance(values, list) or len(values) != count or any(type(v) is not int for v in values):
+    if len(listed(values)) != count or any(type(v) is not int for v in values):
         raise CertificateError(f"{count} whole numbers are needed")
     if any(v.bit_length() > 3 * MOST_DIGITS for v in values):
         raise CertificateError(f"a whole number has more than about {MOST_DIGITS} digits")
@@ -210,6 +221,4 @@ def contacts(values: Any, count: int) -> frozenset[int]:
     Raises:
         CertificateError: it is none.
     """
-    if not isinstance(values, list):
-        raise CertificateError("contacts are a list")
-    return frozenset(whole(k, 0, 4 * count - 1) for k in values)
+    return frozenset(whole(k, 0, 4 * count - 1) for k in listed(values))

@@ -14,6 +14,7 @@ from methods.bound.exact_wall import (
     ExactWall,
     Form,
     integers,
+    listed,
     number,
     paired,
     whole,
@@ -183,11 +184,11 @@ def known_of(forces: Forces, document: Any) -> Known:
         CertificateError: they do not show what is said.
     """
     m = forces.wall.n_interfaces
-    still = [whole(k, 0, 4 * m - 1) for k in document["still"]]
+    still = [whole(k, 0, 4 * m - 1) for k in listed(document["still"])]
     for k, velocities in paired(still, document["still_velocities"]):
         if forces.least_slack(k, velocities) <= 0:
             raise CertificateError("a contact that is held still may move")
-    loaded = [whole(p, 0, m - 1) for p in document["loaded"]]
+    loaded = [whole(p, 0, m - 1) for p in listed(document["loaded"])]
     least: Form = {}
     for (p, claimed), velocities in paired(list(paired(loaded, document["least"])), document["least_velocities"]):
         least[p] = number(claimed)

@@ -29,7 +29,7 @@ from pathlib import Path
 from typing import Any
 
 from methods.bound.document import FORMAT, digest, read
-from methods.bound.exact_wall import CertificateError, ExactWall, Vector, contacts, dot, fractions_of, number
+from methods.bound.exact_wall import CertificateError, ExactWall, Vector, contacts, dot, fractions_of, listed, number
 from methods.bound.verify_cases import States, case_bound, states_of
 from methods.bound.verify_window import WindowLimits
 
@@ -78,7 +78,7 @@ def _check_windows(wall: ExactWall, bound: Fraction, document: Any) -> None:
         raise CertificateError("windows say nothing of multipliers below zero")
     proved = Fraction(0)
     states: States | None = None
-    for window in document["windows"]:
+    for window in listed(document["windows"]):
         limits = WindowLimits(wall, window)
         if limits.forces.low > proved:
             raise CertificateError(
@@ -118,9 +118,7 @@ def check_state(wall: ExactWall, multiplier: Fraction, state: Any) -> None:
 
 def _check_leaves(wall: ExactWall, bound: Fraction, documents: Any) -> None:
     """Whether the leaves hold all states, and each excludes those below the bound."""
-    if not isinstance(documents, list):
-        raise CertificateError("leaves are a list")
-    leaves = [_Leaf(wall, leaf) for leaf in documents]
+    leaves = [_Leaf(wall, leaf) for leaf in listed(documents)]
     _check_cover(wall, [(leaf.tight, leaf.still) for leaf in leaves])
     for leaf in leaves:
         leaf.check(wall, bound)

@@ -27,6 +27,7 @@ from methods.bound.exact_wall import (
     ExactWall,
     Form,
     Vector,
+    listed,
     number,
     paired,
     whole,
@@ -163,7 +164,7 @@ def case_bound(states: States, node: Any) -> Fraction:
     left = [(states, node)]
     while left:
         states, node = left.pop()
-        for step in node["steps"]:
+        for step in listed(node["steps"]):
             if states.low >= states.high:
                 raise CertificateError("a step is of a case that is empty")
             states = states.after(step)

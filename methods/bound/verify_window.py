@@ -29,6 +29,7 @@ from methods.bound.exact_wall import (
     Form,
     Vector,
     integers,
+    listed,
     number,
     paired,
     whole,
@@ -107,10 +108,10 @@ class _Products:
         names = [*columns.rates, "work", "lift"]
         self.limits = self.forces.limits()
         rows = 4 * m + 3 + len(self.limits)
-        multipliers = dict(paired(names, [whole_numbers(c, rows) for c in document["columns"]]))
-        signed = [whole_numbers(three, 3) for three in document["signed"]]
-        still = [whole_numbers(form, 3 * m + 2) for form in document["still"]]
-        balance = [whole_numbers(row, columns.n + len(self.tight)) for row in document["balance"]]
+        multipliers = dict(paired(names, [whole_numbers(c, rows) for c in listed(document["columns"])]))
+        signed = [whole_numbers(three, 3) for three in listed(document["signed"])]
+        still = [whole_numbers(form, 3 * m + 2) for form in listed(document["still"])]
+        balance = [whole_numbers(row, columns.n + len(self.tight)) for row in listed(document["balance"])]
         self.value = Fraction(multipliers["work"][4 * m], self.unit)
         self._pay(multipliers, signed, still)
         left = self._left(multipliers, signed, still, of_size)

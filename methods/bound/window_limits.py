@@ -5,7 +5,7 @@ from __future__ import annotations
 from fractions import Fraction
 from typing import Any
 
-from methods.bound.exact_wall import ZERO, CertificateError, ExactWall, Form, Vector, whole, whole_numbers
+from methods.bound.exact_wall import ZERO, CertificateError, ExactWall, Form, Vector, listed, whole, whole_numbers
 from methods.bound.force_limits import Forces, Known
 
 
@@ -117,14 +117,14 @@ class Motions:
     def __init__(self, columns: Columns, document: Any) -> None:
         self.columns, wall = columns, columns.wall
         n, unit = columns.n, 2 ** whole(document["exponent"], 0, 200)
-        strains = [whole(k, 0, 3 * wall.n_interfaces - 1) for k in document["strains"]]
-        inverse = [whole_numbers(row, len(strains)) for row in document["inverse"]]
+        strains = [whole(k, 0, 3 * wall.n_interfaces - 1) for k in listed(document["strains"])]
+        inverse = [whole_numbers(row, len(strains)) for row in listed(document["inverse"])]
         if len(inverse) != n:
             raise CertificateError("the velocities of a window are not all there")
         self._inverse = [{k: Fraction(v, unit) for k, v in zip(strains, row, strict=True) if v} for row in inverse]
         errors = [self._error(d) for d in range(n)]
         limits = columns.strain_limits()
-        courses = [Course(columns, course) for course in document["courses"]]
+        courses = [Course(columns, course) for course in listed(document["courses"])]
         leading = {course.joints[0]: course for course in courses}
         slips: Form = {}
         loose = ZERO
@@ -159,7 +159,7 @@ class Course:
 
     def __init__(self, columns: Columns, document: Any) -> None:
         self.columns = columns
-        self.joints = [whole(p, 0, columns.wall.n_interfaces - 1) for p in document["joints"]]
+        self.joints = [whole(p, 0, columns.wall.n_interfaces - 1) for p in listed(document["joints"])]
         if len(set(self.joints)) != len(self.joints) or not set(self.joints) <= set(columns.signed):
             raise CertificateError("a course names joints that are not its own")
         forces = columns.forces

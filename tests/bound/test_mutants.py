@@ -33,7 +33,7 @@ from tests.bound.second_checker import check
 from tests.bound.second_wall import Refused
 from tests.la.bodies import running_bond
 
-MUTANTS = int(os.environ.get("DRYSTONE_MUTANTS", "60"))
+MUTANTS = int(os.environ.get("DRYSTONE_MUTANTS", "40"))
 """Of each kind."""
 
 Certificate = tuple[dict[str, Any], Assembly, Fraction]

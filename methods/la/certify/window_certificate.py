@@ -69,7 +69,9 @@ def certificate_of(
     except (ArithmeticError, CertificateError):
         document.pop("state", None)
     bound = min(certifier.bound, exact)
-    document |= {"multiplier": str(exact), "bound": _short(bound, exact), "windows": certifier.documents}
+    if "state" in document:
+        document["multiplier"] = str(exact)
+    document |= {"bound": _short(bound, exact), "windows": certifier.documents}
     if certifier.cases is not None:
         document["cases"] = certifier.cases.document()
     document["digest"] = digest(document)
