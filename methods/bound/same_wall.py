@@ -1,9 +1,9 @@
 """Whether the wall in a certificate is a given wall: the same blocks, loads, interfaces and friction.
 
-A number of the certificate is that of the wall if it is the same float, or if both differ, in fractions, by next to
-nothing of what the number belongs to: the size of the block for its centroid, the length of the interface for its ends,
-the load of the block for that, the friction itself. So no number counts as the same because another is large: no
-coordinate far from the origin, no heavy block elsewhere.
+A number of the certificate is that of the wall if both differ, in fractions, by next to nothing of what the number
+belongs to: the size of the block for its centroid, the length of the interface for its ends, the load of the block for
+that, the friction itself. So no number counts as the same because another is large: no coordinate far from the origin,
+no heavy block elsewhere.
 """
 
 from __future__ import annotations
@@ -58,10 +58,10 @@ def _unit_of_loads(blocks: Any, loads: FloatArray) -> Fraction:
     """What a load of the certificate is multiplied with, from the largest of all."""
     i, k = np.unravel_index(np.abs(loads).argmax(), loads.shape)
     given = [*fractions_of(blocks[i]["dead"], 3), *fractions_of(blocks[i]["live"], 3)]
-    unit = Fraction(float(loads[i, k])) / given[k]
-    if unit <= 0:
+    largest = Fraction(float(loads[i, k]))
+    if largest * given[k] <= 0:
         raise CertificateError("it is of another wall: the loads are not the same")
-    return unit
+    return largest / given[k]
 
 
 def _compare_interfaces(items: Any, assembly: Assembly) -> None:
@@ -98,8 +98,8 @@ def load_sizes(load: FloatArray, size: float) -> FloatArray:
 
 
 def same_number(given: Fraction, wanted: float, size: float, part: float) -> bool:
-    """Whether a fraction is a float, or differs from it by at most this part of a size."""
-    return float(given) == wanted or abs(given - Fraction(wanted)) <= Fraction(part) * Fraction(size)
+    """Whether a fraction differs from a float by at most this part of a size."""
+    return abs(given - Fraction(wanted)) <= Fraction(part) * Fraction(size)
 
 
 def _require(name: str, given: list[Fraction], wanted: FloatArray, sizes: FloatArray | float) -> None:

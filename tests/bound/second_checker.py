@@ -151,7 +151,7 @@ def _proved(wall: Wall, document: Any) -> Fraction:
 
 
 def _case(states: Set, node: Any) -> Fraction:
-    for step in node["steps"]:
+    for step in listed(node["steps"]):
         need(states.low < states.high, "a step of nothing")
         states = _step(states, step)
     if "parts" not in node:
