@@ -208,11 +208,12 @@ def whole_numbers(values: Any, count: int) -> list[int]:
     Raises:
         CertificateError: it is none.
     """
-    if len(listed(values)) != count or any(type(v) is not int for v in values):
+    found = listed(values)
+    if len(found) != count or any(type(v) is not int for v in found):
         raise CertificateError(f"{count} whole numbers are needed")
-    if any(v.bit_length() > 3 * MOST_DIGITS for v in values):
-        raise CertificateError(f"a whole number has more than about {MOST_DIGITS} digits")
-    return values
+    if any(v.bit_length() > 3 * MOST_DIGITS for v in found):
+        raise CertificateError(f"a whole number has more than {3 * MOST_DIGITS} bits")
+    return found
 
 
 def contacts(values: Any, count: int) -> frozenset[int]:
