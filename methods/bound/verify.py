@@ -99,7 +99,7 @@ def check_state(wall: ExactWall, multiplier: Fraction, state: Any) -> None:
     Raises:
         CertificateError: they are not.
     """
-    forces = fractions_of(state["forces"], len(wall.rows))
+    forces = fractions_of(state["forces"], len(wall.sparse))
     velocities = fractions_of(state["velocities"], len(wall.dead))
     loads = [d + multiplier * f for d, f in zip(wall.dead, wall.live, strict=True)]
     if any(a + b for a, b in zip(wall.resultant(forces), loads, strict=True)):
@@ -155,7 +155,7 @@ class _Leaf:
         if "velocities" in document:
             self.velocities = fractions_of(document["velocities"], len(wall.dead))
         else:
-            self.forces = fractions_of(document["forces"], len(wall.rows))
+            self.forces = fractions_of(document["forces"], len(wall.sparse))
             self.dead, self.live = fractions_of(document["parts"], 2)
 
     def check(self, wall: ExactWall, bound: Fraction) -> None:

@@ -103,7 +103,7 @@ class States:
         The lift of mechanisms is not negative, so any multiple of it may be added; forces do the work of their strains.
         """
         wall, unit = self.wall, 2 ** whole(document["exponent"], 0, 400)
-        strains = [Fraction(v, unit) for v in whole_numbers(document["strains"], len(wall.rows))]
+        strains = [Fraction(v, unit) for v in whole_numbers(document["strains"], len(wall.sparse))]
         lift, work = (Fraction(v, unit) for v in whole_numbers([document["lift"], document["work"]], 2))
         if lift < 0:
             raise CertificateError("a multiple of the lift is below zero")

@@ -5,6 +5,7 @@ from __future__ import annotations
 import copy
 import gzip
 import json
+import tracemalloc
 from collections.abc import Callable
 from fractions import Fraction
 from pathlib import Path
@@ -318,3 +319,16 @@ def test_denominators_that_have_no_short_multiple_are_refused_at_once() -> None:
         block | {"dead": [f"1/{10**900 + 2 * k + j}" for j in range(3)]} for k in range(3, 3 * 200, 3)
     ]
     assert "denominator" in refused(document)
+
+
+def test_a_wall_of_many_blocks_and_joints_takes_no_table_of_both() -> None:
+    """4,000 more blocks, and as many joints of the first: 10^8 entries if rows were full."""
+    document = tree()
+    document["blocks"] += [document["blocks"][0]] * 4_000
+    document["interfaces"] += [document["interfaces"][0]] * 4_000
+    tracemalloc.start()
+    reason = refused(document)
+    peak = tracemalloc.get_traced_memory()[1]
+    tracemalloc.stop()
+    assert "numbers are needed" in reason
+    assert peak < 200 * 2**20
