@@ -1,6 +1,7 @@
-"""Irregular walls of 6 to 12 blocks: how many brackets of the least multiplier close, and are certified, in a time.
+"""Small walls that chance draws: how many brackets of the least multiplier close, and are certified, in a time.
 
-Run as `python -m benchmarks bounds [count [seconds [first]]]`. A line a wall: seed,
+Run as `python -m benchmarks bounds [count [seconds [first [kind]]]]`; kinds are irregular walls of 6 to 12 blocks,
+courses of stones and arches. A line a wall: seed,
 blocks, interfaces, least state known, bound to rounding and how far it is below, relatively, certified bound and how
 far, CPU seconds of search and bound, divisions of windows.
 """
@@ -14,7 +15,7 @@ from fractions import Fraction
 
 import numpy as np
 
-from benchmarks.walls import irregular_wall
+from benchmarks.walls import courses_of_stones, irregular_wall, small_arch
 from harness.model.assembly import Assembly
 from harness.model.method import Finding
 from methods.bound.tuning import WINDOWS
@@ -30,12 +31,14 @@ def small_wall(seed: int) -> Assembly:
     return irregular_wall(seed, int(generator.integers(2, 5)), 3, round(float(generator.uniform(0.3, 1.0)), 3))
 
 
-def gaps(seed: int, seconds: float) -> tuple[float, float] | None:
+KINDS = {"irregular": small_wall, "courses": courses_of_stones, "arches": small_arch}
+
+
+def gaps(seed: int, seconds: float, wall: Assembly) -> tuple[float, float] | None:
     """Relative distances of the bound to rounding and of the certified one below the least state known, printed.
 
     None where no state is known.
     """
-    wall = small_wall(seed)
     began = time.process_time()
     known = LimitAnalysis().solve(wall, SearchSettings())
     searched = time.process_time()
@@ -59,13 +62,14 @@ def gaps(seed: int, seconds: float) -> tuple[float, float] | None:
 def main(arguments: Sequence[str] | None = None) -> int:
     """Print a line a wall and the counts."""
     given = list(sys.argv[1:] if arguments is None else arguments)
-    count, seconds, first = (float(word) for word in [*given, *["100", "60", "0"][len(given) :]])
-    every = [gaps(seed, seconds) for seed in range(int(first), int(first + count))]
+    count, seconds, first, kind = [*given, *["100", "60", "0", "irregular"][len(given) :]]
+    seeds = range(int(first), int(first) + int(count))
+    every = [gaps(seed, float(seconds), KINDS[kind](seed)) for seed in seeds]
     known = [pair for pair in every if pair is not None]
     closed, certified = (sum(gap <= WINDOWS.proved for gap in each) for each in zip(*known, strict=True))
     within = sum(gap <= 0.01 for gap, _ in known)
     print(
-        f"{len(known)} walls collapse; within {seconds:g} s {closed} are closed to rounding, {certified} of them "
+        f"{len(known)} walls collapse; within {seconds} s {closed} are closed to rounding, {certified} of them "
         f"certified, {within} to 1 %"
     )
     return 0

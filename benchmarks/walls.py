@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from itertools import pairwise
 from typing import Any
 
 import numpy as np
@@ -75,14 +76,7 @@ def irregular_wall(seed: int, columns: int, courses: int, friction: float) -> As
     base = [[-1, -0.5], [WIDTH + 1, -0.5], [WIDTH + 1, 0], [-1, 0]]
     blocks: list[dict[str, Any]] = [{"id": "base", "polygon": base, "fixed": True}]
     blocks += [{"id": f"b{k}", "polygon": corner.tolist()} for k, corner in enumerate(corners)]
-    wall = {
-        "format": "wall/1",
-        "unit_weight": 20.0,
-        "friction": friction,
-        "blocks": blocks,
-        "loads": {"live": {"body": [{"per_weight": [1.0, 0.0]}]}},
-    }
-    return build(Wall.model_validate(wall), f"irregular wall {seed}").assembly
+    return _built(f"irregular wall {seed}", friction, blocks, PUSH)
 
 
 def drawn(seed: int, least: int = 3, most: int = 8) -> Assembly:
@@ -90,3 +84,50 @@ def drawn(seed: int, least: int = 3, most: int = 8) -> Assembly:
     generator = np.random.default_rng([seed, 1])
     columns, courses = (int(count) for count in generator.integers(least, most + 1, 2))
     return irregular_wall(seed, columns, courses, round(float(generator.uniform(0.3, 1.0)), 3))
+
+
+def courses_of_stones(seed: int) -> Assembly:
+    """The wall of a seed: 4 to 8 courses of unequal height of one to three stones of unequal length, pushed sideways.
+
+    Stones of different height and length leave many joints that carry nothing in some state.
+    """
+    generator = np.random.default_rng([seed, 11])
+    length = round(float(generator.uniform(0.5, 1.2)), 2)
+    blocks: list[dict[str, Any]] = [{"id": "ground", "polygon": _rectangle(-0.2, -0.2, length + 0.2, 0.0), "fixed": True}]
+    base = 0.0
+    for course in range(int(generator.integers(4, 9))):
+        top = round(base + float(generator.uniform(0.12, 0.3)), 2)
+        within = generator.uniform(0.15, 0.85, int(generator.choice([0, 1, 2], p=[0.4, 0.4, 0.2])))
+        ends = [0.0, *sorted(set(np.round(within * length, 2).tolist())), length]
+        for place, (left, right) in enumerate(pairwise(ends)):
+            blocks.append({"id": f"{course}.{place}", "polygon": _rectangle(left, base, right, top)})
+        base = top
+    return _built(f"courses of stones {seed}", round(float(generator.uniform(0.3, 1.3)), 2), blocks, PUSH)
+
+
+def small_arch(seed: int) -> Assembly:
+    """The arch of a seed: 4 to 8 equal voussoirs of a circle between abutments, and a weight on one of them."""
+    generator = np.random.default_rng([seed, 13])
+    count, half = int(generator.integers(4, 9)), float(generator.uniform(0.7, 1.4))
+    inner, outer = 2.0, 2.0 + round(float(generator.uniform(0.25, 0.6)), 2)
+    angles = 0.5 * np.pi + np.linspace(half, -half, count + 1)
+    angles = np.concatenate([[angles[0] + 0.15], angles, [angles[-1] - 0.15]])
+    corners = np.column_stack([np.cos(angles), np.sin(angles)]).round(6)
+    blocks: list[dict[str, Any]] = []
+    for k in range(count + 2):
+        a, b = corners[k], corners[k + 1]
+        polygon = [(r * c).round(6).tolist() for r, c in ((inner, a), (outer, a), (outer, b), (inner, b))]
+        blocks.append({"id": f"v{k}", "polygon": polygon} | ({"fixed": True} if k in (0, count + 1) else {}))
+    under = int(generator.integers(1, count + 1))
+    at = (0.5 * outer * (corners[under] + corners[under + 1])).round(6).tolist()
+    load = {"live": {"points": [{"block": f"v{under}", "at": at, "force": [0, -1]}]}}
+    return _built(f"small arch {seed}", round(float(generator.uniform(0.4, 0.9)), 2), blocks, load)
+
+
+def _rectangle(left: float, bottom: float, right: float, top: float) -> list[list[float]]:
+    return [[left, bottom], [right, bottom], [right, top], [left, top]]
+
+
+def _built(name: str, friction: float, blocks: list[dict[str, Any]], loads: dict[str, Any]) -> Assembly:
+    wall = {"format": "wall/1", "unit_weight": 20.0, "friction": friction, "blocks": blocks, "loads": loads}
+    return build(Wall.model_validate(wall), name).assembly

@@ -200,28 +200,32 @@ class WindowDocument:
         }
 
     def _courses(self, motions: FloatArray) -> list[dict[str, Any]]:
-        """Interfaces that slide alike in motions (3n, e) that open nothing: one course a motion, or an error."""
+        """Interfaces that slide in proportion in motions (3n, e) that open nothing: one course a motion, or an error."""
         unloadable, m = self.relaxation.unloadable, self.wall.n_interfaces
         slips = self.strains[3 * unloadable + 2] @ motions
-        groups: list[tuple[FloatArray, list[int]]] = []
+        groups: list[tuple[FloatArray, list[int], list[float]]] = []
         for p, slip in zip(unloadable.tolist(), slips, strict=True):
-            if np.linalg.norm(slip) < ROUNDING.no_row:
+            size = float(np.linalg.norm(slip))
+            if size < ROUNDING.no_row:
                 continue
-            alike = (g for g in groups if min(abs(g[0] - slip).max(), abs(g[0] + slip).max()) < ROUNDING.margin)
+            along = slip / size
+            alike = (g for g in groups if min(abs(g[0] - along).max(), abs(g[0] + along).max()) < ROUNDING.margin)
             same = next(alike, None)
             if same is None:
-                groups.append((slip, [p]))
+                groups.append((along, [p], [size]))
             else:
                 same[1].append(p)
+                same[2].append(size)
         courses, chosen = [], np.zeros((0, motions.shape[1]))
-        for slip, joints in sorted(groups, key=lambda group: -len(group[1])):
-            if np.linalg.matrix_rank(np.vstack([chosen, slip]), tol=ROUNDING.margin) <= len(chosen):
+        for along, joints, sizes in sorted(groups, key=lambda group: -len(group[1])):
+            if np.linalg.matrix_rank(np.vstack([chosen, along]), tol=ROUNDING.margin) <= len(chosen):
                 continue
+            work = self.friction[joints] * np.array(sizes)
             weights = np.zeros((m, 4))
-            weights[joints, :2] = 1.0 / self.scales.length[joints, None]
+            weights[joints, :2] = (work / (work[0] * self.scales.length[joints]))[:, None]
             status, least, velocities = self.programme.least(weights.ravel())
             if status == "optimal" and least > ROUNDING.margin:
-                chosen = np.vstack([chosen, slip])
+                chosen = np.vstack([chosen, along])
                 courses.append({"joints": joints, "velocities": self.scales.velocities(velocities)})
         if len(courses) < motions.shape[1]:
             raise CertificateError("a slip of interfaces that may be unloaded is not bounded")

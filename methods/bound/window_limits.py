@@ -124,12 +124,12 @@ class Motions:
         self._inverse = [{k: Fraction(v, unit) for k, v in zip(strains, row, strict=True) if v} for row in inverse]
         errors = [self._error(d) for d in range(n)]
         limits = columns.strain_limits()
-        courses = [Course(columns, course) for course in listed(document["courses"])]
+        courses = [Course(columns, course, self._inverse) for course in listed(document["courses"])]
         leading = {course.joints[0]: course for course in courses}
         slips: Form = {}
         loose = ZERO
         for course in courses:
-            slips[3 * course.joints[0] + 2], part = course.slip(self._inverse, limits, errors, leading)
+            slips[3 * course.joints[0] + 2], part = course.slip(limits, errors, leading)
             loose = max(loose, part)
         known = limits | slips
         base, part_of = [], []
@@ -155,45 +155,52 @@ class Motions:
 
 
 class Course:
-    """Interfaces that slide together, up to strains that are bounded, and whose normal forces have a positive sum."""
+    """Interfaces whose slips are proportional, up to strains that are bounded, and that cannot all be unloaded.
 
-    def __init__(self, columns: Columns, document: Any) -> None:
-        self.columns = columns
+    Let s be the slip of the first interface and a_p s + b_p that of interface p, with a_p a coefficient of the matrix
+    of `Motions` and b_p bounded. Friction on signed slips loses at most the lift: sum mu_p N_p |a_p s + b_p| <= lift.
+    So |s| times the least value of sum mu_p |a_p| N_p is at most the lift plus sum mu_p N_p |b_p|. That least value is
+    shown by virtual velocities, and must be above zero. All is divided by mu of the first interface.
+    """
+
+    def __init__(self, columns: Columns, document: Any, inverse: list[Form]) -> None:
+        self.columns, friction = columns, columns.wall.friction
         self.joints = [whole(p, 0, columns.wall.n_interfaces - 1) for p in listed(document["joints"])]
         if len(set(self.joints)) != len(self.joints) or not set(self.joints) <= set(columns.signed):
             raise CertificateError("a course names joints that are not its own")
-        forces = columns.forces
-        self.least = -forces.greatest({p: Fraction(-1) for p in self.joints}, document["velocities"])
-        self.friction = min(columns.wall.friction[p] for p in self.joints)
-        if self.least <= 0 or self.friction <= 0:
+        self._forms = [self._slip_of(p, inverse) for p in self.joints]
+        if not friction[self.joints[0]] > 0:
+            raise CertificateError("the friction of a course is not above zero")
+        self.share = [friction[p] / friction[self.joints[0]] for p in self.joints]
+        weights: Form = {}
+        for p, share, form in zip(self.joints, self.share, self._forms, strict=True):
+            weights[p] = -share * abs(form.get(3 * self.joints[0] + 2, ZERO))
+        self.least = -columns.forces.greatest(weights, document["velocities"])
+        if self.least <= 0:
             raise CertificateError("the friction of a course is not above zero")
 
-    def slip(
-        self, inverse: list[Form], limits: Form, errors: Vector, leading: dict[int, Course]
-    ) -> tuple[Fraction, Fraction]:
-        """(a, b): the slip of the first joint is at most a, plus b times the greatest velocity or slip of a course.
+    def _slip_of(self, p: int, inverse: list[Form]) -> Form:
+        """The slip of an interface by the strains that give the velocities."""
+        form: Form = {}
+        for d, value in self.columns.wall.sparse[3 * p + 2]:
+            for k, entry in inverse[d].items():
+                form[k] = form.get(k, ZERO) + value * entry
+        return form
 
-        The friction work of slips of signed interfaces is at most the lift.
-        """
-        columns = self.columns
-        base, part = 1 / (self.friction * columns.lift_weight), ZERO
-        for p in self.joints:
-            form: Form = {}
-            error = ZERO
-            for d, value in columns.wall.sparse[3 * p + 2]:
-                error += abs(value) * errors[d]
-                for k, entry in inverse[d].items():
-                    form[k] = form.get(k, ZERO) + value * entry
-            own = form.pop(3 * self.joints[0] + 2, ZERO)
-            error += abs(abs(own) - 1)
+    def slip(self, limits: Form, errors: Vector, leading: dict[int, Course]) -> tuple[Fraction, Fraction]:
+        """(a, b): the slip of the first joint is at most a, plus b times the greatest velocity or slip of a course."""
+        columns, first = self.columns, self.joints[0]
+        base, part = 1 / (columns.wall.friction[first] * columns.lift_weight), ZERO
+        for p, share, form in zip(self.joints, self.share, self._forms, strict=True):
+            error = sum((abs(value) * errors[d] for d, value in columns.wall.sparse[3 * p + 2]), ZERO)
             bounded = ZERO
             for k, value in form.items():
                 if k in limits:
                     bounded += abs(value) * limits[k]
                 elif k // 3 in leading and k % 3 == 2:
-                    error += abs(value)
+                    error += abs(value) if k // 3 != first else ZERO
                 else:
                     raise CertificateError("a joint of a course depends on a slip that nothing bounds")
-            base += columns.forces.normal[p] * bounded
-            part += columns.forces.normal[p] * error
+            base += share * columns.forces.normal[p] * bounded
+            part += share * columns.forces.normal[p] * error
         return base / self.least, part / self.least
