@@ -118,8 +118,8 @@ class ForceProgramme:
         upper = np.where(np.column_stack([tight[:, :2], np.zeros(m, dtype=bool)]).ravel(), 0.0, INFINITY)
         limits = (np.zeros(2 * m), np.where(tight[:, 2:].ravel(), 0.0, INFINITY))
         cost = VERTICES.cost * self.problem.live_work * (-1.0 if greatest else 1.0)
-        from_below = -INFINITY if greatest else 0.0
-        solved = self._solved((lower, upper), limits, cost, from_below, solver, presolve=not greatest)
+        multiplier = (-INFINITY if greatest else 0.0, INFINITY)
+        solved = self._solved((lower, upper), limits, cost, multiplier, solver, presolve=not greatest)
         if isinstance(solved, str):
             return solved
         vertex, iterations = solved
@@ -138,7 +138,20 @@ class ForceProgramme:
         It is the greatest multiplier of forces that do no negative work on any of them: compression where a gap may
         open, no shear where it may slip either way, any force where it is at rest. Where a slip lifts, shear up to
         what the compression does as it is lifted.
+
+        No such forces carry the dead load where it does work on some of the mechanisms without the live load. Where
+        forces that do no negative work carry the live load alone, no mechanism has live work above zero: the work is
+        inf.
         """
+        found = self._dead_work(still, self._dead, INFINITY)
+        if found != "infeasible":
+            return found
+        alone = self._dead_work(still, np.zeros_like(self._dead), 1.0)
+        carries = not isinstance(alone, str) and alone.work > 0.5
+        return replace(alone, work=np.inf) if carries else found
+
+    def _dead_work(self, still: BoolArray, dead: FloatArray, most_live: float) -> DeadWork | str:
+        """The programme of `least_dead_work` beside another dead load and with a multiplier of at most so much."""
         m = self.problem.n_interfaces
         lower = np.where(still[:, :2], -INFINITY, 0.0)
         forward, backward = ~still[:, 2], ~still[:, 3]
@@ -152,7 +165,8 @@ class ForceProgramme:
             matrix = self._with_limits(self.problem.law(False).dilatancy)
         column = (np.column_stack([lower, least]).ravel(), np.column_stack([np.full((m, 2), INFINITY), most]).ravel())
         within = (limits, np.full(2 * m, INFINITY))
-        solved = self._solved(column, within, -VERTICES.cost * self.problem.live_work, -INFINITY, "simplex", matrix)
+        cost, loads = -VERTICES.cost * self.problem.live_work, (-INFINITY, most_live)
+        solved = self._solved(column, within, cost, loads, "simplex", matrix, dead)
         if isinstance(solved, str):
             return solved
         first, second, shear = solved[0].value[: 3 * m].reshape(-1, 3).T
@@ -164,21 +178,24 @@ class ForceProgramme:
         column: tuple[FloatArray, FloatArray],
         limits: tuple[FloatArray, FloatArray],
         cost: float,
-        least: float,
+        multiplier: tuple[float, float],
         solver: str,
         matrix: sp.csc_matrix | None = None,
+        dead: FloatArray | None = None,
         *,
         presolve: bool = True,
     ) -> tuple[Vertex, int] | str:
         m, n = self.problem.n_interfaces, self.problem.n_velocities
+        dead = self._dead if dead is None else dead
+        also = self._loads - 1
         programme = Programme(
             self._matrix if matrix is None else matrix,
-            np.append(np.zeros(3 * m + self._loads - 1), cost),
+            np.append(np.zeros(3 * m + also), cost),
             (
-                np.concatenate([column[0], np.zeros(self._loads - 1), [least]]),
-                np.append(column[1], np.full(self._loads, INFINITY)),
+                np.concatenate([column[0], np.zeros(also), [multiplier[0]]]),
+                np.concatenate([column[1], np.full(also, INFINITY), [multiplier[1]]]),
             ),
-            (np.append(-self._dead, limits[0]), np.append(-self._dead, limits[1])),
+            (np.append(-dead, limits[0]), np.append(-dead, limits[1])),
         )
         programme.highs.setOptionValue("small_matrix_value", 1e-12)
         if solver == "auto":
