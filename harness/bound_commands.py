@@ -20,7 +20,7 @@ from methods.bound.verify import verify
 @click.command()
 @click.argument("case")
 @click.option("-o", "--output", type=click.Path(path_type=Path), required=True, help="The certificate to write.")
-@click.option("--nodes", type=click.IntRange(min=1), default=1500, show_default=True, help="Of the tree at most.")
+@click.option("--nodes", type=click.IntRange(min=1), help="Of the tree at most; by default as many as `la` takes.")
 @click.option("--seconds", type=click.FloatRange(min=0.0), default=120.0, show_default=True, help="For the windows.")
 @click.option("--effort", type=click.Choice(["quick", "normal", "deep"]), default="normal", help="Of the search.")
 @cases_option
@@ -28,7 +28,7 @@ from methods.bound.verify import verify
 def bound(
     case: str,
     output: Path,
-    nodes: int,
+    nodes: int | None,
     seconds: float,
     effort: Literal["quick", "normal", "deep"],
     folders: tuple[Path, ...],
@@ -37,9 +37,10 @@ def bound(
     collapse state.
 
     Columns, rings and small walls have one of a tree, bonded walls one of windows. An output whose name ends in .gz is
-    compressed. Exit code 1: none was found, and nothing is written.
+    compressed. Where the certificate does not meet the least state known, or there is none, a sentence says how far the
+    bound came and what stopped it. Exit code 1: nothing is proved in fractions, and nothing is written.
     """
-    from methods.la.bound_adapter import find_certificate
+    from methods.la.find_certificate import find_certificate
     from methods.la.core.search_settings import SearchSettings
 
     (found,) = find_cases([case], None, folders)
@@ -48,12 +49,15 @@ def bound(
         raise InputError("the wall has no live load", 'Give "loads": {"live": ...}', case)
     if found.assembly.dilates:
         raise InputError("some joints lift as they slide", "Leave dilatancy out: certificates are without", case)
-    document = find_certificate(found.assembly, nodes, seconds, SearchSettings(effort=effort))
-    if document is None:
-        say("No certificate: nothing was proved in time, or the wall's numbers are not short fractions.", err=True)
+    search = SearchSettings(effort=effort)
+    attempt = find_certificate(found.assembly, seconds, search, nodes, lambda sentence: say(sentence, err=True))
+    if attempt.document is None:
+        say(f"No certificate. {attempt.sentence}", err=True)
         sys.exit(1)
-    write_certificate(output, document)
-    say(f"{proved(document).capitalize()}.")
+    write_certificate(output, attempt.document)
+    say(f"{proved(attempt.document).capitalize()}.")
+    if attempt.sentence:
+        say(attempt.sentence)
 
 
 @click.command(name="verify-bound")

@@ -9,7 +9,7 @@ from harness.model.method import OutOfTime
 from methods.bound.equations import Equations
 from methods.bound.rate_bounds import RateProgramme
 from methods.bound.slack_bounds import SlackProgramme
-from methods.bound.window_search import Bracket, Certify, WindowSearch
+from methods.bound.window_search import Bracket, Certify, Stop, WindowSearch
 
 
 def bracket(
@@ -26,15 +26,22 @@ def bracket(
     """
     until = time.process_time() + seconds
     search = WindowSearch(equations, SlackProgramme(equations), Bracket(lower, upper), until, certify)
+    found = search.found
+    found.stopped = Stop.TIME
     with suppress(OutOfTime):  # What is known by then is the bracket.
-        while not search.found.closed and time.process_time() < until:
+        while not found.closed and time.process_time() < until:
             if not search.window():
-                return branched(search)
-    return search.found
+                branched(search)
+                break
+    if found.closed:
+        found.stopped = None
+    elif search.unbounded:
+        found.stopped = Stop.SIZE
+    return found
 
 
-def branched(root: WindowSearch) -> Bracket:
-    """The bracket of a search that has no more to give: its states divided, and again, the lowest part first.
+def branched(root: WindowSearch) -> None:
+    """Raise the bound of a search that has no more to give: its states divided, and again, the lowest part first.
 
     Every state lies in one of both parts, so the least bound of both is one of the whole.
     """
@@ -50,9 +57,9 @@ def branched(root: WindowSearch) -> Bracket:
         elif not more and time.process_time() < root.until:
             at = leaf.division()
             if at is None:
+                found.stopped = Stop.DECIDED
                 break
             leaves.remove(leaf)
             leaves += leaf.parts(at, rates)
             found.branches += 1
         found.lower = max(found.lower, min(each.found.lower for each in leaves))
-    return found

@@ -34,12 +34,14 @@ class Certifier:
     Attributes:
         documents: of the windows that raise the bound, in order.
         cases: into which the states of the last of them are divided, if they are.
+        refused: why there is no document of the last window; empty where there is.
     """
 
     def __init__(self, wall: ExactWall, scales: Scales, equations: Equations) -> None:
         self.wall, self.scales = wall, scales
         self.documents: list[dict[str, Any]] = []
         self.cases: CaseCertifier | None = None
+        self.refused = ""
         self._programme = SlackProgramme(equations)
         self._proved = Fraction(0)
         self._last: tuple[Relaxation, States] | None = None
@@ -60,8 +62,10 @@ class Certifier:
         writer = WindowDocument(self.wall, self.scales, proof, self._programme)
         try:
             document, bound = writer.document(exact)
-        except CertificateError:
+        except CertificateError as error:
+            self.refused = str(error)
             return self.scales.scaled(self._proved)
+        self.refused = ""
         if bound > self._proved:
             if self._last is not None and proof.relaxation is self._last[0]:
                 self.documents.pop()

@@ -25,6 +25,7 @@ class Windows:
             interfaces on friction 1.0 gained .007 of it in 40 s, and then half of it in 15 s in parts.
         inside: part of the range of a normal force that either half of a division has at least: without it one of a
             wall that was all but closed was divided 20 times next to the end of its range.
+        loose: interfaces above which what some minutes give is loose: 17 % below the state on 141.
         share: of its iterations that a window may spend so.
         least_weight: of a rate in the size of mechanisms, the greatest price being one. On 83 interfaces few of 172
             rates bear most of the price: with .3 a third is lost to it of what is with one. With .1 sizes of 21 bricks
@@ -43,6 +44,7 @@ class Windows:
     patience: int = 12_000
     worth: float = 0.1
     inside: float = 0.1
+    loose: int = 140
     share: float = 0.5
     least_weight: float = 0.3
     newest_weight: float = 0.25

@@ -5,6 +5,7 @@ from __future__ import annotations
 import time
 from collections.abc import Callable
 from dataclasses import dataclass, field
+from enum import StrEnum
 from typing import Protocol
 
 import numpy as np
@@ -38,6 +39,14 @@ class WindowProof:
     bound: float
 
 
+class Stop(StrEnum):
+    """What ended the search for a bracket before it closed, as a clause."""
+
+    TIME = "the time was over"
+    SIZE = "the time was over before the size of the mechanisms of a window was bounded"
+    DECIDED = "the states with the least bound have no contact left at which to divide them"
+
+
 @dataclass
 class Bracket:
     """What is known of the least multiplier.
@@ -48,6 +57,8 @@ class Bracket:
         iterations: of the splitting.
         proofs: of the windows, in order.
         branches: divisions of windows that had no more to give; not covered by `proofs`.
+        stopped: what ended the search; None where it closed the bracket.
+        refused: why there is no certificate of a window, empty where there is one of each.
     """
 
     lower: float
@@ -56,6 +67,13 @@ class Bracket:
     iterations: int = 0
     proofs: list[WindowProof] = field(default_factory=list)
     branches: int = 0
+    stopped: Stop | None = None
+    refused: str = ""
+
+    @property
+    def in_floats(self) -> float:
+        """The bound to rounding, which a certificate may have lowered in `lower`."""
+        return min(self.upper, max([self.lower, *(proof.bound for proof in self.proofs)]))
 
     @property
     def closed(self) -> bool:
@@ -111,6 +129,11 @@ class WindowSearch:
         self._weights: FloatArray | None = None
         self._gaps: list[tuple[float, float]] = []
 
+    @property
+    def unbounded(self) -> bool:
+        """Whether the size of the mechanisms of the last window is not bounded yet."""
+        return self._relaxation is not None and not np.isfinite(self._size)
+
     def parts(self, at: Division, rates: RateProgramme) -> list[WindowSearch]:
         """The searches of both halves of the states of this one, which begin where this one is.
 
@@ -136,8 +159,7 @@ class WindowSearch:
     def window(self) -> bool:
         """Bound the multipliers of one window, or go on with the last one; whether another may gain more."""
         found, last = self.found, self._relaxation is not None and self._is_last(self._relaxation)
-        unfinished = self._relaxation is not None and not np.isfinite(self._size)
-        if not last and not unfinished and not self._build():
+        if not last and not self.unbounded and not self._build():
             return False
         before = found.lower
         if not np.isfinite(self._size):

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import time
 from dataclasses import replace
 from fractions import Fraction
 from typing import Any
@@ -17,11 +18,14 @@ from methods.la.certify.tree_certificate import certificate
 from methods.la.certify.window_certificate import certified_bracket
 from methods.la.core.problem import Problem
 from methods.la.core.search_settings import BoundSettings
+from methods.la.find_certificate import account, beyond
 from methods.la.least import SAME_MULTIPLIER
 
 
 def with_bound(assembly: Assembly, problem: Problem, known: Answer, settings: BoundSettings) -> Answer:
     """The answer of a search with what is proved below its state, within the seconds of the settings.
+
+    The tree gives the certificate where it ended and its leaves exist in fractions, else windows do.
 
     Args:
         assembly: a wall of one component; problem: the same, scaled.
@@ -33,13 +37,20 @@ def with_bound(assembly: Assembly, problem: Problem, known: Answer, settings: Bo
         return known
     if known.details.get("stopped_by_limit"):
         return known
-    if known.details["proved_least"]:
-        return certified(known, certificate(assembly, seconds=settings.bound_seconds))
-    if multiplier <= 0.0 or problem.n_interfaces > settings.most_interfaces:
-        return known
+    began = time.process_time()
+    document = certificate(assembly, seconds=settings.bound_seconds) if known.details["proved_least"] else None
+    if document is not None or multiplier <= 0.0:
+        return certified(known, document)
+    too_large = beyond(problem, settings.most_interfaces)
+    if too_large:
+        return replace(known, sentence=f"{known.sentence} {too_large}")
     assert known.mechanism is not None
-    found, document = certified_bracket(problem, multiplier, known.mechanism, settings.bound_seconds)
-    answer = certified(bounded(problem, known, found), document)
+    left = settings.bound_seconds - (time.process_time() - began)
+    found, document = certified_bracket(problem, multiplier, known.mechanism, left)
+    if document is None and known.details["proved_least"]:
+        return known
+    said = account(problem, multiplier, found, document, time.process_time() - began)
+    answer = certified(bounded(problem, known, found, said), document)
     if document is not None and len(json.dumps(document)) > settings.largest_certificate:
         return replace(answer, details={k: v for k, v in answer.details.items() if k != "certificate"})
     return answer
@@ -77,8 +88,13 @@ def certified(known: Answer, document: dict[str, Any] | None) -> Answer:
     return replace(known, sentence=sentence, details=details)
 
 
-def bounded(problem: Problem, known: Answer, found: Bracket) -> Answer:
-    """The answer of `la` with the bracket, which holds to rounding and is therefore not called a proof."""
+def bounded(problem: Problem, known: Answer, found: Bracket, said: str) -> Answer:
+    """The answer of `la` with the bracket, which holds to rounding and is therefore not called a proof.
+
+    Args:
+        problem: the scaled wall; known: the answer; found: the bracket.
+        said: how far the bracket came, and what stopped it.
+    """
     lower = max(found.lower * problem.unit_multiplier, float(known.details["lower_bound"]))
     details = known.details | {
         "lower_bound": lower,
@@ -92,5 +108,5 @@ def bounded(problem: Problem, known: Answer, found: Bracket) -> Answer:
     elif lower > 0.0:
         sentence = f"{least}; the least is at least {lower:.7g}, by a relaxation solved in floating point."
     else:
-        sentence = f"{least}; in this time no lower bound above zero was found."
-    return replace(known, sentence=sentence, details=details)
+        sentence = f"{least}; no lower bound above zero was found."
+    return replace(known, sentence=f"{sentence} {said}".rstrip(), details=details)

@@ -27,7 +27,8 @@ def in_cases(problem: Problem, upper: float, seconds: float, certify: Certify | 
     equations, until = equations_of(problem), time.process_time() + seconds
     root = Short(equations, SlackProgramme(equations), Bracket(0.0, upper), until, certify)
     root.window()
-    return branched(root)
+    branched(root)
+    return root.found
 
 
 def certificate_of_cases(wall: Assembly, seconds: float = 60.0) -> dict[str, Any]:

@@ -42,6 +42,7 @@ def certified_bracket(
     certifier = certifier_of(problem)
     upper = multiplier / problem.unit_multiplier
     found = bracket(equations_of(problem), upper, seconds, certify=certifier)
+    found.refused = certifier.refused
     return found, certificate_of(problem, multiplier, mechanism, certifier)
 
 

@@ -1,0 +1,114 @@
+"""The certificate of a wall by what closes: the tree where it may end, else windows; and what stopped where none does."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable
+from dataclasses import dataclass
+from fractions import Fraction
+from typing import Any
+
+from harness.model.assembly import Assembly
+from harness.model.method import Finding, Status
+from methods.bound.tuning import WINDOWS
+from methods.bound.window_search import Bracket
+from methods.la.certify.tree_certificate import certificate
+from methods.la.certify.window_certificate import certified_bracket
+from methods.la.core.newton_matrix import NewtonMatrix
+from methods.la.core.problem import Problem, make_problem
+from methods.la.core.search_settings import BoundSettings, SearchSettings
+from methods.la.declared_la import DeclaredBound
+from methods.la.least import least_known
+from methods.la.sources.budget import SIZES
+from methods.la.state_answers import dead_load_answer
+
+
+@dataclass(frozen=True)
+class Attempt:
+    """What came of the attempt to certify a wall.
+
+    Attributes:
+        document: the certificate; None where nothing is proved in fractions.
+        sentence: how far the bound came and what stopped it; empty where it meets the state.
+    """
+
+    document: dict[str, Any] | None
+    sentence: str = ""
+
+
+def find_certificate(
+    assembly: Assembly,
+    seconds: float,
+    search: SearchSettings,
+    nodes: int | None = None,
+    say_before: Callable[[str], None] = lambda sentence: None,
+) -> Attempt:
+    """The certificate of the tree where that ends, else of windows.
+
+    Args:
+        assembly: a wall of one component.
+        seconds: of CPU time for the windows.
+        search: of the state below which the windows lie.
+        nodes: of the tree at most; None as many as `la` takes, which are none on walls where hardly any ends.
+        say_before: called with what is known of the bound of such walls, before time is spent on it.
+    """
+    problem = make_problem(assembly)
+    most = SIZES.limits(search.effort, problem).nodes if nodes is None else nodes
+    document = certificate(assembly, most) if most else None
+    if document is not None:
+        return Attempt(document)
+    newton = NewtonMatrix(problem)
+    early = dead_load_answer(problem, newton, assembly.has_live_load)
+    if early is not None:
+        return Attempt(None, early.sentence)
+    too_large = beyond(problem, BoundSettings().most_interfaces)
+    if too_large:
+        return Attempt(None, too_large)
+    if problem.n_interfaces > WINDOWS.loose:
+        say_before(
+            f"The wall has {problem.n_interfaces} interfaces: on more than {WINDOWS.loose} the bound of some minutes "
+            f"lies well below the least state known. The search for that state comes first, then {seconds:g} s of CPU "
+            "time for the bound."
+        )
+    known = least_known(problem, newton, search, DeclaredBound.tolerance)
+    if known.status is not Status.OK or known.finding is not Finding.COLLAPSES or known.multiplier is None:
+        return Attempt(None, known.sentence)
+    if known.multiplier <= 0.0 or known.mechanism is None:
+        return Attempt(None, f"{known.sentence} A bound is sought below states above zero only.")
+    began = time.process_time()
+    found, document = certified_bracket(problem, known.multiplier, known.mechanism, seconds)
+    return Attempt(document, account(problem, known.multiplier, found, document, time.process_time() - began))
+
+
+def beyond(problem: Problem, most: int) -> str:
+    """Why no bound is tried on a wall of more interfaces than `most`; empty for others."""
+    if problem.n_interfaces <= most:
+        return ""
+    return (
+        f"No lower bound is tried: the wall has {problem.n_interfaces} interfaces, more than {most}, above which the "
+        "matrices of products are too large."
+    )
+
+
+def account(
+    problem: Problem, multiplier: float, found: Bracket, document: dict[str, Any] | None, seconds: float
+) -> str:
+    """How far a bracket came in floating point and in fractions, and what stopped it; empty where its end is certified.
+
+    Args:
+        problem: the scaled wall; multiplier: of the state; found: its bracket; document: of its certificate.
+        seconds: of CPU time that were spent.
+    """
+    proved = float(Fraction(document["bound"])) if document is not None else 0.0
+    if proved >= multiplier * (1.0 - WINDOWS.proved):
+        return ""
+    bound = found.in_floats * problem.unit_multiplier
+    in_floats = f"at {bound:.7g} in floating point" if bound > 0.0 else "still at zero"
+    in_fractions = f"at {proved:.7g} in fractions" if proved > 0.0 else "nothing is proved in fractions"
+    reasons = [f"no certificate of a window, because {found.refused}"] if found.refused else []
+    reasons += [found.stopped] if found.stopped else []
+    stopped = f" What stopped it: {'; '.join(reasons)}." if reasons else ""
+    return (
+        f"After {seconds:.1f} s of CPU time the bound is {in_floats}, {in_fractions}; "
+        f"the least state known is {multiplier:.7g}.{stopped}"
+    )
