@@ -13,6 +13,7 @@ import scipy.linalg
 
 from harness.model.assembly import FloatArray, IntArray
 from methods.bound.exact_wall import CertificateError, ExactWall, Form
+from methods.bound.force_limits import Forces
 from methods.bound.relaxation import Relaxation
 from methods.bound.slack_bounds import SlackProgramme
 from methods.bound.tuning import PRECISION, ROUNDING
@@ -132,11 +133,20 @@ class WindowDocument:
         """Contacts without a rate."""
         return np.flatnonzero(self.relaxation.bounds.least > ROUNDING.margin)
 
-    @cached_property
-    def least(self) -> dict[int, Fraction]:
-        """Least normal forces of the interfaces that are loaded."""
-        normal = self.relaxation.normal / self.scales.length
-        return {int(p): max(Fraction(0), below(normal[p])) for p in self.relaxation.loaded}
+    def _least(self, forces: dict[str, Any], velocities: list[Any]) -> list[str]:
+        """Least normal forces of the interfaces that are loaded: of the search, or what their velocities show of them.
+
+        What a programme of floats is wrong by costs as much of the sum of all normal forces, which may be large.
+
+        Args:
+            forces: the bounds of forces of the window; velocities: that show the least normal forces, in order.
+        """
+        normal, shown = self.relaxation.normal / self.scales.length, Forces(self.wall, self.low, self.high, forces)
+        least = []
+        for p, each in zip(self.relaxation.loaded.tolist(), velocities, strict=True):
+            proved = below(-shown.greatest({p: Fraction(-1)}, each))
+            least.append(max(Fraction(0), min(below(float(normal[p])), proved)))
+        return [str(value) for value in least]
 
     @cached_property
     def parts(self) -> dict[str, Any]:
@@ -146,7 +156,7 @@ class WindowDocument:
         total = self.programme.least(np.repeat(-1.0 / scales.length, 4) * np.tile([1.0, 1.0, 0.0, 0.0], m))
         if total[0] != "optimal":
             raise CertificateError("the normal forces of a window are not bounded")
-        parts = {
+        parts: dict[str, Any] = {
             "low": str(self.low),
             "forces": {
                 "exponent": PRECISION.velocities,
@@ -159,15 +169,17 @@ class WindowDocument:
         }
         if self.states is not None:
             return {"shows": "window"} | parts
+        loaded = self.relaxation.loaded.tolist()
+        least_velocities = scales.velocities((by_interface * bounds.least_velocities)[loaded])
         return parts | {
             "high": str(self.high),
             "still": self.still.tolist(),
             "still_velocities": scales.velocities(
                 np.repeat(by_interface, 4, axis=0)[self.still] * bounds.still_velocities[self.still]
             ),
-            "loaded": list(self.least),
-            "least": [str(value) for value in self.least.values()],
-            "least_velocities": scales.velocities((by_interface * bounds.least_velocities)[list(self.least)]),
+            "loaded": loaded,
+            "least": self._least(parts["forces"], least_velocities),
+            "least_velocities": least_velocities,
             "motions": self._motions(),
         }
 
@@ -371,10 +383,10 @@ def _matrix(forms: list[Form], width: int) -> FloatArray:
     return matrix
 
 
-def below(value: float) -> Fraction:
-    """A binary fraction next to a float, below it or equal."""
+def below(value: float | Fraction) -> Fraction:
+    """A binary fraction next to a number, below it or equal."""
     unit = 2**PRECISION.numbers
-    return Fraction(int(np.floor(value * unit)), unit)
+    return Fraction(math.floor(value * unit), unit)
 
 
 def whole_values(values: FloatArray, exponent: int) -> list[Any]:

@@ -2,11 +2,15 @@
 
 from __future__ import annotations
 
+import numpy as np
 import pytest
 
+from benchmarks.walls import small_arch
 from harness.model.assembly import Assembly
 from harness.model.build import build
+from methods.bound.verify import verify
 from methods.la.certify.proof import Proof, _Certificates, _Part, prove
+from methods.la.certify.tree_certificate import certificate
 from methods.la.core.extremes import ForceProgramme
 from methods.la.core.newton_matrix import NewtonMatrix
 from methods.la.core.problem import Problem, make_problem
@@ -85,3 +89,29 @@ def test_contacts_that_a_certificate_needs_bound_without_the_others() -> None:
     for still in certificates.still:
         work = programme.least_dead_work(still)
         assert work == "unbounded" or work.work >= limit * (1.0 - 1e-9)
+
+
+@pytest.mark.parametrize("seed", [1, 10, 11, 15, 28])
+def test_small_arches_are_proved_by_the_tree_and_in_fractions(seed: int) -> None:
+    """Parts without live work have mechanisms on which dead loads work: an arch slides down at an abutment."""
+    wall = small_arch(seed)
+    answer = LimitAnalysis().solve(wall, SearchSettings())
+    assert answer.details["proved_least"]
+    document = certificate(wall)
+    assert document is not None
+    lower, upper = verify(document)
+    assert float(upper) == pytest.approx(answer.multiplier, rel=1e-9)
+    assert float(upper - lower) == pytest.approx(2e-6 * float(upper), rel=1e-9)
+
+
+def test_a_part_whose_mechanisms_all_work_against_the_live_load_is_excluded() -> None:
+    """A block on a joint that opens nowhere and slides one way only: against the push, no; with it, the work is mu."""
+    wall = column([0.5], [0.5], 0.4)
+    programme = ForceProgramme(make_problem(wall))
+    found = {}
+    for way in (2, 3):
+        still = np.ones((1, 4), dtype=bool)
+        still[0, way] = False
+        found[way] = programme.least_dead_work(still)
+    works = [each if isinstance(each, str) else each.work for each in found.values()]
+    assert sorted(map(str, works)) == ["0.0", "inf"]

@@ -147,8 +147,9 @@ class ForceProgramme:
         if found != "infeasible":
             return found
         alone = self._dead_work(still, np.zeros_like(self._dead), 1.0)
-        carries = not isinstance(alone, str) and alone.work > 0.5
-        return replace(alone, work=np.inf) if carries else found
+        if isinstance(alone, str) or alone.work < 0.5:
+            return found
+        return replace(alone, work=np.inf)
 
     def _dead_work(self, still: BoolArray, dead: FloatArray, most_live: float) -> DeadWork | str:
         """The programme of `least_dead_work` beside another dead load and with a multiplier of at most so much."""

@@ -1,0 +1,99 @@
+"""`drystone bound` says how far it came and what stopped it, and what it expects of a large wall before it begins."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from typing import Any
+
+import pytest
+from click.testing import CliRunner, Result
+
+from harness.cli import main as drystone
+from methods.bound.bracket import bracket
+from methods.bound.window_search import Stop
+from methods.la.certify.window_certificate import certified_bracket, equations_of
+from methods.la.core.problem import make_problem
+from methods.la.core.search_settings import SearchSettings
+from methods.la.find_certificate import account
+from methods.la.search_adapter import LimitAnalysis
+from tests.la.bodies import running_bond as bond
+from tests.walls import running_bond, stack, wall_data
+
+DATA = Path(__file__).parents[1] / "data" / "walls"
+
+
+def bound(tmp_path: Path, wall: dict[str, Any], *arguments: str) -> tuple[Result, Path]:
+    file, output = tmp_path / "wall.json", tmp_path / "certificate.json"
+    file.write_text(json.dumps(wall))
+    return CliRunner().invoke(drystone, ["bound", str(file), "-o", str(output), *arguments]), output
+
+
+def test_a_bound_without_time_says_so_and_writes_nothing(tmp_path: Path) -> None:
+    wall = wall_data(running_bond(4, 3), 0.65)
+    answer, output = bound(tmp_path, wall, "--seconds", "0", "--effort", "quick", "--nodes", "1")
+    assert (answer.exit_code, output.exists()) == (1, False)
+    assert "nothing is proved in fractions" in answer.output
+    assert "the least state known is" in answer.output
+    assert Stop.TIME in answer.output
+
+
+def test_a_wall_that_no_live_load_moves_has_no_bound_and_is_told_why(tmp_path: Path) -> None:
+    wall = wall_data(stack(3), 0.5, loads={"live": {"body": [{"per_weight": [0, -1]}]}})
+    answer, output = bound(tmp_path, wall)
+    assert (answer.exit_code, output.exists()) == (1, False)
+    assert "cannot make the wall collapse" in answer.output
+
+
+def test_of_a_wall_too_large_no_search_is_begun(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    def searched(*arguments: Any) -> None:
+        raise AssertionError("the search was begun")
+
+    monkeypatch.setattr("methods.la.find_certificate.least_known", searched)
+    answer, _ = bound(tmp_path, wall_data(running_bond(14, 8), 0.65))
+    assert answer.exit_code == 1
+    assert "more than 300" in answer.output
+
+
+def test_what_is_known_to_be_loose_is_said_before_the_search(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    class Begun(Exception):
+        pass
+
+    def searched(*arguments: Any) -> None:
+        raise Begun
+
+    monkeypatch.setattr("methods.la.find_certificate.least_known", searched)
+    for courses, told in ((10, True), (4, False)):
+        answer, _ = bound(tmp_path, wall_data(running_bond(courses, 6), 0.65))
+        assert isinstance(answer.exception, Begun)
+        assert ("lies well below" in answer.output) is told
+
+
+def test_a_bound_that_stalls_says_how_far_it_came() -> None:
+    """Friction work is the sharper a bound the longer it is sought; the bound to rounding is given with its own time."""
+    wall = bond(4, 3, 0.2, 1.0)
+    known, problem = LimitAnalysis().solve(wall, SearchSettings(effort="quick")), make_problem(wall)
+    assert known.multiplier is not None
+    assert known.mechanism is not None
+    found, document = certified_bracket(problem, known.multiplier, known.mechanism, 3.0)
+    sentence = account(problem, known.multiplier, found, document, 3.0)
+    assert found.stopped is Stop.TIME
+    assert 0.0 < found.lower <= found.in_floats < found.upper
+    assert f"at {found.in_floats * problem.unit_multiplier:.7g} in floating point" in sentence
+    assert document is not None
+    assert f"at {float(document['bound'].split('/')[0]) / float(document['bound'].split('/')[1]):.7g} in" in sentence
+
+
+def test_a_bracket_that_closes_has_nothing_that_stopped_it() -> None:
+    problem = make_problem(bond(2, 2, 0.2, 0.65))
+    found = bracket(equations_of(problem), 0.65 / problem.unit_multiplier, 30.0)
+    assert (found.closed, found.stopped, found.refused) == (True, None, "")
+
+
+def test_what_the_tree_and_the_windows_both_refused_is_proved_now(tmp_path: Path) -> None:
+    for name in ("arch-five-voussoirs", "courses-unequal-joints"):
+        answer, output = bound(tmp_path, json.loads((DATA / f"{name}.json").read_text()))
+        assert answer.exit_code == 0
+        assert "proved in fractions" in answer.output
+        checked = CliRunner().invoke(drystone, ["verify-bound", str(output), "--wall", str(tmp_path / "wall.json")])
+        assert checked.exit_code == 0

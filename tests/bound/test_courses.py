@@ -1,0 +1,112 @@
+"""The slip of joints that may be unloaded is bounded where they slide together and cannot all be unloaded."""
+
+from __future__ import annotations
+
+import copy
+import json
+from collections.abc import Callable
+from fractions import Fraction
+from functools import cache
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from benchmarks.walls import courses_of_stones
+from harness.model.assembly import Assembly
+from harness.model.build import build
+from harness.model.reading import parse_wall
+from harness.model.wall import Wall
+from methods.bound.exact_wall import CertificateError, ExactWall
+from methods.bound.verify import digest, verify
+from methods.bound.verify_window import WindowLimits
+from methods.bound.window_limits import Course, Motions
+from tests.bound.test_window_certificate import certificate_of
+
+DATA = Path(__file__).parents[1] / "data" / "walls"
+
+
+def slab_on_two_supports(friction: Any = 0.3) -> Assembly:
+    """A slab 3 long and 2 high, whose weight acts over its right support and is pushed over its left one, 1.4 long."""
+    blocks: list[dict[str, Any]] = [
+        {"id": "left", "polygon": [[-1, -1], [1.4, -1], [1.4, 0], [-1, 0]], "fixed": True},
+        {"id": "right", "polygon": [[1.4, -1], [4, -1], [4, 0], [1.4, 0]], "fixed": True},
+        {"id": "slab", "polygon": [[0, 0], [3, 0], [3, 2], [0, 2]]},
+    ]
+    loads = {"live": {"body": [{"per_weight": [-1, 0]}]}}
+    data = {"format": "wall/1", "unit_weight": 20.0, "friction": friction, "blocks": blocks, "loads": loads}
+    return build(Wall.model_validate(data)).assembly
+
+
+@cache
+def of_slab() -> dict[str, Any]:
+    return certificate_of(slab_on_two_supports())
+
+
+def courses_of(document: Any) -> list[dict[str, Any]]:
+    return [course for window in document["windows"] for course in window["motions"]["courses"]]
+
+
+def test_a_slab_that_slides_on_unequal_joints_is_proved() -> None:
+    """It slides at the friction, .3, long before it turns over, at 1.5; either joint alone may carry nothing."""
+    lower, upper = verify(of_slab())
+    assert upper == Fraction(3, 10)
+    assert 0 < upper - lower <= Fraction(1, 10**6) * upper
+    assert {tuple(sorted(course["joints"])) for course in courses_of(of_slab())} == {(0, 1)}
+
+
+def test_the_joints_of_a_course_bear_the_weight_above_whatever_their_lengths() -> None:
+    """Forces are per length, slips times length: the least friction is the weight over the length of the first joint.
+
+    A course that weighed its joints alike would have less, since the longer joint could bear all.
+    """
+    document = of_slab()
+    wall, window = ExactWall(document), document["windows"][0]
+    limits, inverse = WindowLimits(wall, window), Fraction(1, 2 ** window["motions"]["exponent"])
+    assert isinstance(limits.motions, Motions)
+    strains = window["motions"]["strains"]
+    rows = [dict(zip(strains, (inverse * v for v in row), strict=True)) for row in window["motions"]["inverse"]]
+    course = Course(limits.columns, window["motions"]["courses"][0], rows)
+    x1, _, x2, _ = (Fraction(x) for x in document["interfaces"][course.joints[0]]["ends"])
+    weight = -Fraction(document["blocks"][0]["dead"][1])
+    assert float(course.least) == pytest.approx(float(weight / abs(x2 - x1)), rel=1e-6)  # velocities have 40 places
+
+
+CHANGES: dict[str, Callable[[dict[str, Any]], Any]] = {
+    "a joint that may be unloaded alone": lambda course: course["joints"].pop(),
+    "a joint counted twice": lambda course: course["joints"].append(course["joints"][0]),
+    "a joint that is not there": lambda course: course["joints"].append(2),
+    "no velocities": lambda course: course.update(velocities=[0] * len(course["velocities"])),
+    "velocities downwards": lambda course: course.update(velocities=[-v for v in course["velocities"]]),
+}
+
+
+@pytest.mark.parametrize("name", CHANGES)
+def test_a_course_whose_friction_may_be_zero_is_refused(name: str) -> None:
+    document = copy.deepcopy(of_slab())
+    for course in courses_of(document):
+        CHANGES[name](course)
+    with pytest.raises(CertificateError):
+        verify(document | {"digest": digest(document)})
+
+
+def test_a_joint_without_friction_does_not_bound_the_slip_of_a_course() -> None:
+    """The same certificate, of a wall whose left joint is smooth: all the weight may lie there."""
+    document = copy.deepcopy(of_slab())
+    document["interfaces"][0]["friction"] = "0"
+    document.pop("state")
+    with pytest.raises(CertificateError):
+        verify(document | {"digest": digest(document)})
+
+
+@pytest.mark.parametrize("seed", [0, 17, 22])
+def test_courses_of_stones_are_proved(seed: int) -> None:
+    lower, upper = verify(certificate_of(courses_of_stones(seed)))
+    assert 0 < upper - lower <= Fraction(1, 10**6) * upper
+
+
+def test_a_wall_of_courses_with_unequal_joints_is_proved() -> None:
+    wall = parse_wall(json.loads((DATA / "courses-unequal-joints.json").read_text()), "courses")
+    lower, upper = verify(certificate_of(build(wall).assembly))
+    assert upper == Fraction(10, 21)  # the block of least height over width turns over
+    assert 0 < upper - lower <= Fraction(1, 10**6) * upper
