@@ -93,7 +93,9 @@ def courses_of_stones(seed: int) -> Assembly:
     """
     generator = np.random.default_rng([seed, 11])
     length = round(float(generator.uniform(0.5, 1.2)), 2)
-    blocks: list[dict[str, Any]] = [{"id": "ground", "polygon": _rectangle(-0.2, -0.2, length + 0.2, 0.0), "fixed": True}]
+    blocks: list[dict[str, Any]] = [
+        {"id": "ground", "polygon": _rectangle(-0.2, -0.2, length + 0.2, 0.0), "fixed": True}
+    ]
     base = 0.0
     for course in range(int(generator.integers(4, 9))):
         top = round(base + float(generator.uniform(0.12, 0.3)), 2)

@@ -212,7 +212,7 @@ class WindowDocument:
         }
 
     def _courses(self, motions: FloatArray) -> list[dict[str, Any]]:
-        """Interfaces that slide in proportion in motions (3n, e) that open nothing: one course a motion, or an error."""
+        """Interfaces that slide in proportion where (3n, e) motions open nothing: one course a motion, or an error."""
         unloadable, m = self.relaxation.unloadable, self.wall.n_interfaces
         slips = self.strains[3 * unloadable + 2] @ motions
         groups: list[tuple[FloatArray, list[int], list[float]]] = []

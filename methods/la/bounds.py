@@ -38,7 +38,9 @@ def with_bound(assembly: Assembly, problem: Problem, known: Answer, settings: Bo
     if known.details.get("stopped_by_limit"):
         return known
     began = time.process_time()
-    document = certificate(assembly, seconds=settings.bound_seconds) if known.details["proved_least"] else None
+    document = None
+    if known.details["proved_least"]:
+        document = certificate(assembly, seconds=settings.bound_seconds, mechanism=known.mechanism)
     if document is not None or multiplier <= 0.0:
         return certified(known, document)
     too_large = beyond(problem, settings.most_interfaces)

@@ -1,4 +1,4 @@
-"""The certificate of a wall by what closes: the tree where it may end, else windows; and what stopped where none does."""
+"""The certificate of a wall by what closes, the tree where it may end or windows, and what stopped where none does."""
 
 from __future__ import annotations
 
@@ -75,6 +75,10 @@ def find_certificate(
         return Attempt(None, known.sentence)
     if known.multiplier <= 0.0 or known.mechanism is None:
         return Attempt(None, f"{known.sentence} A bound is sought below states above zero only.")
+    if most and known.details["proved_least"]:
+        document = certificate(assembly, most, mechanism=known.mechanism)
+        if document is not None:
+            return Attempt(document)
     began = time.process_time()
     found, document = certified_bracket(problem, known.multiplier, known.mechanism, seconds)
     return Attempt(document, account(problem, known.multiplier, found, document, time.process_time() - began))

@@ -70,7 +70,6 @@ def test_what_is_known_to_be_loose_is_said_before_the_search(tmp_path: Path, mon
 
 
 def test_a_bound_that_stalls_says_how_far_it_came() -> None:
-    """Friction work is the sharper a bound the longer it is sought; the bound to rounding is given with its own time."""
     wall = bond(4, 3, 0.2, 1.0)
     known, problem = LimitAnalysis().solve(wall, SearchSettings(effort="quick")), make_problem(wall)
     assert known.multiplier is not None

@@ -23,6 +23,7 @@ from methods.la.certify.proof import prove
 from methods.la.certify.rational import DENOMINATOR, Row, solve_sparse
 from methods.la.core.newton_matrix import NewtonMatrix
 from methods.la.core.problem import make_problem
+from methods.la.core.state import CollapseState
 from methods.la.sources.search import Search
 from methods.numerics.linear_programme import INFINITY, Programme
 from methods.numerics.vertex import BASIC
@@ -34,20 +35,24 @@ BELOW = Fraction(2, 10**6)
 """Relative distance of the certified bound below the state: twice what the tree closes to."""
 
 
-def certificate(assembly: Assembly, nodes: int = 1500, seconds: float = math.inf) -> dict[str, Any] | None:
+def certificate(
+    assembly: Assembly, nodes: int = 1500, seconds: float = math.inf, mechanism: FloatArray | None = None
+) -> dict[str, Any] | None:
     """The certificate of a wall of one component, which stands under its dead load; None where none was found.
 
     Args:
         assembly: the wall, whose numbers must be short fractions.
         nodes: of the tree at most.
         seconds: of CPU time after which no further leaf is begun, and there is no certificate.
+        mechanism: (n_blocks, 3) velocities of a collapse state that is known; None takes the one that the interior
+            point leads to, which leads to none where statics allows any live load.
     """
     end = time.process_time() + seconds
     if not assembly.has_live_load or assembly.dilates:  # The equations in fractions lift no joint.
         return None
     problem = make_problem(assembly)
     search = Search(problem, NewtonMatrix(problem))
-    known = search.interior()
+    known = search.interior() if mechanism is None else _state_of(search, mechanism)
     if known is None:
         return None
     proof = prove(search, known, nodes)
@@ -69,6 +74,11 @@ def certificate(assembly: Assembly, nodes: int = 1500, seconds: float = math.inf
     except (ArithmeticError, CertificateError):
         return None
     return document
+
+
+def _state_of(search: Search, mechanism: FloatArray) -> CollapseState | None:
+    velocities = search.problem.from_mechanism(mechanism)
+    return search.state_of(velocities, search.problem.rates_of_velocities(velocities, False))
 
 
 def wall_document(assembly: Assembly, unit: float) -> dict[str, Any]:
