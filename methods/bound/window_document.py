@@ -218,7 +218,7 @@ class WindowDocument:
         groups: list[tuple[FloatArray, list[int], list[float]]] = []
         for p, slip in zip(unloadable.tolist(), slips, strict=True):
             size = float(np.linalg.norm(slip))
-            if size < ROUNDING.no_row:
+            if size < ROUNDING.no_row or self.friction[p] <= 0.0:
                 continue
             along = slip / size
             alike = (g for g in groups if min(abs(g[0] - along).max(), abs(g[0] + along).max()) < ROUNDING.margin)

@@ -49,10 +49,11 @@ def with_bound(assembly: Assembly, problem: Problem, known: Answer, settings: Bo
     assert known.mechanism is not None
     left = settings.bound_seconds - (time.process_time() - began)
     found, document = certified_bracket(problem, multiplier, known.mechanism, left)
-    if document is None and known.details["proved_least"]:
-        return known
     said = account(problem, multiplier, found, document, time.process_time() - began)
-    answer = certified(bounded(problem, known, found, said), document)
+    if said and known.details["proved_least"]:
+        return known
+    answer = certified(bounded(problem, known, found), document)
+    answer = replace(answer, sentence=f"{answer.sentence} {said}".rstrip())
     if document is not None and len(json.dumps(document)) > settings.largest_certificate:
         return replace(answer, details={k: v for k, v in answer.details.items() if k != "certificate"})
     return answer
@@ -90,13 +91,8 @@ def certified(known: Answer, document: dict[str, Any] | None) -> Answer:
     return replace(known, sentence=sentence, details=details)
 
 
-def bounded(problem: Problem, known: Answer, found: Bracket, said: str) -> Answer:
-    """The answer of `la` with the bracket, which holds to rounding and is therefore not called a proof.
-
-    Args:
-        problem: the scaled wall; known: the answer; found: the bracket.
-        said: how far the bracket came, and what stopped it.
-    """
+def bounded(problem: Problem, known: Answer, found: Bracket) -> Answer:
+    """The answer of `la` with the bracket, which holds to rounding and is therefore not called a proof."""
     lower = max(found.lower * problem.unit_multiplier, float(known.details["lower_bound"]))
     details = known.details | {
         "lower_bound": lower,
@@ -111,4 +107,4 @@ def bounded(problem: Problem, known: Answer, found: Bracket, said: str) -> Answe
         sentence = f"{least}; the least is at least {lower:.7g}, by a relaxation solved in floating point."
     else:
         sentence = f"{least}; no lower bound above zero was found."
-    return replace(known, sentence=f"{sentence} {said}".rstrip(), details=details)
+    return replace(known, sentence=sentence, details=details)

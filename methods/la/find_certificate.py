@@ -111,8 +111,9 @@ def account(
     in_fractions = f"at {proved:.7g} in fractions" if proved > 0.0 else "nothing is proved in fractions"
     reasons = [f"no certificate of a window, because {found.refused}"] if found.refused else []
     reasons += [found.stopped] if found.stopped else []
-    stopped = f" What stopped it: {'; '.join(reasons)}." if reasons else ""
+    if not reasons:
+        reasons = ["exact arithmetic leaves less of some part than floating point"]
     return (
         f"After {seconds:.1f} s of CPU time the bound is {in_floats}, {in_fractions}; "
-        f"the least state known is {multiplier:.7g}.{stopped}"
+        f"the least state known is {multiplier:.7g}. What stopped it: {'; '.join(reasons)}."
     )
