@@ -11,12 +11,10 @@ from click.testing import CliRunner, Result
 
 from harness.cli import main as drystone
 from methods.bound.bracket import bracket
-from methods.bound.window_search import Stop
-from methods.la.certify.window_certificate import certified_bracket, equations_of
+from methods.bound.window_search import Bracket, Stop
+from methods.la.certify.window_certificate import equations_of
 from methods.la.core.problem import make_problem
-from methods.la.core.search_settings import SearchSettings
 from methods.la.find_certificate import account
-from methods.la.search_adapter import LimitAnalysis
 from tests.la.bodies import running_bond as bond
 from tests.walls import running_bond, stack, wall_data
 
@@ -69,18 +67,28 @@ def test_what_is_known_to_be_loose_is_said_before_the_search(tmp_path: Path, mon
         assert ("lies well below" in answer.output) is told
 
 
-def test_a_bound_that_stalls_says_how_far_it_came() -> None:
-    wall = bond(4, 3, 0.2, 1.0)
-    known, problem = LimitAnalysis().solve(wall, SearchSettings(effort="quick")), make_problem(wall)
-    assert known.multiplier is not None
-    assert known.mechanism is not None
-    found, document = certified_bracket(problem, known.multiplier, known.mechanism, 3.0)
-    sentence = account(problem, known.multiplier, found, document, 3.0)
-    assert found.stopped is Stop.TIME
-    assert 0.0 < found.lower <= found.in_floats < found.upper
-    assert f"at {found.in_floats * problem.unit_multiplier:.7g} in floating point" in sentence
-    assert document is not None
-    assert f"at {float(document['bound'].split('/')[0]) / float(document['bound'].split('/')[1]):.7g} in" in sentence
+STOPPED = {
+    "the time": (Bracket(0.25, 0.5, stopped=Stop.TIME), Stop.TIME.value),
+    "a window that exact arithmetic refuses": (Bracket(0.25, 0.25, refused="a weight is above zero"), "above zero"),
+    "parts without a certificate": (Bracket(0.25, 0.25), "exact arithmetic leaves less"),
+}
+
+
+@pytest.mark.parametrize("name", STOPPED)
+def test_a_bound_that_stalls_says_how_far_it_came(name: str) -> None:
+    found, reason = STOPPED[name]
+    problem = make_problem(bond(2, 2, 0.2, 0.65))
+    sentence = account(problem, 0.65, found, {"bound": "1/8"}, 3.0)
+    assert f"at {0.25 * problem.unit_multiplier:.7g} in floating point, at 0.125 in fractions" in sentence
+    assert "After 3.0 s of CPU time" in sentence
+    assert "the least state known is 0.65. What stopped it: " in sentence
+    assert reason in sentence
+
+
+def test_a_bound_that_meets_the_state_needs_no_account() -> None:
+    problem = make_problem(bond(2, 2, 0.2, 0.65))
+    assert account(problem, 0.65, Bracket(0.0, 0.65), {"bound": "649999/1000000"}, 3.0) == ""
+    assert account(problem, 0.65, Bracket(0.0, 0.65), {"bound": "649/1000"}, 3.0) != ""
 
 
 def test_a_bracket_that_closes_has_nothing_that_stopped_it() -> None:
