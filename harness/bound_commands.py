@@ -20,7 +20,7 @@ from methods.bound.verify import verify
 @click.command()
 @click.argument("case")
 @click.option("-o", "--output", type=click.Path(path_type=Path), required=True, help="The certificate to write.")
-@click.option("--nodes", type=click.IntRange(min=1), help="Of the tree at most; by default as many as `la` takes.")
+@click.option("--nodes", type=click.IntRange(min=1), help="Of the tree at most; by default by the size of CASE.")
 @click.option("--seconds", type=click.FloatRange(min=0.0), default=120.0, show_default=True, help="For the windows.")
 @click.option("--effort", type=click.Choice(["quick", "normal", "deep"]), default="normal", help="Of the search.")
 @cases_option
