@@ -11,7 +11,7 @@ import itertools
 import numpy as np
 from scipy.optimize import linprog
 
-from harness.model.assembly import Assembly
+from harness.model.assembly import Assembly, FloatArray
 
 ENDS = ((False, False), (True, False), (False, True), (True, True))
 """Which of the two ends of an interface are open."""
@@ -29,7 +29,8 @@ def least_by_enumeration(wall: Assembly) -> float:
     States of the first interfaces for which there is no mechanism, no forces, or none below what is known, whatever the
     others do, are gone through no further.
     """
-    least, open_states = np.inf, [()]
+    least = np.inf
+    open_states: list[States] = [()]
     while open_states:
         states = open_states.pop()
         if states:
@@ -53,7 +54,8 @@ def _moves(wall: Assembly, states: States) -> bool:
     Interfaces without a state may open and slip.
     """
     rows = wall.kinematic_matrix.toarray()
-    closed, signed = [], []
+    closed: list[FloatArray] = []
+    signed: list[FloatArray] = []
     for p, (ends, slip) in enumerate(states):
         for row, free in ((3 * p, ends[0]), (3 * p + 1, ends[1])):
             (signed if free else closed).append(rows[row])
@@ -79,7 +81,9 @@ def _least_multiplier(wall: Assembly, states: States) -> float | None:
     """
     dead, live = wall.free_loads()
     m = wall.n_interfaces
-    cone, limit, bounds = [], [], []
+    cone: list[FloatArray] = []
+    limit: list[FloatArray] = []
+    bounds: list[tuple[float | None, float | None]] = []
     anything = [((False, False), 0)] * (m - len(states))
     for p, (ends, slip) in enumerate([*states, *anything]):
         bounds += [(0.0, 0.0 if free else None) for free in ends] + [(None, None)]
@@ -96,4 +100,4 @@ def _least_multiplier(wall: Assembly, states: States) -> float | None:
         b_eq=np.append(-dead, np.zeros(len(limit))),
         bounds=[*bounds, (0.0, None)],
     )
-    return float(answer.fun) if answer.status == 0 else None
+    return float(answer.fun) if answer.fun is not None and answer.status == 0 else None

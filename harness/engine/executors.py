@@ -9,6 +9,7 @@ from multiprocessing.connection import wait
 from multiprocessing.context import BaseContext
 from typing import Protocol
 
+from harness.engine import preload
 from harness.engine.isolate import LOOK_SECONDS, Again, Child, Measured, own_context, start_context
 from harness.engine.worker import Task
 
@@ -89,9 +90,14 @@ class Slots:
 
     def begin(self, task: Task, case: str, *, last: bool = False) -> Child:
         """A child that has begun the task; with `last` a fresh one, see `Child.begin`."""
-        child = self._idle.pop() if self._idle and _small(task) and not last else Child(self._context)
-        child.begin(task, case, last=last)
-        return child
+        owner = _owner(task)
+        kept = next((child for child in self._idle if child.owner == owner), None)
+        if kept is None or not _small(task) or last:
+            kept = Child(self._context, owner)
+        else:
+            self._idle.remove(kept)
+        kept.begin(task, case, last=last)
+        return kept
 
     def give_back(self, child: Child) -> None:
         """Take a child that has ended its run: keep it, or end it where another must make the next."""
@@ -104,6 +110,14 @@ class Slots:
         """End the children that are kept."""
         while self._idle:
             self._idle.pop().end()
+
+
+def _owner(task: Task) -> str:
+    """Whose runs a child may make: all of Drystone's own methods together, or those of one method of a user.
+
+    What a method leaves in its process (changed modules, signal handlers, locales) reaches its own runs only.
+    """
+    return "" if preload.shipped([task.method]) else task.method
 
 
 def _small(task: Task) -> bool:

@@ -10,7 +10,7 @@ import os
 import signal
 import tempfile
 import time
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from datetime import UTC, datetime
 from enum import Enum
@@ -25,7 +25,10 @@ from harness.engine.provenance import machine, versions
 from harness.engine.threads import pin
 from harness.engine.usage import usage
 from harness.engine.worker import Task
+from harness.model.answer_check import checked
+from harness.model.errors import InputError, visible
 from harness.model.method import Answer, Finding, Status, Traits
+from harness.model.reading import LARGEST_FILE
 from harness.model.result import Result, result_of
 
 LOOK_SECONDS, LOOKS_AT_CHILDREN = 0.05, 10
@@ -36,6 +39,10 @@ LOADING_SECONDS = 300.0
 
 LONG_SECONDS = 10.0
 """A child that made a run this long makes no other: starting one costs nothing beside it, and its memory is clean."""
+
+
+MOST_READ = 4096
+"""Bytes that are read at the end of what a run printed."""
 
 
 @dataclass(frozen=True)
@@ -138,9 +145,15 @@ class Again(Enum):
 
 
 class Child:
-    """A child process that makes runs one after another, and all that the engine knows of the present one."""
+    """A child process that makes runs one after another, and all that the engine knows of the present one.
 
-    def __init__(self, context: BaseContext) -> None:
+    Args:
+        context: where it comes from.
+        owner: name of a method of a user whose runs alone it makes; empty: it makes those of Drystone's own.
+    """
+
+    def __init__(self, context: BaseContext, owner: str = "") -> None:
+        self.owner = owner
         self._folder = tempfile.TemporaryDirectory(prefix="drystone-", ignore_cleanup_errors=True)
         self._connection, theirs = context.Pipe()
         self._process: Any = context.Process(  # type: ignore[attr-defined]
@@ -150,6 +163,7 @@ class Child:
         theirs.close()
         self.runs = 0
         self.reusable = True
+        self._came = bytearray()
         self._run: _UnderWay | None = None
         self._last = False
 
@@ -192,15 +206,14 @@ class Child:
         """
         run = self._under_way
         try:
-            while self._connection.poll():
-                message = self._connection.recv_bytes()
-                if message == worker.LOADED:
-                    run.loaded()
-                elif message == worker.REPLACE:
+            for line in self._lines():
+                if line == worker.REPLACE and not run.begun_by_method and not self._last:
                     self.reusable = False
                     return Again.FRESH
+                if line == worker.LOADED and not run.begun_by_method:
+                    run.loaded()
                 else:
-                    return self._measured(run, json.loads(message))
+                    return self._measured(run, line)
         except (EOFError, ConnectionResetError):
             self._process.join(timeout=LOOK_SECONDS)
         if not self._process.is_alive():
@@ -214,14 +227,36 @@ class Child:
             return self._failed(run)
         return None
 
-    def _measured(self, run: _UnderWay, record: dict[str, Any]) -> Measured:
+    def _lines(self) -> Iterator[bytes]:
+        """Whole lines that have come; the rest of one is not waited for, since a method may have written its begin."""
+        while self._connection.poll():
+            part = os.read(self._connection.fileno(), 2**20)
+            if not part:
+                raise EOFError
+            self._came += part
+            while b"\n" in part:
+                line, _, rest = self._came.partition(b"\n")
+                self._came, part = rest, bytes(rest)
+                yield bytes(line)
+            if len(self._came) > LARGEST_FILE:
+                yield bytes(self._came)
+
+    def _measured(self, run: _UnderWay, line: bytes) -> Measured:
+        """The run whose record is a line. What a method has changed in its process may have written anything."""
+        try:
+            record = json.loads(line)
+            reusable = record["reusable"] is True and record["wall_seconds"] < LONG_SECONDS
+            measured = run.measured(record | {"answer": checked(Answer(**record["answer"]), run.task.assembly)})
+        except (InputError, ValueError, TypeError, KeyError, RecursionError):
+            self._kill()
+            self._process.join()
+            begins = visible(line[:40].decode("utf-8", "replace"))
+            run.wrong = f'It wrote into the engine\'s own channel, where "{begins}" is no record of a run.'
+            return self._failed(run)
         self._run = None
         self.runs += 1
-        self.reusable = self.reusable and record["reusable"] and record["wall_seconds"] < LONG_SECONDS
-        answer = record["answer"]
-        answer["status"], answer["finding"] = Status(answer["status"]), Finding(answer["finding"])
-        answer["bracket"] = tuple(answer["bracket"]) if answer["bracket"] is not None else None
-        return run.measured(record | {"answer": Answer(**answer)})
+        self.reusable = self.reusable and reusable
+        return measured
 
     def _failed(self, run: _UnderWay) -> Measured:
         self._run = None
@@ -260,9 +295,12 @@ class _UnderWay:
         self.cpu_seconds: float | None = None
         self.peak_memory: int | None = None
         self.ending: Status | None = None
+        self.begun_by_method = False
+        self.wrong = ""
 
     def loaded(self) -> None:
         """The time of the method itself begins."""
+        self.begun_by_method = True
         self._clock = time.perf_counter()
         self._deadline = self._clock + self.task.seconds
 
@@ -289,7 +327,9 @@ class _UnderWay:
 
     def failure(self, exit_code: int | None, last_words: str) -> Answer:
         """The answer of a run whose process left none."""
-        if self.ending is Status.TIMEOUT:
+        if self.wrong:
+            sentence = self.wrong
+        elif self.ending is Status.TIMEOUT:
             sentence = f"It was stopped at the limit of {self.task.seconds:g} s."
         elif self.ending is Status.OUT_OF_MEMORY:
             sentence = f"It was stopped at the limit of {self.task.memory_bytes / 2**20:.0f} MiB of memory."
@@ -324,8 +364,11 @@ class _UnderWay:
 
 
 def _last_words(folder: Path) -> str:
+    """The end of what a run printed; it may have printed more than memory holds."""
     try:
-        lines = (folder / "output.txt").read_text(encoding="utf-8", errors="replace").strip().splitlines()
+        with open(folder / "output.txt", "rb") as file:
+            file.seek(max(0, os.fstat(file.fileno()).st_size - MOST_READ))
+            lines = file.read(MOST_READ).decode("utf-8", "replace").strip().splitlines()
     except OSError:
         return ""
-    return f" It last printed: {lines[-1][:200]}" if lines else ""
+    return f" It last printed: {visible(lines[-1])[:200]}" if lines else ""

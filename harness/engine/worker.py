@@ -20,15 +20,16 @@ import threading
 import time
 import traceback
 from collections.abc import Iterator
-from dataclasses import dataclass, fields
+from dataclasses import dataclass
 from multiprocessing import connection
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
+from harness.model.answer_check import AnswerFault, checked, encodable
 from harness.model.assembly import Assembly, FloatArray
-from harness.model.errors import InputError
+from harness.model.errors import InputError, visible
 from harness.model.method import (
     Answer,
     Finding,
@@ -37,6 +38,7 @@ from harness.model.method import (
     OutOfTime,
     Settings,
     Status,
+    Traits,
     allowing,
     check_takes,
     load_method,
@@ -76,18 +78,22 @@ class Task:
 LOADED, REPLACE = b"loaded", b"replace"
 """What a child says besides its records: the method is loaded and begins; another process must make this run."""
 
+MOST_SAID = 500
+"""Characters that are told of an error."""
+
 
 def serve(engine: connection.Connection, folder: str) -> None:
     """Make the runs whose tasks the engine sends, until it closes the connection. For child processes only.
 
     Args:
-        engine: tasks come in; out go LOADED when a method begins and then the record of the run, as JSON.
+        engine: tasks come in; out go lines: LOADED when a method begins and then the record of the run, as JSON.
         folder: working directory, with what the runs print in `output.txt`.
     """
     os.setsid()
     _die_with_engine()
     os.chdir(folder)  # what a library drops in the working directory goes with the run
     _send_output_to(Path(folder) / "output.txt")
+    _give_away_descriptors(engine)
     resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
     used = False
     try:
@@ -95,12 +101,13 @@ def serve(engine: connection.Connection, folder: str) -> None:
             task = engine.recv()
             method, failure = _load(task)
             if used and getattr(method, "fresh_process", False):
-                engine.send_bytes(REPLACE)
+                _send(engine, REPLACE)
                 continue
-            engine.send_bytes(LOADED)
-            engine.send_bytes(json.dumps(_record(task, method, failure), allow_nan=False).encode())
+            _send(engine, LOADED)
+            record = _record(task, method, failure)
+            record["reusable"] = _cleared(Path(folder)) and record["reusable"]
+            _send(engine, json.dumps(record, allow_nan=False, default=np.ndarray.tolist).encode())
             used = True
-            _clear(Path(folder))
     except (EOFError, BrokenPipeError, ConnectionResetError):
         pass
     sys.stdout.flush()
@@ -116,47 +123,77 @@ def _load(task: Task) -> tuple[Method | None, Answer | None]:
         return None, _failure(Status.REFUSED, f"{error}.")
 
 
+def _send(engine: connection.Connection, line: bytes) -> None:
+    """Send one line; the engine reads it without waiting for a rest that may not come."""
+    left = memoryview(line + b"\n")
+    while left:
+        left = left[os.write(engine.fileno(), left) :]
+
+
 def _record(task: Task, method: Method | None, failure: Answer | None) -> dict[str, Any]:
     """Make one run under its limits: answer, settings in full, cost of this run alone."""
     _limit_address_space(task.memory_bytes)
+    _limit(resource.RLIMIT_FSIZE, task.memory_bytes)  # what it writes is limited as what it holds
     _forget_peak_memory()
     settings: dict[str, Any] = {}
+    about = {"family": "", "traits": Traits().model_dump(), "tolerance": 0.0}
+    threads, errors = threading.active_count(), np.geterr()
     started, before = time.perf_counter(), _cpu_seconds()
-    errors = np.geterr()
     try:
         if method is None:
             answer = failure or _failure(Status.CRASHED, "There is no method.")
         else:
             chosen = validate(method.Settings, task.settings, "settings")
             settings = chosen.model_dump(mode="json")
+            about = _about(method)
             check_takes(method, task.assembly)
             started, before = time.perf_counter(), _cpu_seconds()
             with allowing(task.processes), _warned_of_the_limit(task.seconds, started):
                 answer = _answer(method, task, chosen)
-            answer = _checked(answer, task.assembly)
+            answer = checked(answer, task.assembly)
     except OutOfTime:
         answer = _failure(Status.TIMEOUT, f"It was stopped at the limit of {task.seconds:g} s.")
+    except AnswerFault as error:
+        answer = _failure(Status.CRASHED, f"{error.problem}.")
     except InputError as error:
         answer = _failure(Status.REFUSED, f"{error}.")
     except MemoryError:
         answer = _failure(Status.OUT_OF_MEMORY, "The memory limit was reached.")
-    except Exception as error:
-        traceback.print_exc()
-        answer = _failure(Status.CRASHED, f"The method raised {type(error).__name__}: {error}")
+    except BaseException as error:  # SystemExit and the like as well: a method ends its run, not ours
+        with contextlib.suppress(OSError, ValueError):  # its output may be closed
+            traceback.print_exc()
+        answer = _failure(
+            Status.CRASHED, f"The method raised {type(error).__name__}: {visible(str(error))[:MOST_SAID]}"
+        )
     cpu, wall = _cpu_seconds() - before, time.perf_counter() - started
     np.seterr(**errors)
     _limit_address_space(None)
+    _limit(resource.RLIMIT_FSIZE, None)
     return {
-        "answer": _plain(answer),
-        "family": getattr(method, "family", ""),
-        "traits": traits_of(method).model_dump(),
-        "tolerance": getattr(method, "tolerance", 0.0),
+        "answer": vars(answer),
+        **about,
         "settings": settings,
         "cpu_seconds": cpu,
         "wall_seconds": wall,
         "peak_memory_bytes": _peak_memory(),
-        "reusable": not _has_children(),
+        "reusable": not _has_children() and threading.active_count() <= threads,
     }
+
+
+def _about(method: Method) -> dict[str, Any]:
+    """What a method says of itself.
+
+    Raises:
+        AnswerFault: it says what nothing can be made of.
+    """
+    traits, tolerance, family = traits_of(method), method.tolerance, method.family
+    if not isinstance(traits, Traits):
+        raise AnswerFault(f"The method's traits are {type(traits).__name__} instead of Traits")
+    if not isinstance(tolerance, int | float) or not 0.0 <= tolerance < math.inf:
+        raise AnswerFault(f"The method's tolerance is {tolerance!r}, which is no finite positive number")
+    if not isinstance(family, str):
+        raise AnswerFault(f"The method's family is {type(family).__name__} instead of text")
+    return {"family": encodable(family, "family"), "traits": traits.model_dump(), "tolerance": float(tolerance)}
 
 
 def _answer(method: Method, task: Task, settings: Settings) -> Answer:
@@ -167,18 +204,22 @@ def _answer(method: Method, task: Task, settings: Settings) -> Answer:
     return method.solve_from(task.assembly, settings, task.motions)
 
 
-def _clear(folder: Path) -> None:
-    """Empty the working directory and the file of what was printed, for the next run."""
-    sys.stdout.flush()
-    sys.stderr.flush()
-    os.chdir(folder)
-    for entry in os.scandir(folder):
-        if entry.name == "output.txt":
-            os.truncate(entry.path, 0)
-        elif entry.is_dir(follow_symlinks=False):
-            shutil.rmtree(entry.path, ignore_errors=True)
-        else:
-            os.unlink(entry.path)
+def _cleared(folder: Path) -> bool:
+    """Empty the working directory and the file of what was printed, for the next run; whether that could be done."""
+    try:
+        sys.stdout.flush()
+        sys.stderr.flush()
+        os.chdir(folder)
+        for entry in os.scandir(folder):
+            if entry.name == "output.txt":
+                os.truncate(entry.path, 0)
+            elif entry.is_dir(follow_symlinks=False):
+                shutil.rmtree(entry.path, ignore_errors=True)
+            else:
+                os.unlink(entry.path)
+    except (OSError, ValueError):  # its output was closed, or its folder is gone
+        return False
+    return True
 
 
 def _has_children() -> bool:
@@ -257,58 +298,36 @@ def _send_output_to(path: Path) -> None:
     os.close(sink)
 
 
+def _give_away_descriptors(engine: connection.Connection) -> None:
+    """Let every inherited descriptor lead nowhere, but the engine's: a method must not write into what is not its own.
+
+    A child that was forked holds the store and the terminal of the command; one of the fork server holds the server's
+    pipe, which ends the server when something is written to it. They are not closed, as their owners might close them
+    once more when another file has the number.
+    """
+    parent = multiprocessing.parent_process()
+    kept = {0, 1, 2, engine.fileno(), -1 if parent is None else parent.sentinel}
+    nowhere = os.open(os.devnull, os.O_RDWR)
+    for number in {int(name) for name in os.listdir("/dev/fd")} - kept - {nowhere}:
+        with contextlib.suppress(OSError):  # that of the listing itself
+            os.fstat(number)
+            os.dup2(nowhere, number, inheritable=False)
+    os.close(nowhere)
+
+
 def _limit_address_space(memory_bytes: int | None) -> None:
     """Let an allocation beyond the limit fail inside the process; the parent watches resident memory besides."""
+    with contextlib.suppress(OSError):
+        pages = int(Path("/proc/self/statm").read_text(encoding="ascii").split()[0])
+        _limit(resource.RLIMIT_AS, None if memory_bytes is None else pages * resource.getpagesize() + memory_bytes)
+
+
+def _limit(what: int, most: int | None) -> None:
+    """Set a limit of this process [bytes]; None: as high as it may be."""
     with contextlib.suppress(OSError, ValueError):
-        hard = resource.getrlimit(resource.RLIMIT_AS)[1]
-        limit = hard
-        if memory_bytes is not None:
-            pages = int(Path("/proc/self/statm").read_text(encoding="ascii").split()[0])
-            limit = pages * resource.getpagesize() + memory_bytes
-        resource.setrlimit(resource.RLIMIT_AS, (limit, hard))
+        hard = resource.getrlimit(what)[1]
+        resource.setrlimit(what, (hard if most is None else most, hard))
 
 
 def _failure(status: Status, sentence: str) -> Answer:
     return Answer(status=status, finding=Finding.NONE, sentence=sentence)
-
-
-def _checked(answer: Answer, assembly: Assembly) -> Answer:
-    """The answer, or a refusal of it if shapes or numbers cannot be right."""
-    if not isinstance(answer, Answer):
-        return _failure(Status.CRASHED, f"The method returned {type(answer).__name__} instead of an Answer.")
-    for name, shape in (("forces", (assembly.n_interfaces, 3)), ("mechanism", (assembly.n_blocks, 3))):
-        array = getattr(answer, name)
-        if array is None:
-            continue
-        array = np.asarray(array, dtype=float)
-        if array.shape != shape:
-            return _failure(Status.CRASHED, f"The method's {name} have shape {array.shape} instead of {shape}.")
-        if not np.isfinite(array).all():
-            return _failure(Status.CRASHED, f"The method's {name} are not finite.")
-    numbers = [answer.multiplier, answer.forces_multiplier, *(answer.bracket or ())]
-    if any(number is not None and not math.isfinite(number) for number in numbers):
-        return _failure(Status.CRASHED, "The method's multiplier is not finite.")
-    if (answer.finding is Finding.COLLAPSES) and answer.status is Status.OK and answer.multiplier is None:
-        return _failure(Status.CRASHED, "The method reports a collapse without a multiplier.")
-    return answer
-
-
-def _plain(answer: Answer) -> dict[str, Any]:
-    return {item.name: _plain_value(getattr(answer, item.name)) for item in fields(answer)}
-
-
-def _plain_value(value: Any) -> Any:
-    """JSON values: arrays as lists, numpy scalars as numbers, numbers that are not finite as None."""
-    if isinstance(value, np.ndarray):
-        return _plain_value(value.tolist())
-    if isinstance(value, np.generic):
-        return _plain_value(value.item())
-    if isinstance(value, dict):
-        return {str(key): _plain_value(item) for key, item in value.items()}
-    if isinstance(value, list | tuple):
-        return [_plain_value(item) for item in value]
-    if isinstance(value, float) and not math.isfinite(value):
-        return None
-    if value is None or isinstance(value, bool | int | float | str):
-        return value
-    return str(value)

@@ -311,7 +311,7 @@ def _loading(name: str) -> Iterator[None]:
     """Whatever goes wrong inside is told as a method that cannot be loaded."""
     try:
         yield
-    except Exception as error:
+    except (Exception, SystemExit) as error:
         raise InputError(
             f"it cannot be loaded ({type(error).__name__}: {error})",
             "Install what it needs, or uninstall the package that brings it",
