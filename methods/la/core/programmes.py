@@ -71,6 +71,8 @@ class StaticProgramme:
             (np.concatenate([2 * mu, 2 * mu, -np.ones(m)]), (np.tile(np.arange(m), 3), columns)), shape=(m, 3 * m + 1)
         )
         self._forces = forces
+        # Weights that differ let one vertex alone have the least sum; by so little that it is that of least forces.
+        self._weights = np.random.default_rng(0).uniform(1.0, 1.1, size=3 * m)
         self._free = (np.zeros(3 * m), np.full(3 * m, INFINITY))
         cost = np.zeros(3 * m + 1)
         self._programme = Programme(
@@ -86,6 +88,10 @@ class StaticProgramme:
     def solve(self, tight: BoolArray | None = None, greatest: bool = False) -> StaticSolution | str:
         """The solution, or "infeasible", "unbounded", "unknown".
 
+        Joints that are redundant let many forces go with the least multiplier, and which of them a solver comes upon
+        differs from release to release, while a search goes on from them. So of all these, a second programme takes
+        those of least weighted sum.
+
         Args:
             tight: (m, 4) slacks held at zero.
             greatest: maximise the multiplier instead of minimising it.
@@ -100,7 +106,13 @@ class StaticProgramme:
         status, value, _ = self._programme.run()
         if status != "optimal":
             return status
-        return StaticSolution(self._to_forces(value), float(value[-1]), self._programme.iterations())
+        multiplier, iterations = float(value[-1]), self._programme.iterations()
+        if not greatest:
+            self._programme.set_columns(3 * m, value[-1:], value[-1:])
+            least = self._least(self._weights)
+            value = value if least is None else least
+            iterations += self._programme.iterations()
+        return StaticSolution(self._to_forces(value), multiplier, iterations)
 
     def lightest(self, weights: FloatArray) -> FloatArray | None:
         """Forces (m, 3) that carry the dead load with the least sum of weights (m, 2) times n1, n2; None if not found.
@@ -109,18 +121,23 @@ class StaticProgramme:
         """
         m = self.problem.n_interfaces
         self._hold(0.0)
-        self._programme.set_costs(0, np.column_stack([weights, np.zeros(m)]).ravel())
+        value = self._least(np.column_stack([weights, np.zeros(m)]).ravel())
+        return None if value is None else self._to_forces(value)
+
+    def _least(self, weights: FloatArray) -> FloatArray | None:
+        """The columns of least weighted sum, the multiplier without cost."""
+        m = self.problem.n_interfaces
+        self._programme.set_costs(0, np.append(weights, 0.0))
         status, value, _ = self._programme.run()
         self._programme.set_costs(0, np.zeros(3 * m))
-        return self._to_forces(value) if status == "optimal" else None
+        return value if status == "optimal" else None
 
     def _hold(self, multiplier: float) -> None:
-        """Let no slack be held, but the multiplier, without cost."""
+        """Let no slack be held, but the multiplier."""
         m = self.problem.n_interfaces
         self._programme.set_columns(0, *self._free)
         self._programme.set_rows(self.problem.n_velocities, np.zeros(m), np.full(m, INFINITY))
         self._programme.set_columns(3 * m, np.array([multiplier]), np.array([multiplier]))
-        self._programme.set_costs(3 * m, np.array([0.0]))
 
     def _to_forces(self, value: FloatArray) -> FloatArray:
         """Forces (m, 3) of the columns."""
