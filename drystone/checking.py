@@ -38,8 +38,8 @@ class Check:
 
     @property
     def passed(self) -> bool:
-        """Whether all agree."""
-        return all(line["verdict"] == "agrees" for line in self.lines)
+        """Whether all agree that could be tested; one whose method needs a package that is not installed could not."""
+        return all(line["verdict"] in ("agrees", "not_tested") for line in self.lines)
 
     def to_pandas(self) -> pd.DataFrame:
         """The lines as a table."""

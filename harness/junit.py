@@ -76,7 +76,7 @@ def tests_of_check(lines: Iterable[dict[str, Any]]) -> Iterator[TestCase]:
     """The gated references of `drystone check`."""
     for line in lines:
         settings = "".join(f" {name}={value}" for name, value in sorted(line["settings"].items()))
-        outcome: Outcome = "passed" if line["verdict"] == Verdict.AGREES else "failure"
+        outcome = _held(Verdict(line["verdict"]))
         name = f"{line['method']}{settings}: {line['quantity']} {line['reference']}"
         yield TestCase(line["case"], name, outcome, line["sentence"])
 
@@ -87,14 +87,18 @@ def tests_of_comparison(compared: ComparisonRun) -> Iterator[TestCase]:
         yield from _tests_of_case(item)
 
 
+def _held(verdict: Verdict) -> Outcome:
+    """The outcome of a gated reference."""
+    return "skipped" if verdict is Verdict.NOT_TESTED else "passed" if verdict is Verdict.AGREES else "failure"
+
+
 def _tests_of_case(item: CaseResults) -> Iterator[TestCase]:
     for result in item.results:
         yield _run(item.case.id, result)
         for comparison in result.comparisons:
             if comparison.gate:
-                held: Outcome = "passed" if comparison.verdict is Verdict.AGREES else "failure"
                 name = f"{result.method}: {comparison.quantity} {comparison.reference}"
-                yield TestCase(item.case.id, name, held, comparison.sentence)
+                yield TestCase(item.case.id, name, _held(comparison.verdict), comparison.sentence)
     for gate in item.gates:
         outcome: Outcome = "skipped" if gate.passed is None else "passed" if gate.passed else "failure"
         yield TestCase(item.case.id, f"theory: {gate.statement}", outcome, gate.sentence)

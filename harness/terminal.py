@@ -32,6 +32,7 @@ JUDGED = {True: 0, False: 1, None: 3}
 
 MARKS = {
     "agrees": "✓ agrees",
+    "not_tested": "· not tested",
     "outside_tolerance": "✗ outside tolerance",
     "violates_bound": "✗ violates bound",
     "no_reference": "· no reference",
@@ -245,8 +246,10 @@ def print_check(lines: list[dict[str, Any]]) -> None:
         where = line["method"] + (f" {line['settings']}" if line["settings"] else "")
         told = f"{mark}  {line['case']}  {line['quantity']}  {where}: {line['sentence']}  [{line['source']}]"
         print(visible(told))
-    bad = sum(line["verdict"] != "agrees" for line in lines)
-    print(f"{len(lines) - bad} of {len(lines)} gated references hold.")
+    count = Counter(line["verdict"] for line in lines)
+    tested = len(lines) - count["not_tested"]
+    left = f"; {count['not_tested']} not tested, for want of a package" if count["not_tested"] else ""
+    print(f"{count['agrees']} of {tested} gated references hold{left}.")
 
 
 def print_changes(rows: list[dict[str, Any]]) -> None:

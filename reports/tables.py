@@ -94,7 +94,13 @@ def expected_text(comparison: Comparison, relation: str) -> str:
 
 def _reference_cell(case: Case, result: Result) -> Cell:
     """The reference that matters most: the worst verdict, gated before not, multiplier before others."""
-    severity = [Verdict.VIOLATES_BOUND, Verdict.OUTSIDE_TOLERANCE, Verdict.AGREES, Verdict.NO_REFERENCE]
+    severity = [
+        Verdict.VIOLATES_BOUND,
+        Verdict.OUTSIDE_TOLERANCE,
+        Verdict.AGREES,
+        Verdict.NOT_TESTED,
+        Verdict.NO_REFERENCE,
+    ]
     ranked = sorted(
         result.comparisons,
         key=lambda item: (severity.index(item.verdict), item.quantity != "multiplier", not item.gate),

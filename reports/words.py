@@ -15,6 +15,7 @@ VERDICT: dict[Verdict, tuple[str, str]] = {
     Verdict.OUTSIDE_TOLERANCE: ("≠", "outside tolerance"),
     Verdict.VIOLATES_BOUND: ("▲", "violates a bound"),
     Verdict.NO_REFERENCE: ("·", "no reference"),
+    Verdict.NOT_TESTED: ("·", "not tested"),
 }
 
 STATUS: dict[Status, tuple[str, str]] = {

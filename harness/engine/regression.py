@@ -24,7 +24,7 @@ def violations(compared: ComparisonRun) -> list[str]:
             if result.judge.accepted is False:
                 found.append(f"{case.case.id}, {result.method}: the judge rejects the answer: {result.judge.sentence}")
             for comparison in result.comparisons:
-                if comparison.gate and comparison.verdict is not Verdict.AGREES:
+                if comparison.gate and comparison.verdict not in (Verdict.AGREES, Verdict.NOT_TESTED):
                     found.append(f"{case.case.id}, {result.method}: {comparison.reference}: {comparison.sentence}")
         for gate in case.gates:
             if gate.passed is False:

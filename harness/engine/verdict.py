@@ -6,6 +6,7 @@ from collections.abc import Iterable
 
 import numpy as np
 
+from harness.model.answer_check import MISSING_PACKAGE
 from harness.model.case import Reference, ReferenceType
 from harness.model.comparison import CaseResults, Gate
 from harness.model.displaced import DisplacedState
@@ -48,6 +49,8 @@ def _value(reference: Reference, result: Result) -> float | list[float] | str | 
 
 def _verdict(reference: Reference, result: Result, value: float | list[float] | str | None) -> tuple[Verdict, str]:
     violated = Verdict.VIOLATES_BOUND if reference.type is ReferenceType.BOUND else Verdict.OUTSIDE_TOLERANCE
+    if result.details.get(MISSING_PACKAGE) is True:
+        return Verdict.NOT_TESTED, f"not tested: {result.sentence}"
     if result.status is not Status.OK:
         return Verdict.OUTSIDE_TOLERANCE, f"no value: {result.status}. {result.sentence}"
     if value is None:
@@ -89,7 +92,10 @@ def _text(value: float | list[float]) -> str:
 
 def overall(comparisons: Iterable[Comparison]) -> Verdict:
     """The worst verdict of several, NO_REFERENCE if there are none."""
-    order = [Verdict.NO_REFERENCE, Verdict.AGREES, Verdict.OUTSIDE_TOLERANCE, Verdict.VIOLATES_BOUND]
+    order = [
+        *(Verdict.NO_REFERENCE, Verdict.NOT_TESTED, Verdict.AGREES),
+        *(Verdict.OUTSIDE_TOLERANCE, Verdict.VIOLATES_BOUND),
+    ]
     return max((comparison.verdict for comparison in comparisons), key=order.index, default=Verdict.NO_REFERENCE)
 
 

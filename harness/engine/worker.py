@@ -27,9 +27,9 @@ from typing import Any
 
 import numpy as np
 
-from harness.model.answer_check import AnswerFault, checked, encodable
+from harness.model.answer_check import MISSING_PACKAGE, AnswerFault, checked, encodable
 from harness.model.assembly import Assembly, FloatArray
-from harness.model.errors import InputError, visible
+from harness.model.errors import InputError, MissingPackage, visible
 from harness.model.method import (
     Answer,
     Finding,
@@ -120,7 +120,9 @@ def _load(task: Task) -> tuple[Method | None, Answer | None]:
     try:
         return prepared(load_method(task.method)), None
     except (InputError, KeyError) as error:
-        return None, _failure(Status.REFUSED, f"{error}.")
+        answer = _failure(Status.REFUSED, f"{error}.")
+        answer.details = {MISSING_PACKAGE: True} if isinstance(error.__cause__, MissingPackage) else {}
+        return None, answer
 
 
 def _send(engine: connection.Connection, line: bytes) -> None:
@@ -157,6 +159,7 @@ def _record(task: Task, method: Method | None, failure: Answer | None) -> dict[s
         answer = _failure(Status.CRASHED, f"{error.problem}.")
     except InputError as error:
         answer = _failure(Status.REFUSED, f"{error}.")
+        answer.details = {MISSING_PACKAGE: True} if isinstance(error, MissingPackage) else {}
     except MemoryError:
         answer = _failure(Status.OUT_OF_MEMORY, "The memory limit was reached.")
     except BaseException as error:  # SystemExit and the like as well: a method ends its run, not ours

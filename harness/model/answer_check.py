@@ -22,6 +22,8 @@ DEEPEST = 20
 """Depth to which details may be nested. A document that holds a result may have `reading.MOST_NESTED` levels in all."""
 FLOWS = ("non-associated", "associated", "approximate")
 """Flow rules that an answer may name."""
+MISSING_PACKAGE = "missing_package"
+"""Detail of a refusal, true where a package is not installed that an extra brings."""
 NUMBERS = "iuf"
 """Kinds of NumPy's types that are real numbers."""
 

@@ -71,6 +71,10 @@ class InputError(Exception):
         return InputError, (self.problem, self.remedy, self.element, self.source, self.spot)
 
 
+class MissingPackage(InputError):
+    """A package that an extra brings is not installed; the problem names it."""
+
+
 class InputFaults(InputError):
     """Several faults of one input, told together in the order of the file, so that one round mends them all.
 

@@ -24,6 +24,8 @@ class Verdict(StrEnum):
     OUTSIDE_TOLERANCE = "outside_tolerance"
     VIOLATES_BOUND = "violates_bound"
     NO_REFERENCE = "no_reference"
+    NOT_TESTED = "not_tested"
+    """The method needs a package that is not installed here."""
 
 
 class Judgement(BaseModel):

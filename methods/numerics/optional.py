@@ -5,7 +5,7 @@ from __future__ import annotations
 import importlib
 from typing import Any
 
-from harness.model.errors import InputError
+from harness.model.errors import MissingPackage
 
 
 def optional(package: str, extra: str, method: str) -> Any:
@@ -17,11 +17,11 @@ def optional(package: str, extra: str, method: str) -> Any:
         method: that needs it.
 
     Raises:
-        InputError: it is not installed.
+        MissingPackage: it is not installed.
     """
     try:
         return importlib.import_module(package)
     except ImportError as error:
-        raise InputError(
+        raise MissingPackage(
             f"it needs the package {package} ({error})", f"Install drystone[{extra}]", f"method {method}"
         ) from error
