@@ -42,7 +42,9 @@ OUT = Path("out")
 
 @click.command(name="sweep")
 @click.argument("what", metavar="STUDY")
-@click.option("--vary", multiple=True, metavar="NAME=VALUES", help="FROM:TO:COUNT or A,B,C; may be repeated.")
+@click.option(
+    "--vary", multiple=True, metavar="NAME=VALUES", help="FROM:TO:COUNT or A,B,C, vectors in brackets; may be repeated."
+)
 @click.option(
     "--imperfection",
     metavar="FROM:TO[:COUNT]",

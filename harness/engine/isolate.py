@@ -8,6 +8,7 @@ import json
 import multiprocessing
 import os
 import signal
+import sys
 import tempfile
 import time
 from collections.abc import Iterable, Iterator
@@ -18,6 +19,7 @@ from multiprocessing import forkserver
 from multiprocessing.connection import wait
 from multiprocessing.context import BaseContext
 from pathlib import Path
+from types import ModuleType
 from typing import Any
 
 from harness.engine import preload, worker
@@ -78,10 +80,25 @@ def start_context(methods: Iterable[str]) -> BaseContext:
     context = _fork_server()
     os.environ[preload.VARIABLE] = ",".join(sorted(_announced))
     try:
-        forkserver.ensure_running()
+        with _script_left_out():
+            forkserver.ensure_running()
     finally:  # for the server alone: every other process that is started here would load the methods too
         del os.environ[preload.VARIABLE]
     return context
+
+
+@contextlib.contextmanager
+def _script_left_out() -> Iterator[None]:
+    """Let children that are started inside not import the user's script, of which they need nothing.
+
+    A script that compares walls at its top level would start its comparison again in each of them.
+    """
+    script = sys.modules["__main__"]
+    sys.modules["__main__"] = ModuleType("__main__")
+    try:
+        yield
+    finally:
+        sys.modules["__main__"] = script
 
 
 def own_context(methods: Iterable[str]) -> BaseContext | None:
@@ -159,7 +176,8 @@ class Child:
         self._process: Any = context.Process(  # type: ignore[attr-defined]
             target=worker.serve, args=(theirs, self._folder.name), daemon=False
         )
-        self._process.start()
+        with _script_left_out():
+            self._process.start()
         theirs.close()
         self.runs = 0
         self.reusable = True

@@ -24,6 +24,7 @@ PACKAGES = (
     "osqp",
     "highspy",
     "casadi",
+    "mujoco",
     "numba",
     "pymunk",
     "shapely",

@@ -19,7 +19,7 @@ from pydantic import ValidationError
 
 from harness.engine.store_faults import OTHER_FILE, WAIT_SECONDS, cause
 from harness.model.errors import InputError
-from harness.model.reading import LARGEST_FILE, json_of
+from harness.model.reading import LARGEST_FILE, MOST_NESTED, json_of, nested_deeper
 from harness.model.result import Result
 
 SCHEMA_VERSION = 2
@@ -63,6 +63,10 @@ ENVIRONMENT = ("versions", "machine", "traits", "limits")
 file 210 MB instead of 140, as two of them filled a page instead of three."""
 SOME_KEYS = 500
 """Up to so many results are looked for one by one; above, the whole table is read."""
+
+
+DAMAGE = (ValidationError, ValueError, TypeError, RecursionError, zlib.error)
+"""What reading a result raises where another hand has changed it."""
 
 
 class Store:
@@ -192,11 +196,11 @@ class Store:
         try:
             if size > LARGEST_FILE:
                 raise ValueError(f"{size:,} characters")
-            if environment is None and fields is None:
-                return Result.model_validate_json(text), float(tolerance)
             whole = json.loads(text) | json.loads(environment or "{}") | _unpacked(fields)
+            if nested_deeper(whole, MOST_NESTED):
+                raise ValueError(f"it is nested more than {MOST_NESTED} deep")
             return Result.model_validate(whole, strict=False), float(tolerance)
-        except (ValidationError, ValueError, TypeError, zlib.error) as error:
+        except DAMAGE as error:
             raise self._damaged(element, error) from None
 
     def missing(self, element: str) -> InputError:
@@ -246,7 +250,7 @@ class Store:
                     continue
                 try:
                     found[key] = json.loads(text)
-                except ValueError as error:
+                except (ValueError, TypeError, RecursionError) as error:
                     raise self._damaged(f"the result of {method} on {case} in it", error) from None
         return found
 

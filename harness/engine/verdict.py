@@ -49,7 +49,7 @@ def _value(reference: Reference, result: Result) -> float | list[float] | str | 
 
 def _verdict(reference: Reference, result: Result, value: float | list[float] | str | None) -> tuple[Verdict, str]:
     violated = Verdict.VIOLATES_BOUND if reference.type is ReferenceType.BOUND else Verdict.OUTSIDE_TOLERANCE
-    if result.details.get(MISSING_PACKAGE) is True:
+    if result.status is Status.REFUSED and result.details.get(MISSING_PACKAGE) is True:
         return Verdict.NOT_TESTED, f"not tested: {result.sentence}"
     if result.status is not Status.OK:
         return Verdict.OUTSIDE_TOLERANCE, f"no value: {result.status}. {result.sentence}"

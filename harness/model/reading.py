@@ -144,14 +144,15 @@ def json_of(text: str, source: str) -> Any:
         raise InputError("it has a number of thousands of digits", "Give finite numbers", source=source) from None
     except RecursionError:
         raise too_deep from None
-    if _nested_deeper(data, MOST_NESTED):
+    if nested_deeper(data, MOST_NESTED):
         raise too_deep
     if HALF_CHARACTER.search(text):
         _refuse_half_characters(data, source)
     return data
 
 
-def _nested_deeper(data: Any, most: int) -> bool:
+def nested_deeper(data: Any, most: int) -> bool:
+    """Whether JSON data are nested deeper than so many levels."""
     level = [data]
     for _ in range(most):
         level = [

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import copy
+import json
 import math
 import re
 from collections.abc import Callable, Mapping
@@ -77,6 +78,17 @@ def _nowhere(path: str) -> InputError:
     return InputError(f'"{path}" leads nowhere in this wall', "`drystone expand` shows what a wall has", "vary")
 
 
+def _number(name: str, value: Any) -> float:
+    """The value of a quantity that is computed with.
+
+    Raises:
+        InputError: it is no number.
+    """
+    if isinstance(value, bool) or not isinstance(value, int | float):
+        raise InputError(f"{json.dumps(value)} is no number", f"Give {NUMBERS[name]}", f"vary.{name}")
+    return float(value)
+
+
 def _friction(data: dict[str, Any], value: Any) -> None:
     if isinstance(data.get("friction"), dict):
         data["friction"]["default"] = value
@@ -85,13 +97,14 @@ def _friction(data: dict[str, Any], value: Any) -> None:
 
 
 def _proportion(data: dict[str, Any], value: Any) -> None:
+    proportion = _number("proportion", value)
     pattern = data.get("pattern")
     bonds = [pattern] if isinstance(pattern, dict) else list(pattern or [])
     bonds = [item for item in bonds if item.get("type") == "running_bond"]
     if not bonds:
         raise InputError("proportion is that of a running bond, and the wall has none", element="vary.proportion")
     for item in bonds:
-        item["block_length"] = float(f"{value * item['block_height']:.12g}")
+        item["block_length"] = float(f"{proportion * item['block_height']:.12g}")
 
 
 def _inset(data: dict[str, Any], value: Any) -> None:
@@ -102,7 +115,8 @@ def _direction(data: dict[str, Any], value: Any) -> None:
     live = (data.get("loads") or {}).get("live")
     if not live:
         raise InputError("direction is that of the live load, and the wall has none", element="vary.direction")
-    c, s = math.cos(math.radians(value)), math.sin(math.radians(value))
+    turn = math.radians(_number("direction", value))
+    c, s = math.cos(turn), math.sin(turn)
     for item in live.get("body", []):
         x, y = item["per_weight"]
         item["per_weight"] = [c * x - s * y, s * x + c * y]
@@ -111,6 +125,10 @@ def _direction(data: dict[str, Any], value: Any) -> None:
         item["force"] = [c * x - s * y, s * x + c * y]
 
 
+NUMBERS = {
+    "direction": "degrees counter-clockwise, as 0,180 for a load to the right and to the left",
+    "proportion": "block length over height, as 1.5",
+}
 RULES: dict[str, Callable[[dict[str, Any], Any], None]] = {
     "friction": _friction,
     "proportion": _proportion,

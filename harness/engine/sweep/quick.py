@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import json
 import re
 from collections.abc import Sequence
@@ -38,7 +39,7 @@ def quick_study(
         settings: of methods.
         limits: of each run.
         multipliers: at which the probability of failure is asked.
-        vary: "NAME=FROM:TO:COUNT" or "NAME=A,B,C".
+        vary: "NAME=FROM:TO:COUNT" or "NAME=A,B,C", where vectors stand in brackets: "NAME=[1,0],[0,1]".
         imperfection: "FROM:TO", "FROM:TO:COUNT" or "A,B,C".
         seeds: of the imperfections, from 0.
 
@@ -93,11 +94,13 @@ def _whose(name: str) -> list[str]:
 
 
 def axis_of(words: str, element: str, count: int | None) -> Any:
-    """The values that "FROM:TO:COUNT" or "A,B,C" mean; `count` where FROM:TO says none.
+    """The values that "FROM:TO:COUNT" or "A,B,C" mean, vectors in brackets; `count` where FROM:TO says none.
 
     Raises:
         InputError: words that are neither.
     """
+    with contextlib.suppress(json.JSONDecodeError):
+        return json.loads(f"[{words}]")
     parts = words.split(":")
     if len(parts) == 1:
         return [_value(word) for word in words.split(",")]
