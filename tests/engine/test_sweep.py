@@ -275,6 +275,32 @@ def test_quick_forms_mean_what_they_say():
             axis_of(bad, "--vary friction", None)
 
 
+def test_vectors_in_brackets_are_values():
+    assert axis_of("[1,0],[0,-1]", "--vary load", None) == [[1, 0], [0, -1]]
+    assert axis_of("[1,0]", "--vary load", None) == [[1, 0]]
+    assert axis_of(".3,.4", "--vary friction", None) == [0.3, 0.4]
+    assert axis_of("left,right", "--vary word", None) == ["left", "right"]
+
+
+def test_two_directions_of_the_load_are_run_and_told_apart(tmp_path: Path):
+    """A block of friction .3 slides at .3 to either side, and at .15 under twice the load."""
+    words = ("--vary", "loads.live.body[0].per_weight=[1,0],[-2,0]", "--methods", "la-associated", "--no-report")
+    done = drystone("sweep", "slide", *words, "-o", tmp_path / "t", "--store", tmp_path / "s.sqlite", cwd=tmp_path)
+    assert done.returncode == 0, done.stderr
+    table = pd.read_csv(tmp_path / "t" / "runs.csv")
+    found = dict(zip(table["loads.live.body[0].per_weight"], table["multiplier"], strict=True))
+    assert {key: round(value, 9) for key, value in found.items()} == {"[1, 0]": 0.3, "[-2, 0]": 0.15}
+
+
+@pytest.mark.parametrize("words", ["direction=left,right", "direction=[1,0]", "proportion=wide", "direction=true"])
+def test_a_quantity_that_is_computed_with_takes_numbers_only(tmp_path: Path, words: str):
+    case = "wall-21" if words.startswith("proportion") else "slide"
+    done = drystone("sweep", case, "--vary", words, "--methods", "la-associated", cwd=tmp_path)
+    assert done.returncode == 2
+    assert f"vary.{words.partition('=')[0]}: " in done.stderr
+    assert "is no number" in done.stderr
+
+
 def test_the_command_leaves_tables_and_a_page_and_says_what_it_would_do(tmp_path: Path):
     (tmp_path / "wall.json").write_text(json.dumps(wall_data(stack(2))))
     words = ("sweep", "wall.json", "--vary", "friction=0.1:0.5:5", "--methods", "la-associated")

@@ -8,6 +8,7 @@ import shutil
 import sqlite3
 import subprocess
 import sys
+import zlib
 from contextlib import closing
 from pathlib import Path
 from typing import Any
@@ -109,6 +110,15 @@ def test_a_truncated_store_is_told(store: Path, part: float):
 )
 def test_truncated_json_of_a_run_names_the_run(store: Path, column: str):
     change(store, column)
+    with pytest.raises(InputError, match="the result of la on made-up in it: it is damaged"):
+        read_all(store, read_only=True)
+
+
+@pytest.mark.parametrize("depth", [60, 300, 100_000])
+@pytest.mark.parametrize("column", ["fields", "result"])
+def test_a_result_that_is_nested_too_deeply_is_told(store: Path, column: str, depth: int):
+    text = '{"details": {"x": ' + "[" * depth + "]" * depth + "}}"
+    change(store, f"UPDATE run SET {column} = ?", zlib.compress(text.encode()) if column == "fields" else text)
     with pytest.raises(InputError, match="the result of la on made-up in it: it is damaged"):
         read_all(store, read_only=True)
 

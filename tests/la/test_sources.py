@@ -4,12 +4,15 @@ from __future__ import annotations
 
 from typing import Any
 
+import numpy as np
 import pytest
 
+from drystone import library_wall
 from harness.model.build import build
 from methods.la.certify.proof import prove
 from methods.la.core.newton_matrix import NewtonMatrix
 from methods.la.core.problem import make_problem
+from methods.la.core.programmes import StaticProgramme
 from methods.la.core.search_settings import SearchSettings
 from methods.la.search_adapter import LimitAnalysis
 from methods.la.sources import SOURCES, explore
@@ -146,3 +149,18 @@ def test_deep_search_begins_with_a_normal_one() -> None:
     assert normal.multiplier is not None
     assert deep.multiplier is not None
     assert deep.multiplier < 0.993 * normal.multiplier
+
+
+def test_forces_of_the_least_multiplier_do_not_hang_on_where_the_solver_comes_from():
+    """The lintel's joints are redundant: after other programmes the simplex method would end at other forces."""
+    wall = library_wall("opening-lintel").assembly
+    problem = make_problem(wall)
+    fresh = StaticProgramme(problem).solve()
+    assert not isinstance(fresh, str)
+    used = StaticProgramme(problem)
+    used.solve(greatest=True)
+    used.lightest(np.random.default_rng(3).uniform(size=(wall.n_interfaces, 2)))
+    again = used.solve()
+    assert not isinstance(again, str)
+    assert again.multiplier == pytest.approx(fresh.multiplier, abs=1e-9)
+    assert again.forces == pytest.approx(fresh.forces, abs=1e-6)  # the tolerance of the solver, times what it solves

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import contextlib
 import json
+import math
 import re
 from collections.abc import Sequence
 from pathlib import Path
@@ -117,5 +118,8 @@ def axis_of(words: str, element: str, count: int | None) -> Any:
 def _value(word: str) -> Any:
     try:
         return json.loads(word)
-    except json.JSONDecodeError:
+    except json.JSONDecodeError:  # .5 is no number of JSON
+        with contextlib.suppress(ValueError):
+            if math.isfinite(number := float(word)):
+                return number
         return word
