@@ -13,6 +13,7 @@ from harness.engine import compare as engine
 from harness.engine.judge import judge as judge_result
 from harness.engine.plan import Limits, Run, check_methods, check_shares
 from harness.engine.provenance import machine, versions
+from harness.model.answer_check import checked
 from harness.model.errors import InputError
 from harness.model.method import Answer, Method, allowing, check_takes, load_method, method_names, prepared, traits_of
 from harness.model.reading import validate
@@ -157,7 +158,7 @@ def analyse_by(
     check_takes(prepared(loaded), wall.assembly)
     started, clock, work = datetime.now(UTC), time.perf_counter(), time.process_time()
     with allowing(processes):
-        answer = loaded.solve(wall.assembly, chosen)
+        answer = checked(loaded.solve(wall.assembly, chosen), wall.assembly)
     cost = {"cpu_seconds": time.process_time() - work, "wall_seconds": time.perf_counter() - clock}
     record = result_of(
         answer, wall.assembly, case=wall.name, method=loaded.name, family=loaded.family, traits=traits_of(loaded)
