@@ -14,6 +14,7 @@ from harness.model.assembly import Assembly
 from harness.model.case import Case, CaseFile, case_folders, case_of_wall, id_of, shipped_cases
 from harness.model.errors import InputError, did_you_mean
 from harness.model.wall import Wall as Description
+from harness.model.writing import write_whole
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -70,7 +71,7 @@ class Wall:
 
     def save(self, path: str | Path) -> None:
         """Write the wall as a WALL.json."""
-        Path(path).write_text(reading.wall_json(self.case.wall), encoding="utf-8")
+        write_whole(Path(path), reading.wall_json(self.case.wall))
 
     def plot(self) -> Figure:
         """A figure of the blocks with their names, joints, supports and loads."""

@@ -11,7 +11,7 @@ import click
 from harness.certificates import proved, read_certificate, write_certificate
 from harness.engine.plan import find_cases
 from harness.model.errors import InputError
-from harness.options import cases_option, catching, json_flag, print_json, say, warn
+from harness.options import OUTPUT, cases_option, catching, json_flag, print_json, say, warn
 from methods.bound.exact_wall import CertificateError
 from methods.bound.same_wall import require_same_wall
 from methods.bound.verify import verify
@@ -19,7 +19,7 @@ from methods.bound.verify import verify
 
 @click.command()
 @click.argument("case")
-@click.option("-o", "--output", type=click.Path(path_type=Path), required=True, help="The certificate to write.")
+@click.option("-o", "--output", type=OUTPUT, required=True, help="The certificate to write.")
 @click.option("--nodes", type=click.IntRange(min=1), help="Of the tree at most; by default by the size of CASE.")
 @click.option("--seconds", type=click.FloatRange(min=0.0), default=120.0, show_default=True, help="For the windows.")
 @click.option("--effort", type=click.Choice(["quick", "normal", "deep"]), default="normal", help="Of the search.")

@@ -19,6 +19,7 @@ from harness.model.library import library
 from harness.model.method import Finding
 from harness.model.reading import json_of, read_bytes
 from harness.model.result import Result, Verdict
+from harness.model.writing import write_whole
 from methods.bound.document import MOST_BYTES, unpacked
 from methods.bound.exact_wall import CertificateError, number
 from methods.bound.same_wall import require_same_wall
@@ -58,9 +59,9 @@ def read_certificate(path: Path) -> Any:
 def write_certificate(path: Path, document: dict[str, Any]) -> None:
     """Write a certificate, compressed if its name says so, the same bytes for the same document."""
     if path.suffix == PACKED:
-        path.write_bytes(gzip.compress(json.dumps(document, separators=(",", ":")).encode(), mtime=0))
+        write_whole(path, gzip.compress(json.dumps(document, separators=(",", ":")).encode(), mtime=0))
     else:
-        path.write_text(json.dumps(document, indent=None if "windows" in document else 1), encoding="utf-8")
+        write_whole(path, json.dumps(document, indent=None if "windows" in document else 1))
 
 
 def proved(document: Any) -> str:

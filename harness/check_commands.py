@@ -19,6 +19,7 @@ from harness.junit import tests_of_check, write_junit
 from harness.model.case import shipped_cases
 from harness.model.errors import InputError
 from harness.options import (
+    OUTPUT,
     cases_option,
     catching,
     fresh_flag,
@@ -85,7 +86,7 @@ def check(
 @click.argument("cases", nargs=-1)
 @click.option("--suite", help="A suite of cases.  [default: all cases]")
 @click.option("--reason", default="", help="Why the recorded values change; an update needs it.")
-@click.option("--file", "path", type=click.Path(path_type=Path), help="The baseline.  [default: the one shipped]")
+@click.option("--file", "path", type=OUTPUT, help="The baseline.  [default: the one shipped]")
 @jobs_option
 @store_option
 @json_flag

@@ -14,7 +14,7 @@ from harness.engine.diff import difference, read_answers
 from harness.junit import tests_of_difference, write_junit
 from harness.model.case import shipped_cases
 from harness.model.difference import Difference, Slower
-from harness.options import catching, json_flag, junit_option, print_json, say
+from harness.options import OUTPUT, catching, json_flag, junit_option, print_json, say
 
 
 @click.command()
@@ -27,7 +27,7 @@ from harness.options import catching, json_flag, junit_option, print_json, say
     show_default=True,
     help="A run is slower if it takes so much of its old CPU time more.",
 )
-@click.option("--html", type=click.Path(path_type=Path), help="Also write the comparison as a page.")
+@click.option("--html", type=OUTPUT, help="Also write the comparison as a page.")
 @junit_option
 @json_flag
 @catching

@@ -16,11 +16,12 @@ from harness.model.errors import InputError, raise_faults
 from harness.model.inspection import Inspection, inspect
 from harness.model.library import library
 from harness.model.method import load_method
-from harness.model.plausibility import allowing
+from harness.model.plausibility import saying
 from harness.model.reading import parse_wall, read_document, wall_json
 from harness.model.repair import repair as mend
 from harness.model.salvage import salvaged
-from harness.options import INPUT_ERROR, cases_option, catching, json_flag, print_json, say
+from harness.model.writing import write_whole
+from harness.options import INPUT_ERROR, OUTPUT, cases_option, catching, json_flag, print_json, say
 
 
 @click.command()
@@ -38,7 +39,7 @@ def validate(wall: Path, method: str, as_json: bool) -> None:
     built as it stands; the list and the table are printed all the same.
     """
     check_methods([method], "--method")
-    looked, notes = _looked_at(wall)
+    looked = _looked_at(wall)
     joints = looked.built.assembly.n_interfaces if looked.built is not None else None
     plateaus = _plateaus(looked, method)
     advice = suggested(plateaus)
@@ -46,14 +47,12 @@ def validate(wall: Path, method: str, as_json: bool) -> None:
         rows = [{"number": k} | asdict(mark) | {"text": str(mark)} for k, mark in enumerate(looked.marks, start=1)]
         told = {f"{kind}s": [row for row in rows if row["kind"] == kind] for kind in ("fault", "doubt")}
         print_json(
-            {"joints": joints, **told, "notes": list(notes), "suggested_tolerance": advice}
+            {"joints": joints, **told, "suggested_tolerance": advice[0] if advice else None}
             | {"tolerances": [asdict(plateau) for plateau in plateaus]}
         )
     else:
         say(f"{joints} joints are found" if joints is not None else f"it cannot be built; faults: {len(looked.faults)}")
-        for note in notes:
-            say(f"doubtful: {note}")
-        _list_marks(looked)
+        _list_marks(looked, advice[0] if advice else None)
         if plateaus:
             terminal.print_rows(
                 [
@@ -65,37 +64,33 @@ def validate(wall: Path, method: str, as_json: bool) -> None:
                     for plateau in plateaus
                 ]
             )
-        if advice is not None and joints != max(plateau.joints or 0 for plateau in plateaus):
-            say(f'most joints are found with "interfaces": {{"tolerance": {advice:.3g}}}')
+        if advice is not None and joints != advice[1].joints:
+            say(
+                f"the widest range of tolerances with the same joints is {advice[1].low:.3g} to {advice[1].high:.3g}: "
+                f"say {saying(advice[0])}"
+            )
     sys.exit(INPUT_ERROR if looked.faults else 0)
 
 
-def _looked_at(path: Path) -> tuple[Inspection, tuple[str, ...]]:
-    """A wall file or a drawing looked over, and what a person should hear about how it was read.
+def _looked_at(path: Path) -> Inspection:
+    """A wall file or a drawing looked over.
 
     Raises:
         InputError: nothing in it can be looked at.
     """
-    data, notes = read_document(path)
-    wall, before = salvaged(data, str(path))
+    wall, before = salvaged(read_document(path), str(path))
     if wall is None:
         raise_faults(before, str(path))
         raise AssertionError("a wall that is not read has a fault")
-    return inspect(wall, path.stem, before), notes
+    return inspect(wall, path.stem, before)
 
 
-def _list_marks(looked: Inspection) -> None:
-    """Faults and doubts as numbered sentences; the near misses, which may be hundreds, as one table."""
+def _list_marks(looked: Inspection, advice: float | None) -> None:
+    """Faults and doubts as sentences, and the near misses, which may be hundreds, as a table besides."""
+    for sentence in looked.sentences(advice):
+        say(sentence)
     near = [(number, mark) for number, mark in enumerate(looked.marks, start=1) if mark.near_miss]
-    for number, mark in enumerate(looked.marks, start=1):
-        if not mark.near_miss:
-            say(f"{number}. {mark.kind}: {mark}")
     if near:
-        far = max(mark.size or 0.0 for _, mark in near)
-        say(
-            "doubt: faces look at each other, or lie a little within each other, and have no joint; if they bear on "
-            f"each other, say {allowing(far)}"
-        )
         terminal.print_rows(
             [
                 {
@@ -122,7 +117,7 @@ def _plateaus(looked: Inspection, method: str) -> list[Plateau]:
 
 @click.command()
 @click.argument("wall", type=click.Path(path_type=Path))
-@click.option("-o", "--output", type=click.Path(path_type=Path), required=True, help="The file of the mended wall.")
+@click.option("-o", "--output", type=OUTPUT, required=True, help="The file of the mended wall.")
 @click.option("--snap", type=click.FloatRange(min=0.0, min_open=True), required=True, help="A vertex moves no further.")
 @json_flag
 @catching
@@ -132,10 +127,9 @@ def repair(wall: Path, output: Path, snap: float, as_json: bool) -> None:
     Lengths are in the unit of the file. Outlines that are drawn twice are taken once; faces get a vertex where another
     block ends in them.
     """
-    data, _ = read_document(wall)
-    mended = mend(parse_wall(data, str(wall)), snap)
+    mended = mend(parse_wall(read_document(wall), str(wall)), snap)
     built = build(mended.wall, wall.stem)
-    output.write_text(wall_json(mended.wall), encoding="utf-8")
+    write_whole(output, wall_json(mended.wall))
     furthest = max((move.distance for move in mended.moves), default=0.0)
     if as_json:
         rows = [asdict(move) | {"distance": move.distance} for move in mended.moves]
@@ -165,7 +159,7 @@ def _place(point: tuple[float, float] | None) -> str:
 
 @click.command()
 @click.argument("case")
-@click.option("-o", "--output", type=click.Path(path_type=Path), default=Path("wall.svg"), show_default=True)
+@click.option("-o", "--output", type=OUTPUT, default=Path("wall.svg"), show_default=True)
 @click.option("--window", is_flag=True, help="Draw in a window instead of to a file.")
 @click.option("--axes/--no-axes", default=True, show_default=True, help="Coordinates of the file, and a scale.")
 @click.option("--dimensions", is_flag=True, help="Sizes of the wall and of every block.")
@@ -180,14 +174,14 @@ def show(case: str, output: Path, window: bool, axes: bool, dimensions: bool, fo
     from reports.inspected import draw_inspected, inspected_figure
 
     if Path(case).is_file():
-        looked, notes = _looked_at(Path(case))
+        looked = _looked_at(Path(case))
     else:
         (found,) = find_cases([case], None, folders)
-        looked, notes = inspect(found.wall, found.id), found.notes
-    for note in notes:
-        say(f"drystone: {note}", err=True)
-    for number, mark in enumerate(looked.marks, start=1):
-        say(f"drystone: {number}. {mark.kind}: {mark}", err=True)
+        looked = inspect(found.wall, found.id)
+        for note in found.notes:
+            say(f"drystone: {note}", err=True)
+    for sentence in looked.sentences():
+        say(f"drystone: {sentence}", err=True)
     if window:
         show_window(inspected_figure(looked, axes=axes, dimensions=dimensions), looked.wall.title or case)
     else:

@@ -13,6 +13,7 @@ import click
 from harness import terminal
 from harness.engine import compare as comparing
 from harness.engine.plan import Limits, Run, check_methods, find_cases
+from harness.engine.sensitivity import over_tolerance, suggested
 from harness.engine.store import open_store
 from harness.given_settings import settings_of
 from harness.model import inspection
@@ -22,33 +23,52 @@ from harness.model.method import Finding, Status, load_method
 from harness.model.reading import wall_json
 from harness.model.units import LengthUnit
 from harness.model.wall import Wall
-from harness.options import cases_option, catching, say, say_json, settings_option, store_option, warn
+from harness.model.writing import write_whole
+from harness.options import (
+    INPUT_ERROR,
+    OUTPUT,
+    cases_option,
+    catching,
+    say,
+    say_json,
+    settings_option,
+    store_option,
+    warn,
+)
 
+MOST_LOOKED = 2000
+"""Blocks of a drawing whose tolerances are looked through while it is imported; for others `validate` does it."""
 KEPT = 50
 """Load steps of a series, unless a setting says otherwise: two seconds of a film."""
 
 
 @click.command("import")
 @click.argument("drawing", type=click.Path(path_type=Path))
-@click.option("-o", "--output", type=click.Path(path_type=Path), help="A file instead of standard output.")
+@click.option("-o", "--output", type=OUTPUT, help="A file instead of standard output.")
 @click.option(
     "--mapping", type=click.Path(path_type=Path), help="What the drawing does not say.  [default: DRAWING.toml]"
 )
 @click.option("--units", type=click.Choice(get_args(LengthUnit)), help="Of the drawing, whatever it declares.")
+@click.option("--scale", metavar="1:N", help="Lengths of the wall in lengths of the drawing, as 1:50 or 50.")
 @click.option("--supports", help='lowest-course, "ground-line Y" or "layer NAME".')
-@click.option("--tolerance", type=click.FloatRange(0.0, min_open=True), help="Greatest gap of a joint, in its unit.")
+@click.option("--tolerance", type=click.FloatRange(0.0, min_open=True), help="Greatest gap of a joint, of the wall.")
 @click.option("--friction", type=click.FloatRange(0.0), help="Coefficient of friction of every joint.")
 @click.option("--unit-weight", type=click.FloatRange(0.0), help="[kN/m3]")
-@click.option("--thickness", type=click.FloatRange(0.0, min_open=True), help="Out of plane, in its unit.")
+@click.option("--thickness", type=click.FloatRange(0.0, min_open=True), help="Out of plane, of the wall.")
 @click.option("--accuracy", type=click.FloatRange(0.0, min_open=True), help="Of curves [m].  [default: 0.001]")
-@click.option("--plane", type=click.Choice(["xz", "yz", "xy"]), help="That solids are cut by.  [default: xz]")
+@click.option(
+    "--plane",
+    type=click.Choice(["xz", "yz", "xy"]),
+    help="Of solids [default: xz], of a DXF [default: xy].",
+)
 @click.option("--at", type=float, help="Where the plane lies on the third axis.  [default: the middle]")
 @catching
 def import_(drawing: Path, output: Path | None, mapping: Path | None, **said: Any) -> None:
     """Make a WALL.json of DRAWING: DXF, SVG, GeoJSON, WKT, shapefile, CSV, gmsh (.msh, .geo) or COMPAS JSON.
 
     What was read, what was left out and why, and what is taken because the drawing does not say it stands on standard
-    error and in the wall's metadata.
+    error, in the wall's metadata, and, where it is left out or guessed, in its doubts, which every command repeats. A
+    wall with faults is written too, to be looked at; exit code 2 then.
     """
     from harness.formats.importing import Mapping, import_drawing, mapping_beside, read_mapping
     from harness.model.reading import validate
@@ -60,25 +80,32 @@ def import_(drawing: Path, output: Path | None, mapping: Path | None, **said: An
     for sentence in imported.account:
         say(f"drystone: {drawing.name}: {sentence}", err=True)
     looked = inspection.inspect(imported.wall, drawing.stem)
-    for fault in looked.faults:
-        say(f"drystone: {drawing.name}: fault: {fault}", err=True)
-    for sentence in looked.built.warnings if looked.built is not None else ():
-        say(f"drystone: {drawing.name}: {sentence}", err=True)
+    for sentence in looked.sentences(_tolerance(looked)):
+        if sentence.partition(": ")[2] not in imported.account:
+            say(f"drystone: {drawing.name}: {sentence}", err=True)
     _write(wall_json(imported.wall), output)
+    sys.exit(INPUT_ERROR if looked.faults else 0)
+
+
+def _tolerance(looked: inspection.Inspection) -> float | None:
+    """The tolerance that joins the near misses of a drawing, where there are any."""
+    missed = any(mark.near_miss for mark in looked.marks)
+    advice = suggested(over_tolerance(looked.wall)) if missed and len(looked.names) <= MOST_LOOKED else None
+    return advice[0] if advice else None
 
 
 def _write(text: str, output: Path | None) -> None:
     if output is None:
         say_json(text)
     else:
-        output.write_text(text, encoding="utf-8")
+        write_whole(output, text)
         say(str(output))
 
 
 @click.command()
 @click.argument("case")
 @click.option("--method", help="Whose answer goes along; the wall alone if absent.")
-@click.option("-o", "--output", type=click.Path(path_type=Path), required=True, help="Its ending says the format.")
+@click.option("-o", "--output", type=OUTPUT, required=True, help="Its ending says the format.")
 @settings_option
 @store_option
 @cases_option
@@ -169,7 +196,5 @@ def _kind(name: str, maker: Callable[..., Wall]) -> click.Command:
         click.Option([f"--{key.replace('_', '-')}", key], type=hints[key], help=f"[default: {item.default}]")
         for key, item in numbers.items()
     ]
-    options.append(
-        click.Option(["-o", "--output"], type=click.Path(path_type=Path), help="A file instead of standard output.")
-    )
+    options.append(click.Option(["-o", "--output"], type=OUTPUT, help="A file instead of standard output."))
     return click.Command(name, params=options, callback=command, help=inspect.getdoc(maker))

@@ -14,14 +14,14 @@ from harness.engine.isolate import announce
 from harness.engine.plan import Limits, find_cases, plan_case
 from harness.engine.store import open_store
 from harness.model.library import library
-from harness.options import catching, jobs_option, say, store_option
+from harness.options import OUTPUT, catching, jobs_option, say, store_option
 
 WALLS = ("wall-21-friction-030", "wall-21-friction-050", "wall-21", "wall-21-friction-075", "wall-21-friction-100")
 """Walls that differ in friction alone, from sliding to overturning in steps."""
 
 
 @click.command()
-@click.option("-o", "--output", type=click.Path(path_type=Path), default=Path("out/learn.html"), show_default=True)
+@click.option("-o", "--output", type=OUTPUT, default=Path("out/learn.html"), show_default=True)
 @jobs_option
 @store_option
 @catching

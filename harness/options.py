@@ -18,6 +18,7 @@ import click
 from harness.engine.plan import Limits
 from harness.model.case import Case
 from harness.model.errors import InputError, visible
+from harness.model.writing import check_output
 
 STORE = Path("out/drystone.sqlite")
 REPORT = Path("out/report.html")
@@ -96,6 +97,21 @@ def say_json(text: str) -> None:
     )
 
 
+class OutputFile(click.Path):
+    """The path of a file to write. What stands there is looked at before the work begins, not after it."""
+
+    def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> Any:
+        """The path."""
+        path = super().convert(value, param, ctx)
+        try:
+            check_output(Path(os.fsdecode(path)))
+        except InputError as error:
+            self.fail(str(error), param, ctx)
+        return path
+
+
+OUTPUT = OutputFile(path_type=Path)
+
 settings_option = click.option(
     "--set", "settings", multiple=True, metavar="NAME=VALUE", help="A setting of the method; may be repeated."
 )
@@ -124,11 +140,9 @@ memory_option = click.option(
     help="Memory limit of one run [MiB].",
 )  # fmt: skip
 report_option = click.option(
-    "--report", type=click.Path(path_type=Path), default=REPORT, show_default=True, help="Where the report is written."
+    "--report", type=OUTPUT, default=REPORT, show_default=True, help="Where the report is written."
 )
-junit_option = click.option(
-    "--junit", type=click.Path(path_type=Path), help="Also write the outcomes as JUnit XML to this file."
-)
+junit_option = click.option("--junit", type=OUTPUT, help="Also write the outcomes as JUnit XML to this file.")
 fresh_flag = click.option("--fresh", is_flag=True, help="Run again what is in the store.")
 
 

@@ -21,7 +21,8 @@ from harness.model.method import Finding, Status, load_method, method_names
 from harness.model.reading import read_json, read_wall, wall_json
 from harness.model.result import Result
 from harness.model.wall import Wall
-from harness.options import cases_option, catching, json_flag, print_json, say, say_json, store_option, warn
+from harness.model.writing import write_whole
+from harness.options import OUTPUT, cases_option, catching, json_flag, print_json, say, say_json, store_option, warn
 
 
 @click.command(name="list")
@@ -70,7 +71,7 @@ def _method_row(name: str) -> dict[str, Any]:
 
 @click.command()
 @click.argument("wall", type=click.Path(path_type=Path))
-@click.option("-o", "--output", type=click.Path(path_type=Path), help="A file instead of standard output.")
+@click.option("-o", "--output", type=OUTPUT, help="A file instead of standard output.")
 @catching
 def expand(wall: Path, output: Path | None) -> None:
     """Print WALL.json in explicit form: every block with its weight, every interface with its friction."""
@@ -81,7 +82,7 @@ def expand(wall: Path, output: Path | None) -> None:
     if output is None:
         say_json(text)
     else:
-        output.write_text(text, encoding="utf-8")
+        write_whole(output, text)
 
 
 @click.command()
@@ -128,7 +129,7 @@ def schema() -> None:
     "--kind", type=click.Choice(["mechanism", "forces", "thrust", "comparison"]), default="mechanism", show_default=True
 )
 @click.option("--format", "suffix", type=click.Choice(["pdf", "svg", "png"]), default="pdf", show_default=True)
-@click.option("-o", "--output", type=click.Path(path_type=Path), help="File to write.  [default: CASE-KIND.FORMAT]")
+@click.option("-o", "--output", type=OUTPUT, help="File to write.  [default: CASE-KIND.FORMAT]")
 @store_option
 @cases_option
 @catching
@@ -153,7 +154,7 @@ def figure(
 @click.command()
 @click.argument("case")
 @click.option("--method", default=library().methods.one, show_default=True)
-@click.option("-o", "--output", type=click.Path(path_type=Path), help="A .gif, .png or .webp.  [default: CASE.gif]")
+@click.option("-o", "--output", type=OUTPUT, help="A .gif, .png or .webp.  [default: CASE.gif]")
 @store_option
 @cases_option
 @catching

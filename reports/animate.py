@@ -16,6 +16,7 @@ from harness.model.case import Case
 from harness.model.displaced import carried, released
 from harness.model.errors import InputError
 from harness.model.result import Result
+from harness.model.writing import replacing
 from reports import figures, joints, numbers, shapes, words
 from reports.force_figure import INK
 
@@ -48,7 +49,6 @@ def animate(case: Case, result: Result, path: Path) -> None:
             "Choose a method that ended with a collapse state",
             source=case.id,
         )
-    path.parent.mkdir(parents=True, exist_ok=True)
     images = frames(case, result)
     durations = [FRAME_MILLISECONDS] * len(images)
     durations[0] = durations[-1] = PAUSE_MILLISECONDS
@@ -56,7 +56,10 @@ def animate(case: Case, result: Result, path: Path) -> None:
         images = [image.quantize(colors=64, dither=Image.Dither.NONE) for image in images]
     name = {".gif": "GIF", ".webp": "WEBP"}.get(suffix, "PNG")
     options = {"lossless": True} if name == "WEBP" else {}
-    images[0].save(path, format=name, save_all=True, append_images=images[1:], duration=durations, loop=0, **options)
+    with replacing(path) as draft:
+        images[0].save(
+            draft, format=name, save_all=True, append_images=images[1:], duration=durations, loop=0, **options
+        )
 
 
 def frames(case: Case, result: Result) -> list[Image.Image]:

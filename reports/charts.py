@@ -10,6 +10,7 @@ from dataclasses import dataclass, field
 
 from markupsafe import Markup
 
+from harness.model.writing import cell
 from reports import numbers
 from reports.marks import Mark
 
@@ -182,9 +183,9 @@ def csv_of(chart: Chart) -> str:
     for series in chart.series:
         columns = (series.x, series.y, series.low, series.high, *((series.curve,) if fitted else ()))
         for values in itertools.zip_longest(*columns, fillvalue=""):
-            writer.writerow((series.name, *values))
+            writer.writerow((cell(series.name), *values))
     for name, value in chart.levels:
-        writer.writerow((name, "", value, "", ""))
+        writer.writerow((cell(name), "", value, "", ""))
     return stream.getvalue()
 
 

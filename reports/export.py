@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING, Any
 from harness.model import columns
 from harness.model.comparison import CaseResults, ComparisonRun
 from harness.model.result import Result
-from harness.model.writing import write_whole
+from harness.model.writing import cell, write_whole
 from reports import charts, shapes, vectors, words
 from reports.curves import curves
 from reports.opening import run_in_order
@@ -196,7 +196,7 @@ def _csv(names: tuple[str, ...], rows: list[dict[str, Any]]) -> bytes:
     writer = csv.writer(stream, quoting=csv.QUOTE_NONNUMERIC, lineterminator="\n")
     writer.writerow(names)
     for row in rows:
-        writer.writerow([_field(row.get(name)) for name in names])
+        writer.writerow([cell(_field(row.get(name))) for name in names])
     return stream.getvalue().encode()
 
 

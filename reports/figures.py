@@ -5,7 +5,7 @@ Widths are those of a journal: one column of 88 mm, two of 180 mm. The same inpu
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
@@ -21,6 +21,7 @@ from harness.model.build import Built
 from harness.model.case import Case
 from harness.model.errors import InputError
 from harness.model.result import Result
+from harness.model.writing import replacing
 from reports import flow, joints, shapes
 from reports.drawing import LABELLED_BLOCKS, block_labels, stroke_factor
 from reports.facts import friction_text, value_in_words
@@ -71,9 +72,7 @@ def figure(case: Case, results: list[Result], kind: str, path: Path) -> None:
     if kind == "wall":
         show_wall(case.built, path, title=case.file.title)
         return
-    target = checked(path)
-    with style():
-        results_figure(case, results, kind).savefig(target, metadata=metadata(path))
+    save(lambda: results_figure(case, results, kind), path)
 
 
 def results_figure(case: Case, results: list[Result], kind: str) -> Figure:
@@ -109,9 +108,7 @@ def show_wall(built: Built, path: Path, *, title: str = "") -> None:
     Raises:
         InputError: another ending.
     """
-    target = checked(path)
-    with style():
-        _wall(built, title).savefig(target, metadata=metadata(path))
+    save(lambda: _wall(built, title), path)
 
 
 def wall_figure(built: Built, title: str = "") -> Figure:
@@ -169,16 +166,16 @@ def style() -> Iterator[None]:
         yield
 
 
-def checked(path: Path) -> Path:
-    """The path of a figure, with its folder made.
+def save(make: Callable[[], Figure], path: Path) -> None:
+    """Make a figure and write it, in the style of figures.
 
     Raises:
-        InputError: an ending that no figure has.
+        InputError: an ending that no figure has, or the path of something that is no regular file.
     """
     if path.suffix.lower() not in FORMATS:
         raise InputError(f'no figure is written as "{path.suffix}"', f"Use {', '.join(FORMATS)}", source=str(path))
-    path.parent.mkdir(parents=True, exist_ok=True)
-    return path
+    with replacing(path) as draft, style():
+        make().savefig(draft, metadata=metadata(path))
 
 
 def metadata(path: Path) -> dict[str, Any]:

@@ -21,7 +21,7 @@ from harness.model.inspection import Inspection, Mark
 from harness.model.rings import rings_of
 from harness.model.units import DIMENSIONLESS
 from reports import shapes
-from reports.figures import PAGE, checked, draw_joints, draw_loads, metadata, style
+from reports.figures import PAGE, draw_joints, draw_loads, save, style
 from reports.flow import round_number
 from reports.force_figure import BLUE, GREY, INK, RUST, stones
 
@@ -67,10 +67,7 @@ def draw_inspected(looked: Inspection, path: Path, *, axes: bool = True, dimensi
     Raises:
         InputError: another ending.
     """
-    target = checked(path)
-    page = inspected_figure(looked, axes=axes, dimensions=dimensions)
-    with style():
-        page.savefig(target, metadata=metadata(path))
+    save(lambda: inspected_figure(looked, axes=axes, dimensions=dimensions), path)
 
 
 def inspected_figure(

@@ -19,6 +19,7 @@ from harness.engine.plan import Run
 from harness.model.method import Status
 from harness.model.reading import read_json, validate
 from harness.model.result import Result
+from harness.model.writing import write_whole
 
 ROUNDING = 1e-8
 """Relative change of a multiplier that counts as none: what differs between processors and library builds."""
@@ -73,9 +74,7 @@ def write_baseline(path: Path, baseline: Baseline) -> None:
     """Write the baseline, sorted, in place of the file."""
     data = baseline.model_dump(mode="json", exclude_none=True)
     data["values"] = {case: dict(sorted(rows.items())) for case, rows in sorted(data["values"].items())}
-    part = path.with_suffix(".part")
-    part.write_text(json.dumps(data, indent=1, allow_nan=False) + "\n", encoding="utf-8")
-    part.replace(path)
+    write_whole(path, json.dumps(data, indent=1, allow_nan=False) + "\n")
 
 
 def value_of(result: Result) -> Value:

@@ -21,6 +21,11 @@ A_DECADE = 8
 """Tolerances tried in a decade: neighbours differ by a third, less than surveys do."""
 
 
+FINEST = 0.01
+"""Tolerances finer than this part of the greatest one tried, a thousandth of a block, add nothing to the width of a
+plateau: no survey is that accurate, and drawings that are exact to all digits have one plateau anyway."""
+
+
 @dataclass(frozen=True)
 class Plateau:
     """Tolerances in a row at which the same joints are found.
@@ -37,11 +42,11 @@ class Plateau:
     answer: str
 
 
-def over_tolerance(wall: Wall, method: Method) -> list[Plateau]:
+def over_tolerance(wall: Wall, method: Method | None = None) -> list[Plateau]:
     """The plateaus of a wall whose interfaces are found, from a millionth to a tenth of the typical block size.
 
     Args:
-        wall: as read; method: asked once a plateau, at its default settings.
+        wall: as read; method: asked once a plateau, at its default settings; without one the answers are empty.
     """
     detection = wall.interfaces if isinstance(wall.interfaces, Detection) else Detection()
     size = typical_block_size(wall)
@@ -60,16 +65,25 @@ def over_tolerance(wall: Wall, method: Method) -> list[Plateau]:
     for _, group in groupby(tried, key=lambda item: _joints(item[1])):
         members = list(group)
         first = members[0][1]
-        answer = first if isinstance(first, str) else _said(first, method)
+        answer = first if isinstance(first, str) else "" if method is None else _said(first, method)
         joints = None if isinstance(first, str) else first.n_interfaces
         plateaus.append(Plateau(members[0][0], members[-1][0], joints, answer))
     return plateaus
 
 
-def suggested(plateaus: list[Plateau]) -> float | None:
-    """A tolerance [length] a little above the least with which the most joints are found; None if none are."""
-    most = max((plateau for plateau in plateaus if plateau.joints), key=lambda item: item.joints or 0, default=None)
-    return None if most is None else min(1.5 * most.low, float(np.sqrt(most.low * most.high)))
+def suggested(plateaus: list[Plateau]) -> tuple[float, Plateau] | None:
+    """The middle of the widest plateau with joints, on a scale of ratios [length], and that plateau; None without."""
+    if not plateaus:
+        return None
+    finest = FINEST * plateaus[-1].high
+
+    def width(plateau: Plateau) -> float:
+        return plateau.high / max(plateau.low, finest)
+
+    widest = max((plateau for plateau in plateaus if plateau.joints), key=width, default=None)
+    if widest is None:
+        return None
+    return float(np.sqrt(min(max(widest.low, finest), widest.high) * widest.high)), widest
 
 
 def _joints(found: Assembly | str) -> str | tuple[tuple[int, int], ...]:

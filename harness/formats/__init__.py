@@ -19,8 +19,7 @@ def register() -> None:
     reading.DRAWINGS.update(dict.fromkeys(SUFFIXES, _document))
 
 
-def _document(path: Path) -> tuple[dict[str, Any], tuple[str, ...]]:
+def _document(path: Path) -> dict[str, Any]:
     from harness.formats.importing import import_drawing
 
-    imported = import_drawing(path)
-    return imported.wall.document(), imported.doubts
+    return import_drawing(path).wall.document()

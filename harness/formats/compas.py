@@ -13,35 +13,33 @@ from typing import Any
 import numpy as np
 import shapely
 
-from harness.formats.drawing import Drawing, nested
+from harness.formats.drawing import PLANES, Asked, Drawing, finite, nested
 from harness.model.assembly import FloatArray
 from harness.model.errors import InputError
 from harness.model.reading import read_json
 
-PLANES = {"xz": (0, 2, 1), "yz": (1, 2, 0), "xy": (0, 1, 2)}
-"""Axes of the section and the axis across it."""
 SUPPORT = ("is_support", "is_fixed", "fixed")
 
 
-def read_compas(path: Path, _accuracy: float, plane: str = "xz", at: float | None = None) -> Drawing:
-    """The section of the blocks of a COMPAS JSON file.
-
-    Args:
-        path: the file.
-        plane: "xz", "yz" or "xy".
-        at: where the plane lies on the third axis; the middle of the blocks if None.
+def read_compas(path: Path, asked: Asked) -> Drawing:
+    """The section of the blocks of a COMPAS JSON file, in the plane xz if none is asked for.
 
     Raises:
-        InputError: no COMPAS JSON, or a block that cannot be read.
+        InputError: no COMPAS JSON, or a face of vertices that are not there.
     """
-    try:
-        solids = list(_solids(read_json(path), {}, np.eye(4)))
-    except (KeyError, TypeError, ValueError, IndexError, AttributeError) as error:
-        raise InputError(f"its COMPAS data cannot be read ({error})", source=str(path)) from None
+    data = read_json(path)
+    if not looks_like_compas(data):
+        raise InputError("it is no COMPAS JSON", "A wall needs no import: give it to `drystone run`")
+    solids = list(_solids(data, {}, np.eye(4)))
+    plane, at = asked.plane or "xz", asked.at
     first, second, across = PLANES[plane]
     drawing = Drawing()
     if not solids:
         return drawing
+    for number, (points, faces, _) in enumerate(solids):
+        finite(points, f"solid {number}")
+        if any(not -len(points) <= vertex < len(points) for face in faces for vertex in face):
+            raise InputError("a face of it names a vertex that it does not have", "Save it again", f"solid {number}")
     heights = np.concatenate([points[:, across] for points, _, _ in solids])
     level = float(0.5 * (heights.min() + heights.max())) if at is None else at
     for number, (points, faces, said) in enumerate(solids):
@@ -63,6 +61,15 @@ def read_compas(path: Path, _accuracy: float, plane: str = "xz", at: float | Non
         for outer, holes in nested([np.asarray(part.exterior.coords) for part in parts]):
             drawing.add(f"block cut by {plane} at {level:g}", outer, holes, **more)
     return drawing
+
+
+def looks_like_compas(data: Any) -> bool:
+    """Whether JSON data is an object of COMPAS, or lists and dictionaries of such."""
+    if isinstance(data, dict) and data.get("format") != "wall/1":
+        return "dtype" in data or any(
+            looks_like_compas(item) for item in data.values() if isinstance(item, list | dict)
+        )
+    return isinstance(data, list) and any(looks_like_compas(item) for item in data[:1])
 
 
 def _cut(face: FloatArray, across: int, level: float) -> FloatArray | None:

@@ -11,6 +11,7 @@ import shapely
 
 from harness.model.assembly import FloatArray
 from harness.model.errors import InputError
+from harness.model.units import METRES
 
 Ring = Iterable[Sequence[float]]
 
@@ -21,11 +22,50 @@ SPIKE = 0.01
 """An outline that crosses itself is mended if that changes its area by less than this part: rounding folds the tip of a
 thin corner over, and no more."""
 
+LARGEST = 1e100
+"""Greatest coordinate: products of three of them are numbers still."""
+MOST_PAIRS = 300_000
+"""Pairs of parts of an outline, of lines or of outlines that may cross, at most: finding where they do takes a second
+or two then, and grows with their square. Parts of a drawing of stones meet a few others each."""
+A_PART = 50
+"""Pairs for each part that are looked into whatever their number: stones have a dozen neighbours."""
+MOST_CLOSED = 10_000
+"""Areas that lines close at most: a facade has a few thousand stones, crossing lines of a grid close millions."""
+ASK_FOR_POLYLINES = "Draw each stone as a closed polyline, or as lines that meet"
+
+MOST_COPIES = 20_000
+"""Entities that blocks and clones of a drawing stand for at most, written out: copies of copies grow without bound."""
+PLANES = {"xz": (0, 2, 1), "yz": (1, 2, 0), "xy": (0, 1, 2)}
+"""Axes of a plane and the axis across it."""
+
 SAME_OUTLINE = 0.98
 """Two outlines whose common area is at least this part of their union are one outline drawn twice.
 
 A second pass of a CAD program, or a hatch over its border, differs by rounding only; two stones that bear on each other
 share none."""
+
+
+@dataclass(frozen=True)
+class Asked:
+    """What a reader is asked for besides the file.
+
+    Attributes:
+        accuracy: greatest distance of a curve from the chords that stand for it [m].
+        unit: of the drawing, whatever it declares; empty if it is not said.
+        scale: lengths of the wall in lengths of the drawing.
+        plane: of a drawing in space; None leaves it to the format.
+        at: where the plane cuts solids on the third axis [length of the drawing]; the middle if None.
+    """
+
+    accuracy: float = 0.001
+    unit: str = ""
+    scale: float = 1.0
+    plane: str | None = None
+    at: float | None = None
+
+    def chord(self, declared: str) -> float:
+        """The accuracy of curves in a drawing that declares a unit, or none [length of the drawing]."""
+        return self.accuracy / (METRES[self.unit or declared or "m"] * self.scale)
 
 
 @dataclass(frozen=True, eq=False)
@@ -73,17 +113,23 @@ class Drawing:
     notes: list[str] = field(default_factory=list)
 
     def add(self, kind: str, points: Ring, holes: Iterable[Ring] = (), **more: object) -> None:
-        """Add an outline, or note why it is none (fewer than three vertices, no area, crosses itself)."""
-        polygon = _cleaned(points)
+        """Add an outline, or note why it is none (fewer than three vertices, no area, crosses itself).
+
+        Raises:
+            InputError: a coordinate is no number or too large, or it crosses itself more often than is looked into.
+        """
         layer = str(more.get("layer", ""))
         where = f' on layer "{layer}"' if layer else ""
+        polygon = _cleaned(points, f"{kind}{where}" + (f' "{more["name"]}"' if more.get("name") else ""))
         if len(polygon) < 3:
             self.left_out[f"{kind}{where}: fewer than three vertices"] += 1
             return
         shape = shapely.Polygon(polygon)
-        if not np.isfinite(polygon).all() or shape.area <= 0.0:
+        if shape.area <= 0.0:
             self.left_out[f"{kind}{where}: it has no area"] += 1
-        elif not shape.is_valid:
+            return
+        _check_pairs(_segments(polygon), f"{kind}{where}: its edges")
+        if not shape.is_valid:
             whole = max(shapely.get_parts(shapely.make_valid(shape)), key=shapely.area)
             if whole.geom_type != "Polygon" or abs(whole.area - shape.area) > SPIKE * shape.area:
                 self.left_out[f"{kind}{where}: {CROSSES} near {shapely.is_valid_reason(shape)}"] += 1
@@ -100,7 +146,8 @@ class Drawing:
     def _holes_in(self, stone: shapely.Polygon, holes: Iterable[Ring], what: str) -> tuple[FloatArray, ...]:
         """Holes of a stone; one that is no polygon within it, or touches it or another along a length, is told."""
         kept: list[FloatArray] = []
-        for hole in map(_cleaned, holes):
+        for ring in holes:
+            hole = _cleaned(ring, f"a hole of {what}")
             inside = len(hole) > 2 and stone.covers(shapely.Polygon(hole).buffer(0))
             if inside and shapely.Polygon(stone.exterior, [*kept, hole]).is_valid:
                 kept.append(hole)
@@ -113,13 +160,15 @@ class Drawing:
         wanted = set(layers)
         cuts = [outline for outline in self.outlines if outline.layer in wanted]
         self.outlines = [outline for outline in self.outlines if outline.layer not in wanted]
+        shapes = np.array([outline.shape for outline in self.outlines])
+        tree = shapely.STRtree(shapes)
         for cut in cuts:
-            around = [k for k, outline in enumerate(self.outlines) if outline.shape.covers(cut.shape)]
-            if not around:
+            around = tree.query(cut.shape, predicate="covered_by")
+            if not len(around):
                 x, y = cut.polygon.mean(axis=0)
                 self.left_out[f'hole on layer "{cut.layer}" that lies in no stone, near ({x:g}, {y:g})'] += 1
                 continue
-            least = min(around, key=lambda k: self.outlines[k].shape.area)
+            least = int(around[np.argmin(shapely.area(shapes[around]))])
             stone = self.outlines[least]
             holes = self._holes_in(shapely.Polygon(stone.polygon), [*stone.holes, cut.polygon], "a stone")
             self.outlines[least] = replace(stone, holes=holes)
@@ -128,10 +177,24 @@ class Drawing:
         """Add the areas that lines (k, 2) of one layer close, and note what ends in the open.
 
         Lines of a layer are cut where they meet, so a joint drawn once closes the stones on both sides of it.
+
+        Raises:
+            InputError: a coordinate is no number or too large, or they cross or close more than is looked into.
         """
-        for layer in dict.fromkeys(layer for _, layer in lines):
-            mine = shapely.MultiLineString([line for line, its in lines if its == layer and len(line) > 1])
-            faces, _, dangles, _ = shapely.polygonize_full([shapely.union_all([mine])])
+        of_layers: dict[str, list[FloatArray]] = {}
+        for line, layer in lines:
+            if len(line) > 1:
+                of_layers.setdefault(layer, []).append(finite(line, f'a line on layer "{layer}"'))
+        for layer, mine in of_layers.items():
+            _check_pairs(np.concatenate([_segments(line, closed=False) for line in mine]), f'lines on layer "{layer}"')
+            faces, _, dangles, _ = shapely.polygonize_full([shapely.union_all([shapely.MultiLineString(mine)])])
+            closed = shapely.get_num_geometries(faces)
+            if closed > MOST_CLOSED:
+                raise InputError(
+                    f"its lines close {closed:,} areas, and at most {MOST_CLOSED:,} are taken for stones",
+                    f"{ASK_FOR_POLYLINES}, without grids and hatching",
+                    f'layer "{layer}"',
+                )
             for face in shapely.get_parts(faces):
                 within = [np.asarray(ring.coords)[:-1] for ring in face.interiors]
                 self.add(kind, np.asarray(face.exterior.coords)[:-1], within, layer=layer)
@@ -145,6 +208,7 @@ class Drawing:
         if len(self.outlines) < 2:
             return
         shapes = np.array([outline.shape for outline in self.outlines])
+        _check_pairs(shapes, "its outlines")
         i, j = shapely.STRtree(shapes).query(shapes, predicate="intersects")
         i, j = i[i < j], j[i < j]
         common, area = shapely.area(shapely.intersection(shapes[i], shapes[j])), shapely.area(shapes)
@@ -164,14 +228,63 @@ class Drawing:
             told = "; ".join(f"{count} x {what}" for what, count in self.left_out.items())
             raise InputError(
                 "no closed outline is in it" + (f" ({told})" if told else ""),
-                "Draw each stone as a closed polyline, or as lines that meet",
+                ASK_FOR_POLYLINES,
                 source=source,
             )
         return self
 
+    def scaled(self, scale: float) -> Drawing:
+        """The drawing with every length times `scale`."""
+        outlines = [
+            replace(item, polygon=scale * item.polygon, holes=tuple(scale * hole for hole in item.holes))
+            for item in self.outlines
+        ]
+        return replace(self, outlines=outlines)
 
-def _cleaned(points: Ring) -> FloatArray:
-    return without_repeats(np.array([tuple(point)[:2] for point in points], float).reshape(-1, 2))
+
+def _cleaned(points: Ring, what: str) -> FloatArray:
+    return without_repeats(finite(np.array([tuple(point)[:2] for point in points], float).reshape(-1, 2), what))
+
+
+def finite(points: FloatArray, what: str) -> FloatArray:
+    """The points (k, 2).
+
+    Raises:
+        InputError: one of them is no number or too large to compute with.
+    """
+    wrong = ~(np.abs(points) <= LARGEST)
+    if wrong.any():
+        raise InputError(
+            f"it has the coordinate {points[wrong][0]:g}", f"Give finite numbers of at most {LARGEST:g}", element=what
+        )
+    return points
+
+
+def _segments(points: FloatArray, *, closed: bool = True) -> np.ndarray:
+    """The straight parts of a line (k, 2) as geometries."""
+    onward = np.roll(points, -1, axis=0)
+    pairs = np.stack([points, onward], axis=1)
+    return np.asarray(shapely.linestrings(pairs if closed else pairs[:-1]))
+
+
+def _check_pairs(parts: np.ndarray, what: str) -> None:
+    """Refuse geometries (n,) of which so many lie over each other that to find where they meet would not end.
+
+    Raises:
+        InputError: there are more pairs whose boxes meet than is looked into.
+    """
+    most = max(MOST_PAIRS, A_PART * len(parts))
+    if len(parts) ** 2 <= most:
+        return
+    tree, found = shapely.STRtree(parts), 0
+    step = max(1, most // len(parts))
+    for start in range(0, len(parts), step):
+        found += tree.query(parts[start : start + step]).shape[1]
+        if found > most:
+            raise InputError(
+                f"{what} lie over each other in more than {most:,} pairs, and no more are looked into",
+                "Leave out hatching, and what is drawn many times over",
+            )
 
 
 def nested(rings: Sequence[FloatArray]) -> list[tuple[FloatArray, list[FloatArray]]]:
@@ -179,16 +292,20 @@ def nested(rings: Sequence[FloatArray]) -> list[tuple[FloatArray, list[FloatArra
 
     What lies within a hole is an outline again, as in the even-odd rule of drawings.
     """
+    if len(rings) < 2:
+        return [(ring, []) for ring in rings]
+    for ring in rings:
+        _check_pairs(_segments(finite(ring, "an outline in parts")), "edges of an outline in parts")
     shapes = np.array([shapely.Polygon(ring).buffer(0) for ring in rings])
-    around: list[set[int]] = [set() for _ in rings]
-    if len(rings) > 1:
-        for inner, outer in shapely.STRtree(shapes).query(shapes, predicate="within").T.tolist():
-            around[inner] |= {outer} - {inner}
-    return [
-        (ring, [rings[k] for k in range(len(rings)) if i in around[k] and len(around[k]) == len(around[i]) + 1])
-        for i, ring in enumerate(rings)
-        if len(around[i]) % 2 == 0
-    ]
+    _check_pairs(shapes, "the parts of an outline")
+    inner, outer = shapely.STRtree(shapes).query(shapes, predicate="within")
+    inner, outer = inner[inner != outer], outer[inner != outer]
+    depth = np.bincount(inner, minlength=len(rings))
+    around: dict[int, set[int]] = {}
+    for k, i in zip(inner.tolist(), outer.tolist(), strict=True):
+        if depth[k] == depth[i] + 1:
+            around.setdefault(i, set()).add(k)
+    return [(ring, [rings[k] for k in sorted(around.get(i, ()))]) for i, ring in enumerate(rings) if depth[i] % 2 == 0]
 
 
 def without_repeats(polygon: FloatArray) -> FloatArray:

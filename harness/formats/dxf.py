@@ -1,9 +1,13 @@
-"""DXF in, through ezdxf: closed polylines, lines that close, hatches, circles and blocks with their transforms."""
+"""DXF in, through ezdxf: closed polylines, lines that close, hatches, circles and blocks with their transforms.
+
+What a CAD program does not show is left out: entities that are invisible or on a layer that is off or frozen.
+"""
 
 from __future__ import annotations
 
 import io
 from collections.abc import Iterator
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
@@ -12,92 +16,171 @@ import numpy as np
 from ezdxf import path as paths
 from ezdxf.lldxf.const import DXFError
 
-from harness.formats.drawing import Drawing, nested
+from harness.formats.drawing import MOST_COPIES, PLANES, Asked, Drawing, finite, nested
 from harness.model.assembly import FloatArray
 from harness.model.errors import InputError
-from harness.model.reading import read_bytes
+from harness.model.reading import read_bytes, text_of
 
-UNITS = {1: "in", 2: "ft", 4: "mm", 5: "cm", 6: "m"}
-"""$INSUNITS of the DXF reference."""
+UNITS = {"in": 1, "ft": 2, "mm": 4, "cm": 5, "m": 6, "km": 7, "yd": 10, "dm": 14}
+"""$INSUNITS of the DXF reference by units of length."""
 
 CLOSED = {"LWPOLYLINE", "POLYLINE", "CIRCLE", "ELLIPSE", "SPLINE", "SOLID", "TRACE", "3DFACE"}
 OPEN = {"LINE", "ARC", "LWPOLYLINE", "POLYLINE", "ELLIPSE", "SPLINE"}
 MOST_NESTED = 16
 """Depth of blocks within blocks that is followed; a drawing that goes deeper is likely to contain itself."""
+FINEST = 1e-5
+"""Chords of a curve are no finer than this part of its extent: some hundreds stand for a circle."""
 
 
-def read_dxf(path: Path, accuracy: float) -> Drawing:
-    """The outlines of the model space of a DXF file.
-
-    Args:
-        path: an ASCII or binary DXF.
-        accuracy: greatest distance of a curve from the chords that stand for it [length of the drawing].
+def read_dxf(path: Path, asked: Asked) -> Drawing:
+    """The outlines of the model space of a DXF file, ASCII or binary.
 
     Raises:
-        InputError: no DXF that can be read.
+        InputError: a block that is not defined, contains itself or stands for too many entities.
     """
     content = read_bytes(path)
-    try:
-        if content.startswith(b"AutoCAD Binary DXF"):
-            document = ezdxf.readfile(path)
-        else:
-            document = ezdxf.read(io.StringIO(_text(content)))
-    except (DXFError, OSError, ValueError, KeyError, IndexError, TypeError, AttributeError) as error:
+    if content.startswith(b"AutoCAD Binary DXF"):
+        document = ezdxf.readfile(path)
+    else:
+        document = ezdxf.read(io.StringIO(text_of(content, str(path), "cp1252").replace("\r\n", "\n")))
+    declared = int(document.header.get("$INSUNITS", 0))
+    drawing = Drawing(unit=next((unit for unit, code in UNITS.items() if code == declared), ""))
+    reading = _Reading(document, drawing, PLANES[asked.plane or "xy"], asked.chord(drawing.unit))
+    if reading.count(document.modelspace()) > MOST_COPIES + len(document.modelspace()):
         raise InputError(
-            f"it is no DXF that can be read ({error})", "Save it as DXF R12 or later", source=str(path)
-        ) from None
-    drawing = Drawing(unit=UNITS.get(int(document.header.get("$INSUNITS", 0)), ""))
-    lines: list[tuple[FloatArray, str]] = []
-    for entity, layer in _entities(document.modelspace(), drawing):
-        _read(entity, layer, accuracy, drawing, lines)
-    drawing.add_lines(lines)
+            f"its blocks stand for more than {MOST_COPIES:,} entities, and no more are read",
+            "Leave out what is no stone, or write the blocks out (EXPLODE)",
+        )
+    for entity, layer in reading.entities(document.modelspace()):
+        reading.add(entity, layer)
+    drawing.add_lines(reading.lines)
     return drawing
 
 
-def _text(content: bytes) -> str:
-    try:
-        return content.decode("utf-8").replace("\r\n", "\n")
-    except UnicodeDecodeError:
-        return content.decode("cp1252", errors="replace").replace("\r\n", "\n")
+@dataclass(eq=False)
+class _Reading:
+    """The reading of one file.
 
+    Attributes:
+        document: of ezdxf; drawing: what it becomes; axes: of the plane that is read, and the one across it.
+        accuracy: of curves [length of the drawing].
+        lines: that close nothing by themselves, with their layers.
+    """
 
-def _entities(holder: Any, drawing: Drawing, depth: int = 0, parent: str = "0") -> Iterator[tuple[Any, str]]:
-    """Entities with their layer, those of blocks included; layer 0 within a block is the layer of the block."""
-    for entity in holder:
-        layer = entity.dxf.get("layer", "0")
-        layer = parent if layer == "0" and depth else layer
-        if entity.dxftype() != "INSERT":
-            yield entity, layer
-        elif depth == MOST_NESTED:
-            drawing.left_out[f"INSERT of {entity.dxf.name}: blocks nested deeper than {MOST_NESTED}"] += 1
+    document: Any
+    drawing: Drawing
+    axes: tuple[int, int, int]
+    accuracy: float
+    lines: list[tuple[FloatArray, str]] = field(default_factory=list)
+    _counted: dict[str, int] = field(default_factory=dict)
+
+    def count(self, holder: Any, depth: int = 0) -> int:
+        """How many entities those of a holder stand for, its blocks written out.
+
+        Raises:
+            InputError: blocks are nested too deeply.
+        """
+        if depth > MOST_NESTED:
+            raise InputError(
+                f"its blocks are nested deeper than {MOST_NESTED}, or contain themselves",
+                "Write them out (EXPLODE)",
+                f'block "{getattr(holder, "name", "")}"',
+            )
+        total = 0
+        for entity in holder:
+            total += 1
+            if entity.dxftype() != "INSERT":
+                continue
+            name = str(entity.dxf.get("name", ""))
+            block = self.document.blocks.get(name)
+            if name not in self._counted:
+                self._counted[name] = 0 if block is None else self.count(block, depth + 1)
+            total += max(1, entity.mcount) * (1 + self._counted[name])
+        return total
+
+    def entities(self, holder: Any, parent: str = "0", *, within: bool = False) -> Iterator[tuple[Any, str]]:
+        """Entities that are shown, with their layer, those of blocks included; layer 0 in a block is that of the block.
+
+        A block that is inserted on a layer that is off shows what lies on layers of its own; frozen, it shows nothing.
+
+        Raises:
+            InputError: a block that is not defined or cannot be placed.
+        """
+        for entity in holder:
+            own = entity.dxf.get("layer", "0")
+            layer = parent if own == "0" and within else own
+            insert = entity.dxftype() == "INSERT"
+            hidden = self._hidden(entity, layer, off=not insert)
+            if hidden:
+                self.drawing.left_out[f'{entity.dxftype()} on layer "{layer}": hidden, because {hidden}'] += 1
+            elif not insert:
+                yield entity, layer
+            else:
+                for copy in self._copies(entity):
+                    yield from self.entities(copy, layer, within=True)
+
+    def _hidden(self, entity: Any, layer: str, *, off: bool) -> str:
+        """Why an entity on a layer is not shown; empty where it is."""
+        if entity.dxf.get("invisible", 0):
+            return "it is invisible"
+        known = self.document.layers.get(layer) if self.document.layers.has_entry(layer) else None
+        if known is not None and known.is_frozen():
+            return "the layer is frozen"
+        return "the layer is off" if off and known is not None and known.is_off() else ""
+
+    def _copies(self, insert: Any) -> Iterator[list[Any]]:
+        """The entities of every copy of a block that an INSERT makes, in their places."""
+        name = insert.dxf.get("name", "")
+        if self.document.blocks.get(name) is None:
+            raise InputError(
+                f'it inserts the block "{name}", which it does not define',
+                "Save it again from the program that drew it, or erase the insert",
+                "INSERT",
+            )
+        try:
+            for one in insert.multi_insert() if insert.mcount > 1 else (insert,):
+                yield list(one.virtual_entities())
+        except (DXFError, ArithmeticError, ValueError) as error:
+            raise InputError(
+                f'the block "{name}" cannot be placed ({error})', "Check its scale and direction", "INSERT"
+            ) from None
+
+    def add(self, entity: Any, layer: str) -> None:
+        """Take an entity as outlines or lines, or note why it is none."""
+        kind = entity.dxftype()
+        if kind in ("HATCH", "MPOLYGON"):
+            for outer, holes in nested([self._points(path) for path in paths.from_hatch(entity)]):
+                self.drawing.add(kind, outer, holes, layer=layer)
+            return
+        if kind not in CLOSED | OPEN:
+            self.drawing.left_out[f'{kind} on layer "{layer}": no outline'] += 1
+            return
+        try:
+            path = paths.make_path(entity)
+        except (TypeError, ValueError, DXFError) as error:
+            self.drawing.left_out[f'{kind} on layer "{layer}": {error}'] += 1
+            return
+        points = self._points(path)
+        if len(points) < 2:
+            self.drawing.left_out[f'{kind} on layer "{layer}": it is a point'] += 1
+        elif kind not in CLOSED or not (path.is_closed or bool(getattr(entity, "is_closed", False))):
+            self.lines.append((points, layer))
+        elif self._across(path, points):
+            planes = ", ".join(f"--plane {name}" for name, axes in PLANES.items() if axes != self.axes)
+            self.drawing.left_out[f'{kind} on layer "{layer}": it lies in another plane (say {planes})'] += 1
         else:
-            inserts = entity.multi_insert() if entity.mcount > 1 else (entity,)
-            for insert in inserts:
-                yield from _entities(insert.virtual_entities(), drawing, depth + 1, layer)
+            self.drawing.add(kind, points, layer=layer)
 
+    def _across(self, path: Any, points: FloatArray) -> bool:
+        """Whether a closed line stands across the plane that is read: its points are on one line there."""
+        depth = np.ptp([tuple(point)[self.axes[2]] for point in path.control_vertices()])
+        return bool(depth > 0.0 and np.linalg.matrix_rank(points - points[0]) < 2)
 
-def _read(entity: Any, layer: str, accuracy: float, drawing: Drawing, lines: list[tuple[FloatArray, str]]) -> None:
-    kind = entity.dxftype()
-    if kind in ("HATCH", "MPOLYGON"):
-        for outer, holes in nested([_points(path, accuracy) for path in paths.from_hatch(entity)]):
-            drawing.add(kind, outer, holes, layer=layer)
-        return
-    if kind not in CLOSED | OPEN:
-        drawing.left_out[f'{kind} on layer "{layer}": no outline'] += 1
-        return
-    try:
-        path = paths.make_path(entity)
-    except (TypeError, ValueError, DXFError) as error:
-        drawing.left_out[f'{kind} on layer "{layer}": {error}'] += 1
-        return
-    points = _points(path, accuracy)
-    if len(points) < 2:
-        drawing.left_out[f'{kind} on layer "{layer}": it is a point'] += 1
-    elif kind in CLOSED and (path.is_closed or bool(getattr(entity, "is_closed", False))):
-        drawing.add(kind, points, layer=layer)
-    else:
-        lines.append((points, layer))
-
-
-def _points(path: Any, accuracy: float) -> FloatArray:
-    return np.array([(point.x, point.y) for point in path.flattening(accuracy, segments=4)], float).reshape(-1, 2)
+    def _points(self, path: Any) -> FloatArray:
+        """The points (k, 2) of a path in the plane that is read, curves as chords."""
+        corners = finite(np.array([tuple(point) for point in path.control_vertices()], float), "a curve")
+        if len(corners) == 0:
+            return np.empty((0, 2))
+        accuracy = max(self.accuracy, FINEST * float(np.ptp(corners, axis=0).max()))
+        points = np.array([tuple(point) for point in path.flattening(accuracy, segments=4)], float).reshape(-1, 3)
+        return np.asarray(points[:, self.axes[:2]])

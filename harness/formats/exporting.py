@@ -16,6 +16,7 @@ from harness.model.build import Built
 from harness.model.errors import InputError, did_you_mean
 from harness.model.result import Result, vertex_velocities
 from harness.model.rings import rings_of
+from harness.model.writing import cell, replacing, write_whole
 
 
 def write_dxf(built: Built, result: Result | None, path: Path) -> None:
@@ -23,9 +24,10 @@ def write_dxf(built: Built, result: Result | None, path: Path) -> None:
     import ezdxf
 
     assembly = built.assembly
-    codes = {"in": 1, "ft": 2, "mm": 4, "cm": 5, "m": 6, "km": 7, "yd": 10, "dm": 14}
+    from harness.formats.dxf import UNITS
+
     document = ezdxf.new("R2010")  # type: ignore[attr-defined]
-    document.header["$INSUNITS"] = codes.get(built.wall.units.length, 0)
+    document.header["$INSUNITS"] = UNITS.get(built.wall.units.length, 0)
     for name, colour in (("BLOCKS", 7), ("SUPPORTS", 8), ("JOINTS", 5), ("MECHANISM", 1)):
         document.layers.add(name, color=colour)
     space = document.modelspace()
@@ -44,7 +46,8 @@ def write_dxf(built: Built, result: Result | None, path: Path) -> None:
     if result is not None and result.mechanism is not None:
         for polygon in moved(assembly, result):
             space.add_lwpolyline(polygon.tolist(), close=True, dxfattribs={"layer": "MECHANISM"})
-    document.saveas(path)
+    with replacing(path) as draft:
+        document.saveas(draft)
 
 
 def write_svg(built: Built, result: Result | None, path: Path) -> None:
@@ -79,7 +82,7 @@ def write_svg(built: Built, result: Result | None, path: Path) -> None:
             for p in polygons
         ]
         parts.append("</g>")
-    path.write_text("\n".join([*parts, "</svg>"]) + "\n", encoding="utf-8")
+    write_whole(path, "\n".join([*parts, "</svg>"]) + "\n")
 
 
 def write_geojson(built: Built, result: Result | None, path: Path) -> None:
@@ -109,7 +112,7 @@ def write_geojson(built: Built, result: Result | None, path: Path) -> None:
             joint["state"] = result.states[number]
         features.append(_feature({"type": "LineString", "coordinates": ends}, joint))
     data = {"type": "FeatureCollection", "features": features}
-    path.write_text(json.dumps(data, ensure_ascii=False, allow_nan=False) + "\n", encoding="utf-8")
+    write_whole(path, json.dumps(data, ensure_ascii=False, allow_nan=False) + "\n")
 
 
 def _feature(geometry: dict[str, Any], properties: dict[str, Any]) -> dict[str, Any]:
@@ -128,8 +131,8 @@ def write_csv(built: Built, result: Result | None, path: Path) -> None:
         for number, ring in enumerate(rings_of(polygon)):
             velocity = vertex_velocities(ring, centroid, np.asarray(speed, float))
             for point, v in zip(ring.tolist(), velocity.tolist(), strict=True):
-                writer.writerow([name, number, *point, block.material, int(block.fixed), *v])
-    path.write_text(file.getvalue(), encoding="utf-8")
+                writer.writerow([cell(name), number, *point, cell(block.material), int(block.fixed), *v])
+    write_whole(path, file.getvalue())
 
 
 def write_compas(built: Built, result: Result | None, path: Path) -> None:
@@ -158,7 +161,7 @@ def write_compas(built: Built, result: Result | None, path: Path) -> None:
             "max_face": len(faces) - 1,
         }
         meshes.append({"dtype": "compas.datastructures/Mesh", "data": data, "name": name})
-    path.write_text(json.dumps(meshes, ensure_ascii=False, allow_nan=False) + "\n", encoding="utf-8")
+    write_whole(path, json.dumps(meshes, ensure_ascii=False, allow_nan=False) + "\n")
 
 
 def matrices(built: Built, result: Result | None) -> dict[str, Any]:
@@ -199,8 +202,8 @@ def write_npz(built: Built, result: Result | None, path: Path) -> None:
     arrays = matrices(built, result)
     sparse = arrays.pop("C").tocoo()
     sizes = {"C_data": sparse.data, "C_row": sparse.row, "C_col": sparse.col, "C_shape": np.array(sparse.shape)}
-    with open(path, "wb") as file:
-        np.savez_compressed(file, **sizes, **arrays)
+    with replacing(path) as draft:
+        np.savez_compressed(draft, **sizes, **arrays)
 
 
 def write_mat(built: Built, result: Result | None, path: Path) -> None:
@@ -209,7 +212,8 @@ def write_mat(built: Built, result: Result | None, path: Path) -> None:
 
     arrays = matrices(built, result)
     arrays["block_ids"] = arrays["block_ids"].astype(object)
-    savemat(path, arrays, oned_as="column", do_compression=True)
+    with replacing(path) as draft:
+        savemat(draft, arrays, oned_as="column", do_compression=True)
 
 
 WRITERS: dict[str, Callable[[Built, Result | None, Path], None]] = {

@@ -6,18 +6,21 @@ import importlib
 import math
 import tomllib
 from collections import Counter
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any, Literal
+from typing import Annotated, Any, Literal
 
 import numpy as np
-from pydantic import Field
+import shapely
+from pydantic import BeforeValidator, Field
 
-from harness.formats.drawing import CROSSES, LINES, Drawing, Outline
-from harness.model.errors import InputError, did_you_mean
+from harness.formats.drawing import LINES, Asked, Drawing, Outline
+from harness.formats.places import refuse_degrees
+from harness.model.assembly import FloatArray
+from harness.model.errors import InputError, did_you_mean, first_few
 from harness.model.fields import Coefficient, Name, NonNegative, Point, Positive, Strict
-from harness.model.reading import parse_wall, read_json, read_text, validate
+from harness.model.reading import parse_wall, read_text, validate
 from harness.model.units import METRES, LengthUnit
 from harness.model.wall import FrictionRule, Wall
 
@@ -30,8 +33,9 @@ READERS = {
     ".csv": ("polygons", "read_csv", "shapely"),
     ".msh": ("mesh", "read_msh", "meshio"),
     ".geo": ("mesh", "read_geo", "shapely"),
+    ".json": ("compas", "read_compas", "shapely"),
 }
-"""Module, function and package of every kind of drawing, by the ending of its name; COMPAS is a .json."""
+"""Module, function and package of every kind of drawing, by the ending of its name."""
 
 REFUSED = {
     ".ifc": "IFC describes walls as wholes, not their stones; export the stones as DXF, or as COMPAS JSON",
@@ -55,6 +59,23 @@ NEAR = 0.1
 wide, and its stones 75 to 500 mm high."""
 
 
+MOST_REASON = 200
+"""Letters of what a parser says is wrong."""
+MOST_TOLD = 8
+"""Kinds of things left out that a warning names; the account has all."""
+
+
+def _scale(value: Any) -> Any:
+    """The scale of a drawing from a number, or from words as "1:50"."""
+    if not isinstance(value, str):
+        return value
+    one, _, many = value.partition(":")
+    try:
+        return float(many) / float(one) if many else float(one)
+    except (ValueError, ZeroDivisionError):
+        raise ValueError('a scale is a number or "1:50"') from None
+
+
 class Layer(Strict):
     """What the stones of a layer are."""
 
@@ -69,17 +90,22 @@ class Mapping(Strict):
 
     title: str = ""
     units: LengthUnit | None = Field(None, description="of the drawing; else what the drawing declares, else metres")
+    scale: Annotated[Positive, BeforeValidator(_scale)] | None = Field(
+        None, description='lengths of the wall in lengths of the drawing, as 50 or "1:50"; 1 if absent'
+    )
     accuracy: Positive | None = Field(None, description="of curves [m]; one millimetre if absent")
     friction: Coefficient | None = Field(None, description="coefficient of friction, tan(phi)")
     rules: list[FrictionRule] = Field(default_factory=list, description="friction of head or bed joints, of materials")
     unit_weight: NonNegative | None = Field(None, description="[kN/m3]")
-    thickness: Positive | None = Field(None, description="out of plane, in the unit of the drawing")
-    tolerance: Positive | None = Field(None, description="greatest gap of a joint, in the unit of the drawing")
+    thickness: Positive | None = Field(None, description="out of plane [length of the wall]")
+    tolerance: Positive | None = Field(None, description="greatest gap of a joint [length of the wall]")
     supports: str | None = Field(None, description='"lowest-course", "ground-line Y", "layer NAME" or "drawn"')
     live: Point | None = Field(None, description="live load as a multiple (x, y) of every weight")
     gravity: Point | None = Field(None, description="as a multiple (x, y) of every weight, of a drawing that is turned")
     layers: dict[str, Layer] = Field(default_factory=dict)
-    plane: Literal["xz", "yz", "xy"] = Field("xz", description="that solids are cut by")
+    plane: Literal["xz", "yz", "xy"] | None = Field(
+        None, description="that solids are cut by, xz if absent; that polylines of a DXF lie in, xy if absent"
+    )
     at: float | None = Field(None, description="where the plane lies on the third axis; the middle if absent")
 
 
@@ -89,13 +115,12 @@ class Imported:
 
     Attributes:
         wall: the wall.
-        account: what was read, left out and taken, sentence by sentence.
-        doubts: those of the account that a reader of the answer should hear.
+        account: what was read, left out and taken, sentence by sentence; what of it a reader of the answer should
+            hear are the doubts of the wall.
     """
 
     wall: Wall
     account: tuple[str, ...]
-    doubts: tuple[str, ...]
 
 
 def read_mapping(path: Path) -> Mapping:
@@ -127,27 +152,48 @@ def import_drawing(path: Path, mapping: Mapping | None = None) -> Imported:
         InputError: naming the file, what is wrong and what would be right.
     """
     chosen = mapping_beside(path) if mapping is None else mapping
-    drawing = _read(path, chosen)
+    try:
+        return _imported(path, chosen, _read(path, chosen))
+    except InputError as error:
+        error.source = error.source or str(path)
+        raise
+
+
+def _imported(path: Path, chosen: Mapping, drawing: Drawing) -> Imported:
     drawing.once()
     drawing.require(str(path))
     doubts = []
     unit: Any = chosen.units or drawing.unit
     if not unit:
+        refuse_degrees(drawing.outlines)
         unit = "m"
         doubts.append("the drawing declares no unit of length: metres are taken (--units says otherwise)")
+    drawing = drawing.scaled(chosen.scale or 1.0)
     closed = sum(count for what, count in drawing.read.items() if what.startswith(LINES))
     if closed:
         doubts.append(
             f"{closed} stones are areas that lines close: an opening that stones enclose counts as one too; draw them "
             "as closed polylines where there are openings"
         )
-    doubts += [f"left out {count} x {what}" for what, count in drawing.left_out.items() if CROSSES in what]
     _known_layers(chosen, drawing, path)
     drawing.cut_out(name for name, layer in chosen.layers.items() if layer.use == "hole")
     kept = [item for item in drawing.outlines if _layer(chosen, item).use != "ignore"]
+    if not kept:
+        raise InputError("every outline is on a layer to be ignored", "Leave a layer of stones", "layers")
+    _refuse_frame(kept)
+    if drawing.left_out:
+        lost = [f"{count} x {what}" for what, count in drawing.left_out.items()]
+        doubts.append(f"left out of the drawing: {first_few(lost, MOST_TOLD)}")
+    doubts += dict.fromkeys(drawing.notes)
+    left_out = [f"left out {count} x {what}" for what, count in drawing.left_out.items()]
     if len(kept) < len(drawing.outlines):
-        drawing.left_out["outline on a layer to be ignored"] += len(drawing.outlines) - len(kept)
-    held, how = _supports(kept, chosen, path)
+        left_out.append(f"left out {len(drawing.outlines) - len(kept)} x outline on a layer to be ignored")
+    down = _down(chosen)
+    held, how, guessed = _supports(kept, chosen, down)
+    supports = f"supports: {sum(held)} of {len(kept)} stones, {how}"
+    if guessed:
+        doubts.append(f"the drawing marks no supports: {supports.removeprefix('supports: ')}, are taken")
+    live = chosen.live or _across(down)
     names = _names(kept)
     metre = 1.0 / METRES[unit]
     data: dict[str, Any] = {
@@ -160,77 +206,117 @@ def import_drawing(path: Path, mapping: Mapping | None = None) -> Imported:
         "blocks": [
             _block(item, name, _layer(chosen, item), still) for item, name, still in zip(kept, names, held, strict=True)
         ],
-        "loads": {"live": {"body": [{"per_weight": list(chosen.live or (1.0, 0.0))}]}},
+        "loads": {"live": {"body": [{"per_weight": list(live)}]}},
     }
     if chosen.gravity is not None:
         data["loads"]["gravity"] = list(chosen.gravity)
     tolerance, tolerated = _tolerance(kept, chosen)
+    if tolerance is not None and chosen.tolerance is None:
+        doubts += tolerated
     sight = {"sight": NEAR * _size(kept)}
     data["interfaces"] = sight if tolerance is None else sight | {"tolerance": tolerance}
     for name, value, said in (
         ("friction", f"{FRICTION}", chosen.friction),
         ("unit weight", f"{UNIT_WEIGHT:g} kN/m3", chosen.unit_weight),
         ("thickness", "one metre", chosen.thickness),
-        ("live load", "a horizontal force of every weight, to the right,", chosen.live),
+        ("live load", f"{_in_words(live)},", chosen.live),
     ):
         if said is None:
             doubts.append(f"no {name} is given for the drawing: {value} is taken")
     account = [
         *(f"read {count} x {what}" for what, count in drawing.read.items()),
-        *(f"left out {count} x {what}" for what, count in drawing.left_out.items()),
-        *dict.fromkeys(drawing.notes),
-        f"unit of length: {unit}",
+        *left_out,
+        f"unit of length: {unit}" + (f", at a scale of {chosen.scale:g}" if chosen.scale else ""),
         *tolerated,
-        f"supports: {sum(held)} of {len(kept)} stones, {how}",
+        supports,
     ]
-    data["metadata"] = {"source": path.name, "import": [*account, *doubts]}
-
-    return Imported(parse_wall(data, str(path)), (*account, *doubts), tuple(doubts))
+    account = list(dict.fromkeys([*account, *doubts]))
+    data["metadata"] = {"source": path.name, "import": account}
+    data["doubts"] = doubts
+    return Imported(parse_wall(data, str(path)), tuple(account))
 
 
 def _read(path: Path, mapping: Mapping) -> Drawing:
     suffix = path.suffix.lower()
     if suffix in REFUSED:
         raise InputError(f"{suffix} is not read", REFUSED[suffix][0].upper() + REFUSED[suffix][1:], source=str(path))
-    accuracy = mapping.accuracy or 0.001
-    if suffix == ".json":
-        from harness.formats.compas import read_compas
-
-        if not looks_like_compas(read_json(path)):
-            raise InputError(
-                "it is no COMPAS JSON", "A wall needs no import: give it to `drystone run`", source=str(path)
-            )
-        return read_compas(path, accuracy, mapping.plane, mapping.at)
+    accuracy = Asked().accuracy if mapping.accuracy is None else mapping.accuracy
+    asked = Asked(accuracy, mapping.units or "", mapping.scale or 1.0, mapping.plane, mapping.at)
     if suffix not in READERS:
         raise InputError(
             f'a file that ends in "{suffix}" is not read',
-            f"{did_you_mean(suffix, READERS)} There are: {', '.join(READERS)} and the .json of COMPAS".strip(),
+            f"{did_you_mean(suffix, READERS)} There are: {', '.join(READERS)} of COMPAS".strip(),
             source=str(path),
         )
     module, name, package = READERS[suffix]
     try:
-        reader: Callable[[Path, float], Drawing] = getattr(importlib.import_module(f"harness.formats.{module}"), name)
-        if suffix == ".dxf" or mapping.units:
-            unit = mapping.units or _declared_unit(path, reader)
-            accuracy /= METRES[unit]  # type: ignore[index]
-        return reader(path, accuracy)
+        reader: Callable[[Path, Asked], Drawing] = getattr(importlib.import_module(f"harness.formats.{module}"), name)
+        return reader(path, asked)
     except ImportError as error:
         raise InputError(
             f"the package {error.name or package} is not installed",
             f"pip install {package}",
             source=str(path),
         ) from None
+    except InputError:
+        raise
+    except Exception as error:  # parsers of other people's formats fail in as many ways as they have lines
+        told = " ".join(str(error).split())[:MOST_REASON] or type(error).__name__
+        raise InputError(
+            f"it is no {suffix} that can be read ({told})",
+            "Save it again from the program that made it",
+            source=str(path),
+        ) from None
 
 
-def _declared_unit(path: Path, reader: Callable[[Path, float], Drawing]) -> str:
-    """The unit that a drawing declares; metres if none."""
-    return reader(path, 1e9).unit or "m"
+def _refuse_frame(outlines: Sequence[Outline]) -> None:
+    """Refuse outlines that enclose all others: the frame of a sheet is no stone.
+
+    Raises:
+        InputError: naming the outermost, and what would mend the drawing.
+    """
+    shapes = np.array([shapely.Polygon(item.polygon) for item in outlines])
+    size = shapely.area(shapes)
+    order = np.argsort(-size, kind="stable")
+    frames = 0
+    # The largest is a frame if it covers all that are smaller, and so on inward while more than one stone is left.
+    while frames < len(order) - 2 and shapely.covers(shapes[order[frames]], shapes[order[frames + 1 :]]).all():
+        frames += 1
+    if not frames:
+        return
+    outer = outlines[order[0]]
+    (x, y), (wide, high) = outer.polygon.min(axis=0).tolist(), np.ptp(outer.polygon, axis=0).tolist()
+    of_frames = {outlines[k].layer for k in order[:frames].tolist()}
+    alone = of_frames.isdisjoint(outlines[k].layer for k in order[frames:].tolist())
+    table = " and ".join(f'[layers."{layer}"] use = "ignore"' for layer in sorted(of_frames))
+    mend = f"Ignore it by its layer, in the TOML beside the drawing: {table}"
+    raise InputError(
+        f"{frames} outline(s) enclose all {len(order) - frames} others, the outer from ({x:g}, {y:g}) on {wide:g} wide "
+        f"and {high:g} high: the frame of a sheet is no stone",
+        mend if alone and "" not in of_frames else "Erase it, or draw it on a layer of its own, and ignore that",
+    )
 
 
-def looks_like_compas(data: Any) -> bool:
-    """Whether JSON data is an object of COMPAS, or a list of such."""
-    item = data[0] if isinstance(data, list) and data else data
-    return isinstance(item, dict) and "dtype" in item and item.get("format") != "wall/1"
+def _down(mapping: Mapping) -> FloatArray:
+    """The direction (2,) of gravity in the drawing."""
+    gravity = np.array(mapping.gravity or (0.0, -1.0))
+    size = float(np.hypot(*gravity))
+    if size == 0.0:
+        raise InputError("it has no direction", "Give the direction in which stones fall", "gravity")
+    return np.asarray(gravity / size)
+
+
+def _across(down: FloatArray) -> tuple[float, float]:
+    """The horizontal direction that is to the right: of the sheet, or where it has none, when its foot is down."""
+    right = np.array([-down[1], down[0]]) + 0.0
+    x, y = (right if right[0] >= 0.0 else 0.0 - right).tolist()
+    return x, y
+
+
+def _in_words(live: tuple[float, float]) -> str:
+    """The live load that is taken where none is said."""
+    towards = "to the right" if live == (1.0, 0.0) else f"along ({live[0]:.3g}, {live[1]:.3g})"
+    return f"a horizontal force of every weight, {towards}"
 
 
 def _layer(mapping: Mapping, outline: Outline) -> Layer:
@@ -312,25 +398,28 @@ def _tolerance(outlines: list[Outline], mapping: Mapping) -> tuple[float | None,
     return None, []
 
 
-def _supports(outlines: list[Outline], mapping: Mapping, path: Path) -> tuple[list[bool], str]:
-    """Which stones are supports, and how that was decided."""
+def _supports(outlines: list[Outline], mapping: Mapping, down: FloatArray) -> tuple[list[bool], str, bool]:
+    """Which stones are supports, how that was decided, and whether it was a guess; heights are against gravity."""
     drawn = [item.fixed or _layer(mapping, item).use == "support" for item in outlines]
     word, _, value = (mapping.supports or ("drawn" if any(drawn) else "lowest-course")).partition(" ")
-    bottoms = np.array([item.polygon[:, 1].min() for item in outlines])
-    heights = np.array([np.ptp(item.polygon[:, 1]) for item in outlines])
+    guessed = mapping.supports is None and not any(drawn)
+    rises = [-(item.polygon @ down) for item in outlines]
+    bottoms, tops = (np.array([extreme(rise) for rise in rises]) for extreme in (np.min, np.max))
     if word == "drawn":
         held, how = drawn, "as drawn"
     elif word == "lowest-course":
         # A course is level within half a stone: rounding and survey noise are far less, a second course far more.
-        limit = bottoms.min() + 0.5 * float(heights[bottoms == bottoms.min()].min())
+        limit = bottoms.min() + 0.5 * float((tops - bottoms)[bottoms == bottoms.min()].min())
         held, how = [bool(bottom < limit) for bottom in bottoms], "the lowest course"
     elif word in ("ground-line", "ground"):
         try:
             level = float(value)
         except ValueError:
-            raise InputError(f'"{value}" is no height', "Say ground-line and a number", "supports", str(path)) from None
-        middles = np.array([0.5 * (item.polygon[:, 1].min() + item.polygon[:, 1].max()) for item in outlines])
-        held, how = [bool(middle < level) for middle in middles], f"whose middle lies below {level:g}"
+            raise InputError(f'"{value}" is no height', "Say ground-line and a number", "supports") from None
+        # The coordinate of the drawing along gravity: with y downward, as in pixels, the ground has the greater y.
+        way = -1.0 if down[int(np.argmax(np.abs(down)))] > 0.0 else 1.0
+        held = [bool(middle < way * level) for middle in 0.5 * (bottoms + tops)]
+        how = f"whose middle lies below {level:g}"
     elif word == "layer":
         held, how = [item.layer == value for item in outlines], f'on layer "{value}"'
     else:
@@ -339,7 +428,5 @@ def _supports(outlines: list[Outline], mapping: Mapping, path: Path) -> tuple[li
         )
     held = [one or other for one, other in zip(held, drawn, strict=True)]
     if not any(held):
-        raise InputError(
-            "no stone is a support", 'Say lowest-course, "ground-line Y" or "layer NAME"', "supports", str(path)
-        )
-    return held, how
+        raise InputError("no stone is a support", 'Say lowest-course, "ground-line Y" or "layer NAME"', "supports")
+    return held, how, guessed

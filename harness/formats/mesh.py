@@ -11,7 +11,7 @@ from pathlib import Path
 import numpy as np
 import shapely
 
-from harness.formats.drawing import Drawing
+from harness.formats.drawing import Asked, Drawing
 from harness.model.errors import InputError
 from harness.model.reading import read_bytes, read_text
 
@@ -19,7 +19,7 @@ _ENTITY = re.compile(r"([A-Za-z][A-Za-z ]*?)\s*\(\s*(\"[^\"]*\"|\d+)\s*(?:,\s*\d
 _COMMENT = re.compile(r"//[^\n]*|/\*.*?\*/", re.DOTALL)
 
 
-def read_msh(path: Path, _accuracy: float) -> Drawing:
+def read_msh(path: Path, _asked: Asked) -> Drawing:
     """The surfaces of a gmsh mesh: cells of one geometrical entity are one block, physical groups are layers.
 
     Raises:
@@ -31,8 +31,8 @@ def read_msh(path: Path, _accuracy: float) -> Drawing:
     try:
         with contextlib.redirect_stdout(io.StringIO()):
             mesh = meshio.read(path, file_format="gmsh")
-    except (meshio.ReadError, ValueError, KeyError, IndexError, AssertionError, SystemExit) as error:
-        raise InputError(f"it is no gmsh mesh that can be read ({error})", source=str(path)) from None
+    except SystemExit as error:
+        raise ValueError(str(error)) from None
     groups = {int(tag): name for name, (tag, dimension) in mesh.field_data.items() if dimension == 2}
     surfaces: dict[tuple[int, int], list[shapely.Polygon]] = defaultdict(list)
     drawing = Drawing()
@@ -60,7 +60,7 @@ def read_msh(path: Path, _accuracy: float) -> Drawing:
     return drawing
 
 
-def read_geo(path: Path, _accuracy: float) -> Drawing:
+def read_geo(path: Path, _asked: Asked) -> Drawing:
     """The plane surfaces of a gmsh .geo whose points are numbers and whose curves are straight lines.
 
     Raises:

@@ -15,6 +15,7 @@ from harness.model.build import Built
 from harness.model.displaced import carried, released
 from harness.model.load_steps import STATES, UNKNOWN, LoadSteps
 from harness.model.result import Result, vertex_velocities
+from harness.model.writing import replacing, write_whole
 
 SHOWN = 0.3
 """The fastest vertex of a drawn mechanism is moved by this part of the typical size of a block."""
@@ -64,7 +65,12 @@ def write_vtu(built: Built, result: Result | None, path: Path) -> None:
     """Blocks as polygons and joints as lines, for ParaView: velocity, displacement, forces and states."""
     assembly = built.assembly
     displacement = [SHOWN * assembly.length_scale * v for v in velocities(assembly, result)]
-    _mesh(assembly, result, _frame(assembly, result, 0.0, displacement)).write(path, file_format="vtu", binary=True)
+    _write(_mesh(assembly, result, _frame(assembly, result, 0.0, displacement)), path)
+
+
+def _write(mesh: Any, path: Path) -> None:
+    with replacing(path) as draft:
+        mesh.write(draft, file_format="vtu", binary=True)
 
 
 def _frame(assembly: Assembly, result: Result | None, time: float, displacement: list[FloatArray]) -> Frame:
@@ -139,10 +145,10 @@ def write_pvd(built: Built, result: Result | None, path: Path) -> None:
     rows = []
     for step, frame in enumerate(_frames(assembly, result)):
         name = f"{path.stem}-{step:03d}.vtu"
-        _mesh(assembly, result, frame).write(path.with_name(name), file_format="vtu", binary=True)
+        _write(_mesh(assembly, result, frame), path.with_name(name))
         rows.append(f'    <DataSet timestep="{frame.time:.9g}" part="0" file={quoteattr(name)}/>')
     text = '<?xml version="1.0"?>\n<VTKFile type="Collection" version="0.1">\n  <Collection>\n'
-    path.write_text(text + "\n".join(rows) + "\n  </Collection>\n</VTKFile>\n", encoding="utf-8")
+    write_whole(path, text + "\n".join(rows) + "\n  </Collection>\n</VTKFile>\n")
 
 
 def _frames(assembly: Assembly, result: Result | None) -> Iterator[Frame]:

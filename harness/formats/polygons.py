@@ -4,54 +4,69 @@ from __future__ import annotations
 
 import csv
 import io
-import struct
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import shapely
 
-from harness.formats.drawing import Drawing
+from harness.formats.drawing import Asked, Drawing
+from harness.formats.places import reference_system
 from harness.model.errors import InputError
 from harness.model.reading import read_bytes, read_json, read_text
+from harness.model.writing import uncelled
 
 NAMES = ("id", "name", "block")
 LAYERS = ("layer", "group")
 
 
-def read_geojson(path: Path, _accuracy: float) -> Drawing:
-    """The polygons of a GeoJSON file; properties id/name, layer/group, material and fixed are read.
+def read_geojson(path: Path, _asked: Asked) -> Drawing:
+    """The polygons of a GeoJSON file; properties id/name, layer/group, material and fixed are read, and a member crs.
 
     Raises:
-        InputError: no GeoJSON.
+        InputError: no GeoJSON, or a geographic system of coordinates.
     """
     data = read_json(path)
     features = data.get("features", [data]) if isinstance(data, dict) else None
     if not isinstance(features, list) or not all(isinstance(item, dict) for item in features):
         raise InputError("it is no GeoJSON", "Give a FeatureCollection of polygons", source=str(path))
     drawing = Drawing()
-    for feature in features:
-        properties = dict(feature.get("properties") or {})
+    system = data.get("crs")
+    if isinstance(system, dict):
+        named = system.get("properties")
+        reference_system(str(named.get("name", "") if isinstance(named, dict) else system), drawing)
+    for number, feature in enumerate(features):
+        properties = feature.get("properties") or {}
+        if not isinstance(properties, dict):
+            raise InputError("it should be an object, in braces", "", f"features[{number}].properties", str(path))
         if "id" in feature:
-            properties.setdefault("id", feature["id"])
+            properties = {"id": feature["id"]} | properties
         geometry = feature.get("geometry", feature)
-        try:
-            shape = _shape(geometry)
-        except (AttributeError, KeyError, TypeError, ValueError, shapely.errors.ShapelyError) as error:
-            drawing.left_out[f"feature without a readable geometry ({error})"] += 1
-            continue
-        _add(drawing, shape, properties)
+        if geometry is None:
+            drawing.left_out["feature without a geometry"] += 1
+        else:
+            _add(drawing, _shape(geometry, f"features[{number}].geometry"), properties)
     return drawing
 
 
-def _shape(geometry: Any) -> Any:
+def _shape(geometry: Any, element: str) -> Any:
     """The shapely geometry of a GeoJSON geometry."""
     from shapely.geometry import shape
 
-    return shape(geometry)
+    try:
+        return shape(geometry)
+    except (AttributeError, KeyError, TypeError, ValueError, IndexError, shapely.errors.ShapelyError) as error:
+        raise InputError(f"its geometry cannot be read ({error})", "Give a Polygon", element) from None
 
 
-def read_wkt(path: Path, _accuracy: float) -> Drawing:
+def _from_wkt(text: str, element: str) -> Any:
+    try:
+        return shapely.from_wkt(text)
+    except (NotImplementedError, TypeError, ValueError, shapely.errors.ShapelyError) as error:
+        raise InputError(f"it is no WKT that is read ({error})", "Give POLYGON ((...))", element) from None
+
+
+def read_wkt(path: Path, _asked: Asked) -> Drawing:
     """The polygons of a text file with a WKT geometry a line.
 
     Raises:
@@ -59,18 +74,13 @@ def read_wkt(path: Path, _accuracy: float) -> Drawing:
     """
     drawing = Drawing()
     for number, line in enumerate(read_text(path).splitlines(), start=1):
-        if not line.strip():
-            continue
-        try:
-            shape = shapely.from_wkt(line)
-        except shapely.errors.ShapelyError as error:
-            raise InputError(f"it is no WKT ({error})", "Give POLYGON ((...))", f"line {number}", str(path)) from None
-        _add(drawing, shape, {})
+        if line.strip():
+            _add(drawing, _from_wkt(line, f"line {number}"), {})
     return drawing
 
 
-def read_shapefile(path: Path, _accuracy: float) -> Drawing:
-    """The polygons of a shapefile (.shp, with its .dbf if there is one)."""
+def read_shapefile(path: Path, _asked: Asked) -> Drawing:
+    """The polygons of a shapefile (.shp, with its .dbf and .prj if there are)."""
     import shapefile
 
     parts = {"shp": io.BytesIO(read_bytes(path))}
@@ -79,18 +89,18 @@ def read_shapefile(path: Path, _accuracy: float) -> Drawing:
         if beside.exists():
             parts[suffix] = io.BytesIO(read_bytes(beside))
     drawing = Drawing()
-    try:
-        with shapefile.Reader(**parts) as reader:
-            names = [item[0].lower() for item in reader.fields if item[0] != "DeletionFlag"]
-            for number in range(len(reader)):
-                properties = dict(zip(names, reader.record(number), strict=False)) if "dbf" in parts else {}
-                _add(drawing, _shape(reader.shape(number).__geo_interface__), properties)
-    except (shapefile.ShapefileException, OSError, ValueError, KeyError, IndexError, TypeError, struct.error) as error:
-        raise InputError(f"it is no shapefile that can be read ({error})", source=str(path)) from None
+    system = path.with_suffix(".prj")
+    if system.exists():
+        reference_system(read_text(system), drawing)
+    with shapefile.Reader(**parts) as reader:
+        names = [item[0].lower() for item in reader.fields if item[0] != "DeletionFlag"]
+        for number in range(len(reader)):
+            properties = dict(zip(names, reader.record(number), strict=False)) if "dbf" in parts else {}
+            _add(drawing, _shape(reader.shape(number).__geo_interface__, f"shape {number}"), properties)
     return drawing
 
 
-def read_csv(path: Path, _accuracy: float) -> Drawing:
+def read_csv(path: Path, _asked: Asked) -> Drawing:
     """Polygons of a CSV file: columns block, x, y with a row a vertex, or a column wkt with a row a polygon.
 
     Columns layer, material and fixed are read where there are any; a column ring tells the outline of a block from its
@@ -102,17 +112,14 @@ def read_csv(path: Path, _accuracy: float) -> Drawing:
     text = read_text(path)
     dialect = ";" if text.partition("\n")[0].count(";") else ","
     rows = [
-        {(name or "").strip().lower(): value for name, value in row.items()}
-        for row in csv.DictReader(io.StringIO(text), delimiter=dialect)
+        {(name or "").strip().lower(): uncelled(value) for name, value in row.items() if isinstance(value, str)}
+        for row in csv.DictReader(io.StringIO(text, newline=None), delimiter=dialect)
     ]
     drawing = Drawing()
     columns = set(rows[0]) if rows else set()
     if "wkt" in columns:
-        for row in rows:
-            try:
-                _add(drawing, shapely.from_wkt(row["wkt"]), row)
-            except (shapely.errors.ShapelyError, TypeError) as error:
-                raise InputError(f"it is no WKT ({error})", element="wkt", source=str(path)) from None
+        for number, row in enumerate(rows, start=1):
+            _add(drawing, _from_wkt(row.get("wkt", ""), f"row {number}"), row)
         return drawing
     name = next((item for item in NAMES if item in columns), "")
     if not name or not {"x", "y"} <= columns:
@@ -121,36 +128,47 @@ def read_csv(path: Path, _accuracy: float) -> Drawing:
             "Give block, x, y with a row a vertex, or wkt with a row a polygon",
             source=str(path),
         )
-    stones: dict[str, list[dict[str, str]]] = {}
-    for row in rows:
-        stones.setdefault(str(row[name]), []).append(row)
+    stones: dict[str, list[tuple[int, dict[str, str]]]] = {}
+    for number, row in enumerate(rows, start=1):
+        stones.setdefault(str(row.get(name)), []).append((number, row))
     for stone, vertices in stones.items():
         rings: dict[str, list[tuple[float, float]]] = {}
-        try:
-            for row in vertices:
-                rings.setdefault(row.get("ring") or "0", []).append((float(row["x"]), float(row["y"])))
-        except (TypeError, ValueError) as error:
-            raise InputError(f"{error}", "Give numbers with a point", stone, str(path)) from None
+        for number, row in vertices:
+            point = (_number(row, "x", number, stone), _number(row, "y", number, stone))
+            rings.setdefault(row.get("ring") or "0", []).append(point)
         outer, *holes = rings.values()
-        if any(len(ring) < 3 for ring in (outer, *holes)):
-            drawing.left_out["stone of fewer than three vertices in a ring"] += 1
-        else:
-            _add(drawing, shapely.Polygon(outer, holes), vertices[0])
+        drawing.add("polygon", outer, holes, **_said(vertices[0][1]))
     return drawing
+
+
+def _number(row: dict[str, str], column: str, number: int, stone: str) -> float:
+    value = row.get(column)
+    try:
+        return float(value or "")
+    except ValueError:
+        given = "is missing" if not value else f'is "{value}"'
+        raise InputError(
+            f"{column} {given}", "Give a number with a point", f'row {number} of block "{stone}"'
+        ) from None
 
 
 def _add(drawing: Drawing, shape: Any, properties: dict[str, Any]) -> None:
     """Add the polygons of a geometry with what its properties say."""
-    said = {str(name).lower(): value for name, value in properties.items() if value not in (None, "")}
-    more = {
-        "name": str(next((said[item] for item in NAMES if item in said), "")),
-        "layer": str(next((said[item] for item in LAYERS if item in said), "")),
-        "material": str(said.get("material", "")),
-        "fixed": str(said.get("fixed", "")).lower() in ("1", "true", "yes"),
-    }
+    more = _said(properties)
     for part in shapely.get_parts(shape):
         if part.geom_type != "Polygon":
             drawing.left_out[f"{part.geom_type}: no area"] += 1
             continue
         holes = [np.asarray(ring.coords) for ring in part.interiors]
         drawing.add("polygon", np.asarray(part.exterior.coords), holes, **more)
+
+
+def _said(properties: dict[str, Any]) -> dict[str, Any]:
+    """What the properties of a polygon say of the stone."""
+    said = {str(name).lower(): value for name, value in properties.items() if value not in (None, "")}
+    return {
+        "name": str(next((said[item] for item in NAMES if item in said), "")),
+        "layer": str(next((said[item] for item in LAYERS if item in said), "")),
+        "material": str(said.get("material", "")),
+        "fixed": str(said.get("fixed", "")).lower() in ("1", "true", "yes"),
+    }

@@ -7,58 +7,45 @@ import math
 import re
 from pathlib import Path
 from xml.etree import ElementTree
-from xml.etree.ElementTree import ParseError
 
 import numpy as np
 import svgelements as svg
 
-from harness.formats.drawing import Drawing, nested
+from harness.formats.drawing import Asked, Drawing, nested
+from harness.formats.svg_shown import LABEL, shown
 from harness.model.assembly import FloatArray
 from harness.model.errors import InputError
 from harness.model.reading import read_text
 
-LABEL = "{http://www.inkscape.org/namespaces/inkscape}label"
 _WIDTH = re.compile(r"\s*([0-9.]+)\s*(mm|cm|in)\s*")
 MOST_CHORDS = 256
 """Chords of one curved segment at most."""
 
 
-def read_svg(path: Path, accuracy: float) -> Drawing:
+def read_svg(path: Path, asked: Asked) -> Drawing:
     """The outlines of an SVG file, in user units of the picture.
 
-    Args:
-        path: the file.
-        accuracy: greatest distance of a curve from the chords that stand for it [length of the drawing].
-
     Raises:
-        InputError: no SVG that can be read.
+        InputError: no SVG, or one that is nested or cloned beyond what is read.
     """
     text = read_text(path)
     if "<!ENTITY" in text:
         raise InputError("it defines entities", "Save it as plain SVG", source=str(path))
-    try:
-        unit, plain = _in_user_units(text)
-        picture = svg.SVG.parse(io.StringIO(plain), reify=True, ppi=96.0)
-    except (ParseError, ValueError, TypeError, KeyError, AttributeError) as error:
-        raise InputError(f"it is no SVG that can be read ({error})", "Save it as plain SVG", source=str(path)) from None
-    drawing = Drawing(unit=unit)
+    root = ElementTree.fromstring(text)
+    drawing = Drawing(unit=_unit(root))
+    plain = ElementTree.tostring(shown(root, drawing), encoding="unicode")
+    picture = svg.SVG.parse(io.StringIO(plain), reify=True, ppi=96.0)
     lines: list[tuple[FloatArray, str]] = []
-    _walk(picture, "", accuracy, drawing, lines)
+    _walk(picture, "", asked.chord(drawing.unit), drawing, lines)
     drawing.add_lines(lines)
     return drawing
 
 
-def _in_user_units(text: str) -> tuple[str, str]:
-    """The picture without its window, whose coordinates are then those of the file, and the unit they are in if told.
-
-    A page of "210mm" whose viewBox is 210 wide is drawn in millimetres.
-    """
-    root = ElementTree.fromstring(text)
+def _unit(root: ElementTree.Element) -> str:
+    """The unit that a picture is drawn in, empty if it does not tell: a page of "210mm" with a viewBox 210 wide."""
     width, box = _WIDTH.fullmatch(root.get("width", "")), root.get("viewBox", "").replace(",", " ").split()
     told = width is not None and len(box) == 4 and math.isclose(float(width[1]), float(box[2]), rel_tol=1e-6)
-    for name in ("width", "height", "viewBox", "x", "y"):
-        root.attrib.pop(name, None)
-    return (width[2] if width is not None and told else ""), ElementTree.tostring(root, encoding="unicode")
+    return width[2] if width is not None and told else ""
 
 
 def _walk(
@@ -106,4 +93,4 @@ def _chords(segment: svg.Curve, accuracy: float) -> int:
         )
         for k in range(1, 16)
     )
-    return max(1, min(MOST_CHORDS, math.ceil(8.0 * math.sqrt(sag / accuracy))))
+    return max(1, math.ceil(min(MOST_CHORDS, 8.0 * math.sqrt(sag / accuracy))))

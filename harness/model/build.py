@@ -43,7 +43,8 @@ class Built:
 
     Attributes:
         assembly: the numeric view of the wall.
-        warnings: sentences about contacts at corners, very short interfaces, and points that lie off their block.
+        warnings: the doubts of the wall, and sentences about contacts at corners, very short interfaces, and points
+            that lie off their block.
         explicit: makes the explicit form.
     """
 
@@ -80,7 +81,7 @@ def build(wall: Wall, name: str = "wall") -> Built:
     check_held(names, fixed, block_a, block_b, joints_found)
     trusted = joints_found.trusted
     normal = normals_of(polygons, centroids, block_a, block_b, face1, face2, interfaces, trusted=trusted, size=size)
-    across, up = np.abs(face2 - face1).T
+    across, up = np.abs((face2 - face1) @ _level_and_upright(wall.loads).T).T
     inclined = np.where(across >= up, "bed", "head").tolist()
     joints = tuple(interface.joint or name for interface, name in zip(interfaces, inclined, strict=True))
     friction, dilatancy = _law(wall, interfaces, joints, blocks, index)
@@ -113,6 +114,7 @@ def build(wall: Wall, name: str = "wall") -> Built:
         )
     _check_sizes(assembly)
     warnings = [
+        *wall.doubts,
         *contact_warnings(assembly, joints_found.corners, size),
         *near_misses(names, joints_found.missed, joints_found.missed_gap, joints_found.gap),
         *force_warnings(assembly, wall.loads, size),
@@ -140,6 +142,14 @@ def _check_sizes(assembly: Assembly) -> None:
     if assembly.has_live_load:
         check("loads.live", "beside the dead load it is", 1.0 / assembly.load_unit)
         check("loads.live", "it is", assembly.force_scale / assembly.load_unit)
+
+
+def _level_and_upright(loads: Loads) -> FloatArray:
+    """Unit vectors (2, 2) across gravity and along it, by which a joint is a bed or a head joint."""
+    x, y = loads.gravity_per_weight
+    size = math.hypot(x, y)
+    x, y = (x / size, y / size) if size > 0.0 else (0.0, -1.0)
+    return np.array([[-y, x], [x, y]])
 
 
 def typical_block_size(wall: Wall) -> float:

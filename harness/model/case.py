@@ -185,12 +185,11 @@ def case_of_wall(path: Path) -> Case:
     Raises:
         InputError: naming the file and the element.
     """
-    data, notes = read_document(path)
-    wall = parse_wall(data, str(path))
+    wall = parse_wall(read_document(path), str(path))
     file = CaseFile(
         id=id_of(path.stem), title=wall.title or path.stem, source=str(wall.metadata.get("source", "the user"))
     )
-    return Case(file, wall, str(path), notes)
+    return Case(file, wall, str(path))
 
 
 def shipped_cases() -> Path:

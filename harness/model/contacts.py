@@ -182,7 +182,7 @@ def find_contacts(polygons: Sequence[FloatArray], fixed: BoolArray, limits: Join
     gaps = np.stack([(q - p)[:, 0] * axis[:, 1] - (q - p)[:, 1] * axis[:, 0] for p, q in ends])
     start, end = (0.5 * (p + q) for p, q in ends)
     widest, deepest = gaps.max(axis=0), -gaps.min(axis=0)
-    beside, off = high - low > limits.length, np.maximum(widest, deepest)
+    beside, off = np.einsum("kd,kd->k", end - start, axis) > limits.length, np.maximum(widest, deepest)
     near = beside & (widest <= limits.gap) & (deepest <= limits.overlap)
     seen = beside & ~near & (off <= limits.sight)
 

@@ -20,7 +20,7 @@ from harness.model.contacts import check_gap
 from harness.model.errors import InputError, Spot, sorted_out
 from harness.model.interfaces import Joints, faults_of_given, floating, floating_groups, joints_of, limits_of
 from harness.model.names import faults_of_wall
-from harness.model.plausibility import NEAR_MISS, allowing
+from harness.model.plausibility import NEAR_MISS, allowing, saying, span
 from harness.model.slips import unknown_in_rules
 from harness.model.wall import Block, Detection, Interface, Wall
 
@@ -78,6 +78,30 @@ class Inspection:
         """What keeps the wall from being built."""
         return tuple(mark for mark in self.marks if mark.kind == "fault")
 
+    def sentences(self, advice: float | None = None) -> list[str]:
+        """The marks with their numbers, the near misses, which may be hundreds, in one sentence with one tolerance.
+
+        Args:
+            advice: a tolerance that is likely to be right [length]; that which joins all of them if None, or if it
+                joins none.
+        """
+        near = [(number, mark.size) for number, mark in enumerate(self.marks, start=1) if mark.near_miss and mark.size]
+        told = [
+            f"{number}. {mark.kind}: {mark}" for number, mark in enumerate(self.marks, start=1) if not mark.near_miss
+        ]
+        if not near:
+            return told
+        gaps = np.array([size for _, size in near])
+        joined = 0 if advice is None else int((gaps <= advice).sum())
+        remedy = allowing(gaps.max())
+        if advice is not None and joined:
+            remedy = f"{saying(advice)}, which joins {'all' if joined == len(gaps) else joined} of them"
+        told.append(
+            f"{near[0][0]} to {near[-1][0]}. doubt: {len(near)} pair(s) of faces {NEAR_MISS} {span(gaps)} apart, or "
+            f"lie as deep within each other, and have no joint; if they bear on each other, say {remedy}"
+        )
+        return told
+
 
 def inspect(wall: Wall, name: str = "wall", before: Sequence[InputError] = ()) -> Inspection:
     """A wall looked over.
@@ -107,7 +131,7 @@ def inspect(wall: Wall, name: str = "wall", before: Sequence[InputError] = ()) -
             faults += error.faults
     marks = [*(_marked(fault, "fault") for fault in (*before, *faults)), *doubts]
     # Near misses are in the list one by one, so the sentence that sums them up would be a repetition.
-    warnings = unknown_in_rules(wall, blocks).values() if built is None else built.warnings
+    warnings = (*wall.doubts, *unknown_in_rules(wall, blocks).values()) if built is None else built.warnings
     marks += [Mark("doubt", "", text) for text in warnings if NEAR_MISS not in text]
     middle = {block.id: np.mean(np.array(block.polygon), axis=0) for block in apart}
     names = tuple(block.id for block in apart)

@@ -55,9 +55,14 @@ def span(values: FloatArray) -> str:
     return least if least == greatest else f"{least} to {greatest}"
 
 
+def saying(tolerance: float) -> str:
+    """How a file says a tolerance."""
+    return f'"interfaces": {{"tolerance": {tolerance:.3g}}} (--tolerance of a drawing)'
+
+
 def allowing(gap: float) -> str:
     """What a file says so that faces this far apart have a joint."""
-    return f'"interfaces": {{"tolerance": {1.02 * gap:.3g}}} (--tolerance of a drawing)'
+    return saying(1.02 * gap)
 
 
 def near_misses(names: Sequence[str], pairs: IntArray, gaps: FloatArray, greatest: float) -> list[str]:

@@ -9,7 +9,6 @@ import re
 import stat
 from collections import Counter
 from collections.abc import Callable
-from dataclasses import replace
 from pathlib import Path
 from typing import Any, TypeVar
 
@@ -29,6 +28,22 @@ MOST_NESTED = 40
 """Depth of a JSON document. A wall needs 7 levels; beyond some 200 its readers and writers reach their own limits."""
 HALF_CHARACTER = re.compile(r"\\u[dD][89a-fA-F]")
 """An escape that is one half of a surrogate pair."""
+KINDS = {
+    b"\x89PNG": "a PNG picture",
+    b"\xff\xd8\xff": "a JPEG picture",
+    b"GIF8": "a GIF picture",
+    b"II*\0": "a TIFF picture",
+    b"MM\0*": "a TIFF picture",
+    b"RIFF": "a WebP picture or another RIFF file",
+    b"%PDF": "a PDF",
+    b"PK\x03\x04": "a ZIP archive, as documents of office programs are",
+    b"\x1f\x8b": "compressed (gzip)",
+    b"AC10": "a DWG drawing",
+    b"SQLite format 3": "an SQLite file, as a store of results is",
+    b"\xff\xfe": "text in UTF-16",
+    b"\xfe\xff": "text in UTF-16",
+}
+"""What is no text, by its first bytes."""
 MOST_SHOWN = 60
 """Characters of a wrong value that are shown."""
 PLAIN = {
@@ -97,10 +112,29 @@ def read_text(path: Path, limit: int = LARGEST_FILE) -> str:
     Raises:
         InputError: no such file, not a regular file, larger than the limit, or not UTF-8.
     """
+    return text_of(read_bytes(path, limit), str(path))
+
+
+def text_of(content: bytes, source: str, otherwise: str = "") -> str:
+    """The text of a file in UTF-8, a byte order mark left out, or in the encoding `otherwise` where that is given.
+
+    Raises:
+        InputError: it is no text; what it is where its first bytes say so.
+    """
+    kind = next((kind for begin, kind in KINDS.items() if content.startswith(begin)), "")
+    if kind:
+        raise InputError(f"it is {kind}", "Give a UTF-8 text file", source=source)
     try:
-        return read_bytes(path, limit).decode("utf-8-sig")
+        return content.decode("utf-8-sig")
     except UnicodeDecodeError as error:
-        raise InputError(f"it cannot be read ({error})", "Give a UTF-8 text file", source=str(path)) from None
+        if otherwise:
+            return content.decode(otherwise, errors="replace")
+        line = content.count(b"\n", 0, error.start) + 1
+        raise InputError(
+            f"it is no UTF-8 text: byte {content[error.start]:#x} in line {line}",
+            "Give a UTF-8 text file",
+            source=source,
+        ) from None
 
 
 def read_json(path: Path, limit: int = LARGEST_FILE) -> Any:
@@ -137,9 +171,7 @@ def json_of(text: str, source: str) -> Any:
     try:
         data = json.loads(text, parse_constant=refuse_constant, parse_float=finite, object_pairs_hook=unique)
     except json.JSONDecodeError as error:
-        raise InputError(
-            f"line {error.lineno}, column {error.colno}: {error.msg}", "Give valid JSON", source=source
-        ) from None
+        raise _broken(text, error, source) from None
     except ValueError:
         raise InputError("it has a number of thousands of digits", "Give finite numbers", source=source) from None
     except RecursionError:
@@ -149,6 +181,45 @@ def json_of(text: str, source: str) -> Any:
     if HALF_CHARACTER.search(text):
         _refuse_half_characters(data, source)
     return data
+
+
+def _broken(text: str, error: json.JSONDecodeError, source: str) -> InputError:
+    """What stands where JSON text is broken, and what should."""
+    if not text.strip():
+        return InputError("it is empty", "Give a JSON document", source=source)
+    if text.lstrip().startswith("<"):
+        return InputError(
+            "it is XML or HTML, not JSON", "Give a drawing the ending of its format, as .svg", source=source
+        )
+    left, rest = text[: error.pos].rstrip(), text[error.pos :].lstrip()
+    if error.msg.startswith(("Illegal trailing comma", "Expecting property", "Expecting value")) and (
+        left.endswith(",") or rest.startswith(",")
+    ):
+        rest = rest.removeprefix(",").lstrip()
+    found, right = f"{error.msg[0].lower()}{error.msg[1:]}", "Give valid JSON"
+    if error.msg.startswith("Extra data"):
+        found, right = "something stands after the end of the document", "Give one document"
+    elif error.msg.startswith(("Unterminated string", "Invalid control")):
+        found, right = "a text has no end in its line", "Close it with a quote"
+    elif not rest:
+        found, right = "the file ends in the middle", "Close its brackets, or copy the whole of it"
+    elif rest[0] in "]}" and error.msg.startswith(("Illegal", "Expecting property", "Expecting value")):
+        comma = "a comma too many stands" if "," in (left[-1:], text[error.pos]) else "a value is missing"
+        found, right = f'{comma} before "{rest[0]}"', "Take it out" if comma.startswith("a comma") else "Give it"
+    elif rest[0] == "'":
+        found, right = "single quotes stand round a text", 'Use double quotes, "'
+    elif rest.startswith(("//", "/*", "#")):
+        found, right = "a comment stands there, and JSON has none", "Take it out"
+    elif rest.startswith(("True", "False", "None")):
+        found, right = f"{rest[:5].strip(',')} is a word of Python", "Write true, false or null"
+    elif error.msg.startswith("Expecting ',' delimiter"):
+        found, right = f'"{rest[0]}" stands where a comma or a closing bracket is expected', "Put it in"
+    elif error.msg.startswith("Expecting ':' delimiter"):
+        found, right = f'"{rest[0]}" stands where a colon is expected', "Put it in"
+    elif error.msg.startswith(("Expecting property", "Expecting value")):
+        what = "a name in double quotes" if "property" in error.msg else "a value"
+        found, right = f'"{rest.split()[0][:MOST_SHOWN]}" stands where {what} is expected', "Give valid JSON"
+    return InputError(f"line {error.lineno}, column {error.colno}: {found}", right, source=source)
 
 
 def nested_deeper(data: Any, most: int) -> bool:
@@ -296,20 +367,19 @@ def _members(annotation: Any) -> list[Any]:
     return [member for argument in arguments for member in _members(argument)]
 
 
-DRAWINGS: dict[str, Callable[[Path], tuple[Any, tuple[str, ...]]]] = {}
-"""Readers of drawings by the ending of their names: each gives JSON data of a wall, and what a person should hear.
+DRAWINGS: dict[str, Callable[[Path], Any]] = {}
+"""Readers of drawings by the ending of their names: each gives JSON data of a wall.
 
 Filled by `harness.formats.register`; the model knows no format of drawings."""
 
 
-def read_document(path: Path) -> tuple[Any, tuple[str, ...]]:
-    """JSON data of a wall file or of a drawing, and what a person should hear about how it was read.
+def read_document(path: Path) -> Any:
+    """JSON data of a wall file or of a drawing.
 
     Raises:
         InputError: naming the file and what is wrong.
     """
-    reader = DRAWINGS.get(path.suffix.lower())
-    return (read_json(path), ()) if reader is None else reader(path)
+    return DRAWINGS.get(path.suffix.lower(), read_json)(path)
 
 
 def parse_wall(data: Any, source: str) -> Wall:
@@ -332,11 +402,9 @@ def read_wall(path: Path, name: str = "") -> Built:
     Raises:
         InputError: naming the file and the element.
     """
-    data, notes = read_document(path)
-    wall = parse_wall(data, str(path))
+    wall = parse_wall(read_document(path), str(path))
     try:
-        built = build(wall, name or path.stem)
-        return replace(built, warnings=(*notes, *built.warnings)) if notes else built
+        return build(wall, name or path.stem)
     except InputError as error:
         error.source = error.source or str(path)
         raise

@@ -278,6 +278,10 @@ class Wall(Strict):
     title: str = ""
     units: Units = Field(default_factory=Units)
     metadata: dict[str, Any] = Field(default_factory=dict, description="free: source, author, remarks")
+    doubts: list[str] = Field(
+        default_factory=list,
+        description="what was left out or guessed when a drawing became this wall: told with every answer",
+    )
     unit_weight: NonNegative | None = Field(None, description="[force/length^3] for blocks that give no weight")
     thickness: Positive | None = Field(None, description="out of plane [length]; one metre if absent")
     friction: FrictionOfWall | None = Field(None, description="coefficient of friction, tan(phi), or rules")

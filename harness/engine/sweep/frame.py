@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-import os
 from collections.abc import Iterable, Sequence
 from importlib.util import find_spec
 from pathlib import Path
@@ -12,6 +11,7 @@ import pandas as pd
 
 from harness.engine.sweep.running import Row
 from harness.model.columns import BY_NAME
+from harness.model.writing import cell, replacing
 
 COLUMNS = (
     "number",
@@ -86,13 +86,13 @@ def write(table: pd.DataFrame, folder: Path, name: str) -> list[Path]:
     written = []
     for suffix in ("csv", "units.json", *(["parquet"] if find_spec("pyarrow") is not None else [])):
         path = folder / f"{name}.{suffix}"
-        part = path.with_name(f".{path.name}.part")
-        if suffix == "csv":
-            table.to_csv(part, index=False)
-        elif suffix == "parquet":
-            table.to_parquet(part, index=False)
-        else:
-            part.write_text(json.dumps(table.attrs.get("units", {}), indent=1) + "\n", encoding="utf-8")
-        os.replace(part, path)
+        with replacing(path) as part:
+            if suffix == "csv":
+                texts = table.select_dtypes(["object", "string"])
+                table.assign(**{str(column): texts[column].map(cell) for column in texts}).to_csv(part, index=False)
+            elif suffix == "parquet":
+                table.to_parquet(part, index=False)
+            else:
+                part.write_text(json.dumps(table.attrs.get("units", {}), indent=1) + "\n", encoding="utf-8")
         written.append(path)
     return written
