@@ -2,11 +2,15 @@
 
 from __future__ import annotations
 
+import contextlib
 import importlib
+import io
 import math
 import tomllib
+import warnings
 from collections import Counter
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Annotated, Any, Literal
@@ -251,7 +255,10 @@ def _read(path: Path, mapping: Mapping) -> Drawing:
     module, name, package = READERS[suffix]
     try:
         reader: Callable[[Path, Asked], Drawing] = getattr(importlib.import_module(f"harness.formats.{module}"), name)
-        return reader(path, asked)
+        with _heard() as told:
+            drawing = reader(path, asked)
+        drawing.notes += told
+        return drawing
     except ImportError as error:
         raise InputError(
             f"the package {error.name or package} is not installed",
@@ -267,6 +274,21 @@ def _read(path: Path, mapping: Mapping) -> Drawing:
             "Save it again from the program that made it",
             source=str(path),
         ) from None
+
+
+@contextmanager
+def _heard() -> Iterator[list[str]]:
+    """What a reader warns of, instead of what it prints."""
+    told: list[str] = []
+    nowhere = io.StringIO()
+    with (
+        contextlib.redirect_stdout(nowhere),
+        contextlib.redirect_stderr(nowhere),
+        warnings.catch_warnings(record=True, action="always") as caught,
+    ):
+        yield told
+    words = [str(item.message) for item in caught if not issubclass(item.category, RuntimeWarning | DeprecationWarning)]
+    told += [f"its reader warns: {text[:MOST_REASON]}" for text in words]
 
 
 def _refuse_frame(outlines: Sequence[Outline]) -> None:

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import contextlib
-import io
 import re
 from collections import defaultdict
 from pathlib import Path
@@ -29,10 +27,9 @@ def read_msh(path: Path, _asked: Asked) -> Drawing:
 
     read_bytes(path)
     try:
-        with contextlib.redirect_stdout(io.StringIO()):
-            mesh = meshio.read(path, file_format="gmsh")
+        mesh = meshio.read(path, file_format="gmsh")
     except SystemExit as error:
-        raise ValueError(str(error)) from None
+        raise ValueError("gmsh mesh expected") from error
     groups = {int(tag): name for name, (tag, dimension) in mesh.field_data.items() if dimension == 2}
     surfaces: dict[tuple[int, int], list[shapely.Polygon]] = defaultdict(list)
     drawing = Drawing()

@@ -93,9 +93,8 @@ def read_shapefile(path: Path, _asked: Asked) -> Drawing:
     if system.exists():
         reference_system(read_text(system), drawing)
     with shapefile.Reader(**parts) as reader:
-        names = [item[0].lower() for item in reader.fields if item[0] != "DeletionFlag"]
         for number in range(len(reader)):
-            properties = dict(zip(names, reader.record(number), strict=False)) if "dbf" in parts else {}
+            properties = reader.record(number).as_dict() if "dbf" in parts else {}
             _add(drawing, _shape(reader.shape(number).__geo_interface__, f"shape {number}"), properties)
     return drawing
 

@@ -213,13 +213,13 @@ def _merge_collinear(
             one = (ends[kept] - starts[kept]) / np.linalg.norm(ends[kept] - starts[kept])
             two = ends[k] - starts[k]
             straight = abs(one[0] * two[1] - one[1] * two[0]) <= tolerance and np.dot(one, two) > 0.0
-            if straight and np.linalg.norm(ends[kept] - starts[k]) <= tolerance:
-                ends[kept] = ends[k]
+            meeting = (np.linalg.norm(ends[kept] - starts[k]), np.linalg.norm(starts[kept] - ends[k]))
+            if straight and min(meeting) <= tolerance:
+                # The whole of both: where the tolerance is as long as they are, one may lie beside the other.
+                points = np.stack([starts[kept], starts[k], ends[kept], ends[k]])
+                places = points @ one
+                starts[kept], ends[kept] = points[int(np.argmin(places))], points[int(np.argmax(places))]
                 joined = True
-            elif straight and np.linalg.norm(starts[kept] - ends[k]) <= tolerance:
-                starts[kept] = starts[k]
-                joined = True
-            if joined:
                 break
         if not joined:
             keep.append(k)

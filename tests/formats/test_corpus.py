@@ -58,7 +58,9 @@ def test_a_drawing_has_the_answer_of_the_exact_wall(
 
 def test_an_opening_between_lines_is_doubted(tmp_path: Path) -> None:
     mapping = drawn(_tilted(BASES["facade"]()), TRAITS["lines"], tmp_path / "wall.dxf")
-    assert any("areas that lines close" in doubt for doubt in import_drawing(tmp_path / "wall.dxf", mapping).doubts)
+    assert any(
+        "areas that lines close" in doubt for doubt in import_drawing(tmp_path / "wall.dxf", mapping).wall.doubts
+    )
 
 
 def test_open_joints_are_told_with_their_width_and_closed_when_asked_for(tmp_path: Path) -> None:

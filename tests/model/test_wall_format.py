@@ -257,7 +257,7 @@ def test_unreadable_files_are_refused(tmp_path: Path):
     with pytest.raises(InputError, match="no such file"):
         read_json(tmp_path / "absent.json")
     (tmp_path / "binary.json").write_bytes(b"\xff\xfe\x00")
-    with pytest.raises(InputError, match="cannot be read"):
+    with pytest.raises(InputError, match="text in UTF-16"):
         read_json(tmp_path / "binary.json")
     with pytest.raises(InputError, match="cannot be read"):
         read_json(tmp_path)
