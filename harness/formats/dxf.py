@@ -28,8 +28,10 @@ CLOSED = {"LWPOLYLINE", "POLYLINE", "CIRCLE", "ELLIPSE", "SPLINE", "SOLID", "TRA
 OPEN = {"LINE", "ARC", "LWPOLYLINE", "POLYLINE", "ELLIPSE", "SPLINE"}
 MOST_NESTED = 16
 """Depth of blocks within blocks that is followed; a drawing that goes deeper is likely to contain itself."""
-FINEST = 1e-5
-"""Chords of a curve are no finer than this part of its extent: some hundreds stand for a circle."""
+FINEST = 1e-6
+"""Chords of a curve are no finer than this part of its extent: a thousand or two stand for a circle."""
+CLOSE = 1e-9
+"""Ends of a curve are one point if they are no further apart than this part of its extent: rounding."""
 
 
 def read_dxf(path: Path, asked: Asked) -> Drawing:
@@ -163,7 +165,10 @@ class _Reading:
         points = self._points(path)
         if len(points) < 2:
             self.drawing.left_out[f'{kind} on layer "{layer}": it is a point'] += 1
-        elif kind not in CLOSED or not (path.is_closed or bool(getattr(entity, "is_closed", False))):
+        elif kind not in CLOSED or not (
+            bool(getattr(entity, "is_closed", False))
+            or np.linalg.norm(points[-1] - points[0]) <= CLOSE * np.ptp(points, axis=0).max()
+        ):
             self.lines.append((points, layer))
         elif self._across(path, points):
             planes = ", ".join(f"--plane {name}" for name, axes in PLANES.items() if axes != self.axes)

@@ -268,9 +268,9 @@ def _read(path: Path, mapping: Mapping) -> Drawing:
     except InputError:
         raise
     except Exception as error:  # parsers of other people's formats fail in as many ways as they have lines
-        told = " ".join(str(error).split())[:MOST_REASON] or type(error).__name__
+        reason = " ".join(str(error).split())[:MOST_REASON] or type(error).__name__
         raise InputError(
-            f"it is no {suffix} that can be read ({told})",
+            f"it is no {suffix} that can be read ({reason})",
             "Save it again from the program that made it",
             source=str(path),
         ) from None

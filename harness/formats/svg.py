@@ -56,7 +56,7 @@ def _walk(
             label = element.values.get(LABEL) or element.values.get("attributes", {}).get(LABEL)
             _walk(element, str(label or layer or element.id or ""), accuracy, drawing, lines)
         elif isinstance(element, svg.Shape):
-            parts = [_points(svg.Path(part), accuracy) for part in svg.Path(element).as_subpaths()]
+            parts = [_points(svg.Path(part), accuracy) for part in abs(svg.Path(element)).as_subpaths()]
             for outer, holes in nested([points for points, closed in parts if closed and len(points) > 2]):
                 drawing.add(type(element).__name__, outer, holes, layer=layer, name=str(element.id or ""))
             lines += [(points, layer) for points, closed in parts if not closed and len(points) > 1]

@@ -115,7 +115,9 @@ class _Viewer:
         if tag == "use":
             return self._clone(element, state, deep)
         if tag in SHAPES:
-            kept = {name: value for name, value in element.attrib.items() if name not in ("style", "class")}
+            kept = {
+                name: value for name, value in element.attrib.items() if name not in {"style", "class", *PROPERTIES}
+            }
             if self._cloning:
                 kept.pop("id", None)  # a name is that of the original
             return Element(element.tag, kept)

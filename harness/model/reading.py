@@ -210,8 +210,8 @@ def _broken(text: str, error: json.JSONDecodeError, source: str) -> InputError:
         found, right = "single quotes stand round a text", 'Use double quotes, "'
     elif rest.startswith(("//", "/*", "#")):
         found, right = "a comment stands there, and JSON has none", "Take it out"
-    elif rest.startswith(("True", "False", "None")):
-        found, right = f"{rest[:5].strip(',')} is a word of Python", "Write true, false or null"
+    elif python := re.match("True|False|None", rest):
+        found, right = f"{python[0]} is a word of Python", "Write true, false or null"
     elif error.msg.startswith("Expecting ',' delimiter"):
         found, right = f'"{rest[0]}" stands where a comma or a closing bracket is expected', "Put it in"
     elif error.msg.startswith("Expecting ':' delimiter"):

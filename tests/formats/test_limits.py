@@ -80,8 +80,9 @@ def test_svg_that_grows_without_bound_is_refused_in_time(body: str, words: str, 
 
 
 def test_many_stones_and_clones_within_the_limits_are_read(tmp_path: Path) -> None:
-    imported = read(tmp_path / "d.svg", svg(_clones(4).replace("<use", '<use x="1" y="1"') + _columns(900)))
-    assert len(imported.wall.blocks) > 900
+    clones = "".join(f'<use href="#one" x="{k}" y="1"/>' for k in range(900))
+    one = '<defs><rect id="one" width="1" height="1"/></defs>'
+    assert len(read(tmp_path / "d.svg", svg(_columns(900) + one + clones)).wall.blocks) == 1800
 
 
 def test_blocks_that_contain_themselves_or_fill_the_plane_are_refused(tmp_path: Path) -> None:
@@ -93,7 +94,8 @@ def test_blocks_that_contain_themselves_or_fill_the_plane_are_refused(tmp_path: 
 
     def rows(document: Any, space: Any) -> None:
         square(document.blocks.new("B"), 0, 0)
-        space.add_blockref("B", (0, 0), dxfattribs={"row_count": 30000, "column_count": 30000})
+        grid = {"row_count": 30000, "column_count": 30000, "row_spacing": 1.0, "column_spacing": 1.0}
+        space.add_blockref("B", (0, 0), dxfattribs=grid)
 
     with pytest.raises(InputError, match="nested deeper than 16"):
         dxf(tmp_path / "d.dxf", chain)
@@ -101,18 +103,19 @@ def test_blocks_that_contain_themselves_or_fill_the_plane_are_refused(tmp_path: 
         dxf(tmp_path / "d.dxf", rows)
 
 
-def test_a_curve_of_a_thousand_kilometres_has_some_hundred_chords(tmp_path: Path) -> None:
+def test_a_curve_of_a_thousand_kilometres_has_some_thousand_chords(tmp_path: Path) -> None:
     def draw(_: Any, space: Any) -> None:
         space.add_circle((0, 0), 1e6)
 
-    assert 100 < len(dxf(tmp_path / "d.dxf", draw, units="m").wall.blocks[0].polygon) < 2000
+    assert 500 < len(dxf(tmp_path / "d.dxf", draw, units="m").wall.blocks[0].polygon) < 5000
 
 
 @pytest.mark.parametrize("suffix", [".dxf", ".svg", ".geojson", ".wkt", ".shp", ".csv", ".msh", ".geo", ".json"])
 @pytest.mark.parametrize(
     "content",
-    [b"", b"\n", b"\0" * 100, b"\x89PNG\r\n\x1a\n" + b"\0" * 50, b"[]", b"{}", b"<svg/>", b"\xff\xfea\0", b"0\nSECTION\n",
-     b'{"type": "FeatureCollection", "features": []}', b"POLYGON EMPTY", b"block,x,y\n", b"block,x,y\na\n", b"[" * 9999],
+    [b"", b"\n", b"\0" * 100, b"\x89PNG\r\n\x1a\n" + b"\0" * 50, b"[]", b"{}", b"<svg/>", b"\xff\xfea\0",
+     b"0\nSECTION\n", b'{"type": "FeatureCollection", "features": []}', b"POLYGON EMPTY", b"block,x,y\n",
+     b"block,x,y\na\n", b"[" * 9999],
 )  # fmt: skip
 def test_empty_and_foreign_content_is_refused_with_a_sentence(suffix: str, content: bytes, tmp_path: Path) -> None:
     (tmp_path / f"d{suffix}").write_bytes(content)
@@ -137,5 +140,5 @@ def test_spoiled_drawings_of_every_format_are_read_or_refused_in_time_and_memory
 
 
 def test_numbers_of_a_csv_are_named_with_their_row(tmp_path: Path) -> None:
-    with pytest.raises(InputError, match='row 2 of block "a": x is "1,5". Give a number with a point'):
+    with pytest.raises(InputError, match=r'row 2 of block "a": x is "1,5"\. Give a number with a point'):
         read(tmp_path / "d.csv", csv((0.0, 0.0, 1.0, 1.0)).replace("a,1.0,0.0", 'a,"1,5",0.0'))

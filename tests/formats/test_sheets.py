@@ -109,7 +109,7 @@ def geojson(stones: Any, name: str = "") -> str:
 
 @pytest.mark.parametrize("name", GEOGRAPHIC)
 def test_geographic_systems_of_coordinates_are_refused(name: str, tmp_path: Path) -> None:
-    with pytest.raises(InputError, match="its coordinates are degrees.*Project it"):
+    with pytest.raises(InputError, match=r"its coordinates are degrees.*Project it"):
         read(tmp_path / "d.geojson", geojson(COLUMN, name))
 
 
@@ -127,7 +127,7 @@ def test_coordinates_that_look_like_degrees_are_refused_and_lengths_are_not(suff
     make = csv if suffix == ".csv" else lambda *stones: geojson(stones)
     degrees = [(12.5 + 1e-5 * a, 42.0 + 1e-5 * b, 12.5 + 1e-5 * c, 42.0 + 1e-5 * d) for a, b, c, d in COLUMN]
     path = tmp_path / f"d{suffix}"
-    with pytest.raises(InputError, match="look like degrees.*--units"):
+    with pytest.raises(InputError, match=r"look like degrees.*--units"):
         read(path, make(*degrees))
     assert read(path, make(*degrees), units="km").wall.units.length == "km"
     near = [tuple(12.5 + value for value in box) for box in COLUMN]
@@ -173,7 +173,7 @@ def test_polylines_in_a_standing_plane_are_read_there_and_else_refused(plane: st
             points = [(u, 5.0, v) if plane == "xz" else (5.0, u, v) for u, v in ring]
             space.add_polyline3d(points, close=True)
 
-    with pytest.raises(InputError, match=f"lies in another plane.*--plane {plane}"):
+    with pytest.raises(InputError, match=rf"lies in another plane.*--plane {plane}"):
         dxf(tmp_path / "d.dxf", draw)
     assert boxes(dxf(tmp_path / "d.dxf", draw, plane=plane)) == [(0, 0, 1, 1), (0, 1, 1, 2)]
 

@@ -67,10 +67,12 @@ def test_what_an_svg_hides_is_not_there(hidden: str, tmp_path: Path) -> None:
         '<g id="pair"><use href="#s" y="-10"/></g>',
         '<defs><g id="one"><rect width="10" height="10"/></g></defs><use href="#one" x="40" y="70"/>',
         '<defs><rect id="one" width="1" height="1"/></defs><use href="#one" transform="translate(40,70) scale(10)"/>',
-        '<defs><rect id="one" width="10" height="10"/></defs><use href="#one" transform="translate(50,70) scale(-1,1)"/>',
+        '<defs><rect id="m" width="10" height="10"/></defs><use href="#m" transform="translate(50,70) scale(-1,1)"/>',
+        '<defs><rect id="m" width="10" height="10"/></defs><use href="#m" transform="translate(50,70) rotate(90)"/>',
         '<symbol id="sym" viewBox="0 0 2 2"><rect width="2" height="2"/></symbol>'
         '<use href="#sym" x="40" y="70" width="10" height="10"/>',
-        '<symbol id="sym" viewBox="1 1 2 4" preserveAspectRatio="none"><rect x="1" y="1" width="2" height="4"/></symbol>'
+        '<symbol id="sym" viewBox="1 1 2 4" preserveAspectRatio="none"><rect x="1" y="1" width="2" height="4"/>'
+        "</symbol>"
         '<use href="#sym" x="40" y="70" width="10" height="10"/>',
         '<symbol id="sym"><rect width="10" height="10"/></symbol><use href="#sym" x="40" y="70"/>',
         '<svg x="40" y="70" width="10" height="20" viewBox="0 0 1 1" preserveAspectRatio="xMidYMin"><rect width="1" '
@@ -185,7 +187,7 @@ def test_what_is_left_out_is_told_by_run_compare_validate_the_json_and_the_wall(
     assert words in (tmp_path / "out" / "report.html").read_text()
     drystone("import", drawing, "-o", "wall.json", cwd=tmp_path)
     assert words in drystone("run", "la-associated", "wall.json", cwd=tmp_path).stderr
-    assert words in json.loads((tmp_path / "wall.json").read_text())["doubts"][1]
+    assert any(words in doubt for doubt in json.loads((tmp_path / "wall.json").read_text())["doubts"])
 
 
 def test_nothing_is_doubted_of_a_drawing_that_says_all(tmp_path: Path) -> None:

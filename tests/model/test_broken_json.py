@@ -25,7 +25,7 @@ BROKEN = {
     '{"a": 1} {"b": 2}': "something stands after the end of the document",
     '{"a": True}': "True is a word of Python. Write true, false or null",
     '{"a": None}': "None is a word of Python",
-    '{"a": 1 // one\n}': '"/" stands where a comma or a closing bracket is expected',
+    '{"a": 1 // one\n}': "a comment stands there, and JSON has none",
     "// one\n{}": "a comment stands there",
     '{"a": 1 "b": 2}': 'column 9: """ stands where a comma or a closing bracket is expected',
     '{"a" 1}': '"1" stands where a colon is expected',
