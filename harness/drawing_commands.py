@@ -10,7 +10,7 @@ import click
 
 from harness import terminal
 from harness.engine.plan import check_methods, find_cases
-from harness.engine.sensitivity import Plateau, over_tolerance, suggested
+from harness.engine.sensitivity import Plateau, advised, over_tolerance, suggested
 from harness.model.build import build
 from harness.model.errors import InputError, raise_faults
 from harness.model.inspection import Inspection, inspect
@@ -180,7 +180,7 @@ def show(case: str, output: Path, window: bool, axes: bool, dimensions: bool, fo
         looked = inspect(found.wall, found.id)
         for note in found.notes:
             say(f"drystone: {note}", err=True)
-    for sentence in looked.sentences():
+    for sentence in looked.sentences(advised(looked)):
         say(f"drystone: {sentence}", err=True)
     if window:
         show_window(inspected_figure(looked, axes=axes, dimensions=dimensions), looked.wall.title or case)

@@ -13,7 +13,7 @@ import click
 from harness import terminal
 from harness.engine import compare as comparing
 from harness.engine.plan import Limits, Run, check_methods, find_cases
-from harness.engine.sensitivity import over_tolerance, suggested
+from harness.engine.sensitivity import advised
 from harness.engine.store import open_store
 from harness.given_settings import settings_of
 from harness.model import inspection
@@ -36,8 +36,6 @@ from harness.options import (
     warn,
 )
 
-MOST_LOOKED = 2000
-"""Blocks of a drawing whose tolerances are looked through while it is imported; for others `validate` does it."""
 KEPT = 50
 """Load steps of a series, unless a setting says otherwise: two seconds of a film."""
 
@@ -80,18 +78,11 @@ def import_(drawing: Path, output: Path | None, mapping: Path | None, **said: An
     for sentence in imported.account:
         say(f"drystone: {drawing.name}: {sentence}", err=True)
     looked = inspection.inspect(imported.wall, drawing.stem)
-    for sentence in looked.sentences(_tolerance(looked)):
+    for sentence in looked.sentences(advised(looked)):
         if sentence.partition(": ")[2] not in imported.account:
             say(f"drystone: {drawing.name}: {sentence}", err=True)
     _write(wall_json(imported.wall), output)
     sys.exit(INPUT_ERROR if looked.faults else 0)
-
-
-def _tolerance(looked: inspection.Inspection) -> float | None:
-    """The tolerance that joins the near misses of a drawing, where there are any."""
-    missed = any(mark.near_miss for mark in looked.marks)
-    advice = suggested(over_tolerance(looked.wall)) if missed and len(looked.names) <= MOST_LOOKED else None
-    return advice[0] if advice else None
 
 
 def _write(text: str, output: Path | None) -> None:

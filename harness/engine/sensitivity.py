@@ -11,6 +11,7 @@ from harness.engine.judge import answered
 from harness.model.assembly import Assembly
 from harness.model.build import build, typical_block_size
 from harness.model.errors import InputError
+from harness.model.inspection import Inspection
 from harness.model.interfaces import DEFAULT_TOLERANCE
 from harness.model.method import Method, Status
 from harness.model.wall import Detection, Wall
@@ -21,6 +22,8 @@ A_DECADE = 8
 """Tolerances tried in a decade: neighbours differ by a third, less than surveys do."""
 
 
+MOST_LOOKED = 2000
+"""Blocks of a wall whose tolerances are looked through unasked; for others `drystone validate` does it."""
 FINEST = 0.01
 """Tolerances finer than this part of the greatest one tried, a thousandth of a block, add nothing to the width of a
 plateau: no survey is that accurate, and drawings that are exact to all digits have one plateau anyway."""
@@ -84,6 +87,14 @@ def suggested(plateaus: list[Plateau]) -> tuple[float, Plateau] | None:
     if widest is None:
         return None
     return float(np.sqrt(min(max(widest.low, finest), widest.high) * widest.high)), widest
+
+
+def advised(looked: Inspection) -> float | None:
+    """A tolerance for the near misses of a wall [length]; None where it has none, or too many blocks."""
+    if len(looked.names) > MOST_LOOKED or not any(mark.near_miss for mark in looked.marks):
+        return None
+    advice = suggested(over_tolerance(looked.wall))
+    return advice[0] if advice else None
 
 
 def _joints(found: Assembly | str) -> str | tuple[tuple[int, int], ...]:

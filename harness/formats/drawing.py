@@ -312,5 +312,5 @@ def without_repeats(polygon: FloatArray) -> FloatArray:
     """A polygon (k, 2) without vertices that repeat the one before, the last one's repetition of the first included."""
     if len(polygon) == 0:
         return polygon
-    keep = (polygon != np.roll(polygon, 1, axis=0)).any(axis=1)
+    keep = ((polygon - np.roll(polygon, 1, axis=0)) ** 2).sum(axis=1) > 0.0
     return np.asarray(polygon[keep])

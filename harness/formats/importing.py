@@ -194,9 +194,9 @@ def _imported(path: Path, chosen: Mapping, drawing: Drawing) -> Imported:
         left_out.append(f"left out {len(drawing.outlines) - len(kept)} x outline on a layer to be ignored")
     down = _down(chosen)
     held, how, guessed = _supports(kept, chosen, down)
-    supports = f"supports: {sum(held)} of {len(kept)} stones, {how}"
-    if guessed:
-        doubts.append(f"the drawing marks no supports: {supports.removeprefix('supports: ')}, are taken")
+    supports = f"{sum(held)} of {len(kept)} stones, {how}"
+    supports = f"the drawing marks no supports: {supports}, are taken" if guessed else f"supports: {supports}"
+    doubts += [supports] if guessed else []
     live = chosen.live or _across(down)
     names = _names(kept)
     metre = 1.0 / METRES[unit]

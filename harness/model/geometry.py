@@ -51,7 +51,8 @@ def polygon_faults(polygons: Sequence[FloatArray], elements: Sequence[str]) -> l
     first = np.cumsum([0, *(len(polygon) for polygon in polygons[:-1])])
     vertices = np.concatenate(list(polygons))
     onward = np.concatenate([following(polygon) for polygon in polygons])
-    doubled = np.logical_or.reduceat((vertices == onward).all(axis=1), first)
+    # Vertices so near that the square of their distance is zero are one: no direction can be computed between them.
+    doubled = np.logical_or.reduceat(((vertices - onward) ** 2).sum(axis=1) == 0.0, first)
     extent = (np.maximum.reduceat(vertices, first) - np.minimum.reduceat(vertices, first)).max(axis=1)
     shapes = shapely.polygons(_closed(polygons))  # as they are: an outline that touches itself is no hole
     faulty = doubled | ~shapely.is_valid(shapes) | (shapely.area(shapes) <= 1e-12 * extent**2)
