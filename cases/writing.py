@@ -11,6 +11,7 @@ from typing import Any
 
 from harness.model.case import CaseFile
 from harness.model.wall import Wall
+from harness.model.writing import write_whole
 
 WIDTH = 118
 """Longest line of JSON that is kept on one line."""
@@ -44,8 +45,7 @@ def write_files(files: dict[str, str], root: Path) -> list[str]:
         path = root / name
         if path.is_file() and path.read_text(encoding="utf-8") == text:
             continue
-        path.parent.mkdir(parents=True, exist_ok=True)
-        path.write_text(text, encoding="utf-8")
+        write_whole(path, text)
         changed.append(name)
     return changed
 

@@ -160,7 +160,7 @@ class Drawing:
         wanted = set(layers)
         cuts = [outline for outline in self.outlines if outline.layer in wanted]
         self.outlines = [outline for outline in self.outlines if outline.layer not in wanted]
-        shapes = np.array([outline.shape for outline in self.outlines])
+        shapes = np.array([outline.shape for outline in self.outlines], dtype=object)
         tree = shapely.STRtree(shapes)
         for cut in cuts:
             around = tree.query(cut.shape, predicate="covered_by")

@@ -9,18 +9,17 @@ import math
 import tomllib
 import warnings
 from collections import Counter
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Annotated, Any, Literal
 
 import numpy as np
-import shapely
 from pydantic import BeforeValidator, Field
 
 from harness.formats.drawing import LINES, Asked, Drawing, Outline
-from harness.formats.places import refuse_degrees
+from harness.formats.places import across, down_of, refuse_degrees, refuse_frame
 from harness.model.assembly import FloatArray
 from harness.model.errors import InputError, did_you_mean, first_few
 from harness.model.fields import Coefficient, Name, NonNegative, Point, Positive, Strict
@@ -183,8 +182,10 @@ def _imported(path: Path, chosen: Mapping, drawing: Drawing) -> Imported:
     drawing.cut_out(name for name, layer in chosen.layers.items() if layer.use == "hole")
     kept = [item for item in drawing.outlines if _layer(chosen, item).use != "ignore"]
     if not kept:
-        raise InputError("every outline is on a layer to be ignored", "Leave a layer of stones", "layers")
-    _refuse_frame(kept)
+        raise InputError(
+            "no outline is left that is a stone", 'Leave a layer that is neither "hole" nor "ignore"', "layers"
+        )
+    refuse_frame(kept)
     if drawing.left_out:
         lost = [f"{count} x {what}" for what, count in drawing.left_out.items()]
         doubts.append(f"left out of the drawing: {first_few(lost, MOST_TOLD)}")
@@ -192,12 +193,12 @@ def _imported(path: Path, chosen: Mapping, drawing: Drawing) -> Imported:
     left_out = [f"left out {count} x {what}" for what, count in drawing.left_out.items()]
     if len(kept) < len(drawing.outlines):
         left_out.append(f"left out {len(drawing.outlines) - len(kept)} x outline on a layer to be ignored")
-    down = _down(chosen)
+    down = down_of(chosen.gravity or (0.0, -1.0))
     held, how, guessed = _supports(kept, chosen, down)
     supports = f"{sum(held)} of {len(kept)} stones, {how}"
     supports = f"the drawing marks no supports: {supports}, are taken" if guessed else f"supports: {supports}"
     doubts += [supports] if guessed else []
-    live = chosen.live or _across(down)
+    live = chosen.live or across(down)
     names = _names(kept)
     metre = 1.0 / METRES[unit]
     data: dict[str, Any] = {
@@ -249,7 +250,7 @@ def _read(path: Path, mapping: Mapping) -> Drawing:
     if suffix not in READERS:
         raise InputError(
             f'a file that ends in "{suffix}" is not read',
-            f"{did_you_mean(suffix, READERS)} There are: {', '.join(READERS)} of COMPAS".strip(),
+            f"{did_you_mean(suffix, READERS)} There are: {', '.join(READERS)} (of COMPAS)".strip(),
             source=str(path),
         )
     module, name, package = READERS[suffix]
@@ -289,50 +290,6 @@ def _heard() -> Iterator[list[str]]:
         yield told
     words = [str(item.message) for item in caught if not issubclass(item.category, RuntimeWarning | DeprecationWarning)]
     told += [f"its reader warns: {text[:MOST_REASON]}" for text in words]
-
-
-def _refuse_frame(outlines: Sequence[Outline]) -> None:
-    """Refuse outlines that enclose all others: the frame of a sheet is no stone.
-
-    Raises:
-        InputError: naming the outermost, and what would mend the drawing.
-    """
-    shapes = np.array([shapely.Polygon(item.polygon) for item in outlines])
-    size = shapely.area(shapes)
-    order = np.argsort(-size, kind="stable")
-    frames = 0
-    # The largest is a frame if it covers all that are smaller, and so on inward while more than one stone is left.
-    while frames < len(order) - 2 and shapely.covers(shapes[order[frames]], shapes[order[frames + 1 :]]).all():
-        frames += 1
-    if not frames:
-        return
-    outer = outlines[order[0]]
-    (x, y), (wide, high) = outer.polygon.min(axis=0).tolist(), np.ptp(outer.polygon, axis=0).tolist()
-    of_frames = {outlines[k].layer for k in order[:frames].tolist()}
-    alone = of_frames.isdisjoint(outlines[k].layer for k in order[frames:].tolist())
-    table = " and ".join(f'[layers."{layer}"] use = "ignore"' for layer in sorted(of_frames))
-    mend = f"Ignore it by its layer, in the TOML beside the drawing: {table}"
-    raise InputError(
-        f"{frames} outline(s) enclose all {len(order) - frames} others, the outer from ({x:g}, {y:g}) on {wide:g} wide "
-        f"and {high:g} high: the frame of a sheet is no stone",
-        mend if alone and "" not in of_frames else "Erase it, or draw it on a layer of its own, and ignore that",
-    )
-
-
-def _down(mapping: Mapping) -> FloatArray:
-    """The direction (2,) of gravity in the drawing."""
-    gravity = np.array(mapping.gravity or (0.0, -1.0))
-    size = float(np.hypot(*gravity))
-    if size == 0.0:
-        raise InputError("it has no direction", "Give the direction in which stones fall", "gravity")
-    return np.asarray(gravity / size)
-
-
-def _across(down: FloatArray) -> tuple[float, float]:
-    """The horizontal direction that is to the right: of the sheet, or where it has none, when its foot is down."""
-    right = np.array([-down[1], down[0]]) + 0.0
-    x, y = (right if right[0] >= 0.0 else 0.0 - right).tolist()
-    return x, y
 
 
 def _in_words(live: tuple[float, float]) -> str:

@@ -1,4 +1,4 @@
-"""Where on the globe a drawing lies: its system of coordinates, and whether its numbers are lengths or degrees."""
+"""Where a drawing lies: on the globe, in lengths or degrees; on its sheet, with a frame; and which way is down."""
 
 from __future__ import annotations
 
@@ -6,8 +6,10 @@ import re
 from collections.abc import Sequence
 
 import numpy as np
+import shapely
 
 from harness.formats.drawing import Drawing, Outline
+from harness.model.assembly import FloatArray
 from harness.model.errors import InputError
 from harness.model.slips import SIZES
 
@@ -56,3 +58,50 @@ def refuse_degrees(outlines: Sequence[Outline]) -> None:
             f"its coordinates look like degrees: all lie within {extent:.2g} of ({x:.6g}, {y:.6g})",
             f"{REMEDY}; if they are lengths, say in which unit (--units)",
         )
+
+
+def refuse_frame(outlines: Sequence[Outline]) -> None:
+    """Refuse outlines that enclose all others: the frame of a sheet is no stone.
+
+    Raises:
+        InputError: naming the outermost, and what would mend the drawing.
+    """
+    shapes = np.array([shapely.Polygon(item.polygon) for item in outlines])
+    size = shapely.area(shapes)
+    order = np.argsort(-size, kind="stable")
+    frames = 0
+    # The largest is a frame if it covers all that are smaller, and so on inward while more than one stone is left.
+    while frames < len(order) - 2 and shapely.covers(shapes[order[frames]], shapes[order[frames + 1 :]]).all():
+        frames += 1
+    if not frames:
+        return
+    outer = outlines[order[0]]
+    (x, y), (wide, high) = outer.polygon.min(axis=0).tolist(), np.ptp(outer.polygon, axis=0).tolist()
+    of_frames = {outlines[k].layer for k in order[:frames].tolist()}
+    alone = of_frames.isdisjoint(outlines[k].layer for k in order[frames:].tolist())
+    table = " and ".join(f'[layers."{layer}"] use = "ignore"' for layer in sorted(of_frames))
+    mend = f"Ignore it by its layer, in the TOML beside the drawing: {table}"
+    raise InputError(
+        f"{frames} outline(s) enclose all {len(order) - frames} others, the outer from ({x:g}, {y:g}) on {wide:g} wide "
+        f"and {high:g} high: the frame of a sheet is no stone",
+        mend if alone and "" not in of_frames else "Erase it, or draw it on a layer of its own, and ignore that",
+    )
+
+
+def down_of(gravity: tuple[float, float]) -> FloatArray:
+    """The direction (2,) of gravity, given as a multiple (x, y) of every weight.
+
+    Raises:
+        InputError: it has none.
+    """
+    size = float(np.hypot(*gravity))
+    if size == 0.0:
+        raise InputError("it has no direction", "Give the direction in which stones fall", "gravity")
+    return np.array(gravity) / size
+
+
+def across(down: FloatArray) -> tuple[float, float]:
+    """The horizontal direction that is to the right: of the sheet, or where it has none, when its foot is down."""
+    right = np.array([-down[1], down[0]]) + 0.0
+    x, y = (right if right[0] >= 0.0 else 0.0 - right).tolist()
+    return x, y

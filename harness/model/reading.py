@@ -14,6 +14,7 @@ from typing import Any, TypeVar
 
 from pydantic import BaseModel, ValidationError
 
+from harness.model.broken_json import MOST_SHOWN, broken
 from harness.model.build import Built, build
 from harness.model.errors import InputError, did_you_mean, raise_faults
 from harness.model.names import faults_of_data
@@ -44,8 +45,6 @@ KINDS = {
     b"\xfe\xff": "text in UTF-16",
 }
 """What is no text, by its first bytes."""
-MOST_SHOWN = 60
-"""Characters of a wrong value that are shown."""
 PLAIN = {
     "missing": "it is missing",
     "tuple_type": "it should be a list, in square brackets",
@@ -171,7 +170,7 @@ def json_of(text: str, source: str) -> Any:
     try:
         data = json.loads(text, parse_constant=refuse_constant, parse_float=finite, object_pairs_hook=unique)
     except json.JSONDecodeError as error:
-        raise _broken(text, error, source) from None
+        raise broken(text, error, source) from None
     except ValueError:
         raise InputError("it has a number of thousands of digits", "Give finite numbers", source=source) from None
     except RecursionError:
@@ -181,45 +180,6 @@ def json_of(text: str, source: str) -> Any:
     if HALF_CHARACTER.search(text):
         _refuse_half_characters(data, source)
     return data
-
-
-def _broken(text: str, error: json.JSONDecodeError, source: str) -> InputError:
-    """What stands where JSON text is broken, and what should."""
-    if not text.strip():
-        return InputError("it is empty", "Give a JSON document", source=source)
-    if text.lstrip().startswith("<"):
-        return InputError(
-            "it is XML or HTML, not JSON", "Give a drawing the ending of its format, as .svg", source=source
-        )
-    left, rest = text[: error.pos].rstrip(), text[error.pos :].lstrip()
-    if error.msg.startswith(("Illegal trailing comma", "Expecting property", "Expecting value")) and (
-        left.endswith(",") or rest.startswith(",")
-    ):
-        rest = rest.removeprefix(",").lstrip()
-    found, right = f"{error.msg[0].lower()}{error.msg[1:]}", "Give valid JSON"
-    if error.msg.startswith("Extra data"):
-        found, right = "something stands after the end of the document", "Give one document"
-    elif error.msg.startswith(("Unterminated string", "Invalid control")):
-        found, right = "a text has no end in its line", "Close it with a quote"
-    elif not rest:
-        found, right = "the file ends in the middle", "Close its brackets, or copy the whole of it"
-    elif rest[0] in "]}" and error.msg.startswith(("Illegal", "Expecting property", "Expecting value")):
-        comma = "a comma too many stands" if "," in (left[-1:], text[error.pos]) else "a value is missing"
-        found, right = f'{comma} before "{rest[0]}"', "Take it out" if comma.startswith("a comma") else "Give it"
-    elif rest[0] == "'":
-        found, right = "single quotes stand round a text", 'Use double quotes, "'
-    elif rest.startswith(("//", "/*", "#")):
-        found, right = "a comment stands there, and JSON has none", "Take it out"
-    elif python := re.match("True|False|None", rest):
-        found, right = f"{python[0]} is a word of Python", "Write true, false or null"
-    elif error.msg.startswith("Expecting ',' delimiter"):
-        found, right = f'"{rest[0]}" stands where a comma or a closing bracket is expected', "Put it in"
-    elif error.msg.startswith("Expecting ':' delimiter"):
-        found, right = f'"{rest[0]}" stands where a colon is expected', "Put it in"
-    elif error.msg.startswith(("Expecting property", "Expecting value")):
-        what = "a name in double quotes" if "property" in error.msg else "a value"
-        found, right = f'"{rest.split()[0][:MOST_SHOWN]}" stands where {what} is expected', "Give valid JSON"
-    return InputError(f"line {error.lineno}, column {error.colno}: {found}", right, source=source)
 
 
 def nested_deeper(data: Any, most: int) -> bool:
