@@ -128,7 +128,7 @@ class Drawing:
         if shape.area <= 0.0:
             self.left_out[f"{kind}{where}: it has no area"] += 1
             return
-        _check_pairs(_segments(polygon), f"{kind}{where}: its edges")
+        _check_edges(polygon, f"{kind}{where}: its edges")
         if not shape.is_valid:
             whole = max(shapely.get_parts(shapely.make_valid(shape)), key=shapely.area)
             if whole.geom_type != "Polygon" or abs(whole.area - shape.area) > SPIKE * shape.area:
@@ -267,6 +267,12 @@ def _segments(points: FloatArray, *, closed: bool = True) -> np.ndarray:
     return np.asarray(shapely.linestrings(pairs if closed else pairs[:-1]))
 
 
+def _check_edges(ring: FloatArray, what: str) -> None:
+    """`_check_pairs` of the edges of a closed line (k, 2)."""
+    if len(ring) ** 2 > MOST_PAIRS:
+        _check_pairs(_segments(ring), what)
+
+
 def _check_pairs(parts: np.ndarray, what: str) -> None:
     """Refuse geometries (n,) of which so many lie over each other that to find where they meet would not end.
 
@@ -295,7 +301,7 @@ def nested(rings: Sequence[FloatArray]) -> list[tuple[FloatArray, list[FloatArra
     if len(rings) < 2:
         return [(ring, []) for ring in rings]
     for ring in rings:
-        _check_pairs(_segments(finite(ring, "an outline in parts")), "edges of an outline in parts")
+        _check_edges(finite(ring, "an outline in parts"), "edges of an outline in parts")
     shapes = np.array([shapely.Polygon(ring).buffer(0) for ring in rings])
     _check_pairs(shapes, "the parts of an outline")
     inner, outer = shapely.STRtree(shapes).query(shapes, predicate="within")

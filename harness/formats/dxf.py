@@ -133,7 +133,11 @@ class _Reading:
     def _copies(self, insert: Any) -> Iterator[list[Any]]:
         """The entities of every copy of a block that an INSERT makes, in their places."""
         name = insert.dxf.get("name", "")
-        if self.document.blocks.get(name) is None:
+        block = self.document.blocks.get(name)
+        if block is not None and block.block.is_xref:
+            self.drawing.left_out[f'INSERT of "{name}": it lies in another file, and is not read'] += 1
+            return
+        if block is None:
             raise InputError(
                 f'it inserts the block "{name}", which it does not define',
                 "Save it again from the program that drew it, or erase the insert",

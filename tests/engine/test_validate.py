@@ -10,6 +10,7 @@ import pytest
 from click.testing import CliRunner
 
 from harness.cli import main
+from harness.engine.sensitivity import Plateau, suggested
 from harness.model.build import build
 from harness.model.wall import Wall
 from tests.walls import PUSH, running_bond, wall_data
@@ -120,3 +121,25 @@ def test_sound_wall_has_one_plateau(tmp_path: Path):
     assert code == 0
     assert told["doubts"] == []
     assert [item["joints"] for item in told["tolerances"]] == [told["joints"]]
+
+
+@pytest.mark.parametrize(
+    ("ranges", "right"),
+    [
+        # A survey in millimetres: as drawn, the plateau of the joints, and one in which a thin stone is lost.
+        ([(5e-4, 2.2, 120), (2.9, 21.8, 210), (29.1, 51.7, 230)], (2.9 * 21.8) ** 0.5),
+        # Exact to all digits: one plateau, of which what is finer than a hundredth of the greatest does not count.
+        ([(1e-6, 0.1, 40)], (1e-3 * 0.1) ** 0.5),
+        # What cannot be built is no plateau, however wide.
+        ([(1e-6, 0.01, None), (0.0133, 0.1, 12)], (0.0133 * 0.1) ** 0.5),
+    ],
+)
+def test_tolerance_that_is_recommended_is_the_middle_of_the_widest_plateau(ranges: Any, right: float) -> None:
+    advice = suggested([Plateau(low, high, joints, "") for low, high, joints in ranges])
+    assert advice is not None
+    assert advice[0] == pytest.approx(right)
+
+
+def test_no_tolerance_is_recommended_where_none_gives_joints() -> None:
+    assert suggested([]) is None
+    assert suggested([Plateau(0.1, 1.0, None, "no"), Plateau(1.0, 2.0, 0, "none")]) is None

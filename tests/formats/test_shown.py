@@ -164,6 +164,17 @@ def test_inserts_in_rows_and_columns_mirrored_and_nested_are_where_they_are_show
     assert boxes(dxf(tmp_path / "d.dxf", draw)) == right
 
 
+def test_what_lies_in_another_file_is_told_to_be_left_out(tmp_path: Path) -> None:
+    def draw(document: Any, space: Any) -> None:
+        square(space, 0, 0)
+        square(space, 0, 1)
+        document.add_xref_def("other.dxf", "OTHER")
+        space.add_blockref("OTHER", (0, 2))
+
+    doubts = dxf(tmp_path / "d.dxf", draw).wall.doubts
+    assert any('INSERT of "OTHER": it lies in another file' in doubt for doubt in doubts)
+
+
 @pytest.mark.parametrize(
     ("name", "right"),
     [("svg-use-stack.svg", 1 / 3), ("dxf-off.dxf", 0.6), ("turned.csv", 0.3), ("mirror.dxf", 0.6),
