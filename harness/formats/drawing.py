@@ -314,6 +314,16 @@ def nested(rings: Sequence[FloatArray]) -> list[tuple[FloatArray, list[FloatArra
     return [(ring, [rings[k] for k in sorted(around.get(i, ()))]) for i, ring in enumerate(rings) if depth[i] % 2 == 0]
 
 
+def without_comments(text: str) -> str:
+    """Text without comments from /* to */, the last of which may have no end."""
+    kept, begin = [], 0
+    while (start := text.find("/*", begin)) >= 0:
+        kept.append(text[begin:start])
+        end = text.find("*/", start + 2)
+        begin = len(text) if end < 0 else end + 2
+    return " ".join([*kept, text[begin:]])
+
+
 def without_repeats(polygon: FloatArray) -> FloatArray:
     """A polygon (k, 2) without vertices that repeat the one before, the last one's repetition of the first included."""
     if len(polygon) == 0:

@@ -9,12 +9,14 @@ from pathlib import Path
 import numpy as np
 import shapely
 
-from harness.formats.drawing import Asked, Drawing
+from harness.formats.drawing import Asked, Drawing, without_comments
 from harness.model.errors import InputError
 from harness.model.reading import read_bytes, read_text
 
-_ENTITY = re.compile(r"([A-Za-z][A-Za-z ]*?)\s*\(\s*(\"[^\"]*\"|\d+)\s*(?:,\s*\d+\s*)?\)\s*\+?=\s*\{([^}]*)\}\s*;")
-_COMMENT = re.compile(r"//[^\n]*|/\*.*?\*/", re.DOTALL)
+_ENTITY = re.compile(
+    r"([A-Za-z][A-Za-z ]{0,40}?)\s*\(\s*(\"[^\"\n]*\"|\d+)\s*(?:,\s*\d+\s*)?\)\s*\+?=\s*\{([^{}]*)\}\s*;"
+)
+_COMMENT = re.compile(r"//[^\n]*")
 
 
 def read_msh(path: Path, _asked: Asked) -> Drawing:
@@ -65,7 +67,7 @@ def read_geo(path: Path, _asked: Asked) -> Drawing:
     """
     drawing = Drawing()
     found: dict[str, dict[str, list[str]]] = defaultdict(dict)
-    for kind, tag, content in _ENTITY.findall(_COMMENT.sub("", read_text(path))):
+    for kind, tag, content in _ENTITY.findall(_COMMENT.sub("", without_comments(read_text(path)))):
         found[" ".join(kind.split())][tag.strip('"')] = [item.strip() for item in content.split(",")]
     lines = found["Line"]
     loops = found["Curve Loop"] | found["Line Loop"]

@@ -14,6 +14,8 @@ from harness.model.errors import InputError
 from harness.model.slips import SIZES
 
 REMEDY = "Project it (QGIS: Export, Save Features As, a CRS in metres such as your UTM zone), and import that"
+MOST_NAMED = 10_000
+"""Letters of a system of coordinates that are read."""
 FAR = 100.0
 """Coordinates in degrees lie so many extents of the wall from the origin at least: 100 km from it, for a wall of 1."""
 
@@ -26,7 +28,7 @@ def reference_system(name: str, drawing: Drawing) -> None:
     Raises:
         InputError: a geographic system.
     """
-    text = name.strip()
+    text = name.strip()[:MOST_NAMED]
     code = re.search(r"EPSG(?:/\d+(?:\.\d+)*|[:/]*[\d.]*:)?[:/]*(\d+)$", text, re.IGNORECASE)
     geographic = text.upper().startswith(("GEOGCS", "GEOGCRS", "GEODCRS")) or re.search(r"CRS(84|83|27)h?$", text)
     if geographic or (code is not None and 4000 <= int(code[1]) <= 4999):

@@ -11,7 +11,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass, field
 from xml.etree.ElementTree import Element
 
-from harness.formats.drawing import MOST_COPIES, Drawing
+from harness.formats.drawing import MOST_COPIES, Drawing, without_comments
 from harness.model.errors import InputError
 
 LABEL = "{http://www.inkscape.org/namespaces/inkscape}label"
@@ -28,7 +28,6 @@ MOST_MATCHES = 5_000_000
 """Elements times rules of style that are compared."""
 PIXELS = {"": 1.0, "px": 1.0, "mm": 96.0 / 25.4, "cm": 96.0 / 2.54, "in": 96.0, "pt": 96.0 / 72.0, "pc": 16.0}
 _LENGTH = re.compile(r"\s*([-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?)\s*(px|mm|cm|in|pt|pc|)\s*")
-_RULE = re.compile(r"([^{}]+)\{([^{}]*)\}")
 _COMPOUND = re.compile(r"(\*|[\w-]+)?((?:[.#][\w-]+)*)")
 
 Style = dict[str, str]
@@ -257,7 +256,10 @@ def _styles(above: dict[Element, Element | None], drawing: Drawing) -> dict[Elem
 def _rules(text: str, drawing: Drawing) -> list[tuple[Selector, Style]]:
     """Rules of a style sheet that concern what is shown, the weakest first."""
     found: list[tuple[tuple[int, int, int], Selector, Style]] = []
-    for selectors, body in _RULE.findall(re.sub(r"/\*.*?\*/", "", text, flags=re.DOTALL)):
+    rules, conditions = _blocks(without_comments(text))
+    for condition in conditions:
+        drawing.notes.append(f'the style of "{condition[:40]}" is not followed: it may hide or show shapes')
+    for selectors, body in rules:
         said = _declared(body)
         for words in selectors.split(",") if said else ():
             parts = [_COMPOUND.fullmatch(word) for word in words.split()]
@@ -269,6 +271,26 @@ def _rules(text: str, drawing: Drawing) -> list[tuple[Selector, Style]]:
             ids = sum(mark.startswith("#") for mark in marks)
             found.append(((ids, len(marks) - ids, sum(tag != "*" for tag, _ in selector)), selector, said))
     return [(selector, said) for _, selector, said in sorted(found, key=lambda rule: rule[0])]
+
+
+def _blocks(text: str) -> tuple[list[tuple[str, str]], list[str]]:
+    """Selectors and declarations of the rules of a style sheet, and its rules that begin with @, which hold others."""
+    rules, conditions, within, word = [], [], list[str](), ""
+    for token in re.split("([{};])", text):
+        if token == "{":
+            within.append(word.strip())
+            word = ""
+        elif token == "}":
+            if len(within) == 1 and not within[0].startswith("@"):
+                rules.append((within[0], word))
+            within, word = within[:-1], ""
+        elif token == ";":
+            word = f"{word};" if within else ""
+        else:
+            word += token
+            if not within and word.strip().startswith("@"):
+                conditions.append(word.strip())
+    return rules, conditions
 
 
 def _declared(text: str) -> Style:

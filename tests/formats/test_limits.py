@@ -79,6 +79,16 @@ def test_svg_that_grows_without_bound_is_refused_in_time(body: str, words: str, 
     assert time.process_time() - began < spoiled.SECONDS
 
 
+@pytest.mark.parametrize("text", ["/*", "@a ", "a", "{", "}", "Point ", "Point(1)={", '"(', " ", "A("])
+@pytest.mark.parametrize("suffix", [".svg", ".geo"])
+def test_long_texts_without_an_end_are_read_through_in_time(suffix: str, text: str, tmp_path: Path) -> None:
+    began = time.process_time()
+    body = text * (300_000 // len(text))
+    with pytest.raises(InputError):
+        read(tmp_path / f"d{suffix}", svg(f"<style>{body}</style>") if suffix == ".svg" else body)
+    assert time.process_time() - began < spoiled.SECONDS
+
+
 def test_many_stones_and_clones_within_the_limits_are_read(tmp_path: Path) -> None:
     clones = "".join(f'<use href="#one" x="{k}" y="1"/>' for k in range(900))
     one = '<defs><rect id="one" width="1" height="1"/></defs>'

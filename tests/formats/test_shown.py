@@ -61,6 +61,8 @@ def test_what_an_svg_hides_is_not_there(hidden: str, tmp_path: Path) -> None:
         '<style>.x {display: none} #k {display: inline}</style><rect id="k" class="x" x="40" y="70" width="10" '
         'height="10"/>',
         '<style>rect {display: inline}</style><rect display="none" x="40" y="70" width="10" height="10"/>',
+        '<style>@import "a.css"; @media print {.x {display: none} g {opacity: 0}}</style><rect class="x" x="40" y="70" '
+        'width="10" height="10"/>',
         '<use href="#s" y="-10"/>',
         '<use xmlns:xlink="http://www.w3.org/1999/xlink" xlink:href="#s" x="0" y="-10"/>',
         '<use href="#s" transform="translate(0,-10)"/>',
