@@ -125,7 +125,7 @@ def certificate_line(run: Run, result: Result) -> dict[str, Any]:
 
 
 def _held(result: Result, certified: Certified) -> tuple[Verdict, str]:
-    if result.finding is not Finding.COLLAPSES or result.multiplier is None:
+    if not result.finding.has_multiplier or result.multiplier is None:
         return Verdict.OUTSIDE_TOLERANCE, f"{certified.sentence}, and {result.method} gives no multiplier"
     found = f"{result.method} finds {result.multiplier:.9g}"
     if _below(result, certified.bound):

@@ -349,6 +349,7 @@ def foreign_answer(data: Any, assembly: Assembly, source: str) -> Answer:
         raise InputError("it is no number", "Give the multiplier the forces belong to", "forces_multiplier", source)
     proofs = {
         "live_forces": table("live_forces", assembly.n_interfaces, "n1, n2, s of every interface"),
+        "dead_forces": table("dead_forces", assembly.n_interfaces, "n1, n2, s of every interface"),
         "dilatant_mechanism": table("dilatant_mechanism", assembly.n_blocks, "ux, uy, omega of every block"),
     }
     return Answer(

@@ -9,7 +9,7 @@ import numpy as np
 
 from harness.model.assembly import Assembly, FloatArray, polygon_area
 from harness.model.comparison import CaseResults
-from harness.model.method import Finding, Status
+from harness.model.method import Status
 from harness.model.result import Result
 from reports import shapes, words
 from reports.once import once
@@ -58,7 +58,7 @@ def spread(item: CaseResults) -> float | None:
     known = [
         ends
         for r in mains(item)
-        if r.finding is Finding.COLLAPSES and r.judge.accepted is not False and (ends := range_of(r)) is not None
+        if r.finding.has_multiplier and r.judge.accepted is not False and (ends := range_of(r)) is not None
     ]
     if len(known) < 2 or min(high for _, high in known) <= 0.0:
         return None
@@ -129,7 +129,7 @@ def agreements(item: CaseResults) -> list[Agreement]:
         result
         for result in words.in_order(item)
         if result.status is Status.OK
-        and result.finding is Finding.COLLAPSES
+        and result.finding.has_multiplier
         and (result.is_main or result is item.associated)
     ]
     if len(usable) < 2:

@@ -9,7 +9,7 @@ from pathlib import Path
 from markupsafe import Markup
 
 from harness.model.comparison import CaseResults, ComparisonRun
-from harness.model.method import Finding, Status
+from harness.model.method import Status
 from harness.model.writing import write_whole
 from reports import charts, numbers, words
 from reports.build import script_hash, script_json
@@ -153,7 +153,7 @@ def _chart(walls: list[CaseResults]) -> charts.Chart:
             for item in walls
             if (result := item.of(name)) is not None
             and result.multiplier is not None
-            and result.finding is Finding.COLLAPSES
+            and result.finding.has_multiplier
         ]
         if not points:
             continue

@@ -8,7 +8,7 @@ import numpy as np
 from markupsafe import Markup
 
 from harness.model.comparison import CaseResults, ComparisonRun
-from harness.model.method import Finding, Status
+from harness.model.method import Status
 from harness.model.result import Result, Verdict
 from reports import numbers, paper, shapes, words
 from reports.agreement import agreement, mains, spread
@@ -237,7 +237,7 @@ def which_number(item: CaseResults) -> str:
         )
     sentences = [first]
     springs = [r for r in mains(item) if r.traits.elastic and r is not least and r.multiplier is not None]
-    if springs and springs[0].finding is Finding.COLLAPSES:
+    if springs and springs[0].finding.has_multiplier:
         sentences.append(
             f"Elastic joints without self-stress would give {_or_the_same(springs[0], least)} ({springs[0].method})."
         )
@@ -292,7 +292,7 @@ def figure_of(item: CaseResults) -> tuple[Markup, str]:
     apart = [
         r
         for r in mains(item)
-        if r is not least and r.mechanism is not None and r.finding is Finding.COLLAPSES and r.flow == "non-associated"
+        if r is not least and r.mechanism is not None and r.finding.has_multiplier and r.flow == "non-associated"
     ]
     other = apart[0] if apart else None
     friction = f"tan φ {friction_text(item.case.assembly)}"

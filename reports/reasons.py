@@ -6,7 +6,7 @@ import numpy as np
 
 from harness.model.assembly import Assembly, FloatArray
 from harness.model.comparison import CaseResults
-from harness.model.method import Finding, Status
+from harness.model.method import Status
 from harness.model.result import Result, relative_velocities
 from reports import flow, numbers, shapes
 from reports.agreement import agreement, measure_of
@@ -92,7 +92,7 @@ def _along(assembly: Assembly, moves: np.ndarray) -> str:
 
 def reasons(item: CaseResults) -> list[str]:
     """Why every other collapse state of the case parts from the least accepted one, a sentence each."""
-    states = [r for r in item.results if r.status is Status.OK and r.finding is Finding.COLLAPSES]
+    states = [r for r in item.results if r.status is Status.OK and r.finding.has_multiplier]
     least = least_known(item)
     if least is None or least.mechanism is None:
         return []
@@ -153,7 +153,7 @@ def least_known(item: CaseResults) -> Result | None:
         result
         for result in item.results
         if result.status is Status.OK
-        and result.finding is Finding.COLLAPSES
+        and result.finding.has_multiplier
         and result.judge.accepted
         and result.flow == "non-associated"
         and result.multiplier is not None

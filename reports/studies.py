@@ -14,7 +14,6 @@ from typing import Any
 import numpy as np
 
 from harness.model.comparison import CaseResults, ComparisonRun
-from harness.model.method import Finding
 from harness.model.result import Result
 from reports import charts, numbers
 from reports.facts import friction_text
@@ -71,7 +70,7 @@ def _costs(run: ComparisonRun, size: Callable[[CaseResults, Result], int]) -> li
 def _collapses(run: ComparisonRun, method: str) -> Iterator[tuple[CaseResults, Result, float]]:
     for item in run.cases:
         result = item.of(method)
-        if result is not None and solved(result) and result.finding is Finding.COLLAPSES and result.cpu_seconds:
+        if result is not None and solved(result) and result.finding.has_multiplier and result.cpu_seconds:
             yield item, result, result.cpu_seconds
 
 

@@ -31,6 +31,7 @@ FINDING: dict[Finding, str] = {
     Finding.COLLAPSES: "collapses",
     Finding.STANDS: "stands",
     Finding.FALLS: "falls under its dead load",
+    Finding.AT_LIMIT: "at its limit under its dead load",
     Finding.UNBOUNDED: "no collapse: unbounded",
     Finding.NONE: "nothing found",
 }

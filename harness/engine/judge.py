@@ -8,6 +8,9 @@ collapses at lambda  forces in equilibrium with dead + lambda x live at the mult
 bracket              (flow "approximate") forces in equilibrium within yield at its lower end or above; the upper end is
                      measured and is not judged; nor is it shown that the motion is the one at collapse, but it must
                      be one that the joints allow (`harness.engine.measured_motion`)
+at its limit         multiplier 0; forces in equilibrium within yield under the dead load, and a mechanism whose own
+                     multiplier, by virtual work, the numbers of the wall do not tell from zero (`harness.model.limit`);
+                     beside a measured motion both are shown by statics
 stands               forces in equilibrium within yield under the dead load, where no live load was given; with a live
                      load they show no multiplier, and the answer is not judged
 falls                a dilatant mechanism, at rest on the supports, on which the dead load does positive work: no
@@ -15,7 +18,7 @@ falls                a dilatant mechanism, at rest on the supports, on which the
 unbounded            forces within yield that balance the live load alone, besides forces under the dead load: their sum
                      bears any multiplier
 
-What proves nothing either way is not judged (`Judgement.accepted` is None), which never means accepted.
+No multiplier that is claimed lies below zero. What proves nothing either way is not judged (`Judgement.accepted` is None), which never means accepted.
 
 The residuals are those of `harness.engine.residuals`.
 """
@@ -31,6 +34,7 @@ from harness.engine.measured_motion import motion_faults
 from harness.engine.residuals import collapse_residuals, displaced_residuals, force_residuals, moving_parts, power
 from harness.model.assembly import Assembly, FloatArray
 from harness.model.displaced import DisplacedState
+from harness.model.limit import accuracy, least_told
 from harness.model.method import Finding, Method, Status, check_takes, traits_of
 from harness.model.result import Judgement, Result, relative_velocities, result_of
 
@@ -67,6 +71,10 @@ def _judge_finding(
             return _judge_standing(assembly, forces, result, tolerance)
         case Finding.UNBOUNDED:
             return _judge_unbounded(assembly, forces, result, tolerance)
+        case Finding.AT_LIMIT:
+            return _judge_limit(assembly, forces, mechanism, result, tolerance)
+    if result.multiplier is not None and result.multiplier < 0.0:
+        return _said(tolerance, False, "Its multiplier lies below zero: the live load brings no such collapse about.")
     if result.flow == "approximate":
         return _judge_bracket(assembly, forces, result, tolerance)
     return _judge_collapse(assembly, forces, mechanism, result, tolerance)
@@ -175,6 +183,36 @@ def _judge_unbounded(assembly: Assembly, forces: FloatArray | None, result: Resu
     alone = replace(assembly, dead=np.zeros_like(assembly.dead))
     residuals |= {f"live_{name}": value for name, value in force_residuals(alone, ray, 1.0).items()}
     return _decide(residuals, tolerance, f"Forces at multiplier {at:.6g} and forces that balance the live load alone")
+
+
+def _judge_limit(
+    assembly: Assembly, forces: FloatArray | None, mechanism: FloatArray | None, result: Result, tolerance: float
+) -> Judgement:
+    """At its limit under the dead load: forces there, and a mechanism whose multiplier is zero as far as told.
+
+    A method that measured the motion may hand over forces and a dilatant mechanism of statics, as
+    `details["dead_forces"]` and `details["dilatant_mechanism"]`.
+    """
+    flow = result.flow
+    if flow == "approximate":
+        shown = [result.details.get(name) for name in ("dead_forces", "dilatant_mechanism")]
+        if None in shown:
+            return _said(tolerance, None, "The motion was measured, which is no proof; that it is at its limit is not.")
+        forces, mechanism = (np.asarray(table, dtype=float).reshape(-1, 3) for table in shown)
+        flow = "associated"
+    if forces is None or mechanism is None:
+        return _said(tolerance, False, NO_FORCES if forces is None else "It gives no mechanism.")
+    sizes = [(assembly.n_interfaces, 3), (assembly.n_blocks, 3)]
+    if [forces.shape, mechanism.shape] != sizes or not (np.isfinite(forces).all() and np.isfinite(mechanism).all()):
+        return _said(tolerance, False, "Its forces or its mechanism are not finite triples of all joints and blocks.")
+    if result.multiplier != 0.0:
+        return _said(tolerance, False, "A wall at its limit has the multiplier 0.")
+    within = max(tolerance, accuracy(assembly))
+    residuals = collapse_residuals(assembly, forces, 0.0, mechanism, flow)
+    told = least_told(assembly, mechanism)
+    if told > 0.0:
+        residuals["virtual_work"] *= accuracy(assembly) * assembly.load_unit / told
+    return _decide(residuals, within, f"The collapse state ({flow} flow) under the dead load")
 
 
 def _judge_fall(assembly: Assembly, mechanism: FloatArray | None, result: Result, tolerance: float) -> Judgement:

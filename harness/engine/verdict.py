@@ -187,7 +187,7 @@ def _moves_no_lower(results: CaseResults, usable: dict[str, Result], moved: Resu
 
 def _unique(results: CaseResults, usable: dict[str, Result]) -> tuple[Result | None, str]:
     """The state below which no wall of this case moves, and why; None where theory does not know one."""
-    collapses = [result for result in usable.values() if result.finding is Finding.COLLAPSES]
+    collapses = [result for result in usable.values() if result.finding.has_multiplier]
     proved = next((result for result in collapses if result.details.get("proved_least")), None)
     if proved is not None:
         return proved, f"{proved.method} shows that there is none lower"

@@ -80,7 +80,7 @@ class CaseResults:
             for result in self.results
             if result.traits.bounds_above
             and result.status is Status.OK
-            and result.finding is Finding.COLLAPSES
+            and result.finding.has_multiplier
             and result.judge.accepted is not False
         )
         return next(found, None)
@@ -91,7 +91,9 @@ class CaseResults:
         answered = [result for result in self.results if result.status is Status.OK]
         fall = {result.method: result.traits for result in answered if result.finding is Finding.FALLS}
         stand = {
-            result.method: result.traits for result in answered if result.finding not in (Finding.FALLS, Finding.NONE)
+            result.method: result.traits
+            for result in answered
+            if result.finding not in (Finding.FALLS, Finding.AT_LIMIT, Finding.NONE)
         }
         if not fall or not stand:
             return ""

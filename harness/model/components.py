@@ -139,7 +139,7 @@ def joined(assembly: Assembly, parts: list[Component], answers: list[Answer], be
     """
     falls = [k for k, answer in enumerate(answers) if answer.status is Status.OK and answer.finding is Finding.FALLS]
     failed = [k for k, answer in enumerate(answers) if answer.status is not Status.OK]
-    collapses = [k for k, answer in enumerate(answers) if answer.finding is Finding.COLLAPSES]
+    collapses = [k for k, answer in enumerate(answers) if answer.finding.has_multiplier]
     unbounded = [k for k, answer in enumerate(answers) if answer.finding is Finding.UNBOUNDED]
     if falls:
         deciding = falls[0]
@@ -231,13 +231,13 @@ def _sentence(parts: list[Component], answers: list[Answer], deciding: int) -> s
     own = answers[deciding].sentence.rstrip(".")
     said = f"{own[:1].upper()}{own[1:]}. The wall has {len(parts)} independent components"
     if answers[deciding].status is not Status.OK:
-        known = [k for k, answer in enumerate(answers) if answer.finding is Finding.COLLAPSES]
+        known = [k for k, answer in enumerate(answers) if answer.finding.has_multiplier]
         least = min(known, key=lambda k: _lower_end(answers[k]), default=None)
         other = "" if least is None else (
             f" That of {parts[least].named} alone collapses at {answers[least].multiplier:.7g}."
         )  # fmt: skip
         return f"{said}; this is said of that of {parts[deciding].named}.{other}"
-    if answers[deciding].finding in (Finding.COLLAPSES, Finding.FALLS):
+    if answers[deciding].finding.has_multiplier or answers[deciding].finding is Finding.FALLS:
         return f"{said}; the one that fails is that of {parts[deciding].named}."
     return f"{said}, and none of them fails."
 

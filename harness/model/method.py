@@ -77,8 +77,15 @@ class Finding(StrEnum):
     """Already under its dead load, at multiplier zero."""
     UNBOUNDED = "unbounded"
     """The live load cannot make it collapse."""
+    AT_LIMIT = "at its limit"
+    """Its multiplier is zero within the accuracy of the numbers that describe the wall (`harness.model.limit`)."""
     NONE = "none"
     """Nothing was found."""
+
+    @property
+    def has_multiplier(self) -> bool:
+        """Whether the wall collapses at a multiplier, be it zero."""
+        return self in (Finding.COLLAPSES, Finding.AT_LIMIT)
 
 
 MOVING_FORCES = "moving_forces"
@@ -93,7 +100,7 @@ class Answer:
         status: ok, not_converged or refused; the engine adds the other endings.
         finding: what this says about the wall.
         sentence: one sentence for a reader: what was found, or why nothing was.
-        multiplier: collapse multiplier, or None. None unless `finding` is COLLAPSES (falls, stands, unbounded: None).
+        multiplier: collapse multiplier, zero or more; 0 where `finding` is AT_LIMIT, else None unless it is COLLAPSES.
         bracket: (lower, upper), or None; `bracket_meaning` says what the two ends are.
         forces: (m, 3) contact forces (n1, n2, s) [force], conventions of `assembly`, in equilibrium with
             dead + forces_multiplier * live; or None.

@@ -17,7 +17,7 @@ from methods.de.engines.warm_sweeps import load_sweeps
 from methods.de.hold_settings import MujocoSettings, ReleaseSettings, SweepSettings
 from methods.de.holds.answer import solve_by_holds
 from methods.de.holds.release import release
-from methods.numerics.statics import analysed
+from methods.numerics.claims import analysed
 
 
 class DampedHolds(DeclaredHolds):
@@ -81,7 +81,7 @@ class ReleasedCollapse(DeclaredRelease):
     def solve(self, assembly: Assembly, settings: ReleaseSettings) -> Answer:
         """Answer of `de` with the history of the collapse: frames in `details`, time and displacement in `path`."""
         answer = DampedHolds().solve(assembly, settings)
-        if answer.finding not in (Finding.COLLAPSES, Finding.FALLS) or answer.details.get("stopped_by_limit"):
+        if answer.finding not in (Finding.COLLAPSES, Finding.AT_LIMIT, Finding.FALLS) or answer.details.get("stopped_by_limit"):
             return answer
         multiplier = settings.excess * (answer.multiplier or 0.0)
         try:

@@ -24,7 +24,7 @@ from methods.de.holds.motion import MotionProof, by_travel
 from methods.de.holds.order_bracket import BRACKET
 from methods.de.holds.stopped import STOPPED, undecided, unmoved
 from methods.de.soft_settings import JOINTS, SOFT_HOLDS, SoftSettings
-from methods.numerics.statics import with_proof
+from methods.numerics.claims import at_limit, with_proof
 
 BRACKET_MEANING = "[highest multiplier at which it came to rest, lowest at which it fell]"
 
@@ -127,7 +127,7 @@ class DeformableJoints(DeclaredSoft):
             again = self._with_joints(assembly, settings, factor * stiffness, rounding)
             again.iterations += answer.iterations
             answer = _better(answer, again)
-        return with_proof(assembly, _saying_soft(answer, settings))
+        return with_proof(assembly, at_limit(assembly, _saying_soft(answer, settings)))
 
     def _with_joints(self, assembly: Assembly, settings: SoftSettings, stiffness: float, round_by: float) -> Answer:
         """The answer with joints of one stiffness [force/length^2], corners rounded by so much where nothing is set."""

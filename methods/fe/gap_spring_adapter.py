@@ -27,7 +27,7 @@ from methods.fe.path_answers import (
     stands,
 )
 from methods.fe.path_settings import GapSpringsSettings, NewtonSettings
-from methods.numerics.statics import analysed
+from methods.numerics.claims import analysed
 from methods.springs.model.factor import Factor, make_factor
 from methods.springs.model.wall_model import WallModel, build_model
 from methods.springs.path.path_record import PathEnd

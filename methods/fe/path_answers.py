@@ -50,7 +50,7 @@ def gravity_failure(model: WallModel, gravity: Equilibrium) -> Answer:
 def falling(model: WallModel, rate: FloatArray, why: str, iterations: int) -> Answer:
     """The answer for a wall that falls under its dead load along displacements (N,), which are approximate.
 
-    `methods.numerics.statics.with_proof` adds the dilatant mechanism that proves the fall.
+    `methods.numerics.claims.with_proof` adds the dilatant mechanism that proves the fall.
     """
     motion = model.block_displacements(rate)
     blocks = model.moving_blocks(motion, NEWTON.falling)

@@ -12,7 +12,7 @@ from harness.model.method import Answer, Finding
 from methods.la.core.newton_matrix import NewtonMatrix
 from methods.la.core.problem import Problem, make_problem
 from methods.la.state_answers import dead_load_answer
-from methods.numerics.statics import analysed
+from methods.numerics.claims import analysed
 
 Answering = Callable[[Assembly, Problem, NewtonMatrix, Any], Answer]
 """Answers for a component that stands under its dead load and carries a live load, by the settings."""

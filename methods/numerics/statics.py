@@ -2,19 +2,20 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from dataclasses import replace
+from typing import TYPE_CHECKING
 
 import numpy as np
 import scipy.sparse as sp
 
 from harness.model.assembly import Assembly, FloatArray, IntArray
-from harness.model.components import analysed_apart
-from harness.model.method import Answer, Finding, OutOfTime, Status
+
+if TYPE_CHECKING:
+    from methods.numerics.vertex import Vertex
 
 LEAST_WORK = 1e-7
 """Work of the dead load that shows a fall, as total weight times speed: a programme to 1e-9 makes up less."""
-
+COST = 1e4
+"""Of the multiplier in a programme for the greatest one, a block."""
 
 Entries = tuple[FloatArray, IntArray, IntArray]
 """Values, rows and columns of a sparse matrix."""
@@ -79,29 +80,65 @@ def admissible_forces(assembly: Assembly, load: FloatArray) -> FloatArray | None
         assembly: the wall.
         load: (n, 3) generalised loads on the blocks [force, force, moment].
     """
-    from methods.numerics.linear_programme import INFINITY, Programme  # HiGHS, which few answers need
-
-    length = assembly.length_scale or 1.0
-    column = np.tile([1.0, 1.0, 1.0 / length], assembly.n_free)
-    own = load[assembly.free].ravel() * column
-    unit = float(abs(own).sum()) / max(assembly.n_free, 1)
     m = assembly.n_interfaces
-    if unit == 0.0:
+    if not np.any(load[assembly.free]):
         return np.zeros((m, 3))
     if m == 0:
         return None
-    statics = (assembly.kinematic_matrix @ sp.diags(column)).T
+    vertex, unit = _vertex_of_forces(assembly, load)
+    return None if vertex is None else within_yield(vertex.value.reshape(-1, 3), assembly.friction) * unit
+
+
+def greatest_multiplier(assembly: Assembly) -> tuple[float, FloatArray, FloatArray] | None:
+    """The greatest multiplier of statics, its contact forces (m, 3) and the dilatant mechanism (n, 3) dual to them.
+
+    None where no forces within yield bear any multiplier, or any multiplier is borne, or the programme fails.
+    """
+    if assembly.n_interfaces == 0 or not (np.any(assembly.dead[assembly.free]) and assembly.has_live_load):
+        return None
+    vertex, unit = _vertex_of_forces(assembly, assembly.dead, assembly.live)
+    if vertex is None:
+        return None
+    forces = within_yield(vertex.value[:-1].reshape(-1, 3), assembly.friction) * unit
+    motion = np.zeros((assembly.n_blocks, 3))
+    motion[assembly.free] = -vertex.dual[: 3 * assembly.n_free].reshape(-1, 3) * _units_of_velocity(assembly)
+    return float(vertex.value[-1]) * assembly.load_unit, forces, motion
+
+
+def _units_of_velocity(assembly: Assembly) -> FloatArray:
+    """(3,) what a unit of (ux, uy, omega) is worth where a rotation counts times the length scale."""
+    return np.array([1.0, 1.0, 1.0 / (assembly.length_scale or 1.0)])
+
+
+def _vertex_of_forces(
+    assembly: Assembly, load: FloatArray, live: FloatArray | None = None
+) -> tuple[Vertex | None, float]:
+    """A vertex of the contact forces within yield that balance a load (n, 3), None without any; the unit of force.
+
+    With a live load (n, 3) its greatest multiplier, in `Assembly.load_unit`, is the last column, and it bears a cost
+    that makes the speeds of the dual mechanism far greater than what HiGHS rounds off.
+    """
+    from methods.numerics.linear_programme import INFINITY, Programme  # HiGHS, which few answers need
+
+    column = np.tile(_units_of_velocity(assembly), assembly.n_free)
+    own = load[assembly.free].ravel() * column
+    unit = float(abs(own).sum()) / max(assembly.n_free, 1)
+    m = assembly.n_interfaces
+    matrix = sp.vstack([(assembly.kinematic_matrix @ sp.diags(column)).T, shear_limits(assembly.friction)])
+    lower, cost = np.tile([0.0, 0.0, -INFINITY], m), np.zeros(3 * m)
+    if live is not None:
+        acting = live[assembly.free].ravel() * column * (assembly.load_unit / unit)
+        matrix = sp.hstack([matrix, np.append(acting, np.zeros(2 * m))[:, None]])
+        lower, cost = np.append(lower, -INFINITY), np.append(cost, -COST * assembly.n_free)
     programme = Programme(
-        sp.csc_matrix(sp.vstack([statics, shear_limits(assembly.friction)])),
-        np.zeros(3 * m),
-        (np.tile([0.0, 0.0, -INFINITY], m), np.full(3 * m, INFINITY)),
+        sp.csc_matrix(matrix),
+        cost,
+        (lower, np.full(len(lower), INFINITY)),
         (np.append(-own / unit, np.zeros(2 * m)), np.append(-own / unit, np.full(2 * m, INFINITY))),
     )
     status, _, _ = programme.run()
     vertex = programme.vertex(rows_of_blocks(assembly.n_free, m)) if status == "optimal" else None
-    if vertex is None or not vertex.optimal:
-        return None
-    return within_yield(vertex.value.reshape(-1, 3), assembly.friction) * unit
+    return (vertex if vertex is not None and vertex.optimal else None), unit
 
 
 def dilatant_mechanism(
@@ -134,55 +171,3 @@ def dilatant_mechanism(
     mechanism = np.zeros((assembly.n_blocks, 3))
     mechanism[assembly.free] = (motion * column).reshape(-1, 3)
     return mechanism
-
-
-def bear(assembly: Assembly, answer: Answer, multiplier: float) -> FloatArray | None:
-    """Forces (m, 3) with which a component bears its dead load and `multiplier` times the live load; None if none.
-
-    Where the answer holds forces at a higher multiplier, those between it and the dead load do: the cone is convex.
-    """
-    highest = answer.forces_multiplier
-    if answer.forces is not None and highest is not None and highest > multiplier >= 0.0:
-        dead = admissible_forces(assembly, assembly.dead)
-        if dead is not None:
-            share = multiplier / highest
-            return (1.0 - share) * dead + share * answer.forces
-    return admissible_forces(assembly, assembly.dead + multiplier * assembly.live)
-
-
-def analysed(assembly: Assembly, solve: Callable[[Assembly], Answer]) -> Answer:
-    """The answer of a method for a wall from those for its independent components, with what shows it."""
-    return with_proof(assembly, analysed_apart(assembly, solve, bear))
-
-
-def with_proof(assembly: Assembly, answer: Answer) -> Answer:
-    """An answer with what proves its claim where statics alone can: forces that grow for ever, a dilatant mechanism.
-
-    `details["live_forces"]` (m, 3) balance the live load alone, so that with forces under the dead load they bear any
-    multiplier; `details["dilatant_mechanism"]` (n, 3) shows that a wall falls whose motion was measured only. Where
-    there is none, or no time is left to find it, the answer stays as it is, and is not judged.
-    """
-    if answer.status is not Status.OK:
-        return answer
-    try:
-        return _proved(assembly, answer)
-    except OutOfTime:
-        return answer
-
-
-def _proved(assembly: Assembly, answer: Answer) -> Answer:
-    """As `with_proof`; raises OutOfTime where the time is over."""
-    if answer.finding is Finding.UNBOUNDED:
-        growth = admissible_forces(assembly, assembly.live)
-        own = (answer.forces, answer.forces_multiplier)
-        forces, at = own if answer.forces is not None else (admissible_forces(assembly, assembly.dead), 0.0)
-        if growth is None or forces is None:
-            return answer
-        return replace(
-            answer, forces=forces, forces_multiplier=at, details=answer.details | {"live_forces": growth.tolist()}
-        )
-    if answer.finding is Finding.FALLS and answer.flow == "approximate":
-        proof = dilatant_mechanism(assembly, assembly.dead)
-        if proof is not None:
-            return replace(answer, details=answer.details | {"dilatant_mechanism": proof.tolist()})
-    return answer

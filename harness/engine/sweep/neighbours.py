@@ -166,7 +166,7 @@ def _order(values: Sequence[Any]) -> IntArray:
 
 
 def _multiplier(row: Row) -> float:
-    good = row.get("status") == str(Status.OK) and row.get("finding") == str(Finding.COLLAPSES)
+    good = row.get("status") == str(Status.OK) and Finding(str(row.get("finding"))).has_multiplier
     value = row.get("multiplier")
     return float(value) if good and value is not None and row.get("judge_accepted") is True else float("inf")
 

@@ -1,0 +1,68 @@
+"""When a wall is at its limit: its multiplier is zero within the accuracy of the numbers that describe it.
+
+Coordinates, friction and loads are written to some digits. What they leave open moves the multiplier of a mechanism, by
+virtual work, by that share of the power which the dead load would have on it if nothing cancelled. A multiplier no
+larger than this cannot be told from zero: whether such a wall just stands or just falls is not in its description.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from harness.model.assembly import Assembly, FloatArray
+
+
+@dataclass(frozen=True)
+class Digits:
+    """How exactly a wall is described.
+
+    Attributes:
+        written: share of the size of a block to which coordinates are meant, and absolute accuracy of friction: the
+            digits of single precision, which drawings and measurements keep at most; a hundred times what linear
+            programmes round off.
+        rounded: units in the last place by which coordinates computed in double precision are off. In a national grid
+            they are the larger part.
+    """
+
+    written: float = 1e-7
+    rounded: float = 16.0
+
+
+DIGITS = Digits()
+
+
+def accuracy(assembly: Assembly) -> float:
+    """Accuracy of the coordinates of a wall as a share of the size of a block, and of its friction."""
+    points, _ = assembly.corners
+    last_place = float(np.finfo(float).eps * abs(points).max(initial=0.0))
+    return DIGITS.written + DIGITS.rounded * last_place / assembly.length_scale
+
+
+def gross_power(assembly: Assembly, mechanism: FloatArray) -> float:
+    """Power of the dead load on a mechanism (n, 3) if nothing cancelled: load times fastest speed, summed over blocks."""
+    dead = np.hypot(*assembly.dead[:, :2].T) + abs(assembly.dead[:, 2]) / assembly.radius
+    speed = np.hypot(*mechanism[:, :2].T) + abs(mechanism[:, 2]) * assembly.radius
+    return float((dead * speed)[assembly.free].sum())
+
+
+def least_told(assembly: Assembly, mechanism: FloatArray) -> float:
+    """The least multiplier of a mechanism (n, 3) that the numbers of the wall tell from zero; zero without live work."""
+    work = float((assembly.live * mechanism).sum())
+    return accuracy(assembly) * gross_power(assembly, mechanism) / work if work > 0.0 else 0.0
+
+
+def strengthened(assembly: Assembly) -> Assembly:
+    """The wall with contacts longer, and friction greater, by half of what its numbers leave open.
+
+    A wall that has no equilibrium even so falls under its dead load. Half, so that both ways together make up the whole.
+    """
+    share = 0.5 * accuracy(assembly)
+    longer = share * assembly.length_scale * assembly.tangent
+    return replace(
+        assembly,
+        end1=assembly.end1 - longer,
+        end2=assembly.end2 + longer,
+        friction=assembly.friction + share * np.maximum(assembly.friction, 1.0),
+    )
