@@ -151,9 +151,7 @@ def _chart(walls: list[CaseResults]) -> charts.Chart:
         points = [
             (float(item.case.assembly.friction[0]), result)
             for item in walls
-            if (result := item.of(name)) is not None
-            and result.multiplier is not None
-            and result.finding.has_multiplier
+            if (result := item.of(name)) is not None and result.multiplier is not None and result.finding.has_multiplier
         ]
         if not points:
             continue

@@ -18,7 +18,8 @@ falls                a dilatant mechanism, at rest on the supports, on which the
 unbounded            forces within yield that balance the live load alone, besides forces under the dead load: their sum
                      bears any multiplier
 
-No multiplier that is claimed lies below zero. What proves nothing either way is not judged (`Judgement.accepted` is None), which never means accepted.
+No multiplier that is claimed lies below zero. What proves nothing either way is not judged (`Judgement.accepted` is
+None), which never means accepted.
 
 The residuals are those of `harness.engine.residuals`.
 """

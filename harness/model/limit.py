@@ -41,14 +41,14 @@ def accuracy(assembly: Assembly) -> float:
 
 
 def gross_power(assembly: Assembly, mechanism: FloatArray) -> float:
-    """Power of the dead load on a mechanism (n, 3) if nothing cancelled: load times fastest speed, summed over blocks."""
+    """Power of the dead load on a mechanism (n, 3) if nothing cancelled: sum of load times fastest speed of a block."""
     dead = np.hypot(*assembly.dead[:, :2].T) + abs(assembly.dead[:, 2]) / assembly.radius
     speed = np.hypot(*mechanism[:, :2].T) + abs(mechanism[:, 2]) * assembly.radius
     return float((dead * speed)[assembly.free].sum())
 
 
 def least_told(assembly: Assembly, mechanism: FloatArray) -> float:
-    """The least multiplier of a mechanism (n, 3) that the numbers of the wall tell from zero; zero without live work."""
+    """The multiplier of a mechanism (n, 3) up to which the numbers of the wall allow zero; zero without live work."""
     work = float((assembly.live * mechanism).sum())
     return accuracy(assembly) * gross_power(assembly, mechanism) / work if work > 0.0 else 0.0
 
@@ -56,7 +56,7 @@ def least_told(assembly: Assembly, mechanism: FloatArray) -> float:
 def strengthened(assembly: Assembly) -> Assembly:
     """The wall with contacts longer, and friction greater, by half of what its numbers leave open.
 
-    A wall that has no equilibrium even so falls under its dead load. Half, so that both ways together make up the whole.
+    A wall that has no equilibrium even so falls under its dead load.
     """
     share = 0.5 * accuracy(assembly)
     longer = share * assembly.length_scale * assembly.tangent

@@ -81,7 +81,8 @@ class ReleasedCollapse(DeclaredRelease):
     def solve(self, assembly: Assembly, settings: ReleaseSettings) -> Answer:
         """Answer of `de` with the history of the collapse: frames in `details`, time and displacement in `path`."""
         answer = DampedHolds().solve(assembly, settings)
-        if answer.finding not in (Finding.COLLAPSES, Finding.AT_LIMIT, Finding.FALLS) or answer.details.get("stopped_by_limit"):
+        fails = answer.finding.has_multiplier or answer.finding is Finding.FALLS
+        if not fails or answer.details.get("stopped_by_limit"):
             return answer
         multiplier = settings.excess * (answer.multiplier or 0.0)
         try:

@@ -118,9 +118,7 @@ def _below_zero(assembly: Assembly, answer: Answer) -> Answer:
         sentence = "the wall falls under its dead load: what it would bear lies below zero"
         return replace(cleared, finding=Finding.FALLS, sentence=sentence, mechanism=falling, flow="associated")
     sentence = "the run ended in a collapse state below zero, which the live load does not bring about"
-    return replace(
-        cleared, status=Status.NOT_CONVERGED, finding=Finding.NONE, sentence=sentence, mechanism=None
-    )
+    return replace(cleared, status=Status.NOT_CONVERGED, finding=Finding.NONE, sentence=sentence, mechanism=None)
 
 
 def with_proof(assembly: Assembly, answer: Answer) -> Answer:

@@ -124,14 +124,15 @@ def _vertex_of_forces(
     own = load[assembly.free].ravel() * column
     unit = float(abs(own).sum()) / max(assembly.n_free, 1)
     m = assembly.n_interfaces
-    matrix = sp.vstack([(assembly.kinematic_matrix @ sp.diags(column)).T, shear_limits(assembly.friction)])
+    statics = (assembly.kinematic_matrix @ sp.diags(column)).T
+    matrix = sp.csc_matrix(sp.vstack([sp.csc_matrix(statics), shear_limits(assembly.friction)]))
     lower, cost = np.tile([0.0, 0.0, -INFINITY], m), np.zeros(3 * m)
     if live is not None:
         acting = live[assembly.free].ravel() * column * (assembly.load_unit / unit)
-        matrix = sp.hstack([matrix, np.append(acting, np.zeros(2 * m))[:, None]])
+        matrix = sp.csc_matrix(sp.hstack([matrix, sp.csc_matrix(np.append(acting, np.zeros(2 * m))[:, None])]))
         lower, cost = np.append(lower, -INFINITY), np.append(cost, -COST * assembly.n_free)
     programme = Programme(
-        sp.csc_matrix(matrix),
+        matrix,
         cost,
         (lower, np.full(len(lower), INFINITY)),
         (np.append(-own / unit, np.zeros(2 * m)), np.append(-own / unit, np.full(2 * m, INFINITY))),

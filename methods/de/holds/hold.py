@@ -12,6 +12,9 @@ from methods.de.engines.engine import Engine, Measured, motion_units
 from methods.de.hold_settings import HoldSettings
 from methods.de.holds.motion import Motion, MotionProof, Trend, by_power, by_virtual_work
 
+SMALL = 0.01
+"""Live load, as a part of the dead load, below which residuals are told as shares of it: .0001 and .002 in `de`."""
+
 
 class State(StrEnum):
     """What a hold showed."""
@@ -146,7 +149,7 @@ def hold(engine: Engine, settings: HoldSettings, patience: int = 1) -> Hold:
     check = max(10, round(engine.relaxation / 3.0))
     usual = patience * hold_limit(engine, settings) / check
     units = motion_units(engine.assembly)
-    start, watch = engine.steps, Watch(settings.held_residual, settings.moving_residual, units)
+    start, watch = engine.steps, Watch(*residuals_told(engine, settings), units)
     affordable = (watch.trend.followed * settings.work / max(engine.interfaces, 1) - engine.steps) / check
     while True:
         engine.advance(check)
@@ -162,6 +165,19 @@ def hold(engine: Engine, settings: HoldSettings, patience: int = 1) -> Hold:
                 return Hold(State.MOVING, residual, engine.steps - start, motion.field, motion.proof)
         if over or not np.isfinite(residual):
             return Hold(State.UNDECIDED, residual, engine.steps - start, velocity)
+
+
+def residuals_told(engine: Measured, settings: HoldSettings) -> tuple[float, float]:
+    """Residuals below which a wall rests under its present load, and from which it may move.
+
+    What a multiplier too high by a share leaves out of balance is that share of the live load. Where that is a small
+    part of the dead load both are less: were they fixed parts of the dead load, a wall of multiplier .002 would rest
+    .1 % above it, and not be seen to move before it is 1 % too high.
+    """
+    live = abs(engine.multiplier) / engine.assembly.load_unit
+    share = min(1.0, live / SMALL) if live > 0.0 else 1.0
+    floor = 2.0 * settings.force_residual
+    return max(share * settings.held_residual, floor), max(share * settings.moving_residual, 2.0 * floor)
 
 
 def hold_limit(engine: Engine, settings: HoldSettings) -> int:
