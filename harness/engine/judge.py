@@ -8,9 +8,9 @@ collapses at lambda  forces in equilibrium with dead + lambda x live at the mult
 bracket              (flow "approximate") forces in equilibrium within yield at its lower end or above; the upper end is
                      measured and is not judged; nor is it shown that the motion is the one at collapse, but it must
                      be one that the joints allow (`harness.engine.measured_motion`)
-at its limit         multiplier 0; forces in equilibrium within yield under the dead load, and a mechanism whose own
-                     multiplier, by virtual work, the numbers of the wall do not tell from zero (`harness.model.limit`);
-                     beside a measured motion both are shown by statics
+at its limit         multiplier 0; forces in equilibrium within yield under the dead load, and a dilatant mechanism of a
+                     multiplier that the numbers of the wall do not tell from zero (`harness.model.limit`): no forces
+                     bear more, whatever the flow
 stands               forces in equilibrium within yield under the dead load, where no live load was given; with a live
                      load they show no multiplier, and the answer is not judged
 falls                a dilatant mechanism, at rest on the supports, on which the dead load does positive work: no
@@ -189,31 +189,28 @@ def _judge_unbounded(assembly: Assembly, forces: FloatArray | None, result: Resu
 def _judge_limit(
     assembly: Assembly, forces: FloatArray | None, mechanism: FloatArray | None, result: Result, tolerance: float
 ) -> Judgement:
-    """At its limit under the dead load: forces there, and a mechanism whose multiplier is zero as far as told.
+    """At its limit: forces under the dead load, and a dilatant mechanism whose multiplier is zero as far as told.
 
-    A method that measured the motion may hand over forces and a dilatant mechanism of statics, as
-    `details["dead_forces"]` and `details["dilatant_mechanism"]`.
+    No forces bear a multiplier above that of such a mechanism. Both may be those of statics, beside the forces and the
+    motion of the method: `details["dead_forces"]` and `details["dilatant_mechanism"]`.
     """
-    flow = result.flow
-    if flow == "approximate":
-        shown = [result.details.get(name) for name in ("dead_forces", "dilatant_mechanism")]
-        if None in shown:
-            return _said(tolerance, None, "The motion was measured, which is no proof; that it is at its limit is not.")
-        forces, mechanism = (np.asarray(table, dtype=float).reshape(-1, 3) for table in shown)
-        flow = "associated"
+    if result.multiplier != 0.0:
+        return _said(tolerance, False, "A wall at its limit has the multiplier 0.")
+    by_statics = [result.details.get(name) for name in ("dead_forces", "dilatant_mechanism")]
+    forces, mechanism = (
+        own if shown is None else np.asarray(shown, dtype=float).reshape(-1, 3)
+        for own, shown in zip((forces, mechanism), by_statics, strict=True)
+    )
     if forces is None or mechanism is None:
-        return _said(tolerance, False, NO_FORCES if forces is None else "It gives no mechanism.")
+        return _said(tolerance, None, "That it is at its limit was not shown: it gives no forces or no mechanism.")
     sizes = [(assembly.n_interfaces, 3), (assembly.n_blocks, 3)]
     if [forces.shape, mechanism.shape] != sizes or not (np.isfinite(forces).all() and np.isfinite(mechanism).all()):
         return _said(tolerance, False, "Its forces or its mechanism are not finite triples of all joints and blocks.")
-    if result.multiplier != 0.0:
-        return _said(tolerance, False, "A wall at its limit has the multiplier 0.")
-    within = max(tolerance, accuracy(assembly))
-    residuals = collapse_residuals(assembly, forces, 0.0, mechanism, flow)
-    told = least_told(assembly, mechanism)
+    within, told = accuracy(assembly), least_told(assembly, mechanism)
+    residuals = collapse_residuals(assembly, forces, 0.0, mechanism, "associated")
     if told > 0.0:
-        residuals["virtual_work"] *= accuracy(assembly) * assembly.load_unit / told
-    return _decide(residuals, within, f"The collapse state ({flow} flow) under the dead load")
+        residuals["virtual_work"] *= within * assembly.load_unit / told
+    return _decide(residuals, max(tolerance, within), "The collapse state (associated flow) under the dead load")
 
 
 def _judge_fall(assembly: Assembly, mechanism: FloatArray | None, result: Result, tolerance: float) -> Judgement:

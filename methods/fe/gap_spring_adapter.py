@@ -15,7 +15,7 @@ from harness.model.method import Answer, Finding, Status
 from methods.fe.convex_steps import bracket_collapse
 from methods.fe.declared_fe import DeclaredConvex, DeclaredGapSprings, DeclaredNewton
 from methods.fe.histories import HISTORIES, HistoryResult, Plan, trace_history, with_initial_shear
-from methods.fe.incremental import march
+from methods.fe.incremental import IncrementalResult, march
 from methods.fe.path_answers import (
     bracket_answer,
     collapse_answer,
@@ -122,6 +122,8 @@ def _by_displacement_control(model: WallModel, factor: Factor, gravity: Equilibr
     model = replace(model, history=gravity.history)
     first_step = newton.first_step * _unit(model.assembly)
     result = march(model, factor, gravity, first_step, newton.cuts, newton.displacement_steps)
+    if result.unbounded:
+        return _incremental_answer(model, result, f"{result.sentence}; the exact path was lost", lost.details)
     if result.state is None:
         return lost
     sentence = f"{result.sentence}; the exact path was lost ({lost.sentence})"
@@ -139,6 +141,18 @@ def chosen_histories(model: WallModel, settings: GapSpringsSettings) -> tuple[fl
 def _unit(assembly: Assembly) -> float:
     """The load unit rounded to a power of two: a live load that is given so many times larger is marched up alike."""
     return 2.0 ** round(math.log2(assembly.load_unit))
+
+
+def _incremental_answer(model: WallModel, result: IncrementalResult, sentence: str, details: dict[str, Any]) -> Answer:
+    """The answer of ordinary Newton that came to no collapse state: unbounded, or without an end."""
+    return Answer(
+        Status.OK if result.unbounded else Status.NOT_CONVERGED,
+        Finding.UNBOUNDED if result.unbounded else Finding.NONE,
+        sentence,
+        iterations=result.iterations,
+        path=compact(model, result.record),
+        details=details | {"path_status": "unbounded" if result.unbounded else "not_converged"},
+    )
 
 
 class IncrementalNewton(DeclaredNewton):
@@ -162,14 +176,7 @@ class IncrementalNewton(DeclaredNewton):
         details = {"load_control_limit": result.load_control, "gap_points": model.n_points}
         if result.state is not None:
             return single_state_answer(model, result.state, result.sentence, result.record, details, result.iterations)
-        return Answer(
-            Status.OK if result.unbounded else Status.NOT_CONVERGED,
-            Finding.UNBOUNDED if result.unbounded else Finding.NONE,
-            result.sentence,
-            iterations=result.iterations,
-            path=compact(model, result.record),
-            details=details | {"path_status": "unbounded" if result.unbounded else "not_converged"},
-        )
+        return _incremental_answer(model, result, result.sentence, details)
 
 
 class ConvexSteps(DeclaredConvex):

@@ -3,13 +3,16 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
 from harness.model.assembly import Assembly, FloatArray
 from harness.model.components import analysed_apart
 from harness.model.limit import accuracy, gross_power, least_told, strengthened
 from harness.model.method import Answer, Finding, OutOfTime, Status
 from methods.numerics.statics import admissible_forces, dilatant_mechanism, greatest_multiplier
+
+SMALL = 1e-3
+"""Live load, as a part of the dead load, below which a load that was measured leaves the limit to statics."""
 
 
 def bear(assembly: Assembly, answer: Answer, multiplier: float) -> FloatArray | None:
@@ -31,65 +34,84 @@ def analysed(assembly: Assembly, solve: Callable[[Assembly], Answer]) -> Answer:
     return with_proof(assembly, analysed_apart(assembly, lambda part: at_limit(part, solve(part)), bear))
 
 
-def limit_state(assembly: Assembly) -> tuple[FloatArray, FloatArray] | None:
-    """Contact forces (m, 3) and dilatant mechanism (n, 3) of a wall whose greatest multiplier is zero as far as told.
+@dataclass(frozen=True, eq=False)
+class Statics:
+    """What statics alone says of a wall.
 
-    None for other walls. Where rounding leaves no equilibrium at any multiplier, the strengthened wall has one.
+    Attributes:
+        multiplier: the greatest, whatever the flow; forces: (m, 3) at it; mechanism: (n, 3) dilatant, dual to them.
+        at_limit: whether the numbers of the wall allow that it is zero.
+    """
+
+    multiplier: float
+    forces: FloatArray
+    mechanism: FloatArray
+    at_limit: bool
+
+
+def statics_of(assembly: Assembly) -> Statics | None:
+    """What statics says of a wall; of the strengthened one where rounding leaves no equilibrium at any multiplier.
+
+    None where neither has a greatest multiplier.
     """
     for wall in (assembly, strengthened(assembly)):
         found = greatest_multiplier(wall)
         if found is not None:
             multiplier, forces, mechanism = found
-            return (forces, mechanism) if abs(multiplier) <= least_told(assembly, mechanism) else None
+            return Statics(multiplier, forces, mechanism, abs(multiplier) <= least_told(assembly, mechanism))
     return None
 
 
 def at_limit(assembly: Assembly, answer: Answer) -> Answer:
     """The answer, of the finding "at its limit" where that is what it comes to, and without a multiplier below zero.
 
-    A collapse state shows the limit by its own multiplier. A fall by less than the numbers of the wall tell, a motion
-    that was only measured at no live load, and a run without an end leave it to statics (`limit_state`).
+    Statics decides for all methods alike: a wall is at its limit where its greatest multiplier is zero as far as its
+    numbers tell. It is asked where an answer leaves that open: a multiplier near zero, a fall that is measured or by
+    less than the numbers tell, and a run without an end.
     """
     try:
-        return _at_limit(assembly, answer) if assembly.has_live_load else answer
+        return _at_limit(assembly, answer) if _leaves_open(assembly, answer) else answer
     except OutOfTime:
         return answer
 
 
-def _at_limit(assembly: Assembly, answer: Answer) -> Answer:
-    """As `at_limit`; raises OutOfTime where the time is over."""
-    multiplier, mechanism = answer.multiplier, answer.mechanism
-    measured = answer.flow == "approximate"
-    if answer.finding is Finding.COLLAPSES and multiplier is not None and mechanism is not None and not measured:
-        if abs(multiplier) <= least_told(assembly, mechanism):
-            return _zero(answer, answer.forces)
-        if multiplier > 0.0:
-            return answer
-        answer = _below_zero(assembly, answer)
-    if not _leaves_open(assembly, answer):
-        return answer
-    state = limit_state(assembly)
-    if state is None:
-        return answer
-    forces, dilatant = state
-    if measured:
-        return _zero(answer, forces if answer.forces is None else answer.forces)
-    return _zero(replace(answer, mechanism=dilatant, flow="associated"), forces)
-
-
 def _leaves_open(assembly: Assembly, answer: Answer) -> bool:
-    """Whether an answer without an exact collapse state may be that of a wall at its limit."""
-    if answer.details.get("stopped_by_limit") or answer.status is Status.REFUSED:
+    """Whether an answer may be that of a wall at its limit, or claims a multiplier below zero."""
+    multiplier, mechanism = answer.multiplier, answer.mechanism
+    if not assembly.has_live_load or answer.status is Status.REFUSED:
         return False
-    if answer.finding is Finding.FALLS and answer.flow == "associated" and answer.mechanism is not None:
-        gain = float((assembly.dead * answer.mechanism).sum())
-        return gain <= accuracy(assembly) * gross_power(assembly, answer.mechanism)
-    nothing_held = answer.bracket is not None and answer.bracket[0] <= 0.0
-    return answer.finding in (Finding.FALLS, Finding.NONE) or nothing_held
+    if multiplier is not None:
+        low = multiplier if answer.bracket is None else answer.bracket[0]
+        if mechanism is None or answer.flow == "approximate":
+            return low <= SMALL * assembly.load_unit
+        return low <= least_told(assembly, mechanism)
+    if answer.finding is Finding.FALLS and answer.flow == "associated" and mechanism is not None:
+        gain = float((assembly.dead * mechanism).sum())
+        return gain <= accuracy(assembly) * gross_power(assembly, mechanism)
+    stopped = bool(answer.details.get("stopped_by_limit"))
+    return answer.finding is Finding.FALLS or (answer.finding is Finding.NONE and not stopped)
 
 
-def _zero(answer: Answer, forces: FloatArray | None) -> Answer:
-    """The answer of a wall at its limit, with its contact forces (m, 3) under the dead load."""
+def _at_limit(assembly: Assembly, answer: Answer) -> Answer:
+    """As `at_limit`, of an answer that leaves it open; raises OutOfTime where the time is over."""
+    statics = statics_of(assembly)
+    if statics is not None and statics.at_limit:
+        return _with_limit(answer, statics)
+    bears = 0.0 if statics is None else statics.multiplier
+    if answer.multiplier is not None and answer.multiplier < 0.0:
+        return _below_zero(assembly, answer)
+    if answer.finding is Finding.FALLS and bears > 0.0:
+        reason = "it falls for want of self-stress in its joints, or because they give"
+    elif answer.multiplier == 0.0 and answer.bracket is None and bears > 0.0:
+        reason = "what the wall bears hangs on the self-stress in its joints, of which fe and de start without any"
+    else:
+        return answer
+    own = answer.sentence.rstrip(".")
+    return replace(answer, sentence=f"{own}. Statics alone would bear up to {bears:.7g}: {reason}.")
+
+
+def _with_limit(answer: Answer, statics: Statics) -> Answer:
+    """The answer of a wall at its limit; one that has no forces or no mechanism takes those of statics."""
     own = answer.sentence.rstrip(".")
     if answer.multiplier is None:
         said = f" Of itself the method says: {own}."
@@ -99,19 +121,25 @@ def _zero(answer: Answer, forces: FloatArray | None) -> Answer:
         answer,
         status=Status.OK,
         finding=Finding.AT_LIMIT,
-        sentence=f"The wall is at its limit under its dead load: its multiplier is zero within the accuracy of the "
+        sentence="The wall is at its limit under its dead load: its multiplier is zero within the accuracy of the "
         f"numbers that describe it.{said}",
         multiplier=0.0,
-        forces=forces,
+        bracket=None if answer.bracket is None else (0.0, answer.bracket[1]),
+        forces=statics.forces if answer.forces is None else answer.forces,
         forces_multiplier=0.0,
+        mechanism=statics.mechanism if answer.mechanism is None else answer.mechanism,
+        flow=answer.flow if answer.mechanism is not None else "associated",
     )
 
 
 def _below_zero(assembly: Assembly, answer: Answer) -> Answer:
-    """The answer for a collapse state below zero: the wall falls where statics has no other, and else nothing is known.
+    """The answer for a collapse state below zero, which the live load does not bring about.
 
-    The live load did not bring such a state about.
+    The wall falls where no equilibrium exists under its dead load; else the state says nothing, unless it is rounding.
     """
+    assert answer.multiplier is not None
+    if answer.mechanism is not None and -answer.multiplier <= least_told(assembly, answer.mechanism):
+        return replace(answer, multiplier=0.0, forces_multiplier=0.0)
     cleared = replace(answer, multiplier=None, bracket=None, forces=None, forces_multiplier=None)
     falling = dilatant_mechanism(assembly, assembly.dead)
     if falling is not None:
@@ -127,7 +155,7 @@ def with_proof(assembly: Assembly, answer: Answer) -> Answer:
     `details["live_forces"]` (m, 3) balance the live load alone, so that with forces under the dead load they bear any
     multiplier; `details["dilatant_mechanism"]` (n, 3) shows that a wall falls whose motion was measured only. Where
     there is none, or no time is left to find it, the answer stays as it is, and is not judged. A wall at its limit
-    whose motion was measured has such a mechanism, and `details["dead_forces"]` (m, 3) dual to it.
+    has such a mechanism, whose multiplier is zero, and `details["dead_forces"]` (m, 3) dual to it.
     """
     if answer.status is not Status.OK:
         return answer
@@ -148,11 +176,11 @@ def _proved(assembly: Assembly, answer: Answer) -> Answer:
         return replace(
             answer, forces=forces, forces_multiplier=at, details=answer.details | {"live_forces": growth.tolist()}
         )
-    if answer.finding is Finding.AT_LIMIT and answer.flow == "approximate":
-        state = limit_state(assembly)
-        if state is None:
+    if answer.finding is Finding.AT_LIMIT:
+        statics = statics_of(assembly)
+        if statics is None or not statics.at_limit:
             return answer
-        shown = {"dead_forces": state[0].tolist(), "dilatant_mechanism": state[1].tolist()}
+        shown = {"dead_forces": statics.forces.tolist(), "dilatant_mechanism": statics.mechanism.tolist()}
         return replace(answer, details=answer.details | shown)
     if answer.finding is Finding.FALLS and answer.flow == "approximate":
         proof = dilatant_mechanism(assembly, assembly.dead)

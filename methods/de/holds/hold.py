@@ -176,8 +176,13 @@ def residuals_told(engine: Measured, settings: HoldSettings) -> tuple[float, flo
     """
     live = abs(engine.multiplier) / engine.assembly.load_unit
     share = min(1.0, live / SMALL) if live > 0.0 else 1.0
-    floor = 2.0 * settings.force_residual
-    return max(share * settings.held_residual, floor), max(share * settings.moving_residual, 2.0 * floor)
+    least = least_motion(settings)
+    return max(share * settings.held_residual, 0.5 * least), max(share * settings.moving_residual, least)
+
+
+def least_motion(settings: HoldSettings) -> float:
+    """The least residual that tells a motion: what contact forces are followed to leaves at most a quarter of it."""
+    return 4.0 * settings.force_residual
 
 
 def hold_limit(engine: Engine, settings: HoldSettings) -> int:

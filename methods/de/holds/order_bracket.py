@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 from harness.model.assembly import FloatArray
 from methods.de.engines.engine import Engine
 from methods.de.hold_settings import HoldSettings
-from methods.de.holds.hold import Hold, State, hold, settle
+from methods.de.holds.hold import Hold, State, hold, least_motion, settle
 from methods.de.holds.motion import MotionProof
 
 
@@ -207,7 +207,7 @@ class BracketSearch:
         while not self._spent():
             cheap = self.engine.steps * self.engine.interfaces < BRACKET.cheap
             accuracy = self.settings.accuracy if told or cheap else max(self.settings.accuracy, BRACKET.creeping)
-            vanishing = found.moving_residual <= BRACKET.halved * self.settings.moving_residual
+            vanishing = found.moving_residual <= BRACKET.halved * least_motion(self.settings)
             found.nothing = found.held == 0.0 and told and vanishing
             if found.nothing:
                 return
