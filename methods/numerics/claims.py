@@ -98,6 +98,8 @@ def _at_limit(assembly: Assembly, answer: Answer) -> Answer:
     if statics is not None and statics.at_limit:
         return _with_limit(answer, statics)
     bears = 0.0 if statics is None else statics.multiplier
+    if answer.multiplier is not None and statics is not None and bears < 0.0:
+        return _falls(answer, statics.mechanism)
     if answer.multiplier is not None and answer.multiplier < 0.0:
         return _below_zero(assembly, answer)
     if answer.finding is Finding.FALLS and bears > 0.0:
@@ -132,21 +134,40 @@ def _with_limit(answer: Answer, statics: Statics) -> Answer:
     )
 
 
-def _below_zero(assembly: Assembly, answer: Answer) -> Answer:
-    """The answer for a collapse state below zero, which the live load does not bring about.
+def _falls(answer: Answer, mechanism: FloatArray) -> Answer:
+    """The answer where statics bears nothing: a dilatant mechanism (n, 3) shows that the wall falls."""
+    return replace(
+        answer,
+        status=Status.OK,
+        finding=Finding.FALLS,
+        sentence="The wall falls under its dead load, by less than the method tells of itself: no equilibrium within "
+        "yield exists, whatever the flow rule.",
+        multiplier=None,
+        bracket=None,
+        forces=None,
+        forces_multiplier=None,
+        mechanism=mechanism,
+        flow="associated",
+    )
 
-    The wall falls where no equilibrium exists under its dead load; else the state says nothing, unless it is rounding.
-    """
+
+def _below_zero(assembly: Assembly, answer: Answer) -> Answer:
+    """The answer for a collapse state below zero, which the live load does not bring about, of a wall that stands."""
     assert answer.multiplier is not None
     if answer.mechanism is not None and -answer.multiplier <= least_told(assembly, answer.mechanism):
         return replace(answer, multiplier=0.0, forces_multiplier=0.0)
-    cleared = replace(answer, multiplier=None, bracket=None, forces=None, forces_multiplier=None)
-    falling = dilatant_mechanism(assembly, assembly.dead)
-    if falling is not None:
-        sentence = "the wall falls under its dead load: what it would bear lies below zero"
-        return replace(cleared, finding=Finding.FALLS, sentence=sentence, mechanism=falling, flow="associated")
     sentence = "the run ended in a collapse state below zero, which the live load does not bring about"
-    return replace(cleared, status=Status.NOT_CONVERGED, finding=Finding.NONE, sentence=sentence, mechanism=None)
+    return replace(
+        answer,
+        status=Status.NOT_CONVERGED,
+        finding=Finding.NONE,
+        sentence=sentence,
+        multiplier=None,
+        bracket=None,
+        forces=None,
+        forces_multiplier=None,
+        mechanism=None,
+    )
 
 
 def with_proof(assembly: Assembly, answer: Answer) -> Answer:

@@ -175,8 +175,9 @@ def residuals_told(engine: Measured, settings: HoldSettings) -> tuple[float, flo
     .1 % above it, and not be seen to move before it is 1 % too high.
     """
     live = abs(engine.multiplier) / engine.assembly.load_unit
-    share = min(1.0, live / SMALL) if live > 0.0 else 1.0
-    least = least_motion(settings)
+    if live == 0.0:
+        return settings.held_residual, 2.0 * settings.held_residual
+    share, least = min(1.0, live / SMALL), least_motion(settings)
     return max(share * settings.held_residual, 0.5 * least), max(share * settings.moving_residual, least)
 
 
