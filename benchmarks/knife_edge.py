@@ -30,6 +30,8 @@ TOLD, UNTOLD = (2, 3, 4, 5), (8, 9, 10, 12)
 """Powers k of the shares 10^-k that the numbers of a wall tell from none, and that they do not."""
 EXACT = 1e-6
 """Relative accuracy of multipliers that are exact: near the limit of a wall they lose up to five digits of it."""
+AT_REST = 2e-6
+"""What a measured load may leave out of balance, as a part of the dead load: twice the residual of a rest."""
 
 
 @dataclass(frozen=True)
@@ -162,13 +164,14 @@ def verdict(edge: Edge, result: Result, judged: Judgement) -> str:
         return "right" if result.finding is Finding.FALLS else "wrong"
     if result.finding is not Finding.COLLAPSES or result.multiplier is None:
         return "wrong"
-    low, high = result.bracket if result.traits.brackets and result.bracket else (result.multiplier,) * 2
-    slack = result.traits.accuracy if result.traits.brackets else EXACT
-    return "right" if low * (1.0 - slack) <= edge.multiplier <= high * (1.0 + slack) else "wrong"
+    if not result.traits.brackets or result.bracket is None:
+        return "right" if abs(result.multiplier - edge.multiplier) <= EXACT * edge.multiplier else "wrong"
+    slack = result.traits.accuracy * edge.multiplier + AT_REST * edge.wall.load_unit
+    return "right" if result.bracket[0] - slack <= edge.multiplier <= result.bracket[1] + slack else "wrong"
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
-    """Print what every method finds of every wall, and how many are right; 1 if any is wrong or rejected."""
+    """Print what every method finds of every wall, and how many are right; 1 if any is wrong."""
     parser = argparse.ArgumentParser(
         prog="python -m benchmarks knife_edge", description=(__doc__ or "").splitlines()[0]
     )
@@ -189,4 +192,4 @@ def main(arguments: Sequence[str] | None = None) -> int:
             say(f"{edge.name:<34} {expected:>14} | {'; '.join(said)}")
     for name, found in counts.items():
         say(f"{name:<20} {', '.join(f'{number} {what}' for what, number in sorted(found.items()))}")
-    return int(any(found["wrong"] or found["rejected"] for found in counts.values()))
+    return int(any(found["wrong"] for found in counts.values()))
