@@ -50,15 +50,16 @@ class Statics:
 
 
 def statics_of(assembly: Assembly) -> Statics | None:
-    """What statics says of a wall; of the strengthened one where rounding leaves no equilibrium at any multiplier.
+    """What statics says of a wall, or None where it has no greatest multiplier.
 
-    None where neither has a greatest multiplier.
+    Where rounding leaves no equilibrium at any multiplier, the strengthened wall shows one that is at its limit.
     """
     for wall in (assembly, strengthened(assembly)):
         found = greatest_multiplier(wall)
         if found is not None:
             multiplier, forces, mechanism = found
-            return Statics(multiplier, forces, mechanism, abs(multiplier) <= least_told(assembly, mechanism))
+            near = abs(multiplier) <= least_told(assembly, mechanism)
+            return Statics(multiplier, forces, mechanism, near) if near or wall is assembly else None
     return None
 
 

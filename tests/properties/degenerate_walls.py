@@ -91,7 +91,7 @@ def _answer(method: Method, assembly: Assembly, tally: Tally, wrong: list[str], 
 
 def _value(result: Result) -> float:
     """The multiplier; -1 for a fall, infinite without end or where nothing is asked."""
-    if result.finding is Finding.COLLAPSES:
+    if result.finding.has_multiplier:
         assert result.multiplier is not None
         return result.multiplier
     return -1.0 if result.finding is Finding.FALLS else math.inf
