@@ -190,6 +190,6 @@ def main(arguments: Sequence[str] | None = None) -> int:
                 value = f"{result.multiplier:.6g}" if result.finding is Finding.COLLAPSES else str(result.finding)
                 said.append(f"{name} {value}" + ("" if found == "right" else f" ({found})"))
             say(f"{edge.name:<34} {expected:>14} | {'; '.join(said)}")
-    for name, found in counts.items():
-        say(f"{name:<20} {', '.join(f'{number} {what}' for what, number in sorted(found.items()))}")
-    return int(any(found["wrong"] for found in counts.values()))
+    for name, count in counts.items():
+        say(f"{name:<20} {', '.join(f'{number} {what}' for what, number in sorted(count.items()))}")
+    return int(any(count["wrong"] for count in counts.values()))
