@@ -26,7 +26,7 @@ from harness.model.wall import Wall
 from harness.options import say
 
 METHODS = ("la", "la-associated", "fe", "fe-newton", "de", "de-soft")
-TOLD, UNTOLD = (2, 3, 4, 5), (8, 9, 10, 12)
+TOLD, UNTOLD = (2, 3, 4, 5, 6), (9, 10, 12)
 """Powers k of the shares 10^-k that the numbers of a wall tell from none, and that they do not."""
 EXACT = 1e-6
 """Relative accuracy of multipliers that are exact: near the limit of a wall they lose up to five digits of it."""

@@ -19,14 +19,14 @@ class Digits:
     """How exactly a wall is described.
 
     Attributes:
-        written: share of the size of a block to which coordinates are meant, and absolute accuracy of friction: the
-            digits of single precision, which drawings and measurements keep at most; a hundred times what linear
-            programmes round off.
+        written: share of the size of a block to which coordinates are meant, and absolute accuracy of friction. Eight
+            digits are more than drawings and measurements keep; it is ten times what linear programmes round off, so
+            that what one of them decides by rounding is within it.
         rounded: units in the last place by which coordinates computed in double precision are off. In a national grid
             they are the larger part.
     """
 
-    written: float = 1e-7
+    written: float = 1e-8
     rounded: float = 16.0
 
 
