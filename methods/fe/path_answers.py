@@ -132,6 +132,8 @@ def collapse_answer(model: WallModel, results: list[HistoryResult], factorisatio
             )
         peaked = [r for r in results if r.end in (PathEnd.RUNS_DOWN, PathEnd.TURNED_DOWN)]
         details["path_status"] = "peak_only" if peaked else "not_converged"
+        if any(r.end is PathEnd.TIME for r in results):
+            details["stopped_by_limit"] = True
         reason = results[0].sentence if results else "no history was asked for"
         return Answer(
             Status.NOT_CONVERGED,
