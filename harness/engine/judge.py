@@ -192,7 +192,8 @@ def _judge_limit(
     """At its limit: forces under the dead load, and a dilatant mechanism whose multiplier is zero as far as told.
 
     No forces bear a multiplier above that of such a mechanism. Both may be those of statics, beside the forces and the
-    motion of the method: `details["dead_forces"]` and `details["dilatant_mechanism"]`.
+    motion of the method: `details["dead_forces"]` and `details["dilatant_mechanism"]`. What is tolerated of them is what
+    the numbers of the wall leave open, whatever the tolerance of the method.
     """
     if result.multiplier != 0.0:
         return _said(tolerance, False, "A wall at its limit has the multiplier 0.")
@@ -210,7 +211,7 @@ def _judge_limit(
     residuals = collapse_residuals(assembly, forces, 0.0, mechanism, "associated")
     if told > 0.0:
         residuals["virtual_work"] *= within * assembly.load_unit / told
-    return _decide(residuals, max(tolerance, within), "The collapse state (associated flow) under the dead load")
+    return _decide(residuals, within, "The collapse state (associated flow) under the dead load")
 
 
 def _judge_fall(assembly: Assembly, mechanism: FloatArray | None, result: Result, tolerance: float) -> Judgement:
