@@ -26,7 +26,8 @@ class BracketTuning:
         cheap: contact updates up to which a search keeps to the full accuracy even so.
         growth: factor on load steps after one that could not be told.
         patience: multiple of the length of a hold that the dead load has.
-        halved: residual of a motion, in those that show one, up to which half of its multiplier would show none.
+        halved: residual of a motion, or live load as a part of the dead load, in residuals that show a motion, up to
+            which half of the multiplier would show none.
         excess: multiple of the middle of the bracket at which the mechanism is read.
     """
 
@@ -207,7 +208,8 @@ class BracketSearch:
         while not self._spent():
             cheap = self.engine.steps * self.engine.interfaces < BRACKET.cheap
             accuracy = self.settings.accuracy if told or cheap else max(self.settings.accuracy, BRACKET.creeping)
-            vanishing = found.moving_residual <= BRACKET.halved * least_motion(self.settings)
+            left = min(found.moving_residual, high / self.unit)
+            vanishing = left <= BRACKET.halved * least_motion(self.settings)
             found.nothing = found.held == 0.0 and told and vanishing
             if found.nothing:
                 return
