@@ -192,8 +192,8 @@ def _judge_limit(
     """At its limit: forces under the dead load, and a dilatant mechanism whose multiplier is zero as far as told.
 
     No forces bear a multiplier above that of such a mechanism. Both may be those of statics, beside the forces and the
-    motion of the method: `details["dead_forces"]` and `details["dilatant_mechanism"]`. What is tolerated of them is what
-    the numbers of the wall leave open, whatever the tolerance of the method.
+    motion of the method: `details["dead_forces"]` and `details["dilatant_mechanism"]`. What is tolerated is what the
+    numbers of the wall leave open, whatever the tolerance of the method.
     """
     if result.multiplier != 0.0:
         return _said(tolerance, False, "A wall at its limit has the multiplier 0.")
