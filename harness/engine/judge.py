@@ -13,8 +13,9 @@ at its limit         multiplier 0; forces in equilibrium within yield under the 
                      bear more, whatever the flow
 stands               forces in equilibrium within yield under the dead load, where no live load was given; with a live
                      load they show no multiplier, and the answer is not judged
-falls                a dilatant mechanism, at rest on the supports, on which the dead load does positive work: no
-                     equilibrium exists (Farkas); a measured motion is no proof and is not judged
+falls                a dilatant mechanism, at rest on the supports, on which the dead load does positive work, more than
+                     immense forces could do on its closings: no equilibrium exists (Farkas); a measured motion is no
+                     proof and is not judged
 unbounded            forces within yield that balance the live load alone, besides forces under the dead load: their sum
                      bears any multiplier
 
@@ -32,7 +33,14 @@ from typing import Any
 import numpy as np
 
 from harness.engine.measured_motion import motion_faults
-from harness.engine.residuals import collapse_residuals, displaced_residuals, force_residuals, moving_parts, power
+from harness.engine.residuals import (
+    collapse_residuals,
+    displaced_fault,
+    displaced_residuals,
+    force_residuals,
+    moving_parts,
+    power,
+)
 from harness.model.assembly import Assembly, FloatArray
 from harness.model.displaced import DisplacedState
 from harness.model.limit import accuracy, least_told
@@ -104,6 +112,14 @@ def _said(tolerance: float, accepted: bool | None, sentence: str) -> Judgement:
     return Judgement(tolerance=tolerance, accepted=accepted, sentence=sentence)
 
 
+IMMENSE = 1e7
+"""Contact forces, in dead loads of the component, that no equilibrium needs.
+
+A fall is proved unless the wall stands by such forces. Falls that methods find leave at least ten times more."""
+WITHOUT_END = 1e-12
+"""Largest residual of forces that balance the live load alone: what is violated by more ends, if far away."""
+NOT_SMALL = ("live_work", "dead_work", "closing_work")
+"""What is told among the residuals and need not vanish."""
 NO_FORCES = "It gives no contact forces, so it cannot be checked."
 
 
@@ -119,11 +135,11 @@ def _judge_collapse(
         said = _said(tolerance, False, "It gives no mechanism, so the collapse state cannot be checked.")
         return said.model_copy(update={"residuals": force_residuals(assembly, forces, at)})
     residuals = collapse_residuals(assembly, forces, at, mechanism, result.flow)
-    size = max(assembly.load_unit, abs(multiplier))
-    residuals["multiplier"] = abs(multiplier - at) / size
+    residuals["multiplier"] = apart(multiplier, at)
     said = _decide(residuals, tolerance, f"The collapse state ({result.flow} flow)")
     if said.accepted:
-        error = size * sum(residuals[name] for name in ("complementarity", "virtual_work", "multiplier"))
+        size = max(assembly.load_unit, abs(multiplier))
+        error = abs(multiplier - at) + size * (residuals["complementarity"] + residuals["virtual_work"])
         said.multiplier_error = float(error)
         said.sentence += f" By virtual work the multiplier of this mechanism is known to within {error:.1g}."
     return said
@@ -142,9 +158,11 @@ def _judge_bracket(assembly: Assembly, forces: FloatArray | None, result: Result
         moved = DisplacedState.of(result.details)
         if moved is None:
             return _said(tolerance, None, NO_FORCES)
+        if fault := displaced_fault(assembly, moved):
+            return _said(tolerance, False, f"The state of rest proves nothing: {fault}.")
         residuals = displaced_residuals(assembly, moved, at)
         what = f"Equilibrium and yield of the contact forces where the blocks have moved to, at multiplier {at:.6g},"
-    residuals["multiplier"] = max(0.0, lower - at) / max(assembly.load_unit, abs(lower))
+    residuals["multiplier"] = apart(lower, at) if lower > at else 0.0
     said = _decide(residuals, tolerance, what)
     if said.accepted:
         said.sentence += " They show the lower end; that the wall collapses above it is measured and not judged."
@@ -157,6 +175,8 @@ def _judge_standing(assembly: Assembly, forces: FloatArray | None, result: Resul
     if forces is not None:
         residuals = force_residuals(assembly, forces, 0.0)
     elif (moved := DisplacedState.of(result.details)) is not None:
+        if fault := displaced_fault(assembly, moved):
+            return _said(tolerance, False, f"The state of rest proves nothing: {fault}.")
         residuals = displaced_residuals(assembly, moved, 0.0)
         what += ", where the blocks have moved to,"
     elif assembly.n_free == 0:
@@ -183,7 +203,8 @@ def _judge_unbounded(assembly: Assembly, forces: FloatArray | None, result: Resu
     residuals = force_residuals(assembly, forces, at)
     alone = replace(assembly, dead=np.zeros_like(assembly.dead))
     residuals |= {f"live_{name}": value for name, value in force_residuals(alone, ray, 1.0).items()}
-    return _decide(residuals, tolerance, f"Forces at multiplier {at:.6g} and forces that balance the live load alone")
+    what = f"Forces at multiplier {at:.6g} and forces that balance the live load alone"
+    return _decide(residuals, tolerance, what, dict.fromkeys(("live_equilibrium", "live_yield"), WITHOUT_END))
 
 
 def _judge_limit(
@@ -228,28 +249,48 @@ def _judge_fall(assembly: Assembly, mechanism: FloatArray | None, result: Result
         told = "The motion was measured, which is no proof" if mechanism is not None else "It gives no mechanism"
         return _said(tolerance, None, f"{told}; that no equilibrium exists was not shown.")
     supports, parts = moving_parts(assembly, mechanism)
-    parts_shown: list[tuple[bool, float, float]] = []
-    for part, _, motion in parts:
-        opening, slip = relative_velocities(part, motion)
-        closing = max(0.0, float(((part.friction * abs(slip))[:, None] - opening).max(initial=0.0)))
-        gain = power(part.dead, motion) / part.force_scale
-        # A gain within the tolerance may be made of the closing that the tolerance allows.
-        parts_shown.append((closing <= tolerance < gain, gain, closing))
-    proves, gain, closing = max(parts_shown, default=(False, 0.0, 0.0))
+    shown_by = [_fall_of(part, motion, tolerance) for part, _, motion in parts]
+    proves, gain, closing, refuted = max(shown_by, default=(False, 0.0, 0.0, 0.0))
     proved = proves and supports <= tolerance
     sentence = (
         "The mechanism gains dead work with dilatant flow and supports at rest: no equilibrium exists, which proves "
         "the fall."
         if proved
-        else "The mechanism proves no fall: it gains no dead work, is not dilatant, or moves the supports."
+        else "The mechanism proves no fall: it gains no dead work, or no more than its closings may do, is not dilatant, "
+        "or moves the supports."
     )
-    residuals = {"supports": supports, "interpenetration": closing, "dead_work": gain}
+    residuals = {"supports": supports, "interpenetration": closing, "dead_work": gain, "closing_work": refuted}
     return Judgement(residuals=residuals, tolerance=tolerance, accepted=proved, sentence=sentence)
 
 
-def _decide(residuals: dict[str, float], tolerance: float, what: str) -> Judgement:
+def _fall_of(part: Assembly, motion: FloatArray, tolerance: float) -> tuple[bool, float, float, float]:
+    """Whether the motion (n, 3) of a component proves its fall; its gain, its largest closing, and `closing_work`.
+
+    Were there forces in equilibrium under the dead load, within yield, their work on the motion would be minus the
+    gain: gain <= sum of n c over the contact points, n their normal forces and c their closings beyond dilatant flow.
+    So the forces of any equilibrium would have to exceed gain / sum of c. Where that is `IMMENSE` times the dead load
+    there is none. `closing_work` is what forces so large may do on the closings, in gains.
+    """
+    opening, slip = relative_velocities(part, motion)
+    closings = np.maximum(0.0, (part.friction * abs(slip))[:, None] - opening)
+    closing = float(closings.max(initial=0.0))
+    gain = power(part.dead, motion) / part.force_scale
+    work = IMMENSE * float(closings.sum()) / gain if gain > 0.0 else float("inf")
+    return closing <= tolerance < gain and work < 1.0, gain, closing, work
+
+
+def apart(multiplier: float, other: float) -> float:
+    """The difference of two multipliers, relative to the larger of them."""
+    return abs(multiplier - other) / (max(abs(multiplier), abs(other)) or 1.0)
+
+
+def _decide(
+    residuals: dict[str, float], tolerance: float, what: str, stricter: dict[str, float] | None = None
+) -> Judgement:
+    """Accepted where every residual is within the tolerance, or within its own where that is stricter."""
+    within = {name: min(tolerance, (stricter or {}).get(name, tolerance)) for name in residuals}
     failed = [
-        f"{name} {value:.3g}" for name, value in residuals.items() if name != "live_work" and not value <= tolerance
+        f"{name} {value:.3g}" for name, value in residuals.items() if name != "live_work" and not value <= within[name]
     ]
     if "live_work" in residuals and not residuals["live_work"] > 0.0:
         failed.append("the live load does no work on the mechanism")

@@ -1,23 +1,26 @@
 """The residuals by which the judge tells whether a claim holds; none shares a matrix with the methods.
 
-They are relative to what acts where they arise (F = sum of the magnitudes of load and contact forces on a block,
-r = its largest radius; each independent component's mechanism scaled so that its fastest vertex has speed 1, or so that
+They are relative to what acts where they arise (F, and what is small beside it, as in `harness.engine.measures`;
+r = largest radius of a block; each independent component's mechanism scaled so that its fastest vertex has speed 1, or so that
 its live work is that of the largest live load that does any, along the motion of its block at speed 1, whichever makes
 it larger: a block that moves fast and does no work hides nothing, and the load of one at rest is beside the point):
 
 supports            fastest vertex of a fixed block, to the fastest of the wall
-equilibrium         out-of-balance force or moment/r of a free block / F of that block
-yield               tension or excess of |s| over mu (n1 + n2) / the smaller F of the two blocks
+equilibrium         out-of-balance force or moment/r of a free block / what is small on that block; where its contact
+                    forces are immense beside the loads, from sums in fractions
+yield               tension or excess of |s| over mu (n1 + n2) / what is small on either of the two blocks
 interpenetration    closing velocity at a contact point (beyond what the flow rule asks for)
 dilatancy           opening of a contact point that still carries force: min(force / smaller F, velocity)
 sliding             slip against slack of the friction cone, the same way
 complementarity     work of contact forces where nothing should move, in live work at max(unit, |multiplier|)
 virtual_work        |multiplier - (dissipation - dead work)/live work|, relative to max(unit, |multiplier|)
-multiplier          |multiplier - that of the forces|, relative to max(unit, |multiplier|)
+multiplier          |multiplier - that of the forces| / the larger of the two
 live_work           not a residual to be small: live work of the mechanism of a component, must be positive
 
-The unit is the multiplier at which the live load is as large as the dead load: one for a tilt. So a live load that is
-given ten times larger, with a multiplier ten times smaller, is judged alike. An independent structure beside a wall,
+The unit is the multiplier at which the live load is as large as the dead load of the component: one for a tilt; or at
+which the live work is as large as the dead loads times the speeds of their blocks, where that is less: a heavy block
+that rests does not count. So a live load that is given ten times larger, with a multiplier ten times smaller, is judged
+alike. An independent structure beside a wall,
 however heavy, however fast, changes no residual of the wall.
 """
 
@@ -25,6 +28,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from harness.engine.measures import Measures, between, exact_sum, magnitudes
 from harness.model.assembly import Assembly, FloatArray, IntArray
 from harness.model.components import components_of
 from harness.model.displaced import DisplacedState
@@ -35,11 +39,13 @@ AT_REST = 1e-12
 
 NO_WORK = 1e-12
 """Share of all live work up to which that of a block is rounding of its rest: one of 1e12 weights moved by 1e-48."""
-UNLOADED = 1e-6
-"""Share of the largest sum of its component by which a block without load is measured at least.
-
-Rounding leaves forces of 1e-16 to 1e-14 of that sum (measured on walls with weightless blocks), which then count as
-1e-10 to 1e-8."""
+MOVED = 0.1
+"""Displacement, in sizes of a block, and rotation [rad] up to which a wall that has moved is still the one drawn."""
+TURNED = 0.1
+"""Largest difference of a unit normal from that of its joint: the rotation of a block."""
+ASTRAY = 0.01
+"""Distance from the outlines of its blocks, in sizes of a block, within which a contact point lies: soft contacts
+overlap by a few thousandths."""
 
 
 def block_sums(assembly: Assembly, forces: FloatArray) -> FloatArray:
@@ -58,50 +64,25 @@ def block_sums(assembly: Assembly, forces: FloatArray) -> FloatArray:
     return sums
 
 
-def acting(assembly: Assembly, forces: FloatArray, multiplier: float) -> FloatArray:
-    """Sum (n,) of the magnitudes of the loads at a multiplier and of the contact forces (m, 3) on every block [force].
-
-    A block without any load has nothing of its own to measure by, and may bear nothing but rounding of the others'
-    forces: for it the sum is at least `UNLOADED` of the largest of its component.
-    """
-    total = np.zeros(assembly.n_blocks)
-    for load in (assembly.dead, multiplier * assembly.live):
-        total += np.hypot(load[:, 0], load[:, 1]) + abs(load[:, 2]) / assembly.radius
-    unloaded = total == 0.0
-    size = abs(forces).sum(axis=1)
-    np.add.at(total, assembly.block_a, size)
-    np.add.at(total, assembly.block_b, size)
-    if unloaded[assembly.free].any():
-        for part in components_of(assembly):
-            own = part.blocks[unloaded[part.blocks]]
-            total[own] = np.maximum(total[own], UNLOADED * total[part.blocks].max())
-    return np.where(total > 0.0, total, 1.0)
-
-
-def between(assembly: Assembly, scale: FloatArray) -> FloatArray:
-    """The smaller (m,) of a measure (n,) of the two blocks of every interface, of the free one where one is fixed."""
-    movable = np.where(assembly.fixed, np.inf, scale)
-    smaller = np.minimum(movable[assembly.block_a], movable[assembly.block_b])
-    both = np.minimum(scale[assembly.block_a], scale[assembly.block_b])
-    return np.where(np.isfinite(smaller), smaller, both)
-
-
 def force_residuals(
-    assembly: Assembly, forces: FloatArray, multiplier: float, scale: FloatArray | None = None
+    assembly: Assembly, forces: FloatArray, multiplier: float, measures: Measures | None = None
 ) -> dict[str, float]:
     """Equilibrium and yield of contact forces (m, 3) with dead + multiplier x live.
 
     Args:
         assembly: the wall; forces: (m, 3) contact forces (n1, n2, s) [force]; multiplier: of the live load.
-        scale: (n,) what acts on every block, where it is known already (`acting`).
+        measures: what acts on every block, where it is known already.
     """
-    scale = acting(assembly, forces, multiplier) if scale is None else scale
+    measures = Measures.of(assembly, forces, multiplier) if measures is None else measures
     balance = block_sums(assembly, forces) + assembly.dead + multiplier * assembly.live
+    for block in measures.immense(assembly):
+        balance[block] = exact_sum(assembly, forces, multiplier, block)
     balance[:, 2] /= assembly.radius
-    unbalanced = abs(balance).max(axis=1) / scale
+    unbalanced = measures.relative(abs(balance).max(axis=1), measures.acting, measures.own)
     normal = forces[:, :2]
     excess = abs(forces[:, 2]) - assembly.friction * normal.sum(axis=1)
-    violation = np.maximum((-normal).max(axis=1), excess) / between(assembly, scale)
+    broken = np.maximum(0.0, np.maximum((-normal).max(axis=1), excess))
+    violation = measures.relative(broken, between(assembly, measures.acting), between(assembly, measures.own))
     return {
         "equilibrium": float(unbalanced[assembly.free].max(initial=0.0)),
         "yield": float(violation.max(initial=0.0)),
@@ -111,12 +92,14 @@ def force_residuals(
 def displaced_residuals(assembly: Assembly, state: DisplacedState, multiplier: float) -> dict[str, float]:
     """Equilibrium and yield of a wall at rest where its blocks have moved to, under loads that keep their directions.
 
-    These two are relative to the whole wall: forces at measured places are no better than that.
+    These two are relative to the loads of the component: forces at measured places are no better than that.
 
     Args:
         assembly: the wall before it moved; state: its contacts and forces; multiplier: of the live load.
     """
     balance = assembly.dead + multiplier * assembly.live
+    loads = Measures.of(assembly, np.zeros((assembly.n_interfaces, 3)), multiplier).loads
+    loads = np.where(loads > 0.0, loads, assembly.force_scale)
     a, b = assembly.block_a[state.interface], assembly.block_b[state.interface]
     for block, force in ((state.onto, state.force), (a + b - state.onto, -state.force)):
         arm = state.point - assembly.centroid[block] - state.places[block, :2]
@@ -126,11 +109,51 @@ def displaced_residuals(assembly: Assembly, state: DisplacedState, multiplier: f
     normal = (state.force * state.normal).sum(axis=1)
     shear = abs(state.force[:, 1] * state.normal[:, 0] - state.force[:, 0] * state.normal[:, 1])
     excess = shear - assembly.friction[state.interface] * normal
-    worst = max(0.0, float((-normal).max(initial=0.0)), float(excess.max(initial=0.0)))
+    violation = np.maximum(0.0, np.maximum(-normal, excess)) / between(assembly, loads)[state.interface]
     return {
-        "equilibrium": float(abs(balance[assembly.free]).max(initial=0.0)) / assembly.force_scale,
-        "yield": worst / assembly.force_scale,
+        "equilibrium": float((abs(balance).max(axis=1) / loads)[assembly.free].max(initial=0.0)),
+        "yield": float(violation.max(initial=0.0)),
     }
+
+
+def displaced_fault(assembly: Assembly, state: DisplacedState) -> str:
+    """What makes a displaced state none of this wall, in words; empty where nothing does.
+
+    Supports rest; blocks are still near where they were; every force acts where its two blocks touch, along the normal
+    of their joint but for the rotations.
+    """
+    limit = MOVED * assembly.length_scale
+    if state.places.shape != (assembly.n_blocks, 3) or not all(np.isfinite(part).all() for part in vars(state).values()):
+        return f"its places are not {assembly.n_blocks} finite triples"
+    if state.places[assembly.fixed].any():
+        return "it moves the supports"
+    if abs(state.places[:, :2]).max(initial=0.0) > limit or abs(state.places[:, 2]).max(initial=0.0) > MOVED:
+        return f"a block has moved by more than {MOVED:g} of its size: that is another wall"
+    a, b = assembly.block_a[state.interface], assembly.block_b[state.interface]
+    if not ((state.onto == a) | (state.onto == b)).all():
+        return "a force acts on a block that is none of its joint"
+    onto_b = np.where(state.onto == b, 1.0, -1.0)[:, None]
+    if (abs(state.normal - onto_b * assembly.normal[state.interface]).max(axis=1, initial=0.0) > TURNED).any():
+        return "a force acts across a face that is not its joint"
+    if (abs(np.hypot(*state.normal.T) - 1.0) > AT_REST).any():
+        return "a normal is no unit vector"
+    for p, point, force in zip(state.interface, state.point, state.force, strict=True):
+        for block in (assembly.block_a[p], assembly.block_b[p]):
+            if force.any() and _from_outline(assembly, state, int(block), point) > ASTRAY * assembly.length_scale:
+                return f"a force acts where block {assembly.block_ids[block]!r} does not touch its neighbour"
+    return ""
+
+
+def _from_outline(assembly: Assembly, state: DisplacedState, block: int, point: FloatArray) -> float:
+    """Distance [length] of a point (2,) from the outline of a block where it has moved to."""
+    x, y, angle = state.places[block]
+    cosine, sine = np.cos(angle), np.sin(angle)
+    back = (point - assembly.centroid[block] - [x, y]) @ np.array([[cosine, -sine], [sine, cosine]])
+    corners = assembly.polygons[block] - assembly.centroid[block]
+    sides = np.roll(corners, -1, axis=0) - corners
+    share = ((back - corners) * sides).sum(axis=1) / (sides**2).sum(axis=1)
+    nearest = corners + np.clip(share, 0.0, 1.0)[:, None] * sides
+    return float(np.hypot(*(back - nearest).T).min())
 
 
 def power(load: FloatArray, mechanism: FloatArray) -> float:
@@ -178,9 +201,9 @@ def collapse_residuals(
         flow: "non-associated" (of the dilatancy that the wall gives its joints) or "associated" (of their friction).
     """
     supports, parts = moving_parts(assembly, mechanism)
-    sums = acting(assembly, forces, multiplier)
-    scale = between(assembly, sums)
-    residuals = force_residuals(assembly, forces, multiplier, sums) | {"supports": supports}
+    measures = Measures.of(assembly, forces, multiplier)
+    scale = between(assembly, measures.acting)
+    residuals = force_residuals(assembly, forces, multiplier, measures) | {"supports": supports}
     works: list[float] = []
     for part, interfaces, motion in parts:
         own = _mechanism_residuals(part, forces[interfaces], scale[interfaces], multiplier, motion, flow)
@@ -232,7 +255,9 @@ def _mechanism_residuals(
     }
     if live_work > 0.0:
         by_virtual_work = (dissipation - power(assembly.dead, mechanism)) / live_work
-        size = max(assembly.load_unit, abs(multiplier))
+        speed = np.hypot(*mechanism[:, :2].T) + abs(mechanism[:, 2]) * assembly.radius
+        moved = float((magnitudes(assembly, assembly.dead) * speed).sum())
+        size = max(min(assembly.load_unit, moved / live_work), abs(multiplier))
         residuals["complementarity"] = idle_work / live_work / size
         residuals["virtual_work"] = abs(by_virtual_work - multiplier) / size
     return residuals
