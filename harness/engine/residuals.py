@@ -39,13 +39,14 @@ AT_REST = 1e-12
 
 NO_WORK = 1e-12
 """Share of all live work up to which that of a block is rounding of its rest: one of 1e12 weights moved by 1e-48."""
-MOVED = 0.1
-"""Displacement, in sizes of a block, and rotation [rad] up to which a wall that has moved is still the one drawn."""
-TURNED = 0.1
-"""Largest difference of a unit normal from that of its joint: the rotation of a block."""
-ASTRAY = 0.01
-"""Distance from the outlines of its blocks, in sizes of a block, within which a contact point lies: soft contacts
-overlap by a few thousandths."""
+MOVED = 1.0
+"""Displacement, in sizes of a block, from which on a wall has other joints than the one drawn."""
+TURNED = 0.5
+"""Rotation [rad], or difference of a unit normal from that of its joint, likewise."""
+OVERLAP = 0.1
+"""Depth, in sizes of a block, up to which soft blocks overlap at a contact point."""
+GAP = 1e-3
+"""Distance, in sizes of a block, within which a contact point outside a block is at its outline."""
 
 
 def block_sums(assembly: Assembly, forces: FloatArray) -> FloatArray:
@@ -127,8 +128,8 @@ def displaced_fault(assembly: Assembly, state: DisplacedState) -> str:
         return f"its places are not {assembly.n_blocks} finite triples"
     if state.places[assembly.fixed].any():
         return "it moves the supports"
-    if abs(state.places[:, :2]).max(initial=0.0) > limit or abs(state.places[:, 2]).max(initial=0.0) > MOVED:
-        return f"a block has moved by more than {MOVED:g} of its size: that is another wall"
+    if abs(state.places[:, :2]).max(initial=0.0) > limit or abs(state.places[:, 2]).max(initial=0.0) > TURNED:
+        return f"a block has moved by more than its size or turned by more than {TURNED:g} rad: that is another wall"
     a, b = assembly.block_a[state.interface], assembly.block_b[state.interface]
     if not ((state.onto == a) | (state.onto == b)).all():
         return "a force acts on a block that is none of its joint"
@@ -138,22 +139,26 @@ def displaced_fault(assembly: Assembly, state: DisplacedState) -> str:
     if (abs(np.hypot(*state.normal.T) - 1.0) > AT_REST).any():
         return "a normal is no unit vector"
     for p, point, force in zip(state.interface, state.point, state.force, strict=True):
-        for block in (assembly.block_a[p], assembly.block_b[p]):
-            if force.any() and _from_outline(assembly, state, int(block), point) > ASTRAY * assembly.length_scale:
+        for block in (int(assembly.block_a[p]), int(assembly.block_b[p])):
+            if force.any() and not _touches(assembly, state, block, point):
                 return f"a force acts where block {assembly.block_ids[block]!r} does not touch its neighbour"
     return ""
 
 
-def _from_outline(assembly: Assembly, state: DisplacedState, block: int, point: FloatArray) -> float:
-    """Distance [length] of a point (2,) from the outline of a block where it has moved to."""
+def _touches(assembly: Assembly, state: DisplacedState, block: int, point: FloatArray) -> bool:
+    """Whether a point (2,) is at the outline of a block where it has moved to: hardly outside, not deep inside."""
     x, y, angle = state.places[block]
     cosine, sine = np.cos(angle), np.sin(angle)
-    back = (point - assembly.centroid[block] - [x, y]) @ np.array([[cosine, -sine], [sine, cosine]])
     corners = assembly.polygons[block] - assembly.centroid[block]
-    sides = np.roll(corners, -1, axis=0) - corners
-    share = ((back - corners) * sides).sum(axis=1) / (sides**2).sum(axis=1)
-    nearest = corners + np.clip(share, 0.0, 1.0)[:, None] * sides
-    return float(np.hypot(*(back - nearest).T).min())
+    back = (point - assembly.centroid[block] - [x, y]) @ np.array([[cosine, -sine], [sine, cosine]])
+    sides, arms = np.roll(corners, -1, axis=0) - corners, back - corners
+    nearest = np.clip((arms * sides).sum(axis=1) / (sides**2).sum(axis=1), 0.0, 1.0)[:, None] * sides
+    distance = float(np.hypot(*(arms - nearest).T).min())
+    # A ray to the right of a point inside crosses an odd number of sides.
+    straddles = (arms[:, 1] < 0.0) != (arms[:, 1] < sides[:, 1])
+    left = arms[:, 0] * sides[:, 1] - arms[:, 1] * sides[:, 0]
+    inside = int((straddles & (left * np.sign(sides[:, 1]) < 0.0)).sum()) % 2 == 1
+    return distance <= (OVERLAP if inside else GAP) * assembly.length_scale
 
 
 def power(load: FloatArray, mechanism: FloatArray) -> float:
