@@ -151,6 +151,8 @@ def _judge_bracket(assembly: Assembly, forces: FloatArray | None, result: Result
     at = result.multiplier if result.forces_multiplier is None else result.forces_multiplier
     if lower is None or at is None:
         return _said(tolerance, False, "It gives no multiplier.")
+    if not assembly.has_live_load:
+        return _said(tolerance, False, "It gives a multiplier of a live load that the wall does not have.")
     if forces is not None:
         residuals = force_residuals(assembly, forces, at)
         what = f"Equilibrium and yield of the contact forces at multiplier {at:.6g}"

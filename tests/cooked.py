@@ -1,0 +1,509 @@
+"""Cooked answers: wrong on purpose, each of a kind, about walls of which it is known by other means what is true.
+
+Each kind leads the judge astray in its own way: with forces that hide others, with violations that are small one by one,
+with numbers that are compared in the units of something else. Many are the best of a linear programme: the largest gain,
+or the smallest violation, that an answer which is false can have.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from functools import cache
+from typing import Any
+
+import numpy as np
+from scipy.optimize import linprog
+
+from harness.model.assembly import Assembly, FloatArray
+from harness.model.build import build
+from harness.model.displaced import NAME, DisplacedState
+from harness.model.method import Answer, Finding, Status, load_method
+from harness.model.wall import Wall
+from tests.exact_programme import greatest_multiplier
+from tests.walls import PUSH, assembly, running_bond, stack
+
+Rng = np.random.Generator
+LEAN = {"offsets": [0.0, 0.2, 0.3]}
+
+
+@dataclass(frozen=True, eq=False)
+class Item:
+    """A wall, what is true of it, and right states of it.
+
+    Attributes:
+        wall: the wall.
+        falls: whether it falls under its dead load.
+        least, greatest: multipliers that a collapse state can have; None where there is none, infinite without end.
+        condition: relative change of the multiplier by one of the forces: how far the load is from one without end.
+        states: answers of methods.
+    """
+
+    wall: Assembly
+    falls: bool
+    least: float | None
+    greatest: float | None
+    condition: float
+    states: tuple[Answer, ...]
+
+    def denies(self, answer: Answer, slack: float) -> bool:
+        """Whether an answer is false, by more than a relative slack of its multiplier."""
+        match answer.finding:
+            case Finding.FALLS:
+                return not self.falls
+            case Finding.STANDS:
+                return self.falls
+            case Finding.UNBOUNDED:
+                return self.falls or self.greatest != np.inf
+        assert answer.multiplier is not None
+        if self.greatest is None or not self.wall.has_live_load:
+            return True
+        slack *= self.condition
+        if answer.flow == "approximate":
+            lower = answer.multiplier if answer.bracket is None else answer.bracket[0]
+            return lower > self.greatest * (1.0 + slack)
+        if self.least is None:
+            return True
+        lowest = self.greatest if answer.flow == "associated" else self.least
+        return not lowest * (1.0 - slack) <= answer.multiplier <= self.greatest * (1.0 + slack)
+
+
+def box(name: str, x: float, y: float, width: float = 1.0, height: float = 1.0, **more: Any) -> dict[str, Any]:
+    """A block that is a rectangle, by its lower left corner."""
+    return {"id": name, "polygon": [[x, y], [x + width, y], [x + width, y + height], [x, y + height]]} | more
+
+
+def of_blocks(blocks: list[dict[str, Any]], friction: Any = 0.5, loads: Any = PUSH) -> Assembly:
+    """The wall of blocks upon a wide support."""
+    low = min(point[1] for block in blocks for point in block["polygon"])
+    left = min(point[0] for block in blocks for point in block["polygon"])
+    ground = box("g", left - 2.0, low - 1.0, 20.0, 1.0, fixed=True)
+    data = {"format": "wall/1", "unit_weight": 20.0, "friction": friction, "blocks": [ground, *blocks], "loads": loads}
+    return build(Wall.model_validate(data)).assembly
+
+
+def push(*blocks: str) -> dict[str, Any]:
+    """A tilt of some blocks alone."""
+    return {"live": {"body": [{"per_weight": [1.0, 0.0], "blocks": list(blocks)}]}}
+
+
+def smooth(*pairs: tuple[str, str]) -> dict[str, Any]:
+    """Friction .5, but none between some pairs of blocks."""
+    return {"default": 0.5, "rules": [{"between": list(pair), "value": 0.0} for pair in pairs]}
+
+
+def jammed(heavy: float = 0.0) -> Assembly:
+    """A block on the ground under one held between smooth supports; with a heavy one that leans against the first."""
+    blocks = [
+        box("a", 0.0, 0.0),
+        box("l", -1.0, 1.0, fixed=True),
+        box("b", 0.0, 1.0),
+        box("r", 1.0, 1.0, fixed=True),
+    ]
+    pairs = [("b", "l"), ("b", "r")]
+    if heavy:
+        blocks.append(box("h", -1.0, 0.0, weight=heavy))
+        pairs += [("a", "h"), ("h", "l")]
+    return of_blocks(blocks, smooth(*pairs), push("a"))
+
+
+def between(loads: Any) -> Assembly:
+    """A block between two smooth supports: it falls, whatever they press."""
+    blocks = [box("l", -1.0, 0.0, fixed=True), box("a", 0.0, 0.0), box("r", 1.0, 0.0, fixed=True)]
+    data = {"format": "wall/1", "unit_weight": 20.0, "friction": 0.0, "blocks": blocks}
+    return build(Wall.model_validate(data | ({"loads": loads} if loads else {}))).assembly
+
+
+def three(weights: tuple[float, float, float]) -> Assembly:
+    """Three blocks of their own weights that do not touch, of frictions .3, .5 and .7."""
+    blocks = [box(name, 4.0 * k, 0.0, weight=weight) for k, (name, weight) in enumerate(zip("abc", weights, strict=True))]
+    rules = [{"between": ["g", name], "value": mu} for name, mu in (("a", 0.3), ("b", 0.5), ("c", 0.7))]
+    return of_blocks(blocks, {"default": 0.5, "rules": rules})
+
+
+ARCH = {"type": "ring", "inner_radius": 1.0, "outer_radius": 1.3, "count": 3}
+PANEL = {"type": "panel", "cell_length": 0.5, "cell_height": 0.2, "layout": ["CC", "AB", "__"], "fixed": "_"}
+LEAST = {
+    "stack that slides": 0.25,
+    "stack that topples": 0.5,
+    "stack in map coordinates": 0.3,
+    "light upon heavy": 0.3,
+    "heavy upon light": 0.3,
+    "pushed upon heavy": 0.3,
+    "bonded": 0.5,
+    "arch": 0.3252885728627275,
+    "jammed": 1.5,
+    "jammed beside a heavy block": 1.5,
+    "heavy bystander": 0.5,
+    "three": 0.3,
+    "three of uneven weights": 0.3,
+    "falls between supports, drawn up": 1.0,
+    "drawn down, hardly beyond friction": 1e6,
+}
+"""Least multipliers, by hand (mu, b / (n h), 3 mu under the weight of another); of the arch by enumeration."""
+WALLS: dict[str, Callable[[], Assembly]] = {
+    "stack that slides": lambda: assembly(stack(3), 0.25),
+    "stack that topples": lambda: assembly(stack(3), 0.9),
+    "stack in map coordinates": lambda: of_blocks([box("a", 5e6, 5e6), box("b", 5e6, 5e6 + 1.0)], 0.3),
+    "light upon heavy": lambda: of_blocks([box("a", 0.0, 0.0, weight=2e9), box("b", 0.0, 1.0, weight=1.0)], 0.3),
+    "heavy upon light": lambda: of_blocks([box("a", 0.0, 0.0, weight=1.0), box("b", 0.0, 1.0, weight=2e9)], 0.3),
+    "pushed upon heavy": lambda: of_blocks(
+        [box("a", 0.0, 0.0, weight=2e10), box("b", 0.0, 1.0, weight=20.0)], 0.3, push("b")
+    ),
+    "bonded": lambda: assembly(PANEL, 0.5),
+    "arch": lambda: assembly(ARCH, 0.6),
+    "jammed": jammed,
+    "jammed beside a heavy block": lambda: jammed(1e12),
+    "heavy bystander": lambda: of_blocks([box("a", 0.0, 0.0), box("h", 4.0, 0.0, 2.0, 2.0, weight=2e11)], 0.5, push("a")),
+    "three": lambda: three((20.0, 20.0, 20.0)),
+    "three of uneven weights": lambda: three((1.0, 1e6, 1e12)),
+    "falls between supports": lambda: between(None),
+    "falls between supports, drawn up": lambda: between({"live": {"body": [{"per_weight": [0.0, 1.0]}]}}),
+    "stands": lambda: assembly(stack(3), 0.5, loads={}),
+    "stands, smooth on top": lambda: of_blocks(
+        [box("a", 0.0, 0.0), box("b", 0.0, 1.0), box("c", 0.0, 2.0)], smooth(("b", "c")), {}
+    ),
+    "leans and falls": lambda: assembly(stack(3) | LEAN, 0.5),
+    "drawn down": lambda: assembly(running_bond(2, 1), 0.5, loads={"live": {"body": [{"per_weight": [0.0, -1.0]}]}}),
+    "drawn down, hardly beyond friction": lambda: of_blocks(
+        [box("a", 0.0, 0.0)], 0.5, {"live": {"body": [{"per_weight": [0.5 * (1.0 + 1e-6), -1.0]}]}}
+    ),
+}
+
+
+@cache
+def item(name: str) -> Item:
+    """A wall by its name, with what is true of it."""
+    wall = WALLS[name]()
+    greatest = greatest_multiplier(wall)
+    falls = greatest_multiplier(replace(wall, live=np.zeros_like(wall.live))) is None
+    answers = []
+    for method in ("la", "la-associated", "fe"):
+        chosen = load_method(method)
+        answer = chosen.solve(wall, chosen.Settings())
+        if answer.status is Status.OK:
+            answers.append(answer)
+    condition = 1e6 if name == "drawn down, hardly beyond friction" else 1.0
+    return Item(wall, falls, LEAST.get(name), None if greatest is None else float(greatest), condition, tuple(answers))
+
+
+def rates(wall: Assembly) -> FloatArray:
+    """Rows (4m, 3n) of opening less lift of a slip, for each end and sense, of the velocities of all blocks."""
+    matrix, m, n = wall.kinematic_matrix.toarray(), wall.n_interfaces, wall.n_blocks
+    whole = np.zeros((3 * m, 3 * n))
+    whole[:, (3 * wall.free[:, None] + np.arange(3)).ravel()] = matrix
+    return np.vstack(
+        [whole[end::3] - sense * wall.friction[:, None] * whole[2::3] for end in (0, 1) for sense in (1.0, -1.0)]
+    )
+
+
+def gaining(wall: Assembly, load: FloatArray, closing: float, size: float = 1.0) -> FloatArray | None:
+    """The motion (n, 3) of speeds up to `size` on which a load does most work, of closings up to so much."""
+    bounds = [(-size, size) if not wall.fixed[block] else (0.0, 0.0) for block in range(wall.n_blocks) for _ in range(3)]
+    scale = abs(load).max() or 1.0
+    answer = linprog(
+        -load.ravel() / scale, A_ub=-rates(wall), b_ub=np.full(4 * wall.n_interfaces, closing), bounds=bounds
+    )
+    return answer.x.reshape(-1, 3) if answer.status == 0 else None
+
+
+def bearing(rng: Rng, wall: Assembly, load: FloatArray, most: float, tension: float = 0.0) -> FloatArray | None:
+    """Forces (m, 3) that balance a load (n, 3) as well as they can; compressions up to `most`, tension up to so much."""
+    m, statics = wall.n_interfaces, wall.kinematic_matrix.toarray().T
+    unit = abs(load[wall.free]).max() or 1.0
+    rows, count = len(statics), 3 * wall.n_interfaces
+    # Variables: forces, and what is out of balance, up and down.
+    equal = np.hstack([statics, np.eye(rows), -np.eye(rows)])
+    yields = np.zeros((2 * m, count + 2 * rows))
+    for p in range(m):
+        for k, sense in enumerate((1.0, -1.0)):
+            yields[2 * p + k, 3 * p : 3 * p + 3] = [-wall.friction[p], -wall.friction[p], sense]
+    bounds = [*([(-tension, most / unit), (-tension, most / unit), (None, None)] * m), *([(0.0, None)] * (2 * rows))]
+    cost = np.concatenate([rng.uniform(-1e-3, 0.0, count) / (most / unit), np.ones(2 * rows)])
+    answer = linprog(
+        cost, A_ub=yields, b_ub=np.full(2 * m, tension), A_eq=equal, b_eq=-load[wall.free].ravel() / unit, bounds=bounds
+    )
+    return unit * answer.x[:count].reshape(-1, 3) if answer.status == 0 else None
+
+
+def self_stress(rng: Rng, wall: Assembly) -> FloatArray:
+    """Forces (m, 3) within yield that balance each other, of sum 1; zero where there are none."""
+    m, statics = wall.n_interfaces, wall.kinematic_matrix.toarray().T
+    yields = np.zeros((2 * m, 3 * m))
+    for p in range(m):
+        for k, sense in enumerate((1.0, -1.0)):
+            yields[2 * p + k, 3 * p : 3 * p + 3] = [-wall.friction[p], -wall.friction[p], sense]
+    answer = linprog(
+        -rng.uniform(0.1, 1.0, 3 * m),
+        A_ub=np.vstack([yields, np.tile([1.0, 1.0, 0.0], m)]),
+        b_ub=np.append(np.zeros(2 * m), 1.0),
+        A_eq=statics,
+        b_eq=np.zeros(len(statics)),
+        bounds=[(0.0, 1.0), (0.0, 1.0), (-1.0, 1.0)] * m,
+    )
+    return answer.x.reshape(-1, 3) if answer.status == 0 else np.zeros((m, 3))
+
+
+def base(rng: Rng, item: Item) -> Answer:
+    """A right answer to begin with, with forces and a mechanism, if need be of nothing."""
+    wall = item.wall
+    answer = item.states[rng.integers(len(item.states))]
+    forces = answer.forces if answer.forces is not None else np.zeros((wall.n_interfaces, 3))
+    mechanism = answer.mechanism if answer.mechanism is not None else rng.normal(size=(wall.n_blocks, 3))
+    flow = str(rng.choice(["non-associated", "associated"]))
+    return replace(answer, forces=np.array(forces), mechanism=np.where(wall.fixed[:, None], 0.0, mechanism), flow=flow)
+
+
+def claim(answer: Answer, finding: Finding, multiplier: float | None = None, **more: Any) -> Answer:
+    """An answer made to say something else."""
+    changed: dict[str, Any] = {"finding": finding, "multiplier": multiplier, "forces_multiplier": None, "bracket": None}
+    return replace(answer, **(changed | more))
+
+
+def collapse(rng: Rng, item: Item) -> float:
+    """A multiplier that no state has, near or far."""
+    true = item.greatest if item.greatest is not None and np.isfinite(item.greatest) else 0.5
+    return float(true * (1.0 + rng.choice([-1.0, 1.0]) * 10.0 ** rng.uniform(-5.0, 0.5)))
+
+
+def magnitude(rng: Rng, low: float, high: float) -> float:
+    return float(10.0 ** rng.uniform(low, high))
+
+
+def loads(wall: Assembly, multiplier: float) -> FloatArray:
+    return wall.dead + multiplier * wall.live
+
+
+def any_claim(rng: Rng, item: Item, answer: Answer, multiplier: float) -> Answer:
+    """A claim that rests on forces: a collapse, a bracket, or that it stands."""
+    match rng.integers(3):
+        case 0:
+            return claim(answer, Finding.COLLAPSES, multiplier)
+        case 1:
+            width = magnitude(rng, -9.0, 0.0)
+            bracket = (multiplier, multiplier + width)
+            return claim(answer, Finding.COLLAPSES, multiplier, flow="approximate", bracket=bracket)
+        case _:
+            return claim(answer, Finding.STANDS)
+
+
+Cook = Callable[[Rng, Item], Answer | None]
+
+
+def self_stress_over_wrong_forces(rng: Rng, item: Item) -> Answer | None:
+    """Forces of a right state at another multiplier, under self-stress that dwarfs what is missing."""
+    answer, stress = base(rng, item), self_stress(rng, item.wall)
+    assert answer.forces is not None
+    forces = answer.forces + magnitude(rng, 0.0, 15.0) * abs(item.wall.dead).max() * stress
+    return any_claim(rng, item, replace(answer, forces=forces), collapse(rng, item))
+
+
+def self_stress_alone(rng: Rng, item: Item) -> Answer | None:
+    """Self-stress in powers of two, which floating-point numbers hold exactly, and nothing that bears the loads."""
+    forces = 2.0 ** np.ceil(rng.uniform(0.0, 60.0)) * np.round(self_stress(rng, item.wall), 3)
+    return any_claim(rng, item, replace(base(rng, item), forces=forces), collapse(rng, item))
+
+
+def self_stress_over_tension(rng: Rng, item: Item) -> Answer | None:
+    """Forces in equilibrium that pull, under self-stress that dwarfs the tension."""
+    at, wall = collapse(rng, item), item.wall
+    heaviest = abs(wall.dead).max()
+    forces = bearing(rng, wall, loads(wall, at), 100.0 * heaviest, tension=10.0)
+    if forces is None:
+        return None
+    forces = forces + magnitude(rng, 0.0, 15.0) * heaviest * self_stress(rng, wall)
+    return any_claim(rng, item, replace(base(rng, item), forces=forces), at)
+
+
+def immense_forces(rng: Rng, item: Item) -> Answer | None:
+    """Forces up to 1e15 loads that balance a load that cannot be borne as well as they can."""
+    at, wall = collapse(rng, item), item.wall
+    forces = bearing(rng, wall, loads(wall, at), magnitude(rng, 0.0, 15.0) * abs(wall.dead).max())
+    return None if forces is None else any_claim(rng, item, replace(base(rng, item), forces=forces), at)
+
+
+def closings_that_gain(rng: Rng, item: Item) -> Answer | None:
+    """A fall by the motion that gains most of closings that are small one by one."""
+    motion = gaining(item.wall, item.wall.dead, magnitude(rng, -12.0, -5.0), magnitude(rng, -3.0, 3.0))
+    return claim(base(rng, item), Finding.FALLS, None, mechanism=motion)
+
+
+def closings_in_the_proof(rng: Rng, item: Item) -> Answer | None:
+    """The same, as the proof beside a motion that was measured."""
+    motion = gaining(item.wall, item.wall.dead, magnitude(rng, -12.0, -5.0), magnitude(rng, -3.0, 3.0))
+    details = {} if motion is None else {"dilatant_mechanism": motion.tolist()}
+    return claim(base(rng, item), Finding.FALLS, None, flow="approximate", details=details)
+
+
+def closings_under_live_load(rng: Rng, item: Item) -> Answer | None:
+    """A collapse by the motion on which the live load does most work, with forces of a multiplier that is borne."""
+    at, wall = collapse(rng, item), item.wall
+    motion = gaining(wall, loads(wall, at), magnitude(rng, -12.0, -5.0), magnitude(rng, -3.0, 3.0))
+    forces = bearing(rng, wall, loads(wall, at), 100.0 * abs(wall.dead).max())
+    if motion is None or forces is None:
+        return None
+    return claim(base(rng, item), Finding.COLLAPSES, at, mechanism=motion, forces=forces, flow="associated")
+
+
+def other_multiplier(rng: Rng, item: Item) -> Answer | None:
+    """A right state, with another multiplier than that of its forces."""
+    answer = base(rng, item)
+    return claim(answer, Finding.COLLAPSES, collapse(rng, item), forces_multiplier=answer.multiplier or 0.0)
+
+
+def higher_lower_end(rng: Rng, item: Item) -> Answer | None:
+    """A bracket that begins above what its forces bear."""
+    answer, low = base(rng, item), collapse(rng, item)
+    bracket, at = (low, 2.0 * low + 1.0), answer.multiplier or 0.0
+    return claim(answer, Finding.COLLAPSES, low, flow="approximate", bracket=bracket, forces_multiplier=at)
+
+
+def ray_of_small_violations(rng: Rng, item: Item) -> Answer | None:
+    """No end, by forces that balance the live load but for violations that are small."""
+    wall, answer = item.wall, base(rng, item)
+    ray = bearing(rng, wall, wall.live, magnitude(rng, 0.0, 12.0) * (abs(wall.live).max() or 1.0), 10.0 ** rng.uniform(-13.0, -4.0))
+    if ray is None:
+        return None
+    ray = ray + magnitude(rng, -3.0, 14.0) * abs(wall.dead).max() * self_stress(rng, wall)
+    details = answer.details | {"live_forces": ray.tolist()}
+    at = answer.multiplier or 0.0
+    return claim(answer, Finding.UNBOUNDED, None, forces_multiplier=at, details=details)
+
+
+def another_mechanism(rng: Rng, item: Item) -> Answer | None:
+    """A right mechanism with forces of another multiplier, as good as there are."""
+    at, wall = collapse(rng, item), item.wall
+    forces = bearing(rng, wall, loads(wall, at), magnitude(rng, 0.0, 6.0) * abs(wall.dead).max())
+    return None if forces is None else claim(base(rng, item), Finding.COLLAPSES, at, forces=forces)
+
+
+def heavy_block_that_creeps(rng: Rng, item: Item) -> Answer | None:
+    """A mechanism in which every block creeps besides, by so little that the loads of heavy ones do work."""
+    answer, wall = base(rng, item), item.wall
+    assert answer.mechanism is not None
+    creep = magnitude(rng, -15.0, -6.0) * rng.normal(size=(wall.n_blocks, 3)) * ~wall.fixed[:, None]
+    at = collapse(rng, item)
+    more = {"forces_multiplier": at} if rng.random() < 0.5 else {"forces_multiplier": answer.multiplier or 0.0}
+    return claim(answer, Finding.COLLAPSES, at, mechanism=answer.mechanism + creep, **more)
+
+
+def fast_and_slow(rng: Rng, item: Item) -> Answer | None:
+    """Another motion of one block, which flies or hardly moves beside the rest."""
+    answer, wall = base(rng, item), item.wall
+    assert answer.mechanism is not None
+    motion = answer.mechanism.copy()
+    motion[rng.choice(wall.free)] = magnitude(rng, -14.0, 14.0) * rng.normal(size=3)
+    return claim(answer, (Finding.COLLAPSES, Finding.FALLS)[rng.integers(2)], collapse(rng, item), mechanism=motion)
+
+
+def supports_that_move(rng: Rng, item: Item) -> Answer | None:
+    """The wall moves with its supports, fast or hardly, which gains dead work without any closing."""
+    answer, wall = base(rng, item), item.wall
+    motion = np.zeros((wall.n_blocks, 3))
+    motion[:, :2] = rng.normal(size=2)
+    motion = motion + magnitude(rng, -14.0, 0.0) * rng.normal(size=motion.shape)
+    if rng.random() < 0.5:
+        motion[wall.fixed] *= magnitude(rng, -14.0, 0.0)
+    return claim(answer, (Finding.COLLAPSES, Finding.FALLS)[rng.integers(2)], collapse(rng, item), mechanism=motion)
+
+
+def ends_exchanged(rng: Rng, item: Item) -> Answer | None:
+    """Forces at the wrong ends, of the wrong sign, of the wrong joint, or none."""
+    answer = base(rng, item)
+    assert answer.forces is not None
+    forces = [
+        answer.forces[:, [1, 0, 2]],
+        answer.forces * [1.0, 1.0, -1.0],
+        np.roll(answer.forces, 1, axis=0),
+        0.0 * answer.forces,
+        -answer.forces,
+    ][rng.integers(5)]
+    return any_claim(rng, item, replace(answer, forces=forces), collapse(rng, item))
+
+
+def digits_dropped(rng: Rng, item: Item) -> Answer | None:
+    """A right state written with few digits, at a multiplier that is off by more."""
+    answer, digits = base(rng, item), int(rng.integers(1, 9))
+    assert answer.forces is not None
+    forces = np.vectorize(lambda value: float(f"{value:.{digits}g}"))(answer.forces)
+    return any_claim(rng, item, replace(answer, forces=forces), collapse(rng, item))
+
+
+def other_finding(rng: Rng, item: Item) -> Answer | None:
+    """A right state under another finding, with its forces as a ray and its mechanism as a proof."""
+    answer = base(rng, item)
+    assert answer.forces is not None
+    assert answer.mechanism is not None
+    details = {"live_forces": answer.forces.tolist(), "dilatant_mechanism": answer.mechanism.tolist()}
+    finding = (Finding.FALLS, Finding.STANDS, Finding.UNBOUNDED)[rng.integers(3)]
+    return claim(answer, finding, None, details=details, forces_multiplier=answer.multiplier or 0.0)
+
+
+def displaced(rng: Rng, item: Item) -> Answer | None:
+    """Forces where the blocks are said to have moved to: at invented points, across other faces, beside moved supports."""
+    wall, at = item.wall, collapse(rng, item)
+    m, n = wall.n_interfaces, wall.n_blocks
+    forces = bearing(rng, wall, loads(wall, at), magnitude(rng, 0.0, 9.0) * abs(wall.dead).max())
+    if forces is None:
+        return None
+    half = 0.5 * forces[:, 2:] * wall.tangent
+    force = np.stack([forces[:, :1] * wall.normal + half, forces[:, 1:2] * wall.normal + half], axis=1).reshape(-1, 2)
+    interface = np.repeat(np.arange(m), 2)
+    point, normal = np.stack([wall.end1, wall.end2], axis=1).reshape(-1, 2), np.repeat(wall.normal, 2, axis=0)
+    places, onto = np.zeros((n, 3)), wall.block_b[interface]
+    match rng.integers(5):
+        case 0:
+            point = point + magnitude(rng, -1.0, 1.0) * rng.normal(size=point.shape)
+        case 1:
+            normal = force / np.maximum(np.hypot(*force.T), 1e-300)[:, None]
+        case 2:
+            places[wall.fixed] = magnitude(rng, -3.0, 1.0) * rng.normal(size=3)
+        case 3:
+            places[wall.free] = magnitude(rng, -1.0, 1.0) * rng.normal(size=(wall.n_free, 3))
+        case _:
+            normal = normal * magnitude(rng, -9.0, 9.0)
+    state = DisplacedState(places, interface, onto, point, normal, force)
+    answer = any_claim(rng, item, replace(base(rng, item), forces=None, flow="approximate"), at)
+    return replace(answer, forces=None, flow="approximate", details={NAME: state.as_details()[NAME]})
+
+
+KINDS: tuple[Cook, ...] = (
+    self_stress_over_wrong_forces,
+    self_stress_alone,
+    self_stress_over_tension,
+    immense_forces,
+    closings_that_gain,
+    closings_in_the_proof,
+    closings_under_live_load,
+    other_multiplier,
+    higher_lower_end,
+    ray_of_small_violations,
+    another_mechanism,
+    heavy_block_that_creeps,
+    fast_and_slow,
+    supports_that_move,
+    ends_exchanged,
+    digits_dropped,
+    other_finding,
+    displaced,
+)
+
+
+def cook(number: int) -> tuple[str, str, Item, Answer] | None:
+    """The cooked answer of a number: wall, kind, and the two; None where the kind has none, or one that is true.
+
+    True are also those that are off by less than the accuracy a thousand times the judge's tolerance would allow.
+    """
+    names = list(WALLS)
+    kind = KINDS[number % len(KINDS)]
+    name = names[number // len(KINDS) % len(names)]
+    it = item(name)
+    answer = kind(np.random.default_rng(number), it)
+    if answer is None or not it.denies(answer, SLACK):
+        return None
+    return name, kind.__name__, it, answer
+
+
+TOLERANCE = 1e-9
+SLACK = 1e-6
+"""Relative; a thousand times the tolerance, since a state within it may be that of a wall as different."""
