@@ -23,6 +23,9 @@ from harness.model.wall import Wall
 from tests.exact_programme import greatest_multiplier
 from tests.walls import PUSH, assembly, running_bond, stack
 
+TOLERANCE = 1e-9
+SLACK = 1e-6
+"""Relative; a thousand times the tolerance, since a state within it may be that of a wall as different."""
 Rng = np.random.Generator
 LEAN = {"offsets": [0.0, 0.2, 0.3]}
 
@@ -92,12 +95,12 @@ def smooth(*pairs: tuple[str, str]) -> dict[str, Any]:
     return {"default": 0.5, "rules": [{"between": list(pair), "value": 0.0} for pair in pairs]}
 
 
-def jammed(heavy: float = 0.0) -> Assembly:
+def jammed(heavy: float = 0.0, **upper: Any) -> Assembly:
     """A block on the ground under one held between smooth supports; with a heavy one that leans against the first."""
     blocks = [
         box("a", 0.0, 0.0),
         box("l", -1.0, 1.0, fixed=True),
-        box("b", 0.0, 1.0),
+        box("b", 0.0, 1.0, **upper),
         box("r", 1.0, 1.0, fixed=True),
     ]
     pairs = [("b", "l"), ("b", "r")]
@@ -107,11 +110,21 @@ def jammed(heavy: float = 0.0) -> Assembly:
     return of_blocks(blocks, smooth(*pairs), push("a"))
 
 
-def between(loads: Any) -> Assembly:
-    """A block between two smooth supports: it falls, whatever they press."""
+def between(loads: Any, friction: float = 0.0) -> Assembly:
+    """A block between two supports: it falls, whatever they press, unless they are rough and the live load presses it."""
     blocks = [box("l", -1.0, 0.0, fixed=True), box("a", 0.0, 0.0), box("r", 1.0, 0.0, fixed=True)]
-    data = {"format": "wall/1", "unit_weight": 20.0, "friction": 0.0, "blocks": blocks}
+    data = {"format": "wall/1", "unit_weight": 20.0, "friction": friction, "blocks": blocks}
     return build(Wall.model_validate(data | ({"loads": loads} if loads else {}))).assembly
+
+
+def wedge(slope: float) -> Assembly:
+    """A block between two smooth supports that lean against it by so little: it stands by forces of 1 / (2 slope)."""
+    block = {"id": "a", "polygon": [[0.0, 0.0], [1.0, 0.0], [1.0 + slope, 1.0], [-slope, 1.0]]}
+    left = {"id": "l", "polygon": [[-1.0, 0.0], [0.0, 0.0], [-slope, 1.0], [-1.0, 1.0]], "fixed": True}
+    right = {"id": "r", "polygon": [[1.0, 0.0], [2.0, 0.0], [2.0, 1.0], [1.0 + slope, 1.0]], "fixed": True}
+    return build(
+        Wall.model_validate({"format": "wall/1", "unit_weight": 20.0, "friction": 0.0, "blocks": [left, block, right]})
+    ).assembly
 
 
 def three(weights: tuple[float, float, float]) -> Assembly:
@@ -133,6 +146,7 @@ LEAST = {
     "bonded": 0.5,
     "arch": 0.3252885728627275,
     "jammed": 1.5,
+    "jammed without weight": 0.5,
     "jammed beside a heavy block": 1.5,
     "heavy bystander": 0.5,
     "three": 0.3,
@@ -154,6 +168,9 @@ WALLS: dict[str, Callable[[], Assembly]] = {
     "arch": lambda: assembly(ARCH, 0.6),
     "jammed": jammed,
     "jammed beside a heavy block": lambda: jammed(1e12),
+    "jammed without weight": lambda: jammed(weight=0.0),
+    "wedge of a hair": lambda: wedge(3e-7),
+    "held by its live load": lambda: between(PUSH, 0.5),
     "heavy bystander": lambda: of_blocks([box("a", 0.0, 0.0), box("h", 4.0, 0.0, 2.0, 2.0, weight=2e11)], 0.5, push("a")),
     "three": lambda: three((20.0, 20.0, 20.0)),
     "three of uneven weights": lambda: three((1.0, 1e6, 1e12)),
@@ -467,6 +484,131 @@ def displaced(rng: Rng, item: Item) -> Answer | None:
     return replace(answer, forces=None, flow="approximate", details={NAME: state.as_details()[NAME]})
 
 
+def small_violations_of_flow(rng: Rng, item: Item) -> Answer | None:
+    """The motion on which the live load does most work among those that break flow and complementarity by little."""
+    at, wall = collapse(rng, item), item.wall
+    forces = bearing(rng, wall, loads(wall, at), 100.0 * abs(wall.dead).max())
+    if forces is None:
+        return None
+    little, m = magnitude(rng, -12.0, -6.0), wall.n_interfaces
+    matrix = np.zeros((3 * m, 3 * wall.n_blocks))
+    matrix[:, (3 * wall.free[:, None] + np.arange(3)).ravel()] = wall.kinematic_matrix.toarray()
+    strength, small = wall.friction * forces[:, :2].sum(axis=1), 1e-9 * abs(forces).max()
+    low, high = np.full((m, 3), -little), np.full((m, 3), little)
+    high[:, :2][forces[:, :2] <= small] = np.inf
+    high[:, 2][strength + forces[:, 2] <= small] = np.inf
+    low[:, 2][strength - forces[:, 2] <= small] = -np.inf
+    inside = np.concatenate([high.ravel(), -low.ravel()])
+    rows = np.vstack([matrix, -matrix])[np.isfinite(inside)]
+    size = magnitude(rng, -3.0, 3.0)
+    bounds = [(0.0, 0.0) if wall.fixed[block] else (-size, size) for block in range(wall.n_blocks) for _ in range(3)]
+    cost = -wall.live.ravel() / (abs(wall.live).max() or 1.0)
+    answer = linprog(cost, A_ub=rows, b_ub=inside[np.isfinite(inside)], bounds=bounds)
+    if answer.status != 0:
+        return None
+    motion = answer.x.reshape(-1, 3)
+    return claim(base(rng, item), Finding.COLLAPSES, at, forces=forces, mechanism=motion, flow="non-associated")
+
+
+def no_end_above_what_falls(rng: Rng, item: Item) -> Answer | None:
+    """No end, by forces at a multiplier that is borne, on a wall that may fall before it gets there."""
+    wall, at = item.wall, magnitude(rng, -3.0, 3.0)
+    forces = bearing(rng, wall, loads(wall, at), 1e6 * abs(wall.dead).max())
+    ray = bearing(rng, wall, wall.live, 1e6 * (abs(wall.live).max() or 1.0))
+    if forces is None or ray is None:
+        return None
+    at = at if rng.random() < 0.8 else 0.0
+    details = {"live_forces": ray.tolist()}
+    return claim(base(rng, item), Finding.UNBOUNDED, None, forces=forces, forces_multiplier=at, details=details)
+
+
+def share_left_unbalanced(rng: Rng, item: Item) -> Answer | None:
+    """Forces of another multiplier and, of what they lack, a share so small that it may pass for rounding."""
+    answer, wall = base(rng, item), item.wall
+    assert answer.forces is not None
+    at = (answer.multiplier or 0.5) * (1.0 + magnitude(rng, -5.9, 0.0))
+    share = magnitude(rng, -9.0, 0.0)
+    near = bearing(rng, wall, loads(wall, at), 1e3 * abs(wall.dead).max(), tension=magnitude(rng, -9.0, 0.0))
+    if near is None:
+        return None
+    forces = near + share * (answer.forces - near) + magnitude(rng, 8.0, 16.0) * self_stress(rng, wall)
+    return claim(answer, Finding.COLLAPSES, at, forces=forces)
+
+
+def glued(rng: Rng, item: Item) -> Answer | None:
+    """Forces in equilibrium that pull, or exceed friction, by what is small beside the heaviest load."""
+    wall, at = item.wall, collapse(rng, item)
+    heaviest = float(abs(wall.dead).max())
+    forces = bearing(rng, wall, loads(wall, at), 1e3 * heaviest, tension=magnitude(rng, -14.0, -3.0))
+    return None if forces is None else any_claim(rng, item, replace(base(rng, item), forces=forces), at)
+
+
+def halfway(rng: Rng, item: Item) -> Answer | None:
+    """The mean of two right states, or of a right state and one under the dead load, between their multipliers."""
+    answer, wall, share = base(rng, item), item.wall, float(rng.random())
+    dead = bearing(rng, wall, wall.dead, 1e3 * abs(wall.dead).max())
+    if dead is None or answer.forces is None:
+        return None
+    forces, at = share * answer.forces + (1.0 - share) * dead, share * (answer.multiplier or 0.0)
+    return any_claim(rng, item, replace(answer, forces=forces), at)
+
+
+def backwards(rng: Rng, item: Item) -> Answer | None:
+    """A state under the live load turned round, with a negative multiplier or with the sign dropped."""
+    answer, wall, at = base(rng, item), item.wall, collapse(rng, item)
+    forces = bearing(rng, wall, loads(wall, -at), 1e3 * abs(wall.dead).max())
+    if forces is None or answer.mechanism is None:
+        return None
+    sign = float(rng.choice([-1.0, 1.0]))
+    return claim(answer, Finding.COLLAPSES, sign * at, forces=forces, mechanism=sign * answer.mechanism)
+
+
+def immense_and_tiny_numbers(rng: Rng, item: Item) -> Answer | None:
+    """Numbers at the ends of the range of floating point, of which sums and products are not finite."""
+    answer, size = base(rng, item), float(rng.choice([1e-320, 1e-200, 1e200, 1e307]))
+    assert answer.forces is not None
+    assert answer.mechanism is not None
+    forces, motion = answer.forces.copy(), answer.mechanism.copy()
+    if rng.random() < 0.5:
+        forces[rng.integers(len(forces))] = size * rng.normal(size=3)
+    motion[rng.integers(len(motion))] = size * rng.normal(size=3)
+    at = float(rng.choice([collapse(rng, item), size]))
+    return any_claim(rng, item, replace(answer, forces=forces, mechanism=motion), at)
+
+
+def loads_of_another_wall(rng: Rng, item: Item) -> Answer | None:
+    """A right state of the same blocks with other weights, or other friction."""
+    wall, at = item.wall, collapse(rng, item)
+    weights = wall.dead * 10.0 ** rng.uniform(-6.0, 1.0, (wall.n_blocks, 1))
+    other = replace(wall, dead=weights, friction=wall.friction + magnitude(rng, -5.0, 0.0))
+    forces = bearing(rng, other, loads(other, at), 1e3 * abs(wall.dead).max())
+    motion = gaining(other, loads(other, at), 0.0)
+    if forces is None or motion is None:
+        return None
+    answer = replace(base(rng, item), forces=forces, mechanism=motion)
+    return any_claim(rng, item, answer, at) if rng.random() < 0.7 else claim(answer, Finding.FALLS)
+
+
+def parts_of_two_states(rng: Rng, item: Item) -> Answer | None:
+    """Every joint's forces from one of two states under different multipliers."""
+    answer, wall, at = base(rng, item), item.wall, collapse(rng, item)
+    other = bearing(rng, wall, loads(wall, at), 1e3 * abs(wall.dead).max())
+    if other is None or answer.forces is None:
+        return None
+    forces = np.where(rng.random(wall.n_interfaces)[:, None] < 0.5, other, answer.forces)
+    return any_claim(rng, item, replace(answer, forces=forces), at)
+
+
+def zero_that_is_none(rng: Rng, item: Item) -> Answer | None:
+    """Multipliers that are nearly nothing, and forces that are exactly those of the dead load."""
+    wall, at = item.wall, float(rng.choice([0.0, 1e-300, 1e-17, -1e-17, 1e-12]))
+    dead = bearing(rng, wall, wall.dead, 1e3 * abs(wall.dead).max())
+    if dead is None:
+        return None
+    said_at = float(rng.choice([at, collapse(rng, item)]))
+    return claim(base(rng, item), Finding.COLLAPSES, said_at, forces=dead, forces_multiplier=at)
+
+
 KINDS: tuple[Cook, ...] = (
     self_stress_over_wrong_forces,
     self_stress_alone,
@@ -486,10 +628,20 @@ KINDS: tuple[Cook, ...] = (
     digits_dropped,
     other_finding,
     displaced,
+    small_violations_of_flow,
+    no_end_above_what_falls,
+    share_left_unbalanced,
+    glued,
+    halfway,
+    backwards,
+    immense_and_tiny_numbers,
+    loads_of_another_wall,
+    parts_of_two_states,
+    zero_that_is_none,
 )
 
 
-def cook(number: int) -> tuple[str, str, Item, Answer] | None:
+def cook(number: int, slack: float = SLACK) -> tuple[str, str, Item, Answer] | None:
     """The cooked answer of a number: wall, kind, and the two; None where the kind has none, or one that is true.
 
     True are also those that are off by less than the accuracy a thousand times the judge's tolerance would allow.
@@ -499,11 +651,6 @@ def cook(number: int) -> tuple[str, str, Item, Answer] | None:
     name = names[number // len(KINDS) % len(names)]
     it = item(name)
     answer = kind(np.random.default_rng(number), it)
-    if answer is None or not it.denies(answer, SLACK):
+    if answer is None or not it.denies(answer, slack):
         return None
     return name, kind.__name__, it, answer
-
-
-TOLERANCE = 1e-9
-SLACK = 1e-6
-"""Relative; a thousand times the tolerance, since a state within it may be that of a wall as different."""

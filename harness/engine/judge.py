@@ -60,9 +60,11 @@ def judge(assembly: Assembly, result: Result, tolerance: float) -> Judgement:
         return Judgement(tolerance=tolerance, sentence="There is no answer to judge.")
     forces = None if result.forces is None else np.asarray(result.forces, dtype=float).reshape(-1, 3)
     mechanism = None if result.mechanism is None else np.asarray(result.mechanism, dtype=float).reshape(-1, 3)
-    for name, array in (("forces", forces), ("mechanism", mechanism)):
-        if array is not None and not np.isfinite(array).all():
-            return _said(tolerance, False, f"Its {name} hold numbers that are not finite.")
+    numbers = {"forces": forces, "mechanism": mechanism, "bracket": result.bracket}
+    numbers |= {"multiplier": result.multiplier, "multiplier of the forces": result.forces_multiplier}
+    for name, value in numbers.items():
+        if value is not None and not _countable(value):
+            return _said(tolerance, False, f"Its {name}: not finite, or larger than {COUNTABLE:g}.")
     said = _judge_finding(assembly, forces, mechanism, result, tolerance)
     if result.flow == "approximate" and mechanism is not None and len(mechanism) == assembly.n_blocks:
         return _with_motion(said, *motion_faults(assembly, mechanism, result.multiplier or 0.0, result.details))
@@ -108,6 +110,11 @@ def answered(method: Method, assembly: Assembly, **settings: Any) -> tuple[Resul
     return result, judge(assembly, result, method.tolerance)
 
 
+def _countable(values: Any) -> bool:
+    """Whether all numbers are finite and no larger than `COUNTABLE`."""
+    return bool((abs(np.asarray(values, dtype=float)) <= COUNTABLE).all())
+
+
 def _said(tolerance: float, accepted: bool | None, sentence: str) -> Judgement:
     return Judgement(tolerance=tolerance, accepted=accepted, sentence=sentence)
 
@@ -120,6 +127,8 @@ WITHOUT_END = 1e-12
 """Largest residual of forces that balance the live load alone: what is violated by more ends, if far away."""
 NOT_SMALL = ("live_work", "dead_work", "closing_work")
 """What is told among the residuals and need not vanish."""
+COUNTABLE = 1e100
+"""Largest number of an answer: sums of products of such numbers are finite, so that no residual is lost in them."""
 NO_FORCES = "It gives no contact forces, so it cannot be checked."
 
 
@@ -195,17 +204,16 @@ def _judge_standing(assembly: Assembly, forces: FloatArray | None, result: Resul
 def _judge_unbounded(assembly: Assembly, forces: FloatArray | None, result: Result, tolerance: float) -> Judgement:
     """Forces under the dead load, and forces that balance the live load alone: together they bear any multiplier."""
     growth = result.details.get("live_forces")
-    if forces is None or growth is None:
-        lacking = "forces under the dead load" if forces is None else "forces that balance the live load alone"
+    if forces is None or result.forces_multiplier or growth is None:
+        lacking = "forces that balance the live load alone" if growth is None else "forces under the dead load"
         return _said(tolerance, None, f"That no multiplier is too high was not shown: it gives no {lacking}.")
     ray = np.asarray(growth, dtype=float).reshape(-1, 3)
-    if ray.shape != forces.shape or not np.isfinite(ray).all():
+    if ray.shape != forces.shape or not _countable(ray):
         return _said(tolerance, False, f"`live_forces` are not {len(forces)} finite triples.")
-    at = 0.0 if result.forces_multiplier is None else result.forces_multiplier
-    residuals = force_residuals(assembly, forces, at)
+    residuals = force_residuals(assembly, forces, 0.0)
     alone = replace(assembly, dead=np.zeros_like(assembly.dead))
     residuals |= {f"live_{name}": value for name, value in force_residuals(alone, ray, 1.0).items()}
-    what = f"Forces at multiplier {at:.6g} and forces that balance the live load alone"
+    what = "Forces under the dead load and forces that balance the live load alone"
     return _decide(residuals, tolerance, what, dict.fromkeys(("live_equilibrium", "live_yield"), WITHOUT_END))
 
 
@@ -245,7 +253,7 @@ def _judge_fall(assembly: Assembly, mechanism: FloatArray | None, result: Result
     shown = result.details.get("dilatant_mechanism")
     if shown is not None:
         mechanism = np.asarray(shown, dtype=float).reshape(-1, 3)
-        if mechanism.shape != (assembly.n_blocks, 3) or not np.isfinite(mechanism).all():
+        if mechanism.shape != (assembly.n_blocks, 3) or not _countable(mechanism):
             return _said(tolerance, False, f"`dilatant_mechanism` is not {assembly.n_blocks} finite triples.")
     elif result.flow == "approximate" or mechanism is None:
         told = "The motion was measured, which is no proof" if mechanism is not None else "It gives no mechanism"

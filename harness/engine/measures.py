@@ -6,7 +6,7 @@ So what acts on a block counts up to the loads of its component, and a block doe
 F        sum of the magnitudes of load and contact forces on a block, at most the loads of its component
 own      its own load; that of a block without load is the smallest of its component
 small    the least of F and `PASSED_ON` x own: what an unbalanced force or a violation of yield is measured by
-rounding an unbalanced force within `ROUNDING` F, and within a hundredth of `own`, is measured by F alone: light blocks
+rounding an unbalanced force within `ROUNDING` F, and within `OF_OWN` x own, is measured by F alone: light blocks
          that bear heavy ones are in equilibrium to the digits of the heavy ones
 """
 
@@ -29,9 +29,9 @@ PASSED_ON = 1e3
 """Forces on a block, in its own loads, up to which its equilibrium is held to them.
 
 Distinct elements hold equilibrium to a millionth: so a thousandth of a block's own load may be unbalanced at most."""
-ROUNDING = 1e-14
-"""Share of the forces on a block that is rounding: a few dozen units in the last place."""
-OF_OWN = 0.01
+ROUNDING = 4e-15
+"""Share of the forces on a block that is rounding: two dozen units in the last place."""
+OF_OWN = 2e-3
 """Share of a block's own load up to which rounding of the forces on it is let pass: weights that differ by 1e12."""
 NO_LOAD = 1e-13
 """Share of the loads of its component up to which a load is none: rounding of a multiplier that is zero."""

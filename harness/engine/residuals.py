@@ -35,7 +35,8 @@ from harness.model.displaced import DisplacedState
 from harness.model.result import fastest_vertex, relative_velocities
 
 AT_REST = 1e-12
-"""A component slower than this beside the fastest of the wall is taken as at rest: rounding of its speeds."""
+"""A component slower than this beside the fastest of the wall is taken as at rest: rounding of its speeds. Likewise live
+work, beside that which the live loads would do along the motions of their blocks."""
 
 NO_WORK = 1e-12
 """Share of all live work up to which that of a block is rounding of its rest: one of 1e12 weights moved by 1e-48."""
@@ -123,7 +124,12 @@ def displaced_fault(assembly: Assembly, state: DisplacedState) -> str:
     Supports rest; blocks are still near where they were; every force acts where its two blocks touch, along the normal
     of their joint but for the rotations.
     """
-    limit = MOVED * assembly.length_scale
+    limit, count = MOVED * assembly.length_scale, len(state.interface)
+    shapes = [part.shape for part in (state.interface, state.onto, state.point, state.normal, state.force)]
+    if shapes != [(count,), (count,), (count, 2), (count, 2), (count, 2)]:
+        return "its contacts do not have one entry each of everything"
+    if not ((state.interface >= 0) & (state.interface < assembly.n_interfaces)).all():
+        return f"a contact belongs to none of the {assembly.n_interfaces} joints"
     if state.places.shape != (assembly.n_blocks, 3) or not all(np.isfinite(part).all() for part in vars(state).values()):
         return f"its places are not {assembly.n_blocks} finite triples"
     if state.places[assembly.fixed].any():
@@ -232,7 +238,9 @@ def _mechanism_residuals(
     """Residuals of the mechanism of one component, of fastest vertex 1; `scale` (m,) is what acts at its interfaces."""
     live_work = power(assembly.live, mechanism)
     largest = _largest_working(assembly, mechanism)
-    if 0.0 < live_work < largest:
+    if 0.0 < live_work < AT_REST * largest:
+        live_work = 0.0
+    elif 0.0 < live_work < largest:
         mechanism, live_work = mechanism * (largest / live_work), largest
     opening, slip = relative_velocities(assembly, mechanism)
     dilatancy = assembly.friction if flow == "associated" else assembly.dilatancy

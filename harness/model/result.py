@@ -53,7 +53,7 @@ class Judgement(BaseModel):
 
         Work is no residual, and those of a measured motion have a tolerance of their own.
         """
-        work = ("live_work", "dead_work")
+        work = ("live_work", "dead_work", "closing_work")
         small = [item for item in self.residuals.items() if item[0] not in work and not item[0].startswith("motion_")]
         return max(small, key=lambda item: item[1], default=None)
 

@@ -192,12 +192,11 @@ def _proved(assembly: Assembly, answer: Answer) -> Answer:
     """As `with_proof`; raises OutOfTime where the time is over."""
     if answer.finding is Finding.UNBOUNDED:
         growth = admissible_forces(assembly, assembly.live)
-        own = (answer.forces, answer.forces_multiplier)
-        forces, at = own if answer.forces is not None else (admissible_forces(assembly, assembly.dead), 0.0)
+        forces = answer.forces if answer.forces_multiplier == 0.0 else admissible_forces(assembly, assembly.dead)
         if growth is None or forces is None:
             return answer
         return replace(
-            answer, forces=forces, forces_multiplier=at, details=answer.details | {"live_forces": growth.tolist()}
+            answer, forces=forces, forces_multiplier=0.0, details=answer.details | {"live_forces": growth.tolist()}
         )
     if answer.finding is Finding.AT_LIMIT:
         statics = statics_of(assembly)
