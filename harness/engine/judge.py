@@ -60,7 +60,7 @@ def judge(assembly: Assembly, result: Result, tolerance: float) -> Judgement:
         return Judgement(tolerance=tolerance, sentence="There is no answer to judge.")
     forces = None if result.forces is None else np.asarray(result.forces, dtype=float).reshape(-1, 3)
     mechanism = None if result.mechanism is None else np.asarray(result.mechanism, dtype=float).reshape(-1, 3)
-    numbers = {"forces": forces, "mechanism": mechanism, "bracket": result.bracket}
+    numbers: dict[str, Any] = {"forces": forces, "mechanism": mechanism, "bracket": result.bracket}
     numbers |= {"multiplier": result.multiplier, "multiplier of the forces": result.forces_multiplier}
     for name, value in numbers.items():
         if value is not None and not _countable(value):
@@ -125,8 +125,6 @@ IMMENSE = 1e7
 A fall is proved unless the wall stands by such forces. Falls that methods find leave at least ten times more."""
 WITHOUT_END = 1e-12
 """Largest residual of forces that balance the live load alone: what is violated by more ends, if far away."""
-NOT_SMALL = ("live_work", "dead_work", "closing_work")
-"""What is told among the residuals and need not vanish."""
 COUNTABLE = 1e100
 """Largest number of an answer: sums of products of such numbers are finite, so that no residual is lost in them."""
 NO_FORCES = "It gives no contact forces, so it cannot be checked."
@@ -266,8 +264,8 @@ def _judge_fall(assembly: Assembly, mechanism: FloatArray | None, result: Result
         "The mechanism gains dead work with dilatant flow and supports at rest: no equilibrium exists, which proves "
         "the fall."
         if proved
-        else "The mechanism proves no fall: it gains no dead work, or no more than its closings may do, is not dilatant, "
-        "or moves the supports."
+        else "The mechanism proves no fall: it gains no dead work beyond what its closings may do, is not dilatant, or "
+        "moves the supports."
     )
     residuals = {"supports": supports, "interpenetration": closing, "dead_work": gain, "closing_work": refuted}
     return Judgement(residuals=residuals, tolerance=tolerance, accepted=proved, sentence=sentence)

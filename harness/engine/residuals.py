@@ -1,9 +1,10 @@
 """The residuals by which the judge tells whether a claim holds; none shares a matrix with the methods.
 
 They are relative to what acts where they arise (F, and what is small beside it, as in `harness.engine.measures`;
-r = largest radius of a block; each independent component's mechanism scaled so that its fastest vertex has speed 1, or so that
-its live work is that of the largest live load that does any, along the motion of its block at speed 1, whichever makes
-it larger: a block that moves fast and does no work hides nothing, and the load of one at rest is beside the point):
+r = largest radius of a block; each independent component's mechanism scaled so that its fastest vertex has speed 1, or
+so that its live work is that of the largest live load that does any, along the motion of its block at speed 1,
+whichever makes it larger: a block that moves fast and does no work hides nothing, and the load of one at rest is
+beside the point):
 
 supports            fastest vertex of a fixed block, to the fastest of the wall
 equilibrium         out-of-balance force or moment/r of a free block / what is small on that block; where its contact
@@ -35,8 +36,9 @@ from harness.model.displaced import DisplacedState
 from harness.model.result import fastest_vertex, relative_velocities
 
 AT_REST = 1e-12
-"""A component slower than this beside the fastest of the wall is taken as at rest: rounding of its speeds. Likewise live
-work, beside that which the live loads would do along the motions of their blocks."""
+"""A component slower than this beside the fastest of the wall is taken as at rest: rounding of its speeds.
+
+Live work is none up to this share of what the live loads would do along the motions of their blocks."""
 
 NO_WORK = 1e-12
 """Share of all live work up to which that of a block is rounding of its rest: one of 1e12 weights moved by 1e-48."""
@@ -130,8 +132,9 @@ def displaced_fault(assembly: Assembly, state: DisplacedState) -> str:
         return "its contacts do not have one entry each of everything"
     if not ((state.interface >= 0) & (state.interface < assembly.n_interfaces)).all():
         return f"a contact belongs to none of the {assembly.n_interfaces} joints"
-    if state.places.shape != (assembly.n_blocks, 3) or not all(np.isfinite(part).all() for part in vars(state).values()):
-        return f"its places are not {assembly.n_blocks} finite triples"
+    finite = all(np.isfinite(part).all() for part in vars(state).values())
+    if state.places.shape != (assembly.n_blocks, 3) or not finite:
+        return f"its places are not {assembly.n_blocks} triples, or its numbers are not finite"
     if state.places[assembly.fixed].any():
         return "it moves the supports"
     if abs(state.places[:, :2]).max(initial=0.0) > limit or abs(state.places[:, 2]).max(initial=0.0) > TURNED:

@@ -47,13 +47,18 @@ def bonded() -> tuple[Assembly, Answer]:
 @pytest.mark.parametrize(
     ("name", "outcome"),
     [
+        ("bystander-1e+10-0.9", "rejected"),
+        ("falls-closing-slide-2-dead", "rejected"),
         ("falls-though-stands", "rejected"),
         ("forces-multiplier", "rejected"),
         ("ground-moves", "rejected"),
         ("heavy-1e+10-0.505", "rejected"),
+        ("selfstress-bracket-1e+12", "rejected"),
+        ("selfstress-stands-1e+12", "rejected"),
         ("two-fixed-far-flies", "rejected"),
         ("two-tiny-mechanism", "rejected"),
         ("unbounded", "not_judged"),
+        ("wedge-up-1e+11", "rejected"),
     ],
 )
 def test_wrong_answer_is_not_accepted(name: str, outcome: str):
