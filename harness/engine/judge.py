@@ -5,9 +5,9 @@ The claims, and exactly what proves each:
 collapses at lambda  forces in equilibrium with dead + lambda x live at the multiplier that is reported, within yield;
                      a mechanism at rest on the supports, without interpenetration, of the stated flow rule,
                      complementary to the forces, on which the live load does positive work
-bracket              (flow "approximate") forces in equilibrium within yield at its lower end or above; the upper end is
-                     measured and is not judged; nor is it shown that the motion is the one at collapse, but it must
-                     be one that the joints allow (`harness.engine.measured_motion`)
+bracket              (flow "approximate") a live load; forces in equilibrium within yield at its lower end or above;
+                     the upper end is measured and is not judged; nor is it shown that the motion is the one at
+                     collapse, but it must be one that the joints allow (`harness.engine.measured_motion`)
 at its limit         multiplier 0; forces in equilibrium within yield under the dead load, and a dilatant mechanism of a
                      multiplier that the numbers of the wall do not tell from zero (`harness.model.limit`): no forces
                      bear more, whatever the flow
@@ -258,7 +258,7 @@ def _judge_fall(assembly: Assembly, mechanism: FloatArray | None, result: Result
         return _said(tolerance, None, f"{told}; that no equilibrium exists was not shown.")
     supports, parts = moving_parts(assembly, mechanism)
     shown_by = [_fall_of(part, motion, tolerance) for part, _, motion in parts]
-    proves, gain, closing, refuted = max(shown_by, default=(False, 0.0, 0.0, 0.0))
+    proves, gain, closing, work = max(shown_by, default=(False, 0.0, 0.0, 0.0))
     proved = proves and supports <= tolerance
     sentence = (
         "The mechanism gains dead work with dilatant flow and supports at rest: no equilibrium exists, which proves "
@@ -267,7 +267,7 @@ def _judge_fall(assembly: Assembly, mechanism: FloatArray | None, result: Result
         else "The mechanism proves no fall: it gains no dead work beyond what its closings may do, is not dilatant, or "
         "moves the supports."
     )
-    residuals = {"supports": supports, "interpenetration": closing, "dead_work": gain, "closing_work": refuted}
+    residuals = {"supports": supports, "interpenetration": closing, "dead_work": gain, "closing_work": work}
     return Judgement(residuals=residuals, tolerance=tolerance, accepted=proved, sentence=sentence)
 
 
@@ -277,14 +277,14 @@ def _fall_of(part: Assembly, motion: FloatArray, tolerance: float) -> tuple[bool
     Were there forces in equilibrium under the dead load, within yield, their work on the motion would be minus the
     gain: gain <= sum of n c over the contact points, n their normal forces and c their closings beyond dilatant flow.
     So the forces of any equilibrium would have to exceed gain / sum of c. Where that is `IMMENSE` times the dead load
-    there is none. `closing_work` is what forces so large may do on the closings, in gains.
+    there is none. `closing_work` is what forces so large may do on the closings, in dead loads like the gain.
     """
     opening, slip = relative_velocities(part, motion)
     closings = np.maximum(0.0, (part.friction * abs(slip))[:, None] - opening)
     closing = float(closings.max(initial=0.0))
     gain = power(part.dead, motion) / part.force_scale
-    work = IMMENSE * float(closings.sum()) / gain if gain > 0.0 else float("inf")
-    return closing <= tolerance < gain and work < 1.0, gain, closing, work
+    work = IMMENSE * float(closings.sum())
+    return closing <= tolerance < gain and work < gain, gain, closing, work
 
 
 def apart(multiplier: float, other: float) -> float:
@@ -298,7 +298,9 @@ def _decide(
     """Accepted where every residual is within the tolerance, or within its own where that is stricter."""
     within = {name: min(tolerance, (stricter or {}).get(name, tolerance)) for name in residuals}
     failed = [
-        f"{name} {value:.3g}" for name, value in residuals.items() if name != "live_work" and not value <= within[name]
+        f"{name} {value:.3g}" + (f" (at most {within[name]:.3g})" if within[name] < tolerance else "")
+        for name, value in residuals.items()
+        if name != "live_work" and not value <= within[name]
     ]
     if "live_work" in residuals and not residuals["live_work"] > 0.0:
         failed.append("the live load does no work on the mechanism")

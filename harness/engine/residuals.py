@@ -21,8 +21,7 @@ live_work           not a residual to be small: live work of the mechanism of a 
 The unit is the multiplier at which the live load is as large as the dead load of the component: one for a tilt; or at
 which the live work is as large as the dead loads times the speeds of their blocks, where that is less: a heavy block
 that rests does not count. So a live load that is given ten times larger, with a multiplier ten times smaller, is judged
-alike. An independent structure beside a wall,
-however heavy, however fast, changes no residual of the wall.
+alike. An independent structure beside a wall, however heavy, however fast, changes no residual of the wall.
 """
 
 from __future__ import annotations
