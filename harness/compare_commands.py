@@ -179,7 +179,7 @@ def _appendix(wall: str, folder: Path, store: Path) -> None:
     announce(planned.method for planned in runs)
     with open_store(store) as opened, terminal.progress(len(runs), quiet=False) as told:
         results = comparing.execute(runs, opened, os.cpu_count() or 1, told=told)
-    compared = comparing.comparison_run(chosen[0].id, _command_line(), chosen, runs, results)
+    compared = with_certificates(comparing.comparison_run(chosen[0].id, _command_line(), chosen, runs, results))
     page = folder / f"{chosen[0].id}-appendix.html"
     write_appendix(compared, page)
     say(f"Appendix: {page}")

@@ -16,6 +16,7 @@ from matplotlib.figure import Figure
 from harness.model.assembly import FloatArray
 from harness.model.comparison import CaseResults, ComparisonRun
 from harness.model.method import Status
+from harness.model.proof import least_known
 from harness.model.result import Result
 from harness.model.writing import write_whole
 from reports import numbers, shapes, words
@@ -24,7 +25,6 @@ from reports.facts import facts, value_in_words
 from reports.figures import results_figure, style, wall_figure
 from reports.opening import wall_findings, which_number
 from reports.reactions import Reaction, out_of_balance, reactions
-from reports.reasons import least_known
 from reports.tables import worst_residual
 
 

@@ -9,6 +9,7 @@ from markupsafe import Markup
 
 from harness.model.comparison import CaseResults, ComparisonRun
 from harness.model.method import Finding, Status
+from harness.model.proof import least_known, proof_of
 from harness.model.result import Result, Verdict
 from reports import numbers, paper, shapes, words
 from reports.agreement import agreement, mains, spread
@@ -16,8 +17,8 @@ from reports.facts import friction_text, value_in_words
 from reports.joints import joints_in_words, motion
 from reports.mechanism_drawing import mechanism_svg, overlay_svg
 from reports.once import once
-from reports.reasons import SAME_MOTION, least_known, mechanism_in_words
-from reports.tables import anchor_of, certified_bound
+from reports.reasons import SAME_MOTION, mechanism_in_words
+from reports.tables import anchor_of
 
 CLOSE = 0.01
 """Methods that lie within a hundredth of each other agree, in the words of the paper's comparison."""
@@ -146,12 +147,6 @@ def _broken_theory(run: ComparisonRun) -> tuple[list[str], list[str]]:
     )
 
 
-def _called(result: Result, item: CaseResults) -> str:
-    if certified_bound(item, result) is not None:
-        return "minimum, proved"
-    return "least by branch and bound, to rounding" if result.details.get("proved_least") else "least known"
-
-
 def wall_findings(item: CaseResults, *, short: bool = False) -> str:
     """What was found of one wall, in a few sentences; `short` leaves the mechanism out."""
     least, assembly = least_known(item), item.case.assembly
@@ -160,7 +155,7 @@ def wall_findings(item: CaseResults, *, short: bool = False) -> str:
     if least is None:
         answers = others or "no method gave an answer"
         return f"{item.case.id}: no collapse state without dilatancy was accepted ({answers})."
-    called = f"{least.method.upper()}, {_called(least, item)}"
+    called = f"{least.method.upper()}, {proof_of(item, least).label}"
     said = f"{item.case.id} collapses at {numbers.multiplier(least.multiplier)} ({called})"
     sentences = [f"{said}{'; ' + others if others else ''}.", _agreement(item)]
     if not short and least.mechanism is not None:
@@ -213,28 +208,8 @@ def which_number(item: CaseResults) -> str:
     if least is None:
         return ""
     value = numbers.multiplier(least.multiplier)
-    certified = certified_bound(item, least)
-    if certified is not None:
-        first = (
-            f"For safety use {value}, the minimum ({least.method}): "
-            f"no collapse state lies below {certified:.7g}, proved in fractions."
-        )
-    elif least.details.get("proved_least"):
-        first = (
-            f"For safety use {value}, the least multiplier of any collapse state by branch and bound, to rounding "
-            f"({least.method})."
-        )
-    else:
-        lower = least.bracket
-        proof = ""
-        if item.certified is not None:
-            proof = f"; none below {numbers.plain(item.certified.bound)} exists, proved in fractions"
-        elif lower and "lower bound" in least.bracket_meaning:
-            proof = f"; none below {numbers.plain(lower[0])} exists"
-        first = (
-            f"For safety use {value}, the least multiplier of a collapse state that is known ({least.method}); "
-            f"a lower one is not excluded{proof}."
-        )
+    proof = proof_of(item, least)
+    first = f"For safety use {value} ({least.method}), {proof.label}: {proof.clause}."
     sentences = [first]
     springs = [r for r in mains(item) if r.traits.elastic and r is not least and r.multiplier is not None]
     if springs and springs[0].finding is Finding.COLLAPSES:

@@ -370,3 +370,19 @@ def test_the_source_of_a_search_that_found_the_state_is_told_and_nothing_where_n
     higher = {"improvements": [{**found, "multiplier": 0.6}]}
     for details in ({}, {"improvements": []}, {"improvements": "many"}, {"improvements": [3]}, higher):
         assert sections.origin(samples.solved(samples.block(), "la", 0.5, details=details)) == ""
+
+
+def test_friction_at_its_limit_is_decided_from_the_forces_and_not_from_the_steps_that_the_page_gets():
+    case = samples.bond("mine")
+    result = samples.solved(case, "la", 0.5)
+    forces = np.zeros((case.assembly.n_interfaces, 3))
+    forces[:, 0] = 1000.0
+    forces[0] = (0.037, 0.0, 0.037 * 0.65)  # at its limit; as whole steps of 0.1 it would be 0
+    forces[1] = (0.16, 0.0, 0.1)  # 96 %; as whole steps 2 and 1, 77 %
+    forces[2] = (100.0, 0.0, 0.998 * 65.0)
+    forces[3] = (0.0, 0.0, 0.0)
+    result = result.model_copy(update={"forces": [tuple(row) for row in forces.tolist()]})
+    used = drawing.result_data(case, result, 1000.0)["used"]
+    assert used[:5] == [100, 96, 99, -1, 0]
+    printed = flow.at_friction_limit(case.assembly, forces)
+    assert [share == 100 for share in used] == printed.tolist()
