@@ -182,7 +182,7 @@ def _given(item: dict[str, Any]) -> Study:
         charts.Series(
             str(line.get("name", "")),
             [float(value) for value in line.get("x", [])],
-            [float(value) for value in line.get("y", [])],
+            [math.nan if value is None else float(value) for value in line.get("y", [])],
             low=[float(value) for value in line.get("low", [])],
             high=[float(value) for value in line.get("high", [])],
         )

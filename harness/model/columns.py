@@ -86,6 +86,13 @@ NUMBERED = (
     ResultColumn(
         "from_neighbour", "boolean", "", "whether a mechanism of a neighbouring wall led to it; missing: none given"
     ),
+    ResultColumn(
+        "bracket_wide",
+        "boolean",
+        "",
+        "whether the multiplier is only known to lie in the bracket, which is wider than the method's stated accuracy; "
+        "missing: it is not measured between two loads",
+    ),
     ResultColumn("multiplier_alone", "Float64", "1", "what the run had found by itself, where a neighbour led lower"),
 )
 """What tables of studies have besides."""

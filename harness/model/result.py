@@ -119,6 +119,15 @@ class Result(BaseModel):
         return self.model_dump(mode="json", exclude={"forces", "mechanism", "states", "path"})
 
 
+def is_wide(bracket: tuple[float, float], traits: Traits) -> bool:
+    """Whether a measured bracket is wider than its method states, so that its middle is no value of the multiplier.
+
+    Within the stated accuracy the middle lies at most that far from either end.
+    """
+    low, high = bracket
+    return high - low > max(traits.accuracy * abs(low + high), traits.resolution) * (1.0 + 1e-9)
+
+
 def fastest_vertex(assembly: Assembly, mechanism: FloatArray) -> float:
     """The largest speed of a vertex of the wall under a mechanism (n, 3)."""
     points, block = assembly.corners
