@@ -16,8 +16,8 @@ from harness.engine.provenance import machine, versions
 from harness.model.comparison import CaseResults
 from harness.model.errors import InputError
 from harness.model.method import Answer, Method, allowing, check_takes, load_method, method_names, prepared, traits_of
-from harness.model.reading import validate
 from harness.model.proof import Proof, proof_of
+from harness.model.reading import validate
 from harness.model.result import Judgement, result_of
 from harness.model.result import Result as Record
 

@@ -25,6 +25,7 @@ from harness.model.comparison import CaseResults, ComparisonRun
 from harness.model.difference import Difference, Kind
 from harness.model.errors import InputError, first_few, visible
 from harness.model.fields import LARGEST
+from harness.model.live_load import direction_in_words
 from harness.model.method import Answer, Finding, Status
 from harness.model.proof import LABELS, Proof, Standing, least_known, proof_of
 from harness.model.result import Judgement, Result
@@ -232,6 +233,7 @@ def print_result(result: Result, case: Case, proof: Proof) -> None:
     rows = [
         ("wall", f"{case.file.title} (free blocks: {result.blocks}, interfaces: {result.interfaces})"),
         ("units", case.wall.units_sentence),
+        ("live load", direction_in_words(case) or "none"),
         ("method", result.method),
         ("finding", _value(result) if result.finding is Finding.COLLAPSES else str(result.finding)),
         ("", result.sentence),

@@ -271,7 +271,8 @@ def _percent_used(assembly: Assembly, forces: FloatArray) -> list[int]:
     """Friction used at every interface in whole percent: 100 exactly where it is at its limit, -1 without friction."""
     used = flow.friction_used(assembly, forces)
     below = np.minimum(99, np.rint(100.0 * np.nan_to_num(used, nan=-0.01)))
-    return np.where(flow.at_friction_limit(assembly, forces), 100, below).astype(int).tolist()
+    at_limit = flow.at_friction_limit(assembly, forces)
+    return [int(percent) for percent in np.where(at_limit, 100, below)]
 
 
 def force_unit(results: list[Result]) -> float:

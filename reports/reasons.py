@@ -203,7 +203,3 @@ def _friction(assembly: Assembly, first: Result, second: Result) -> str:
         f" Friction takes {100.0 * shares[0]:.0f} % of the live load’s work in {first.method} "
         f"and {100.0 * shares[1]:.0f} % in {second.method}."
     )
-
-
-def _and(parts: list[str]) -> str:
-    return parts[0] if len(parts) == 1 else f"{', '.join(parts[:-1])} and {parts[-1]}"

@@ -46,7 +46,7 @@ def cost_against_size(run: ComparisonRun) -> Study | None:
         drawings.append((f"Against {what}", charts.svg(chart)))
     return Study(
         "Cost against size",
-        f"What a wall costs grows with its number of blocks, differently for every method. {_slopes(run)}",
+        _slopes(run),
         "Both axes are logarithmic: a slope of 1 means that twice the blocks cost twice the time. Only runs that found "
         "a collapse and were accepted are drawn; time to start the process is not counted. Of limit analysis it is the "
         "time of the whole search; its value is known much earlier.",

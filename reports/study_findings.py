@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 
@@ -35,8 +36,8 @@ def _agreements(table: pd.DataFrame | None) -> Iterator[str]:
     number = {word: int((table["agree"] == word).sum()) for word in ("yes", "no", "open", "")}
     said = f"The families agree within 1 % on {number['yes']} of {numbers.count(len(table), 'wall')}"
     if number["no"]:
-        greatest = table.loc[table["agree"] == "no", "least_percent"].max()
-        said += f" and differ on {number['no']}, by {'up to' if number['no'] > 1 else 'at least'} {greatest:.1f} %"
+        greatest = float(table.loc[table["agree"] == "no", "most_percent"].max())
+        said += f" and differ on {number['no']}" + (f", by up to {greatest:.1f} %" if math.isfinite(greatest) else "")
     said += f"; on {number['open']} brackets do not decide" if number["open"] else ""
     yield said + (f"; {number['']} lack the answer of a family." if number[""] else ".")
 
@@ -50,7 +51,7 @@ def _levels(spread: pd.DataFrame, grid: Sequence[str]) -> Iterator[str]:
         return
     for (case, method), group in groups:
         about = f"{method} on {case}" if told["case"].nunique() > 1 else str(method)
-        least, most = group.loc[group["mean_low"].idxmin()], group.loc[group["mean_high"].idxmax()]
+        least, most = group.sort_values("mean_low").iloc[0], group.sort_values("mean_high").iloc[-1]
         brackets, answered = int(group["brackets"].sum()), int(group["answered"].sum())
         if varied and least.name != most.name:
             mean = "mean multipliers" if (group["answered"] > 1).any() else "multipliers"
@@ -90,9 +91,7 @@ def _failures(table: pd.DataFrame | None, grid: Sequence[str]) -> Iterator[str]:
     several = [name for name in ("case", "method", *grid) if table[name].nunique(dropna=False) > 1]
     for row in table.to_dict("records"):
         where = f" ({', '.join(str(row[name]) for name in several)})" if several else ""
-        share = " to ".join(
-            dict.fromkeys(f"{100 * row[name]:.0f}" for name in ("probability", "probability_at_most"))
-        )
+        share = " to ".join(dict.fromkeys(f"{100 * row[name]:.0f}" for name in ("probability", "probability_at_most")))
         yield (
             f"At multiplier {row['multiplier']:g}{where}, {share} % of {row['walls']} walls "
             f"have collapsed; 95 % interval {100 * row['low']:.0f} to {100 * row['high']:.0f} %."

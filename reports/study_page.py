@@ -11,6 +11,7 @@ from typing import Any
 import pandas as pd
 from markupsafe import Markup
 
+from harness.model.ranges import percent_text
 from harness.model.writing import write_whole
 from reports import charts
 from reports.environment import environment
@@ -21,15 +22,15 @@ MOST_SERIES, MOST_CHARTS, MOST_ROWS, FOLDED = 12, 40, 400, 20
 longer table is folded."""
 
 READ = {
-    "agreement": "A row is a point of the grid, a column a value of the quantity on the axis. “agree”: the multipliers of "
-    "all families lie within 1 % of the lowest. Otherwise the cell gives how far the highest lies above the lowest; two "
-    "numbers are the least and the greatest difference that brackets allow. “open”: the brackets do not decide.",
-    "failure": "Share of walls that collapse at or below a multiplier, with Wilson's score interval at 95 %. A wall whose "
-    "wide bracket holds the multiplier counts in `probability_at_most` only.",
+    "agreement": "A row is a point of the grid, a column a value of the quantity on the axis. “agree”: the multipliers "
+    "of all families lie within 1 % of the lowest. Otherwise the cell gives how far the highest lies above the lowest; "
+    "two numbers are the least and the greatest difference that brackets allow. “open”: the brackets do not decide.",
+    "failure": "Share of walls that collapse at or below a multiplier, with Wilson's score interval at 95 %. A wall "
+    "whose wide bracket holds the multiplier counts in `probability_at_most` only.",
     "sensitivity": "Borgonovo's delta: 0 where a quantity does not matter, 1 where nothing else does; and the share of "
     "the variance it explains alone.",
-    "quantiles": "One line a group of walls: how many answered, how many of them with a wide bracket, mean and standard "
-    "deviation without these, the mean and quantiles of all as low and as high as the brackets allow.",
+    "quantiles": "One line a group of walls: how many answered, how many of them with a wide bracket, mean and "
+    "standard deviation without these, the mean and quantiles of all as low and as high as the brackets allow.",
     "neighbours": "Runs that a mechanism of a neighbouring wall led lower, and what they had found alone. A search "
     "that misses a state at one point of a study may find it at the next.",
     "fragility": "Probability of collapse counted over walls (95 % by Greenwood, log-log) beside a lognormal curve "
@@ -114,8 +115,7 @@ def _agreement(row: Mapping[Hashable, Any]) -> str:
         return "no answer of all"
     if row["agree"] == "yes":
         return "agree"
-    least, most = (f"{row[name]:.1f}" for name in ("least_percent", "most_percent"))
-    apart = f"{least} %" if least == most else f"{least} to {most} %"
+    apart = percent_text(0.01 * row["least_percent"], 0.01 * row["most_percent"])
     return f"open, {apart}" if row["agree"] == "open" else apart
 
 
@@ -158,7 +158,7 @@ def _main_axis(table: pd.DataFrame, grid: Sequence[str]) -> str | None:
 
 
 def _over_axis(table: pd.DataFrame, axis: str, grid: Sequence[str], of: str = "") -> tuple[charts.Chart, int]:
-    """Medians over a quantity with the quantiles, and how many lines are left out; a median of wide brackets is a bar."""
+    """Medians and quantiles over a quantity, and how many lines are left out; wide brackets are bars alone."""
     series = []
     others = [name for name in grid if name != axis]
     for name, group in _groups(table[table[axis].notna()], ["case", "method", *others]):

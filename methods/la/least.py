@@ -234,6 +234,4 @@ def _sentence(search: Search, best: CollapseState, proof: Proof) -> str:
         )
     source = search.record.improvements[-1].source
     descent = "" if search.budget.limits.descents else ", without descent because of the size of the wall"
-    return (
-        f"The least collapse multiplier known is {least:.7g}{descent}; it was found by way of {source}."
-    )
+    return f"The least collapse multiplier known is {least:.7g}{descent}; it was found by way of {source}."

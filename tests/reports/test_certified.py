@@ -38,7 +38,9 @@ def test_the_minimum_of_a_wall_with_a_certificate_is_called_so():
     assert item.certified is not None
     assert LEAST * (1 - 2e-6) <= item.certified.bound <= LEAST
     assert "(LA, minimum, proved)" in wall_findings(item)
-    assert "minimum, proved: an exact certificate proves that no collapse state lies below 0.557997" in which_number(item)
+    assert "minimum, proved: an exact certificate proves that no collapse state lies below 0.557997" in which_number(
+        item
+    )
     rows = {result.method: run_row(0, number, item) for number, result in enumerate(item.results)}
     assert rows["la"].proved
     assert not rows["fe"].proved

@@ -33,9 +33,9 @@ def test_one_wall_opens_with_its_multipliers_and_the_number_to_use():
     opened = opening.opening(ComparisonRun("mine", "", "", [of_one_wall()]))
     told = " ".join(opened.findings)
     assert told.startswith("mine collapses at 0.55800 (LA, least known); FE 0.56520, DE [0.45000, 0.61000].")
-    assert "They part by 1.3 %: the mechanisms differ." in told, "a bracket that holds both parts nobody"
+    assert "They differ by 1.3 to 25.6 %: the mechanisms of LA and FE differ." in told, "a bracket has two ends"
     assert "For safety use 0.55800 (la), least known: a lower collapse state is not excluded." in opened.advice
-    assert "Never use 0.58400 (la-associated, 4.7 % above)" in opened.advice
+    assert "Do not rely on 0.58400, which is 4.7 % above the least multiplier (la-associated)" in opened.advice
     assert opened.red == []
     assert 'class="other"' in opened.figure
     assert "0.2 m</text>" in opened.figure
@@ -75,7 +75,7 @@ def test_suite_names_every_red_row_and_broken_theory_comes_first():
         "hostile, de",
     }
     assert any(finding.startswith("single-block collapses at 0.40000") for finding in opened.findings)
-    assert any("the mechanism is the same and the forces differ" in finding for finding in opened.findings)
+    assert any("is the same, but equilibrium does not determine the forces" in finding for finding in opened.findings)
 
 
 def test_search_that_missed_a_state_is_told_as_such_and_no_method_is_called_wrong():

@@ -17,6 +17,7 @@ from reports import (
     curves,
     drawing,
     families,
+    flow,
     grid,
     numbers,
     paper,
@@ -323,7 +324,7 @@ def test_grid_names_who_stands_apart_and_how_far():
     assert "agree within 1 % on 2 of 4 walls" in study.sentence
     assert "LA low 5 %" in study.table
     assert "DE high 10 %" in study.table
-    assert "In 1 of the 2 where they part, LA is low" in study.sentence
+    assert "On 1 of the 2 walls where they differ, LA is lowest, by 5 % from the middle one" in study.sentence
 
 
 def test_grid_says_where_the_least_known_falls_as_friction_grows():

@@ -81,8 +81,9 @@ def row_of(run: SweepRun, summary: Mapping[str, Any]) -> Row:
     """The row of a result, given as JSON values."""
     low, high = summary.get("bracket") or (None, None)
     judgement = Judgement.model_validate(summary.get("judge") or {})
-    measured = low is not None and summary.get("flow") == "approximate"
-    wide = is_wide((low, high), Traits.model_validate(summary.get("traits") or {})) if measured else None
+    wide = None
+    if low is not None and high is not None and summary.get("flow") == "approximate":
+        wide = is_wide((low, high), Traits.model_validate(summary.get("traits") or {}))
     return (
         _place(run)
         | {name: summary.get(name) for name in TAKEN}

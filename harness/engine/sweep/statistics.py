@@ -14,6 +14,7 @@ from scipy import stats
 
 from harness.model.assembly import FloatArray
 from harness.model.method import Finding, Status
+from harness.model.ranges import differences
 
 SHARES = (0.05, 0.25, 0.5, 0.75, 0.95)
 CONFIDENCE = 0.95
@@ -61,7 +62,9 @@ def quantiles(table: pd.DataFrame, by: Sequence[str]) -> pd.DataFrame:
             found[f"q{100 * share:02.0f}_{end}"] = groups[column].quantile(share)
     asked = table.groupby(list(by), dropna=False).size().rename("runs")
     counts = ["answered", "brackets"]
-    return found.join(asked, how="right").fillna(dict.fromkeys(counts, 0)).astype(dict.fromkeys(counts, int)).reset_index()
+    return (
+        found.join(asked, how="right").fillna(dict.fromkeys(counts, 0)).astype(dict.fromkeys(counts, int)).reset_index()
+    )
 
 
 def failure_probability(table: pd.DataFrame, by: Sequence[str], multipliers: Sequence[float]) -> pd.DataFrame:
@@ -120,19 +123,6 @@ def agreement(table: pd.DataFrame, by: Sequence[str], within: float = 0.01) -> p
     return pd.DataFrame(rows)
 
 
-def differences(ends: Sequence[tuple[float, float]]) -> tuple[float, float]:
-    """Least and greatest possible (highest - lowest) / lowest of values in intervals; infinite where the lowest is 0."""
-    lows, highs = [low for low, _ in ends], [high for _, high in ends]
-    least = max(lows) / min(highs) - 1.0 if min(highs) > 0.0 else np.inf if max(lows) > 0.0 else 0.0
-    most = max(
-        (high / low - 1.0 if low > 0.0 else np.inf if high > 0.0 else 0.0)
-        for k, (low, _) in enumerate(ends)
-        for j, (_, high) in enumerate(ends)
-        if k != j
-    )
-    return max(0.0, least), max(0.0, most)
-
-
 def _range_text(low: float, high: float) -> str:
     return f"{low:.6g}" if low == high else f"[{low:.6g}, {high:.6g}]"
 
@@ -158,7 +148,7 @@ def fragility(table: pd.DataFrame, by: Sequence[str]) -> pd.DataFrame:
 
 
 def _between(place: dict[str, Any], earliest: FloatArray, latest: FloatArray) -> list[dict[str, Any]]:
-    """The shares counted if walls with wide brackets collapse as early, and as late, as these allow; no fitted curve."""
+    """The shares counted if walls with wide brackets collapse as early, and as late, as these allow; no fit."""
     early, late = ({row["multiplier"]: row for row in _curve(place, values)} for values in (earliest, latest))
     rows, surely, perhaps = [], dict.fromkeys(("probability", "low"), 0.0), dict.fromkeys(("probability", "high"), 0.0)
     for at in sorted({*early, *late}):

@@ -117,8 +117,8 @@ def summarise(study: Study, rows: pd.DataFrame) -> Summary:
     brackets = int(counted["multiplier"].isna().sum())
     if brackets:
         remarks.append(
-            f"{brackets} of {len(rows)} runs give a bracket wider than the stated accuracy of their method. They are in "
-            "no mean and in no sensitivity; quantiles and probabilities are given as low and high as they allow."
+            f"{brackets} of {len(rows)} runs give a bracket wider than the stated accuracy of their method. They are "
+            "in no mean and in no sensitivity; quantiles and probabilities are given as low and high as they allow."
         )
     agreement = statistics.agreement(rows, ["case", *varied_of(study)])
     if len(agreement) > 1:
