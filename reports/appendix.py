@@ -93,7 +93,7 @@ def render(run: ComparisonRun) -> str:
     item = min(run.cases, key=_collapse)
     case, shown = item.case, _shown(item)
     listed, balance = _reactions(item, shown)
-    document = json.dumps(case.wall.document(), sort_keys=True, ensure_ascii=False)
+    document = json.dumps(run.cases[0].case.wall.document(), sort_keys=True, ensure_ascii=False)
     return (
         environment()
         .get_template("appendix.html.j2")

@@ -34,7 +34,7 @@ class Standing(StrEnum):
 
 LABELS = {
     Standing.MINIMUM: "minimum, proved",
-    Standing.TO_ROUNDING: "least by branch and bound, to rounding",
+    Standing.TO_ROUNDING: "least, to rounding",
     Standing.KNOWN: "least known",
     Standing.NONE: "",
 }
