@@ -14,8 +14,10 @@ from harness.engine.judge import judge as judge_result
 from harness.engine.plan import Limits, Run, check_methods, check_shares
 from harness.engine.provenance import machine, versions
 from harness.model.answer_check import checked
+from harness.model.comparison import CaseResults
 from harness.model.errors import InputError
 from harness.model.method import Answer, Method, allowing, check_takes, load_method, method_names, prepared, traits_of
+from harness.model.proof import Proof, proof_of
 from harness.model.reading import validate
 from harness.model.result import Judgement, result_of
 from harness.model.result import Result as Record
@@ -32,12 +34,13 @@ class Result(Record):
     """
 
     _wall: Wall = PrivateAttr()
+    _of: tuple[CaseResults, Record] | None = PrivateAttr(None)
 
     @classmethod
-    def on(cls, wall: Wall, record: Record) -> Result:
-        """A result together with its wall."""
+    def on(cls, wall: Wall, record: Record, compared: CaseResults | None = None) -> Result:
+        """A result together with its wall, and with the others of a comparison that it is one of."""
         made = cls.model_construct(**{name: getattr(record, name) for name in Record.model_fields})
-        made._wall = wall
+        made._wall, made._of = wall, None if compared is None else (compared, record)
         return made
 
     @property
@@ -45,11 +48,25 @@ class Result(Record):
         """The wall it is about."""
         return self._wall
 
+    @property
+    def proof(self) -> Proof:
+        """What is proved of its multiplier, by its method and by the certificate of its wall, if one is known.
+
+        >>> import drystone
+        >>> str(drystone.analyse(drystone.library_wall("slide")).proof.standing)
+        'minimum'
+        """
+        from harness.certificates import certified_results
+
+        if self._of is None:
+            self._of = certified_results(self._wall.case, self), self
+        return proof_of(*self._of)
+
     def to_pandas(self) -> pd.DataFrame:
         """One row with the columns of results.csv; `attrs["units"]` names the unit of each measured column."""
         from reports.export import result_frame
 
-        return result_frame([self])
+        return result_frame([(self, self.proof)])
 
     def forces_to_pandas(self) -> pd.DataFrame:
         """Contact forces: one row an interface with its blocks and n1, n2, s; `attrs["units"]` names the unit."""

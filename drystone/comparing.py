@@ -48,7 +48,7 @@ class Comparison:
         """One row a wall and method, the columns of results.csv; `attrs["units"]` names the units."""
         from reports.export import result_frame
 
-        return result_frame(self.results)
+        return result_frame((result, result.proof) for result in self.results)
 
     def multipliers(self) -> pd.DataFrame:
         """Multipliers by wall (rows) and method (columns), in the order given."""
@@ -140,7 +140,7 @@ def compare(
         if opened is not None:
             engine.remember(opened, run, planned)
     by_name = {wall.name: wall for wall in chosen}
-    rows = [Result.on(by_name[item.case.id], result) for item in run.cases for result in item.results]
+    rows = [Result.on(by_name[item.case.id], each, item) for item in run.cases for each in item.results]
     return Comparison(chosen, rows, run)
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import functools
 import gzip
 import json
 import math
@@ -11,12 +12,16 @@ from fractions import Fraction
 from pathlib import Path
 from typing import Any
 
+import numpy as np
+
 from harness.engine.plan import Limits, Run
-from harness.model.case import Case
+from harness.model.assembly import Assembly
+from harness.model.case import Case, read_case, shipped_cases
 from harness.model.comparison import CaseResults, Certified, ComparisonRun, Gate
+from harness.model.content import content_of
 from harness.model.errors import InputError
 from harness.model.library import library
-from harness.model.method import Finding
+from harness.model.proof import is_collapse_state
 from harness.model.reading import json_of, read_bytes
 from harness.model.result import Result, Verdict
 from harness.model.writing import write_whole
@@ -36,9 +41,37 @@ ROUNDING = 1e-9
 def certificate_of(case: Case) -> Path | None:
     """The certificate beside the wall of a case, if there is one."""
     folder = Path(case.origin).parent
-    if not (folder / "case.toml").is_file():
-        return None
+    return _certificate_in(folder) if (folder / "case.toml").is_file() else None
+
+
+def _certificate_in(folder: Path) -> Path | None:
     return next((path for path in (folder / CERTIFICATE, folder / (CERTIFICATE + PACKED)) if path.is_file()), None)
+
+
+@functools.cache
+def _library() -> dict[str, tuple[Path, ...]]:
+    """The certificates of the case library, by the content of their walls."""
+    found: dict[str, tuple[Path, ...]] = {}
+    for folder in sorted(path.parent for path in shipped_cases().glob("*/case.toml")):
+        path = _certificate_in(folder)
+        if path is not None:
+            key = content_of(read_case(folder).assembly)
+            found[key] = (*found.get(key, ()), path)
+    return found
+
+
+def certificates_for(case: Case) -> list[Path]:
+    """The certificates that may be of the wall of a case: the one beside it, else those of equal walls of the library.
+
+    Whether one of the library is of this wall is decided by `checked`: equal content is only how it is found.
+    """
+    beside = certificate_of(case)
+    if beside is not None:
+        return [beside]
+    try:
+        return list(_library().get(content_of(case.assembly), ()))
+    except InputError:  # a wall that cannot be built, which its row says
+        return []
 
 
 def read_certificate(path: Path) -> Any:
@@ -80,9 +113,18 @@ def checked(case: Case, path: Path) -> Certified:
         CertificateError: it proves nothing, or of another wall.
         InputError: unreadable.
     """
-    document = read_certificate(path)
-    require_same_wall(document, case.assembly)
-    return Certified(_not_above(verify(document)[0]), proved(document), path.name)
+    document, assembly, source = read_certificate(path), case.assembly, path.name
+    if path != certificate_of(case):
+        assembly, source = _named_as(document, assembly), f"{path.parent.name}/{path.name}"
+    require_same_wall(document, assembly)
+    return Certified(_not_above(verify(document)[0]), proved(document), source)
+
+
+def _named_as(document: Any, assembly: Assembly) -> Assembly:
+    """A wall with its free blocks named as in a certificate of an equal one: names do not bear on a multiplier."""
+    names = np.array(assembly.block_ids, dtype=object)
+    names[assembly.free] = [block["id"] for block in document["blocks"]]
+    return replace(assembly, block_ids=names.tolist())
 
 
 def certificate_runs(cases: Sequence[Case], limits: Limits) -> list[Run]:
@@ -143,15 +185,20 @@ def with_certificates(run: ComparisonRun) -> ComparisonRun:
 
 
 def _with_certificate(item: CaseResults) -> CaseResults:
-    path = certificate_of(item.case)
-    if path is None:
-        return item
     statement = "no collapse state lies below the bound that the certificate of the wall proves in fractions"
-    try:
-        certified = checked(item.case, path)
-    except (CertificateError, InputError) as error:
-        gate = Gate(name="certificate", statement=statement, passed=False, sentence=f"{path.name} is refused: {error}")
-        return replace(item, gates=[*item.gates, gate])
+    certified = None
+    for path in certificates_for(item.case):
+        try:
+            certified = checked(item.case, path)
+        except (CertificateError, InputError) as error:
+            if path != certificate_of(item.case):
+                continue  # of a wall of the library that is not quite this one
+            gate = Gate(
+                name="certificate", statement=statement, passed=False, sentence=f"{path.name} is refused: {error}"
+            )
+            return replace(item, gates=[*item.gates, gate])
+    if certified is None:
+        return item
     judged = [each for each in item.results if each.traits.seeks_least and each.judge.accepted]
     found = [each for each in judged if each.multiplier is not None]
     low = [each for each in found if _below(each, certified.bound)]
@@ -160,9 +207,15 @@ def _with_certificate(item: CaseResults) -> CaseResults:
         name="certificate",
         statement=statement,
         passed=not low if found else None,
-        sentence=f"{told}; bound {certified.bound:.9g} ({path.name})",
+        sentence=f"{told}; bound {certified.bound:.9g} ({certified.source})",
     )
     return replace(item, gates=[*item.gates, gate], certified=certified)
+
+
+def certified_results(case: Case, result: Result) -> CaseResults:
+    """One result of a wall, with what the certificate of the wall proves where one is known and there is a state."""
+    item = CaseResults(case, [result])
+    return _with_certificate(item) if is_collapse_state(result) else item
 
 
 def _below(result: Result, bound: float) -> bool:

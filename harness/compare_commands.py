@@ -23,6 +23,7 @@ from harness.junit import tests_of_comparison, write_junit
 from harness.model.comparison import ComparisonRun
 from harness.model.errors import InputError
 from harness.model.library import library
+from harness.model.live_load import is_horizontal, reversed_live
 from harness.options import (
     cases_option,
     catching,
@@ -170,17 +171,23 @@ def report(report: Path, figures: bool, appendix: str | None, store: Path) -> No
 
 
 def _appendix(wall: str, folder: Path, store: Path) -> None:
-    """Run the methods on one wall and write its appendix; the PDF where a browser is installed."""
+    """Run the methods on one wall and write its appendix; the PDF where a browser is installed.
+
+    A horizontal live load is analysed both ways: an earthquake comes from either side.
+    """
     from reports.appendix import write_appendix
 
     chosen = find_cases([wall], None, ())
     warn(chosen[0])
+    title = chosen[0].id
+    if is_horizontal(chosen[0]):
+        chosen = [*chosen, reversed_live(chosen[0])]
     runs = [planned for case in chosen for planned in plan_case(case, None, Limits())]
     announce(planned.method for planned in runs)
     with open_store(store) as opened, terminal.progress(len(runs), quiet=False) as told:
         results = comparing.execute(runs, opened, os.cpu_count() or 1, told=told)
-    compared = comparing.comparison_run(chosen[0].id, _command_line(), chosen, runs, results)
-    page = folder / f"{chosen[0].id}-appendix.html"
+    compared = with_certificates(comparing.comparison_run(title, _command_line(), chosen, runs, results))
+    page = folder / f"{title}-appendix.html"
     write_appendix(compared, page)
     say(f"Appendix: {page}")
     try:

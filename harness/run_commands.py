@@ -61,7 +61,7 @@ def run(
     limits = Limits(seconds, memory * 2**20)
     result = analyse_by(Wall(found), method, chosen, isolated=True, limits=limits, processes=jobs)
     if as_json:
-        print_json(result.model_dump(mode="json") if fields else result.summary())
+        print_json(terminal.result_json(result, result.proof, fields=fields))
     else:
-        terminal.print_result(result, found)
+        terminal.print_result(result, found, result.proof)
     sys.exit(1 if result.status is not Status.OK else terminal.JUDGED[result.judge.accepted])

@@ -20,16 +20,20 @@ from harness.engine.regression import violations
 from harness.model.assembly import Assembly
 from harness.model.case import Case
 from harness.model.columns import BY_NAME, PRINTED
-from harness.model.comparison import ComparisonRun
+from harness.model.comparison import CaseResults, ComparisonRun
 from harness.model.difference import Difference, Kind
 from harness.model.errors import InputError, first_few, visible
 from harness.model.fields import LARGEST
+from harness.model.live_load import direction_in_words
 from harness.model.method import Answer, Finding, Status
+from harness.model.proof import LABELS, Proof, Standing, least_known, proof_of
 from harness.model.result import Judgement, Result
 
 JUDGED = {True: 0, False: 1, None: 3}
 """Exit codes for an answer that is accepted, rejected, or shows nothing that proves or refutes its claim."""
 
+PROVED = "∎"
+"""Before the multiplier of a proved minimum, as in the report."""
 MARKS = {
     "agrees": "✓ agrees",
     "not_tested": "· not tested",
@@ -136,7 +140,7 @@ def print_comparison(compared: ComparisonRun, report: Path | None) -> None:
             table.add_row(
                 escape(case.case.id) if number == 0 else "",
                 escape(result.method),
-                _value(result),
+                f"{PROVED} {_value(result)}" if _is_minimum(case, result) else _value(result),
                 escape(_expected(result)),
                 MARKS[str(result.verdict)],
                 _residual(result),
@@ -144,6 +148,8 @@ def print_comparison(compared: ComparisonRun, report: Path | None) -> None:
                 end_section=number == len(case.results) - 1,
             )
     console.print(table)
+    for sentence in _proofs(compared):
+        console.print(escape(sentence), highlight=False)
     units: dict[str, list[str]] = {}
     for case in compared.cases:
         units.setdefault(case.case.wall.units_sentence, []).append(case.case.id)
@@ -172,6 +178,21 @@ def print_comparison(compared: ComparisonRun, report: Path | None) -> None:
         print(visible(f"Report: {report}"))
 
 
+def _is_minimum(case: CaseResults, result: Result) -> bool:
+    return proof_of(case, result).standing is Standing.MINIMUM
+
+
+def _proofs(compared: ComparisonRun) -> Iterator[str]:
+    """What is proved of the least state of one wall; of several walls, what the mark of a proved minimum means."""
+    if len(compared.cases) == 1:
+        (case,) = compared.cases
+        least = least_known(case)
+        if least is not None:
+            yield f"{least.method}: {proof_of(case, least).sentence}"
+    elif any(_is_minimum(case, result) for case in compared.cases for result in case.results):
+        yield f"{PROVED} {LABELS[Standing.MINIMUM]}: an exact certificate proves that no collapse state lies lower."
+
+
 def _all_well(gated: int, gates: int) -> str:
     """What was held against what, where all of it holds; a wall of one's own has no references."""
     known = f"All {gated} gated references hold" if gated else "Nothing is known beforehand to hold the answers against"
@@ -192,7 +213,7 @@ def comparison_json(compared: ComparisonRun, report: Path | None) -> dict[str, A
         "cases": [
             {
                 "id": case.case.id,
-                "results": [result.summary() for result in case.results],
+                "results": [result_json(result, proof_of(case, result)) for result in case.results],
                 "gates": [gate.model_dump(mode="json") for gate in case.gates],
             }
             for case in compared.cases
@@ -201,17 +222,26 @@ def comparison_json(compared: ComparisonRun, report: Path | None) -> dict[str, A
     }
 
 
-def print_result(result: Result, case: Case) -> None:
+def result_json(result: Result, proof: Proof, *, fields: bool = False) -> dict[str, Any]:
+    """A result as JSON values, with forces, mechanism, states and path if `fields`, and with what is proved of it."""
+    values = result.model_dump(mode="json") if fields else result.summary()
+    return values | {"proof": proof.as_json()}
+
+
+def print_result(result: Result, case: Case, proof: Proof) -> None:
     """One result, for a person."""
     rows = [
         ("wall", f"{case.file.title} (free blocks: {result.blocks}, interfaces: {result.interfaces})"),
         ("units", case.wall.units_sentence),
+        ("live load", direction_in_words(case) or "none"),
         ("method", result.method),
         ("finding", _value(result) if result.finding is Finding.COLLAPSES else str(result.finding)),
         ("", result.sentence),
     ]
     if result.bracket is not None:
         rows.append(("bracket", f"[{result.bracket[0]:.7g}, {result.bracket[1]:.7g}] {result.bracket_meaning}"))
+    if proof.sentence:
+        rows.append(("proof", proof.sentence))
     rows += [("status", str(result.status)), ("judge", result.judge.sentence)]
     rows += [("", f"{name} {value:.2e}") for name, value in result.judge.residuals.items()]
     for comparison in result.comparisons:

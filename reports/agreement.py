@@ -10,6 +10,7 @@ import numpy as np
 from harness.model.assembly import Assembly, FloatArray, polygon_area
 from harness.model.comparison import CaseResults
 from harness.model.method import Status
+from harness.model.ranges import Range, differences, range_of
 from harness.model.result import Result
 from reports import shapes, words
 from reports.once import once
@@ -39,30 +40,22 @@ class Agreement:
     within: bool = False
 
 
-def range_of(result: Result) -> tuple[float, float] | None:
-    """Where the multiplier lies as the method vouches for it: a measured one in its bracket, another at its value."""
-    if result.multiplier is None:
-        return None
-    if result.flow == "approximate" and result.bracket is not None:
-        return result.bracket
-    return result.multiplier, result.multiplier
-
-
 def mains(item: CaseResults) -> list[Result]:
     """The main method of every family that gave an answer, in the paper's order."""
     return [result for result in item.mains if result.status is Status.OK]
 
 
-def spread(item: CaseResults) -> float | None:
-    """How far the families are apart at least, as a share of the lowest; a measured value is its whole bracket."""
+def spread(item: CaseResults) -> Range | None:
+    """How far the multipliers of the families lie from each other, as a share of the lowest: least and most possible.
+
+    None where fewer than two families give a collapse multiplier that the judge does not reject.
+    """
     known = [
         ends
         for r in mains(item)
         if r.finding.has_multiplier and r.judge.accepted is not False and (ends := range_of(r)) is not None
     ]
-    if len(known) < 2 or min(high for _, high in known) <= 0.0:
-        return None
-    return max(0.0, max(low for low, _ in known) / min(high for _, high in known) - 1.0)
+    return differences(known) if len(known) > 1 else None
 
 
 def _difference(first: Result, second: Result) -> tuple[float | None, bool]:

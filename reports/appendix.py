@@ -5,6 +5,7 @@ from __future__ import annotations
 import hashlib
 import io
 import json
+import math
 from dataclasses import dataclass
 from importlib.resources import files
 from pathlib import Path
@@ -15,7 +16,9 @@ from matplotlib.figure import Figure
 
 from harness.model.assembly import FloatArray
 from harness.model.comparison import CaseResults, ComparisonRun
-from harness.model.method import Status
+from harness.model.live_load import direction_in_words
+from harness.model.method import Finding, Status
+from harness.model.proof import least_known, proof_of
 from harness.model.result import Result
 from harness.model.writing import write_whole
 from reports import numbers, shapes, words
@@ -24,7 +27,6 @@ from reports.facts import facts, value_in_words
 from reports.figures import results_figure, style, wall_figure
 from reports.opening import wall_findings, which_number
 from reports.reactions import Reaction, out_of_balance, reactions
-from reports.reasons import least_known
 
 
 @dataclass(frozen=True)
@@ -76,7 +78,7 @@ class BlockRow:
 
 
 def write_appendix(run: ComparisonRun, path: Path) -> None:
-    """Write the appendix of the only wall of a comparison as one HTML file, ready to print on A4."""
+    """Write the appendix of one wall as one HTML file, ready to print on A4."""
     write_whole(path, render(run))
 
 
@@ -84,22 +86,25 @@ def render(run: ComparisonRun) -> str:
     """The appendix as text.
 
     Args:
-        run: a comparison of one wall.
+        run: a comparison of one wall; or of two, the second with the opposite live load. The one that collapses at the
+            lower multiplier governs, and is the one whose state is shown.
     """
-    (item,) = run.cases
+    item = min(run.cases, key=_collapse)
     case, shown = item.case, _shown(item)
     listed, balance = _reactions(item, shown)
-    document = json.dumps(case.wall.document(), sort_keys=True, ensure_ascii=False)
+    document = json.dumps(run.cases[0].case.wall.document(), sort_keys=True, ensure_ascii=False)
     return (
         environment()
         .get_template("appendix.html.j2")
         .render(
             run=run,
             case=case,
-            origin=Path(case.origin).name,
+            origin=Path(run.cases[0].case.origin).name,
             digest=hashlib.sha256(document.encode()).hexdigest()[:16],
             finding=wall_findings(item),
             advice=which_number(item),
+            ways=_ways(run.cases, item) if len(run.cases) > 1 else [],
+            direction=direction_in_words(item.case),
             facts=facts(case),
             assumptions=ASSUMPTIONS,
             loads=_loads(item),
@@ -121,6 +126,27 @@ def render(run: ComparisonRun) -> str:
             numbers=numbers,
         )
     )
+
+
+def _collapse(item: CaseResults) -> float:
+    """The multiplier by which a direction of the live load governs: none is known where nothing collapses."""
+    least = least_known(item)
+    if least is not None and least.multiplier is not None:
+        return least.multiplier
+    falls = any(r.finding is Finding.FALLS and r.judge.accepted is not False for r in item.results)
+    return 0.0 if falls else math.inf
+
+
+def _ways(items: list[CaseResults], governing: CaseResults) -> list[tuple[str, str, str, bool]]:
+    """For each direction of the live load: its name, the least multiplier, what is proved of it, whether it governs."""
+    rows = []
+    for item in items:
+        least = least_known(item)
+        answers = dict.fromkeys(words.FINDING[result.finding] for result in item.mains)
+        value = ", ".join(answers) if least is None else f"{numbers.multiplier(least.multiplier)} ({least.method})"
+        proved = "" if least is None else proof_of(item, least).label
+        rows.append((direction_in_words(item.case), value, proved, item is governing))
+    return rows
 
 
 def _drawn(item: CaseResults) -> bool:

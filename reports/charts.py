@@ -275,9 +275,13 @@ def _series(series: Series, number: int, across: Axis, up: Axis) -> Markup:
     if series.curve:
         drawn += _fitted(series, number, across, up)
     elif series.line and len(points) > 1:
-        path = f"M{points[0][0]:.1f} {points[0][1]:.1f}"
-        for px, py, _, _ in points[1:]:
-            path += f"H{px:.1f}V{py:.1f}" if series.step else f"L{px:.1f} {py:.1f}"
+        path, joined = "", False
+        for px, py, _, _ in places:
+            if px is None or py is None:  # no value here: the line has a gap
+                joined = False
+                continue
+            on = f"H{px:.1f}V{py:.1f}" if series.step else f"L{px:.1f} {py:.1f}"
+            path, joined = path + (on if joined else f"M{px:.1f} {py:.1f}"), True
         drawn += Markup('<path {} stroke-dasharray="{}" d="{}"/>').format(line, dashes, path)
     bar = Markup(str(line).replace('class="line', 'class="bar'))
     for x, low, high in zip(series.x, series.low, series.high, strict=False) if not series.curve else ():

@@ -261,9 +261,18 @@ def result_data(case: Case, result: Result, force_unit: float, *, fields: str = 
         data["spin"] = 1.0 / (1e4 * scale)
         data["s"] = "".join(joints.LETTER[state] for state in joints.joint_states(assembly, result) or [])
     if fields == "all" and result.forces is not None and len(result.forces) == assembly.n_interfaces:
-        steps = np.rint(np.asarray(result.forces, dtype=float) / force_unit * FORCE_STEPS).astype(int)
-        data["f"] = steps.ravel().tolist()
+        forces = np.asarray(result.forces, dtype=float)
+        data["f"] = np.rint(forces / force_unit * FORCE_STEPS).astype(int).ravel().tolist()
+        data["used"] = _percent_used(assembly, forces)
     return data
+
+
+def _percent_used(assembly: Assembly, forces: FloatArray) -> list[int]:
+    """Friction used at every interface in whole percent: 100 exactly where it is at its limit, -1 without friction."""
+    used = flow.friction_used(assembly, forces)
+    below = np.minimum(99, np.rint(100.0 * np.nan_to_num(used, nan=-0.01)))
+    at_limit = flow.at_friction_limit(assembly, forces)
+    return [int(percent) for percent in np.where(at_limit, 100, below)]
 
 
 def force_unit(results: list[Result]) -> float:

@@ -7,13 +7,14 @@ import io
 import json
 import re
 import tempfile
-from collections.abc import Sequence
+from collections.abc import Iterable
 from importlib.util import find_spec
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from harness.model import columns
 from harness.model.comparison import CaseResults, ComparisonRun
+from harness.model.proof import Proof, proof_of
 from harness.model.result import Result
 from harness.model.writing import cell, write_whole
 from reports import charts, shapes, vectors, words
@@ -55,7 +56,7 @@ def export(run: ComparisonRun, folder: Path, *, drawn: bool = False) -> None:
         drawn: whether each case gets a figure as PDF too; a figure takes longer than all the rest of its case.
     """
     folder.mkdir(parents=True, exist_ok=True)
-    rows = [_result_row(result) for item in run.cases for result in item.results]
+    rows = [_result_row(result, proof_of(item, result)) for item in run.cases for result in item.results]
     contents: dict[str, bytes] = {
         "results.csv": _csv(tuple(columns.TYPES), rows),
         "comparisons.csv": _csv(COMPARISON_COLUMNS, _comparison_rows(run)),
@@ -68,6 +69,7 @@ def export(run: ComparisonRun, folder: Path, *, drawn: bool = False) -> None:
             contents[name] = _json(
                 result.model_dump(mode="json")
                 | {
+                    "proof": proof_of(item, result).as_json(),
                     "block_ids": [] if shapes.problem(item.case) else list(item.case.assembly.block_ids),
                     "units": item.case.wall.units.model_dump(mode="json", exclude_none=True),
                 }
@@ -149,12 +151,15 @@ def _json(data: Any) -> bytes:
     return (json.dumps(data, indent=1, ensure_ascii=False, default=str) + "\n").encode()
 
 
-def _result_row(result: Result) -> dict[str, Any]:
+def _result_row(result: Result, proof: Proof) -> dict[str, Any]:
     worst = result.judge.worst
     row = result.model_dump(mode="json", include=set(columns.TYPES))
     return row | {
         "bracket_low": result.bracket[0] if result.bracket else None,
         "bracket_high": result.bracket[1] if result.bracket else None,
+        "proof": str(proof.standing),
+        "proof_sentence": proof.sentence,
+        "proved_bound": proof.bound,
         "judge_accepted": result.judge.accepted,
         "judge_tolerance": result.judge.tolerance,
         "judge_worst_residual": worst[1] if worst else None,
@@ -233,9 +238,9 @@ def _parquet(rows: list[dict[str, Any]]) -> bytes:
     return sink.getvalue()
 
 
-def result_frame(results: Sequence[Result]) -> pd.DataFrame:
-    """Results as a table with the columns of results.csv and their types; units in `attrs["units"]`."""
-    table = _frame([_result_row(result) for result in results])
+def result_frame(results: Iterable[tuple[Result, Proof]]) -> pd.DataFrame:
+    """Results, each with what is proved of it, with the columns of results.csv; units in `attrs["units"]`."""
+    table = _frame([_result_row(result, proof) for result, proof in results])
     table.attrs["units"] = dict(columns.UNITS)
     return table
 

@@ -7,6 +7,7 @@ import numpy as np
 from harness.model.assembly import Assembly
 from harness.model.case import Case
 from harness.model.interfaces import limits_of
+from harness.model.live_load import direction_in_words
 from harness.model.method import Finding
 from harness.model.result import Result
 from harness.model.wall import Detection
@@ -25,8 +26,6 @@ def facts(case: Case) -> list[tuple[str, str]]:
     """Names and values: blocks, interfaces, friction, size, weight, live load, units, gravity where it is unusual."""
     assembly, units = case.assembly, case.wall.units
     weight = float(assembly.weight[assembly.free].sum())
-    live = np.abs(assembly.live[assembly.free, :2]).sum(axis=0)
-    ways = [name for name, size in zip(("horizontal", "vertical"), live, strict=True) if size > 0.0]
     extent = shapes.extent(assembly)
     found = [
         ("Blocks", f"{assembly.n_free} free, {int(assembly.fixed.sum())} fixed"),
@@ -36,7 +35,7 @@ def facts(case: Case) -> list[tuple[str, str]]:
         ("Friction tan φ", friction_text(assembly)),
         ("Size", f"{numbers.given(extent.width, 4)} × {numbers.given(extent.height, 4)} {units.length}"),
         ("Weight of free blocks", numbers.quantity(weight, units.force, 4)),
-        ("Live load", " and ".join(ways) if ways else "none: the question is whether it stands"),
+        ("Live load", direction_in_words(case) or "none: the question is whether it stands"),
         ("Units", case.wall.units_sentence),
     ]
     if case.wall.loads.gravity_per_weight != (0.0, -1.0):

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import hashlib
 import itertools
-from collections import defaultdict
+from collections import Counter, defaultdict
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field
 
@@ -178,7 +178,7 @@ def _same_but_friction(assembly: Assembly) -> str:
 
 
 def proportion_of(assembly: Assembly) -> float | None:
-    """Width over height of the middle block, if the free blocks are upright rectangles."""
+    """Width over height of most blocks, if the free blocks are upright rectangles: bricks, not the halves at ends."""
     ratios = []
     for block in assembly.free:
         polygon = assembly.polygons[block]
@@ -186,7 +186,8 @@ def proportion_of(assembly: Assembly) -> float | None:
         if len(polygon) != 4 or float(size.min()) <= 0.0:
             return None
         ratios.append(float(size[0] / size[1]))
-    return round(float(np.median(ratios)), 6)
+    counts = Counter(round(ratio, 6) for ratio in ratios)
+    return max(counts, key=lambda ratio: (counts[ratio], ratio), default=None)
 
 
 def _same_but_proportion(assembly: Assembly) -> str:

@@ -15,6 +15,10 @@ HEAD_JOINT = 0.5
 """An interface whose normal has a horizontal part above this (60 degrees from the vertical or more) is a head joint."""
 
 
+AT_LIMIT = 0.999
+"""Share of the limit of friction from which a force is drawn as at it: forces of any method are known better."""
+
+
 @dataclass(frozen=True)
 class ForceStyle:
     """How forces are drawn.
@@ -67,6 +71,17 @@ def drawn_ends(assembly: Assembly, found: Thrusts) -> FloatArray:
     before = np.where(held, np.where(leaves, 0.0, 2.0 * length), length)[:, None]
     after = np.where(held, np.where(leaves, 2.0 * length, 0.0), length)[:, None]
     return np.stack([found.point - before * way, found.point + after * way], axis=1)
+
+
+def friction_used(assembly: Assembly, forces: FloatArray) -> FloatArray:
+    """Shear of every interface over friction times compression (m,), from forces (m, 3); NaN where that limit is 0."""
+    limit = assembly.friction * forces[:, :2].sum(axis=1)
+    return np.asarray(np.divide(abs(forces[:, 2]), limit, out=np.full(len(limit), np.nan), where=limit > 0.0))
+
+
+def at_friction_limit(assembly: Assembly, forces: FloatArray) -> np.ndarray:
+    """Which interfaces (m,) carry a shear at the limit of friction: for screen, print and figures alike."""
+    return np.asarray(friction_used(assembly, forces) >= AT_LIMIT)
 
 
 def round_number(largest: float) -> float:

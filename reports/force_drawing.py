@@ -54,8 +54,7 @@ def _width(frame: Frame, assembly: Assembly, share: float) -> float:
 
 def _arrows(frame: Frame, assembly: Assembly, found: shapes.Thrusts, forces: FloatArray) -> Markup:
     block = assembly.length_scale * frame.scale
-    limit = assembly.friction[found.interface] * forces[found.interface, :2].sum(axis=1)
-    full = (limit > 0.0) & (abs(forces[found.interface, 2]) >= 0.999 * limit)
+    full = flow.at_friction_limit(assembly, forces)[found.interface]
     ends, way = flow.drawn_ends(assembly, found), flow.towards_ground(found) * [1.0, -1.0]
     bars: dict[tuple[bool, float], str] = defaultdict(str)
     heads, rings = {True: "", False: ""}, ""

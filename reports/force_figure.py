@@ -70,9 +70,7 @@ def _through_blocks(ax: Axes, assembly: Assembly, found: shapes.Thrusts, widths:
 
 
 def _resultants(ax: Axes, assembly: Assembly, found: shapes.Thrusts, forces: FloatArray, widths: FloatArray) -> None:
-    shear = abs(forces[found.interface, 2])
-    limit = assembly.friction[found.interface] * forces[found.interface, :2].sum(axis=1)
-    full = (limit > 0.0) & (shear >= 0.999 * limit)
+    full = flow.at_friction_limit(assembly, forces)[found.interface]
     ends, way = flow.drawn_ends(assembly, found), flow.towards_ground(found)
     head = 0.2 * assembly.length_scale
     tips, neck = ends[:, 1], ends[:, 1] - head * way

@@ -3,8 +3,12 @@
 from __future__ import annotations
 
 from harness.model.comparison import ComparisonRun
-from harness.model.method import Traits
+from harness.model.method import Status, Traits
+from harness.model.proof import least_known
 from reports import words
+
+WITHIN = 0.01
+"""A range of less than a hundredth is none worth a sentence."""
 
 LIMITS: tuple[tuple[str, str, tuple[str, ...]], ...] = (
     (
@@ -27,7 +31,7 @@ LIMITS: tuple[tuple[str, str, tuple[str, ...]], ...] = (
             "Springs are numerical: the plateau does not depend on their stiffness at a fixed ratio of tangential to "
             "normal stiffness, and on regular walls little on the ratio; on irregular ones with rough joints it may "
             "move by a third. Deformable joints tend to reach states above the least one.",
-            "Cost grows faster than the number of blocks. Large walls are followed under one friction history only.",
+            "Large walls are followed under one friction history only.",
         ),
     ),
     (
@@ -55,7 +59,7 @@ LIMITS: tuple[tuple[str, str, tuple[str, ...]], ...] = (
             "The answer is a bracket between a load that was held and a load that moved, and a spread over the orders "
             "in which blocks were entered. The number printed as multiplier is the middle and not exact.",
             "Rigid contacts leave contact forces undetermined where several solutions exist; the engine takes one of "
-            "them. On the single block with two frictions that alone spans the whole range of limit analysis.",
+            "them.",
             "Damping removes inertia: what is found is quasi-static. Walls of many courses need many steps, and holds "
             "that could not be told are counted as undecided, never as held.",
             "Joints that give, round corners and blocks that lean lower the multiplier where they are modelled; how "
@@ -77,5 +81,29 @@ def known_limits(run: ComparisonRun) -> list[tuple[str, tuple[str, ...]]]:
     for heading, trait, sentences in LIMITS:
         names = [name for name, said in traits.items() if trait and getattr(said, trait)]
         if names or not trait:
-            found.append((f"{heading}: {', '.join(names)}" if names else heading, sentences))
+            more = _widest(run) if trait == "brackets" else ()
+            found.append((f"{heading}: {', '.join(names)}" if names else heading, (*sentences, *more)))
     return found
+
+
+def _widest(run: ComparisonRun) -> tuple[str, ...]:
+    """On which wall a bracket covers most of the range from the least state known to the associated maximum."""
+    shares = []
+    for item in run.cases:
+        least, greatest = least_known(item), item.associated
+        if least is None or greatest is None:
+            continue
+        low, high = least.multiplier or 0.0, greatest.multiplier or 0.0
+        if high <= (1.0 + WITHIN) * low:
+            continue
+        for result in item.results:
+            if result.status is Status.OK and result.traits.brackets and result.bracket is not None:
+                common = min(result.bracket[1], high) - max(result.bracket[0], low)
+                shares.append((max(0.0, common) / (high - low), item.case.id, result.method))
+    share, case, method = max(shares, default=(0.0, "", ""))
+    if share < WITHIN:
+        return ()
+    return (
+        f"On {case} the bracket of {method} covers {100.0 * share:.0f} % of the range from the least state known to "
+        "the associated maximum, the most of all walls here.",
+    )

@@ -8,7 +8,11 @@ import numpy as np
 from markupsafe import Markup
 
 from harness.model.comparison import CaseResults, ComparisonRun
+from harness.model.errors import first_few
+from harness.model.live_load import direction_in_words
 from harness.model.method import Status
+from harness.model.proof import least_known, proof_of
+from harness.model.ranges import percent_text
 from harness.model.result import Result, Verdict
 from reports import numbers, paper, shapes, words
 from reports.agreement import agreement, mains, spread
@@ -16,8 +20,8 @@ from reports.facts import friction_text, value_in_words
 from reports.joints import joints_in_words, motion
 from reports.mechanism_drawing import mechanism_svg, overlay_svg
 from reports.once import once
-from reports.reasons import SAME_MOTION, least_known, mechanism_in_words
-from reports.tables import anchor_of, certified_bound
+from reports.reasons import SAME_MOTION, mechanism_in_words
+from reports.tables import anchor_of
 
 CLOSE = 0.01
 """Methods that lie within a hundredth of each other agree, in the words of the paper's comparison."""
@@ -103,7 +107,7 @@ def _rank(item: CaseResults) -> int:
     if item.case.id in paper.printed().cases:
         return 1
     wrong = any(gate.passed is False for gate in item.gates) or any(_wrong(result) for result in item.results)
-    return 2 if wrong or (spread(item) or 0.0) > CLOSE else 3
+    return 2 if wrong or _apart(item) > CLOSE else 3
 
 
 def red_rows(run: ComparisonRun) -> list[RedRow]:
@@ -146,12 +150,6 @@ def _broken_theory(run: ComparisonRun) -> tuple[list[str], list[str]]:
     )
 
 
-def _called(result: Result, item: CaseResults) -> str:
-    if certified_bound(item, result) is not None:
-        return "minimum, proved"
-    return "least by branch and bound, to rounding" if result.details.get("proved_least") else "least known"
-
-
 def wall_findings(item: CaseResults, *, short: bool = False) -> str:
     """What was found of one wall, in a few sentences; `short` leaves the mechanism out."""
     least, assembly = least_known(item), item.case.assembly
@@ -160,8 +158,10 @@ def wall_findings(item: CaseResults, *, short: bool = False) -> str:
     if least is None:
         answers = others or "no method gave an answer"
         return f"{item.case.id}: no collapse state without dilatancy was accepted ({answers})."
-    called = f"{least.method.upper()}, {_called(least, item)}"
-    said = f"{item.case.id} collapses at {numbers.multiplier(least.multiplier)} ({called})"
+    called = f"{least.method.upper()}, {proof_of(item, least).label}"
+    way = direction_in_words(item.case)
+    under = f" under the live load {way}" if way in ("to the left", "to the right") else ""
+    said = f"{item.case.id} collapses at {numbers.multiplier(least.multiplier)}{under} ({called})"
     sentences = [f"{said}{'; ' + others if others else ''}.", _agreement(item)]
     if not short and least.mechanism is not None:
         mechanism = np.asarray(least.mechanism, dtype=float)
@@ -171,7 +171,7 @@ def wall_findings(item: CaseResults, *, short: bool = False) -> str:
         sentences.append(f"{how[0].upper()}{how[1:]}{more}.")
     associated = item.associated
     if associated is not None and _above(associated, least):
-        sentences.append(f"The associated maximum {numbers.multiplier(associated.multiplier)} is not safe.")
+        sentences.append(f"Do not rely on the associated maximum {_height(associated, least)}.")
     return " ".join(filter(None, sentences))
 
 
@@ -179,32 +179,45 @@ def _above(second: Result, first: Result) -> bool:
     return (second.multiplier or 0.0) > (first.multiplier or 0.0) * (1.0 + 1e-6)
 
 
+def _apart(item: CaseResults) -> float:
+    """How far the families lie from each other at least."""
+    return (spread(item) or (0.0, 0.0))[0]
+
+
 def _agreement(item: CaseResults) -> str:
-    """Whether the families agree on a wall, and in a clause why where they part."""
-    apart_by = spread(item)
-    if apart_by is None:
+    """Whether the families agree on a wall; where they differ, whether the mechanism does."""
+    apart = spread(item)
+    if apart is None:
         return ""
-    if apart_by <= 1e-4:
+    least, most = apart
+    if most <= 1e-4:
         return "The methods agree."
-    if apart_by <= CLOSE:
-        return f"They lie within {100.0 * apart_by:.2f} % of each other."
+    if most <= CLOSE:
+        return f"They lie within {100.0 * most:.2f} % of each other."
+    if least <= CLOSE:
+        return f"A measured bracket does not decide whether they agree: they differ by {percent_text(least, most)}."
+    why = _mechanisms(item)
+    return f"They differ by {percent_text(least, most)}{': ' + why if why else ''}."
+
+
+def _mechanisms(item: CaseResults) -> str:
+    """Whether the least state and the highest of the other families' have one mechanism, by their velocity fields."""
     least = least_known(item)
-    apart = [
+    others = [
         r
         for r in mains(item)
-        if r is not least and r.mechanism is not None and r.flow == "non-associated" and least is not None
+        if r is not least and r.mechanism is not None and r.flow == "non-associated" and r.multiplier is not None
     ]
-    if least is None or not apart:
-        return f"They part by {100.0 * apart_by:.1f} %."
-    pair = agreement(item.case.assembly, least, apart[0])
-    if pair.cosine is None:
-        return f"They part by {100.0 * apart_by:.1f} %."
-    why = (
-        "the mechanism is the same and the forces differ, which equilibrium does not determine"
-        if pair.cosine >= SAME_MOTION
-        else "the mechanisms differ"
-    )
-    return f"They part by {100.0 * apart_by:.1f} %: {why}."
+    if least is None or not others:
+        return ""
+    highest = max(others, key=lambda r: r.multiplier or 0.0)
+    pair = agreement(item.case.assembly, least, highest)
+    if pair.cosine is None or not _above(highest, least):
+        return ""
+    names = f"{least.method.upper()} and {highest.method.upper()}"
+    if pair.cosine >= SAME_MOTION:
+        return f"the mechanism of {names} is the same, but equilibrium does not determine the forces"
+    return f"the mechanisms of {names} differ"
 
 
 def which_number(item: CaseResults) -> str:
@@ -213,28 +226,8 @@ def which_number(item: CaseResults) -> str:
     if least is None:
         return ""
     value = numbers.multiplier(least.multiplier)
-    certified = certified_bound(item, least)
-    if certified is not None:
-        first = (
-            f"For safety use {value}, the minimum ({least.method}): "
-            f"no collapse state lies below {certified:.7g}, proved in fractions."
-        )
-    elif least.details.get("proved_least"):
-        first = (
-            f"For safety use {value}, the least multiplier of any collapse state by branch and bound, to rounding "
-            f"({least.method})."
-        )
-    else:
-        lower = least.bracket
-        proof = ""
-        if item.certified is not None:
-            proof = f"; none below {numbers.plain(item.certified.bound)} exists, proved in fractions"
-        elif lower and "lower bound" in least.bracket_meaning:
-            proof = f"; none below {numbers.plain(lower[0])} exists"
-        first = (
-            f"For safety use {value}, the least multiplier of a collapse state that is known ({least.method}); "
-            f"a lower one is not excluded{proof}."
-        )
+    proof = proof_of(item, least)
+    first = f"For safety use {value} ({least.method}), {proof.label}: {proof.clause}."
     sentences = [first]
     springs = [r for r in mains(item) if r.traits.elastic and r is not least and r.multiplier is not None]
     if springs and springs[0].finding.has_multiplier:
@@ -242,13 +235,19 @@ def which_number(item: CaseResults) -> str:
             f"Elastic joints without self-stress would give {_or_the_same(springs[0], least)} ({springs[0].method})."
         )
     if associated is not None and _above(associated, least):
-        over = (associated.multiplier or 0.0) / (least.multiplier or 1.0) - 1.0 if least.multiplier else None
-        above = "" if over is None else f", {100.0 * over:.1f} % above"
         sentences.append(
-            f"Never use {numbers.multiplier(associated.multiplier)} ({associated.method}{above}): "
-            "it lets joints widen as they slide."
+            f"Do not rely on {_height(associated, least)} ({associated.method}): it lets joints widen as they slide."
         )
     return " ".join(sentences)
+
+
+def _height(associated: Result, least: Result) -> str:
+    """The associated maximum, and how far it lies above the least multiplier."""
+    value = numbers.multiplier(associated.multiplier)
+    if not least.multiplier:
+        return f"{value}, which is above the least multiplier"
+    over = (associated.multiplier or 0.0) / least.multiplier - 1.0
+    return f"{value}, which is {numbers.plain(100.0 * over, 2)} % above the least multiplier"
 
 
 def _or_the_same(result: Result, least: Result) -> str:
@@ -257,19 +256,27 @@ def _or_the_same(result: Result, least: Result) -> str:
 
 
 def _suite(items: list[CaseResults]) -> list[str]:
+    """On how many walls the families agree, differ, are not told apart by a bracket, or find different things."""
     spreads = [(by, item.case.id) for item in items if (by := spread(item)) is not None]
-    if not spreads:
-        return []
-    apart = sorted((entry for entry in spreads if entry[0] > CLOSE), reverse=True)
-    sentence = (
-        f"The families lie within 1 % of each other on {len(spreads) - len(apart)} of "
-        f"{numbers.count(len(spreads), 'wall')} that at least two of them answered"
-    )
-    if not apart:
-        return [f"{sentence}."]
-    named = ", ".join(f"{name} ({100.0 * by:.1f} %)" for by, name in apart[:6])
-    more = f" and {len(apart) - 6} more" if len(apart) > 6 else ""
-    return [f"{sentence}; they part on {named}{more}."]
+    found = []
+    if spreads:
+        apart = sorted((entry for entry in spreads if entry[0][0] > CLOSE), reverse=True)
+        open_ = [name for (least, most), name in spreads if least <= CLOSE < most]
+        sentence = (
+            f"At least two families give a collapse multiplier of {numbers.count(len(spreads), 'wall')}; on "
+            f"{len(spreads) - len(apart) - len(open_)} of them all lie within 1 % of each other"
+        )
+        if open_:
+            sentence += f"; on {len(open_)} a measured bracket does not decide ({first_few(open_, 6)})"
+        if apart:
+            sentence += f"; they differ on {first_few([f'{name} ({percent_text(*by)})' for by, name in apart], 6)}"
+        found.append(f"{sentence}.")
+    split = [item.case.id for item in items if len({r.finding for r in mains(item)}) > 1]
+    if split:
+        found.append(
+            f"The families find different things on {numbers.count(len(split), 'wall')}: {first_few(split, 6)}."
+        )
+    return found
 
 
 def _focus(items: list[CaseResults], one: bool) -> CaseResults | None:
@@ -279,7 +286,7 @@ def _focus(items: list[CaseResults], one: bool) -> CaseResults | None:
         return None
     return next(
         (item for item in drawn if one or item.case.id == paper.printed().wall.case),
-        max(drawn, key=lambda item: spread(item) or 0.0),
+        max(drawn, key=_apart),
     )
 
 

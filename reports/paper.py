@@ -9,9 +9,9 @@ from harness.model.comparison import CaseResults, ComparisonRun
 from harness.model.fields import Strict
 from harness.model.library import shipped_words
 from harness.model.method import Status
+from harness.model.ranges import range_of
 from harness.model.result import Result
 from reports import numbers
-from reports.agreement import range_of
 from reports.tables import Cell, anchor_of
 
 

@@ -7,6 +7,7 @@ import numpy as np
 from harness.model.assembly import Assembly, FloatArray
 from harness.model.comparison import CaseResults
 from harness.model.method import Status
+from harness.model.proof import least_known
 from harness.model.result import Result, relative_velocities
 from reports import flow, numbers, shapes
 from reports.agreement import agreement, measure_of
@@ -147,25 +148,6 @@ def _histories(states: list[Result], *, several: bool) -> list[str]:
     return told
 
 
-def least_known(item: CaseResults) -> Result | None:
-    """The least accepted collapse state without dilatancy, whichever method found it."""
-    states = [
-        result
-        for result in item.results
-        if result.status is Status.OK
-        and result.finding.has_multiplier
-        and result.judge.accepted
-        and result.flow == "non-associated"
-        and result.multiplier is not None
-    ]
-    # Equal to rounding: prefer the one that is proved, then the family's main method.
-    best = min((result.multiplier or 0.0 for result in states), default=0.0)
-    near = [r for r in states if (r.multiplier or 0.0) <= best + 1e-9 * max(abs(best), 1e-300)]
-    return min(
-        near, key=lambda r: (not r.details.get("proved_least"), not r.traits.seeks_least, r.method), default=None
-    )
-
-
 def _reason(assembly: Assembly, least: Result, other: Result, measure: FloatArray) -> str:
     pair = agreement(assembly, least, other, measure)
     same_motion = pair.cosine is not None and pair.cosine >= SAME_MOTION
@@ -221,7 +203,3 @@ def _friction(assembly: Assembly, first: Result, second: Result) -> str:
         f" Friction takes {100.0 * shares[0]:.0f} % of the live load’s work in {first.method} "
         f"and {100.0 * shares[1]:.0f} % in {second.method}."
     )
-
-
-def _and(parts: list[str]) -> str:
-    return parts[0] if len(parts) == 1 else f"{', '.join(parts[:-1])} and {parts[-1]}"

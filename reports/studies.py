@@ -45,7 +45,7 @@ def cost_against_size(run: ComparisonRun) -> Study | None:
         drawings.append((f"Against {what}", charts.svg(chart)))
     return Study(
         "Cost against size",
-        f"What a wall costs grows with its number of blocks, differently for every method. {_slopes(run)}",
+        _slopes(run),
         "Both axes are logarithmic: a slope of 1 means that twice the blocks cost twice the time. Only runs that found "
         "a collapse and were accepted are drawn; time to start the process is not counted. Of limit analysis it is the "
         "time of the whole search; its value is known much earlier.",
@@ -181,7 +181,7 @@ def _given(item: dict[str, Any]) -> Study:
         charts.Series(
             str(line.get("name", "")),
             [float(value) for value in line.get("x", [])],
-            [float(value) for value in line.get("y", [])],
+            [math.nan if value is None else float(value) for value in line.get("y", [])],
             low=[float(value) for value in line.get("low", [])],
             high=[float(value) for value in line.get("high", [])],
         )

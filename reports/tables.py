@@ -12,12 +12,9 @@ from harness.model.case import Case, Reference
 from harness.model.comparison import CaseResults, ComparisonRun
 from harness.model.library import library
 from harness.model.method import Status
+from harness.model.proof import Standing, proof_of
 from harness.model.result import Comparison, Result, Verdict
 from reports import numbers, words
-
-CERTIFIED = 3e-6
-"""Relative height above a certified bound up to which a state is called the minimum: certificates leave 2e-6, and the
-rest is for rounding of the state."""
 
 
 @dataclass(frozen=True)
@@ -131,17 +128,6 @@ def _multiplier_cell(result: Result) -> Cell:
     )
 
 
-def certified_bound(item: CaseResults, least: Result) -> float | None:
-    """The bound of a certificate in fractions that the least state lies on: of a method, or beside the case."""
-    value = least.multiplier
-    accepted = [r for r in item.results if r.status is Status.OK and r.judge.accepted is not False]
-    bounds = [float(r.details["certified_bound"]) for r in accepted if "certified_bound" in r.details]
-    bounds += [item.certified.bound] if item.certified else []
-    if value is None:
-        return None
-    return next((bound for bound in bounds if 0.0 <= value - bound <= CERTIFIED * abs(value)), None)
-
-
 def run_row(case_number: int, result_number: int, item: CaseResults) -> RunRow:
     """The row of one result."""
     case, result = item.case, item.results[result_number]
@@ -157,7 +143,7 @@ def run_row(case_number: int, result_number: int, item: CaseResults) -> RunRow:
         failed=failed,
         trouble=failed or not accepted or result.verdict in (Verdict.OUTSIDE_TOLERANCE, Verdict.VIOLATES_BOUND),
         multiplier=_multiplier_cell(result),
-        proved=certified_bound(item, result) is not None,
+        proved=proof_of(item, result).standing is Standing.MINIMUM,
         bracket=Cell(
             numbers.interval(result.bracket),
             numbers.every_digit(result.bracket) if result.bracket else "",

@@ -74,5 +74,9 @@ def in_order(item: CaseResults) -> list[Result]:
 
 def all_of(names: Iterable[str]) -> str:
     """Names of methods in capitals, as "FE, LA and DE"."""
-    said = [name.upper() for name in names]
-    return said[0] if len(said) == 1 else f"{', '.join(said[:-1])} and {said[-1]}"
+    return and_([name.upper() for name in names])
+
+
+def and_(parts: list[str]) -> str:
+    """Parts of a list in words, as "a, b and c"."""
+    return parts[0] if len(parts) == 1 else f"{', '.join(parts[:-1])} and {parts[-1]}"

@@ -25,7 +25,8 @@ from typing import Any
 
 import numpy as np
 
-from harness.engine.residuals import acting, between, moving_parts
+from harness.engine.measures import Measures, between
+from harness.engine.residuals import moving_parts
 from harness.model.assembly import Assembly, FloatArray
 from harness.model.method import MOVING_FORCES
 from harness.model.result import relative_velocities
@@ -92,7 +93,7 @@ def motion_residuals(
     """
     supports, parts = moving_parts(assembly, mechanism)
     residuals = {"motion_supports": supports, "motion_interpenetration": 0.0}
-    scale = None if forces is None else between(assembly, acting(assembly, forces, multiplier))
+    scale = None if forces is None else between(assembly, Measures.of(assembly, forces, multiplier).acting)
     for part, interfaces, motion in parts:
         opening, slip = relative_velocities(part, motion)
         found = {"motion_interpenetration": max(0.0, float((-opening).max(initial=0.0)))}

@@ -116,7 +116,7 @@ def checked(answer: Any, assembly: Assembly) -> Answer:
     )
     if found.flow not in FLOWS:
         raise AnswerFault(f'The method answers with the flow rule "{found.flow}", which is none of {", ".join(FLOWS)}.')
-    if found.finding is Finding.COLLAPSES and found.status is Status.OK and found.multiplier is None:
+    if found.finding.has_multiplier and found.status is Status.OK and found.multiplier is None:
         raise AnswerFault("The method reports a collapse without a multiplier.")
     return found
 

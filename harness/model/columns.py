@@ -56,6 +56,9 @@ RESULTS: tuple[ResultColumn, ...] = (
     _text("bracket_meaning", "what the ends of the bracket are"),
     ResultColumn("bracket_width", "Float64", "1", "of a measured bracket, as a share of its upper end"),
     ResultColumn("bracket_wide", "boolean", "", "whether a measured bracket is so wide that its middle says little"),
+    _text("proof", "how the multiplier stands to the minimum: minimum, minimum_to_rounding, least_known or none"),
+    _text("proof_sentence", "what is known of lower collapse states"),
+    ResultColumn("proved_bound", "Float64", "1", "no collapse state lies from zero to below it, proved in fractions"),
     _text("verdict", "how the value stands to its references"),
     ResultColumn("judge_accepted", "boolean", "", "whether the judge accepts the answer; missing: not judged"),
     ResultColumn("judge_tolerance", "Float64", "1", "the largest relative residual that was acceptable"),
@@ -84,6 +87,13 @@ NUMBERED = (
     ResultColumn("draw", "Int64", "1", "of a distribution; missing on a grid"),
     ResultColumn(
         "from_neighbour", "boolean", "", "whether a mechanism of a neighbouring wall led to it; missing: none given"
+    ),
+    ResultColumn(
+        "bracket_wide",
+        "boolean",
+        "",
+        "whether the multiplier is only known to lie in the bracket, which is wider than the method's stated accuracy; "
+        "missing: it is not measured between two loads",
     ),
     ResultColumn("multiplier_alone", "Float64", "1", "what the run had found by itself, where a neighbour led lower"),
 )

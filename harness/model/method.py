@@ -146,6 +146,7 @@ class Traits(BaseModel):
         brackets: its multiplier is measured and lies between the ends of its bracket, a load held and one that moved;
             shown as the bracket, and held against exact values to `accuracy`.
         accuracy: stated relative accuracy of a multiplier that is measured between two loads.
+        resolution: difference, in units of the multiplier, to which its bracket is narrowed, where that is coarser.
         held_accuracy: how far, in units of the multiplier, a held load can lie above what rigid blocks bear, where
             contacts give way.
         seeks_least: it looks for the least collapse state, so that a lower accepted value is a better one.
@@ -164,6 +165,7 @@ class Traits(BaseModel):
     caption: str = ""
     brackets: bool = False
     accuracy: float = Field(default=5e-3, gt=0.0, lt=1.0)
+    resolution: float = Field(default=0.0, ge=0.0, lt=1.0)
     held_accuracy: float = Field(default=0.0, ge=0.0, lt=1.0)
     seeks_least: bool = False
     bounds_above: bool = False

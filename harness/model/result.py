@@ -150,6 +150,15 @@ def measured_width(answer: Answer) -> float | None:
     return abs(high - low) / max(abs(low), abs(high))
 
 
+def exceeds_accuracy(bracket: tuple[float, float], traits: Traits) -> bool:
+    """Whether a measured bracket is wider than its method states, so that its middle is no value of the multiplier.
+
+    Within the stated accuracy the middle lies at most that far from either end.
+    """
+    low, high = bracket
+    return high - low > max(traits.accuracy * abs(low + high), traits.resolution) * (1.0 + 1e-9)
+
+
 def fastest_vertex(assembly: Assembly, mechanism: FloatArray) -> float:
     """The largest speed of a vertex of the wall under a mechanism (n, 3)."""
     points, block = assembly.corners

@@ -9,6 +9,9 @@ from methods.de.hold_settings import MujocoSettings, ReleaseSettings, SweepSetti
 from methods.de.soft_settings import SoftSettings
 from methods.de.uneven_settings import ClosedSettings, UnevenSettings
 
+UNEVEN_RESOLUTION = 0.005
+"""Difference to which brackets of uneven walls are narrowed by default."""
+
 
 class DeclaredDistinctElements(Declared):
     """A method of distinct elements."""
@@ -82,6 +85,7 @@ class DeclaredUneven(DeclaredDistinctElements):
     traits: ClassVar[Traits] = Traits(
         caption="between held and moving, uneven blocks",
         brackets=True,
+        resolution=UNEVEN_RESOLUTION,
         colour="#2f6b3a",
         marker="h",
         line="dashdot",
@@ -99,6 +103,7 @@ class DeclaredClosed(DeclaredDistinctElements):
     traits: ClassVar[Traits] = Traits(
         caption="plateau over the contacts that closed",
         brackets=True,
+        resolution=UNEVEN_RESOLUTION,
         colour="#2f6b3a",
         marker="p",
         line="dashed",

@@ -116,8 +116,7 @@ def _stopped(search: Search, tolerance: float) -> Answer:
         best = found.state if exact else polished(problem, search.newton, found.state)
         sentence = (
             f"The least collapse multiplier known so far is {problem.to_multiplier(best.multiplier):.7g}: the search "
-            f"was stopped by the time limit at {search.record.source}, with more left to try. It is not proved to be "
-            "the least."
+            f"was stopped by the time limit at {search.record.source}, with more left to try."
         )
         answer = collapse_answer(problem, best, sentence, tolerance, search.budget.spent.newton_steps, details)
         if answer.status is Status.OK:
@@ -235,7 +234,4 @@ def _sentence(search: Search, best: CollapseState, proof: Proof) -> str:
         )
     source = search.record.improvements[-1].source
     descent = "" if search.budget.limits.descents else ", without descent because of the size of the wall"
-    return (
-        f"The least collapse multiplier known is {least:.7g}{descent}; it was found by way of {source}. It is not "
-        "proved to be the least."
-    )
+    return f"The least collapse multiplier known is {least:.7g}{descent}; it was found by way of {source}."

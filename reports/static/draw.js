@@ -158,8 +158,7 @@
       ];
       const width = Math.max(0.02 * wall.block, (0.16 * wall.block * force) / largest);
       const size = Math.max(0.2 * wall.block, 1.7 * width);
-      const limit = at(wall.mu, p) * normal;
-      const full = limit > 0 && Math.abs(s) >= 0.999 * limit;
+      const full = result.used[p] === 100;
       const group = make("g", { class: full ? "full" : "partly", "data-joint": p }, bars);
       const { tail, tip, down } = arrow(wall, p, [x, y], way, held);
       const neck = [tip[0] - size * down[0], tip[1] - size * down[1]];
@@ -284,8 +283,7 @@
       const unit = wall.unit / FORCE_STEPS;
       const [n1, n2, s] = [0, 1, 2].map((k) => result.f[3 * p + k] * unit);
       lines.push(`n₁ = ${digits(n1)}, n₂ = ${digits(n2)} ${wall.force}`, `s = ${digits(s)} ${wall.force}`);
-      const limit = at(wall.mu, p) * (n1 + n2);
-      if (limit > 0) lines.push(`friction used: ${Math.min(100, Math.round((100 * Math.abs(s)) / limit))} %`);
+      if (result.used[p] >= 0) lines.push(`friction used: ${result.used[p]} %`);
     }
     return lines;
   };

@@ -44,7 +44,7 @@ def test_curve_interpolates_where_the_mean_passes_the_level_and_counts_lost_runs
     assert "−20 % between 0.04 and 0.067" in curve["sentence"]
     assert beds["y"] == pytest.approx([0.0, -10.0])
     assert "beds: −10 % at 0.1 (one wall, scatter unknown), −20 % nowhere up to 0.1" in curve["sentence"]
-    assert "1 wall gave no answer and is in no mean" in curve["sentence"]
+    assert "1 wall gave no answer and is in no mean drawn" in curve["sentence"]
 
 
 def test_walls_that_fall_unloaded_are_told_apart_from_those_without_an_answer():
@@ -52,7 +52,7 @@ def test_walls_that_fall_unloaded_are_told_apart_from_those_without_an_answer():
     found[-1]["finding"] = "falls"
     sentence = curve_of(study(), found)["sentence"]
     assert "all faces: 0.71 ± 0.01 at 0.1" in sentence
-    assert "1 wall fell under the dead load and is in no mean" in sentence
+    assert "1 wall fell under the dead load and is in no mean drawn" in sentence
 
 
 def test_what_the_judge_rejects_is_lost():

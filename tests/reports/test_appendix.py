@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import re
 from dataclasses import replace
 from pathlib import Path
@@ -10,8 +11,11 @@ import numpy as np
 import pytest
 
 from harness import printing
+from harness.model.comparison import CaseResults
+from harness.model.live_load import reversed_live
 from reports.appendix import render, write_appendix
 from reports.reactions import out_of_balance, reactions
+from tests.commands import drystone
 from tests.reports import samples
 from tests.walls import assembly, stack
 
@@ -75,3 +79,47 @@ def test_appendix_prints_on_two_to_four_sheets(tmp_path: Path):
         pytest.skip(str(error))
     sheets = len(re.findall(rb"/Type /Page\b", page.with_suffix(".pdf").read_bytes()))
     assert 2 <= sheets <= 4
+
+
+def both_ways(right: float, left: float) -> str:
+    case = samples.bond("mine")
+    turned = reversed_live(case)
+    items = [
+        CaseResults(case, [samples.solved(case, "la", right)]),
+        CaseResults(turned, [samples.solved(turned, "la", left)]),
+    ]
+    return re.sub(r"\s+", " ", render(replace(samples.typical(), cases=items)))
+
+
+def test_the_lower_of_two_directions_governs_the_appendix():
+    text = both_ways(0.38236, 0.29947)
+    assert "mine collapses at 0.29947 under the live load to the left" in text
+    assert "For safety use 0.29947" in text
+    assert '<th scope="row">to the right</th><td>0.38236 (la)</td><td>least known</td><td></td>' in text
+    assert '<th scope="row">to the left</th><td>0.29947 (la)</td><td>least known</td><td>yes</td>' in text
+    assert "For safety use 0.29947" in both_ways(0.29947, 0.38236)
+    assert "under the live load to the right" in both_ways(0.29947, 0.38236)
+
+
+def test_one_direction_alone_is_named():
+    case = samples.bond("mine")
+    text = render(replace(samples.typical(), cases=[CaseResults(case, [samples.solved(case, "la", 0.5)])]))
+    assert "Live load: to the right. No other direction was analysed." in text
+
+
+def test_the_command_analyses_a_horizontal_load_both_ways(tmp_path: Path):
+    stones = {"g": [-1, -0.2, 2, 0], "a": [0, 0, 0.5, 0.5], "b": [0.2, 0.5, 0.6, 1.0]}
+    blocks = [
+        {"id": name, "fixed": name == "g", "polygon": [[x0, y0], [x1, y0], [x1, y1], [x0, y1]]}
+        for name, (x0, y0, x1, y1) in stones.items()
+    ]
+    loads = {"live": {"body": [{"per_weight": [-1, 0]}]}}
+    wall = {"format": "wall/1", "unit_weight": 20, "friction": 0.9, "blocks": blocks, "loads": loads}
+    (tmp_path / "lean.json").write_text(json.dumps(wall))
+    done = drystone("report", "--appendix", "lean.json", cwd=tmp_path)
+    assert done.returncode == 0, done.stderr
+    text = (tmp_path / "out" / "lean-appendix.html").read_text()
+    # About the right toe at (.5, 0): (5 kN * .25 m + 4 kN * .1 m) over (5 kN * .25 m + 4 kN * .75 m); about the left
+    # one: (5 * .25 + 4 * .4) over the same.
+    assert "collapses at 0.38824 under the live load to the right" in text
+    assert "<td>0.67059 (la)</td>" in text

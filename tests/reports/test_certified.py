@@ -7,18 +7,22 @@ import json
 import shutil
 import sqlite3
 from pathlib import Path
+from typing import Any
 
 import pytest
 
 import drystone
+from harness import certificates, terminal
 from harness.certificates import with_certificates
 from harness.engine.compare import recall
 from harness.engine.regression import violations
 from harness.engine.store import open_store
 from harness.model.case import read_case, shipped_cases
 from harness.model.comparison import ComparisonRun
+from reports import appendix
 from reports.opening import wall_findings, which_number
 from reports.tables import run_row
+from tests.commands import drystone as run_command
 
 LEAST = 1567589759 / 2809311829
 """Minimum of the paper's wall on friction .65, proved in fractions."""
@@ -34,7 +38,9 @@ def test_the_minimum_of_a_wall_with_a_certificate_is_called_so():
     assert item.certified is not None
     assert LEAST * (1 - 2e-6) <= item.certified.bound <= LEAST
     assert "(LA, minimum, proved)" in wall_findings(item)
-    assert "proved in fractions" in which_number(item)
+    assert "minimum, proved: an exact certificate proves that no collapse state lies below 0.557997" in which_number(
+        item
+    )
     rows = {result.method: run_row(0, number, item) for number, result in enumerate(item.results)}
     assert rows["la"].proved
     assert not rows["fe"].proved
@@ -101,3 +107,66 @@ def test_a_store_proves_nothing_its_certificates_are_checked_again(tmp_path: Pat
     (item,) = recalled(store).cases
     assert item.certified is None
     assert any("certificate.json is refused" in sentence for sentence in violations(recalled(store)))
+
+
+GARDEN = {
+    "format": "wall/1",
+    "unit_weight": 20,
+    "friction": 0.65,
+    "pattern": {"type": "running_bond", "block_length": 0.4, "block_height": 0.2, "count": 6, "bricks": 3},
+    "loads": {"live": {"body": [{"per_weight": [1, 0]}]}},
+}
+
+
+def garden(**changes: Any) -> drystone.Wall:
+    return drystone.build_wall(GARDEN | changes)
+
+
+@pytest.mark.parametrize(
+    "changes",
+    [
+        {},
+        {"unit_weight": 7.3},
+        {"pattern": {**GARDEN["pattern"], "prefix": "stone-"}},
+    ],
+)
+def test_a_wall_written_elsewhere_has_the_certificate_of_the_equal_wall_of_the_library(changes: dict[str, Any]):
+    wall = garden(**changes)
+    found = drystone.analyse(wall, "la")
+    assert found.proof.standing == "minimum"
+    assert found.proof.bound == pytest.approx(LEAST, rel=3e-6)
+
+
+def test_another_wall_has_no_certificate_of_the_library():
+    for changes in ({"friction": 0.6501}, {"pattern": {**GARDEN["pattern"], "block_length": 0.41}}):
+        assert certificates.certificates_for(garden(**changes).case) == []
+    nearly = garden(friction=0.65 + 1e-8)  # found by its content, and refused as it is not the same
+    assert len(certificates.certificates_for(nearly.case)) == 1
+    compared = drystone.compare(nearly, ["la"], isolated=False)
+    assert compared.run.cases[0].certified is None
+    assert compared.violations == []
+
+
+def test_every_output_says_the_same_of_a_proved_minimum(tmp_path: Path):
+    file = tmp_path / "garden.json"
+    file.write_text(json.dumps(GARDEN))
+    wall = drystone.read_wall(file)
+    compared = drystone.compare(wall, ["fe", "la"], isolated=False)
+    item = compared.run.cases[0]
+    said = "an exact certificate proves that no collapse state lies below 0.557997"
+    rows = compared.to_pandas().set_index("method")
+    assert said in rows.loc["la", "proof_sentence"]
+    assert rows["proof"].tolist() == ["none", "minimum"]
+    assert [result.proof.standing for result in compared.results] == ["none", "minimum"]
+    written = terminal.comparison_json(compared.run, None)["cases"][0]["results"]
+    assert [each["proof"]["standing"] for each in written] == ["none", "minimum"]
+    assert said in appendix.render(compared.run)
+    assert run_row(0, 1, item).proved
+    assert said in which_number(item)
+    assert said in " ".join(run_command("run", "la", file).stdout.split())
+    alone = json.loads(run_command("run", "la", file, "--json").stdout)
+    assert alone["proof"]["standing"] == "minimum"
+    store = tmp_path / "runs.sqlite"
+    listed = run_command("compare", file, "--methods", "la", "--no-report", "--store", store).stdout
+    assert said in " ".join(listed.split())
+    assert "∎ 0.5579978" in listed

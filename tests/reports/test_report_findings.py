@@ -3,14 +3,16 @@
 from __future__ import annotations
 
 import re
+from dataclasses import replace
 
 import numpy as np
 import pytest
 
 from harness.model.comparison import CaseResults, ComparisonRun, Gate
-from harness.model.method import Status
+from harness.model.method import Finding, Status
 from harness.model.result import Verdict
 from reports import build, joints, mechanism_drawing, opening, reasons, tables
+from reports.limits import known_limits
 from tests.reports import samples
 
 
@@ -32,10 +34,11 @@ def of_one_wall(**more: object) -> CaseResults:
 def test_one_wall_opens_with_its_multipliers_and_the_number_to_use():
     opened = opening.opening(ComparisonRun("mine", "", "", [of_one_wall()]))
     told = " ".join(opened.findings)
-    assert told.startswith("mine collapses at 0.55800 (LA, least known); FE 0.56520, DE [0.45000, 0.61000].")
-    assert "They part by 1.3 %: the mechanisms differ." in told, "a bracket that holds both parts nobody"
-    assert "For safety use 0.55800, the least multiplier of a collapse state that is known (la)" in opened.advice
-    assert "Never use 0.58400 (la-associated, 4.7 % above)" in opened.advice
+    assert told.startswith("mine collapses at 0.55800 under the live load to the right (LA, least known); FE 0.56520")
+    assert "; FE 0.56520, DE [0.45000, 0.61000]." in told
+    assert "They differ by 1.3 to 25.6 %: the mechanisms of LA and FE differ." in told, "a bracket has two ends"
+    assert "For safety use 0.55800 (la), least known: a lower collapse state is not excluded." in opened.advice
+    assert "Do not rely on 0.58400, which is 4.7 % above the least multiplier (la-associated)" in opened.advice
     assert opened.red == []
     assert 'class="other"' in opened.figure
     assert "0.2 m</text>" in opened.figure
@@ -44,9 +47,9 @@ def test_one_wall_opens_with_its_multipliers_and_the_number_to_use():
 
 def test_least_is_the_minimum_only_where_it_is_proved():
     proved = opening.which_number(of_one_wall(proved_least=True))
-    assert "the least multiplier of any collapse state by branch and bound" in proved
+    assert "(la), least, to rounding: branch and bound in floating point leaves no collapse state below it." in proved
     assert "minimum" not in opening.wall_findings(of_one_wall())
-    assert "least by branch and bound, to rounding" in opening.wall_findings(of_one_wall(proved_least=True))
+    assert "(LA, least, to rounding)" in opening.wall_findings(of_one_wall(proved_least=True))
 
 
 @pytest.mark.parametrize(("bound", "said"), [(0.557999, True), (0.5579, False), (0.558001, False)])
@@ -54,7 +57,7 @@ def test_the_minimum_is_called_proved_only_where_a_certificate_meets_it(bound: f
     item = of_one_wall(proved_least=True)
     item.results[0].details["certified_bound"] = bound
     assert ("minimum, proved" in opening.wall_findings(item)) is said
-    assert ("proved in fractions" in opening.which_number(item)) is said
+    assert ("an exact certificate proves that" in opening.which_number(item)) is said
 
 
 def test_rejected_state_is_never_the_number_to_use():
@@ -75,7 +78,7 @@ def test_suite_names_every_red_row_and_broken_theory_comes_first():
         "hostile, de",
     }
     assert any(finding.startswith("single-block collapses at 0.40000") for finding in opened.findings)
-    assert any("the mechanism is the same and the forces differ" in finding for finding in opened.findings)
+    assert any("is the same, but equilibrium does not determine the forces" in finding for finding in opened.findings)
 
 
 def test_search_that_missed_a_state_is_told_as_such_and_no_method_is_called_wrong():
@@ -255,3 +258,65 @@ def test_long_table_in_which_all_agree_is_folded_with_its_count():
     head, folded = page.split("7 of 8 values agree: show them")
     assert "requirement of known-3" in head.split('id="references"')[1], "what differs is not folded"
     assert "requirement of known-4" in folded
+
+
+def suite(*families: dict[str, float | tuple[float, float]]) -> str:
+    """The sentences on walls of which the families give these multipliers, or brackets of DE."""
+    items = []
+    for number, values in enumerate(families):
+        case = samples.bond(f"mine-{number}")
+        rows = []
+        for name, value in values.items():
+            low, high = value if isinstance(value, tuple) else (value, value)
+            bracket = {"flow": "approximate", "bracket": (low, high)} if low < high else {}
+            rows.append(samples.solved(case, name, 0.5 * (low + high), **bracket))
+        items.append(CaseResults(case, rows))
+    return " ".join(opening.opening(ComparisonRun("", "", "", items)).findings)
+
+
+def test_families_are_counted_where_two_give_a_multiplier_and_a_bracket_that_does_not_decide_is_told():
+    agreeing, apart = {"fe": 0.5, "la": 0.5}, {"fe": 0.6, "la": 0.5}
+    said = suite(agreeing, apart, {"fe": 0.5, "la": 0.5, "de": (0.48, 0.52)}, {"fe": 0.5})
+    assert "At least two families give a collapse multiplier of 3 walls; on 1 of them all lie within 1 %" in said
+    assert "on 1 a measured bracket does not decide (mine-2)" in said
+    assert "they differ on mine-1 (20.0 %)" in said
+    said = suite(agreeing, {"fe": 0.5, "la": 0.5, "de": (0.499, 0.501)})
+    assert "of 2 walls; on 2 of them all lie within 1 % of each other." in said
+    assert "they differ on mine-0 (20.0 to 40.0 %)" in suite({"la": 0.5, "de": (0.6, 0.7)}, agreeing)
+
+
+def test_walls_that_fall_for_one_family_and_stand_for_another_are_told_and_not_counted_as_agreeing():
+    case = samples.bond("mine")
+    falls = samples.solved(case, "fe", 0.5).model_copy(update={"finding": Finding.FALLS, "multiplier": None})
+    item = CaseResults(case, [falls, samples.solved(case, "la", 0.5)])
+    other = CaseResults(samples.bond("other"), [])
+    said = " ".join(opening.opening(ComparisonRun("", "", "", [item, other])).findings)
+    assert "The families find different things on 1 wall: mine." in said
+    assert "within 1 %" not in said
+
+
+def test_what_differs_is_said_of_the_least_and_the_highest_state():
+    case = samples.bond("mine")
+    same = CaseResults(case, [samples.solved(case, "fe", 0.6), samples.solved(case, "la", 0.5)])
+    assert "They differ by 20.0 %: the mechanism of LA and FE is the same, but" in opening.wall_findings(same)
+    other = replace(same, results=[samples.solved(case, "fe", 0.6, turn=0.5), same.results[1]])
+    assert "They differ by 20.0 %: the mechanisms of LA and FE differ." in opening.wall_findings(other)
+    unmoved = [same.results[0].model_copy(update={"mechanism": None}), same.results[1]]
+    assert "They differ by 20.0 %." in opening.wall_findings(replace(same, results=unmoved))
+
+
+def test_the_share_of_the_range_that_a_bracket_covers_is_computed():
+    case = samples.bond("mine")
+
+    def limits_of(low: float, high: float) -> str:
+        rows = [
+            samples.solved(case, "la", 0.4),
+            samples.solved(case, "la-associated", 0.6, flow="associated"),
+            samples.solved(case, "de", 0.5 * (low + high), flow="approximate", bracket=(low, high)),
+        ]
+        found = known_limits(ComparisonRun("", "", "", [CaseResults(case, rows)]))
+        return " ".join(sentence for _, sentences in found for sentence in sentences)
+
+    assert "On mine the bracket of de covers 91 % of the range" in limits_of(0.4, 0.582)
+    assert "On mine the bracket of de covers 50 % of the range" in limits_of(0.5, 0.7)
+    assert "covers" not in limits_of(0.5, 0.501)

@@ -17,6 +17,7 @@ from reports import (
     curves,
     drawing,
     families,
+    flow,
     grid,
     numbers,
     paper,
@@ -322,7 +323,7 @@ def test_grid_names_who_stands_apart_and_how_far():
     assert "agree within 1 % on 2 of 4 walls" in study.sentence
     assert "LA low 5 %" in study.table
     assert "DE high 10 %" in study.table
-    assert "In 1 of the 2 where they part, LA is low" in study.sentence
+    assert "On 1 of the 2 walls where they differ, LA is lowest, by 5 % from the middle one" in study.sentence
 
 
 def test_grid_says_where_the_least_known_falls_as_friction_grows():
@@ -369,3 +370,65 @@ def test_the_source_of_a_search_that_found_the_state_is_told_and_nothing_where_n
     higher = {"improvements": [{**found, "multiplier": 0.6}]}
     for details in ({}, {"improvements": []}, {"improvements": "many"}, {"improvements": [3]}, higher):
         assert sections.origin(samples.solved(samples.block(), "la", 0.5, details=details)) == ""
+
+
+def test_friction_at_its_limit_is_decided_from_the_forces_and_not_from_the_steps_that_the_page_gets():
+    case = samples.bond("mine")
+    result = samples.solved(case, "la", 0.5)
+    forces = np.zeros((case.assembly.n_interfaces, 3))
+    forces[:, 0] = 1000.0
+    forces[0] = (0.037, 0.0, 0.037 * 0.65)  # at its limit; as whole steps of 0.1 it would be 0
+    forces[1] = (0.16, 0.0, 0.1)  # 96 %; as whole steps 2 and 1, 77 %
+    forces[2] = (100.0, 0.0, 0.998 * 65.0)
+    forces[3] = (0.0, 0.0, 0.0)
+    result = result.model_copy(update={"forces": [tuple(row) for row in forces.tolist()]})
+    used = drawing.result_data(case, result, 1000.0)["used"]
+    assert used[:5] == [100, 96, 99, -1, 0]
+    printed = flow.at_friction_limit(case.assembly, forces)
+    assert [share == 100 for share in used] == printed.tolist()
+
+
+def bracketed_grid(low: float, high: float) -> families.Study:
+    """A grid of four walls, on which DE brackets one, and the others agree."""
+    items = []
+    for number, (length, friction) in enumerate(((0.4, 0.5), (0.4, 0.8), (0.6, 0.5), (0.6, 0.8))):
+        case = samples.bond(f"wall-{number}", length=length, friction=friction)
+        ends = (low, high) if number == 3 else (0.4999, 0.5001)
+        de = samples.solved(case, "de", 0.5 * sum(ends), flow="approximate", bracket=ends)
+        items.append(CaseResults(case, [samples.solved(case, name, 0.5) for name in ("fe", "la")] + [de]))
+    (study,) = grid.grids(ComparisonRun("", "", "", items))
+    return study
+
+
+def test_a_bracket_in_a_grid_agrees_differs_or_does_not_decide():
+    assert "agree within 1 % on all 4 walls" in bracketed_grid(0.499, 0.502).sentence
+    open_ = bracketed_grid(0.45, 0.6)
+    assert "on 3 of 4 walls; on 1 a measured bracket does not decide." in open_.sentence
+    assert "DE open" in open_.table
+    apart = bracketed_grid(0.55, 0.7)
+    assert "The least friction at which they differ is, by proportion, 3:1 at 0.8." in apart.sentence
+    assert "DE is highest, by 10 % from the middle one" in apart.sentence, "its nearest end"
+    assert "DE high 10 %" in apart.table
+
+
+def test_what_head_joints_carry_is_said_from_the_forces_of_the_walls_that_differ():
+    def said(share: float) -> str:
+        items = []
+        for number, (length, friction) in enumerate(((0.4, 0.5), (0.4, 0.8), (0.6, 0.5), (0.6, 0.8))):
+            case = samples.bond(f"wall-{number}", length=length, friction=friction)
+            assembly = case.assembly
+            heads = np.flatnonzero(abs(assembly.normal[:, 0]) > flow.HEAD_JOINT)
+            weight = float(assembly.weight[assembly.free].sum())
+            rows = []
+            for name, value in (("fe", 0.6), ("la", 0.5)):
+                forces = np.array(samples.solved(case, name, value).forces)
+                forces[heads, :2] = 0.0
+                forces[heads[0], 0] = weight * (share if name == "la" else 0.125)
+                update = {"forces": [tuple(row) for row in forces.tolist()]}
+                rows.append(samples.solved(case, name, value).model_copy(update=update))
+            items.append(CaseResults(case, rows))
+        (study,) = grid.grids(ComparisonRun("", "", "", items))
+        return study.sentence
+
+    assert "its head joints press with 0.5 of the wall's weight there in the median, with 0.12 in FE" in said(0.5)
+    assert "its head joints press with 0.25 of the wall's weight" in said(0.25)

@@ -27,8 +27,8 @@ def test_a_value_within_a_measured_bracket_agrees_and_one_beside_it_is_as_far_of
     assert (above.difference, above.within) == (pytest.approx(0.02), False)
     below = agreement(CASE.assembly, measured(0.51, 0.6), fe)
     assert below.difference == pytest.approx(0.5 / 0.51 - 1.0)
-    assert spread(CaseResults(CASE, [fe, measured(0.51, 0.6)])) == pytest.approx(0.02)
-    assert spread(CaseResults(CASE, [fe, measured(0.4, 0.55)])) == 0.0
+    assert spread(CaseResults(CASE, [fe, measured(0.51, 0.6)])) == pytest.approx((0.02, 0.2))
+    assert spread(CaseResults(CASE, [fe, measured(0.4, 0.55)])) == pytest.approx((0.0, 0.25))
 
 
 def test_cost_of_limit_analysis_stands_for_the_value_and_for_the_whole_search():
@@ -62,7 +62,7 @@ def test_a_chart_with_nothing_to_see_is_words():
     found = curves.curves(CaseResults(CASE, [row]))
     assert [bool(chart) for _, chart in found] == [False, False]
     assert "each of 12 starts of the search leads to 0.50000" in found[0][0]
-    assert "la knew 0.50000 after 10 ms" in found[1][0]
+    assert "that of la reached 0.50000 after 10 ms" in found[1][0]
 
 
 def test_ticks_of_a_narrow_axis_differ():

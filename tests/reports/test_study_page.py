@@ -68,3 +68,40 @@ def test_long_tables_are_folded():
     page = page_of(rows, tables_of(rows, multipliers=(0.5,)))
     assert page.count("<details>") == 1
     assert page.index("<h2>Failure") < page.index("<h2>Quantiles") < page.index("<h2>Fragility</h2>\n<p")
+
+
+def families_over_friction(lines: int) -> pd.DataFrame:
+    """FE and LA on so many proportions at two frictions; LA lies 20 % lower at the greater friction."""
+    parts = []
+    for method, last in (("fe", 0.6), ("la", 0.5)):
+        values = [value for _ in range(lines) for value in (0.3, last)]
+        grid = {"friction": [0.3, 0.9] * lines, "proportion": [f"{k}:1" for k in range(lines) for _ in range(2)]}
+        parts.append(walls(values, method, **grid).assign(family=method))
+    return pd.concat(parts, ignore_index=True)
+
+
+def test_a_grid_has_a_table_of_where_the_families_agree():
+    rows, grid = families_over_friction(2), ["friction", "proportion"]
+    tables = tables_of(rows, *grid) | {"agreement": statistics.agreement(rows, ["case", *grid])}
+    said = " ".join(findings(tables, grid))
+    assert "The families agree within 1 % on 2 of 4 walls and differ on 2, by up to 20.0 %." in said
+    page = render(StudyPage("A study", "", "drystone sweep", "now", rows, grid, tables))
+    assert '<th scope="col">friction 0.3</th><th scope="col">friction 0.9</th>' in page
+    assert "<td>1:1</td><td>agree</td><td>20.0 %</td>" in page
+
+
+def test_lines_that_one_chart_does_not_hold_have_charts_of_their_own():
+    rows, grid = families_over_friction(7), ["friction", "proportion"]
+    page = render(StudyPage("A study", "", "drystone sweep", "now", rows, grid, tables_of(rows, *grid)))
+    assert page.count("<h2>Multiplier over friction: proportion") == 7
+    assert "not drawn" not in page
+    few = families_over_friction(6)
+    page = render(StudyPage("A study", "", "drystone sweep", "now", few, grid, tables_of(few, *grid)))
+    assert page.count("<h2>Multiplier over friction</h2>") == 1
+
+
+def test_lines_that_are_left_out_are_counted():
+    parts = [walls([0.3, 0.5], f"m{k}", friction=[0.3, 0.9]) for k in range(15)]
+    rows = pd.concat(parts, ignore_index=True)
+    page = render(StudyPage("A study", "", "c", "now", rows, ["friction"], tables_of(rows, "friction")))
+    assert "3 more lines are not drawn; the files have them." in page

@@ -15,6 +15,7 @@ import numpy as np
 
 from harness.engine.sweep.running import Row
 from harness.engine.sweep.study import Curve, Study
+from harness.model.assembly import FloatArray
 from harness.model.errors import InputError
 from harness.model.method import Finding
 
@@ -23,9 +24,16 @@ _WHAT = {True: "Mean change of the multiplier", False: "Mean multiplier"}
 
 @dataclass
 class _Line:
-    """Multipliers of one line by what stands on the axis; how many walls fell unloaded, and how many gave no answer."""
+    """What is known of one line, by what stands on the axis.
+
+    Attributes:
+        found: multipliers.
+        brackets: the ends of wide brackets, which are in no mean.
+        fallen, lost: how many walls fell unloaded, and how many gave no answer.
+    """
 
     found: dict[float, list[float]] = field(default_factory=lambda: defaultdict(list))
+    brackets: dict[float, list[tuple[float, float]]] = field(default_factory=lambda: defaultdict(list))
     fallen: int = 0
     lost: int = 0
 
@@ -50,9 +58,11 @@ def curve_of(study: Study, rows: Iterable[Row]) -> dict[str, Any]:
             line.fallen += 1
         elif row.get("multiplier") is None or row.get("judge_accepted") is False:
             line.lost += 1
+        elif row.get("exceeds_accuracy"):
+            line.brackets[float(row[asked.across])].append((float(row["bracket_low"]), float(row["bracket_high"])))
         else:
             line.found[float(row[asked.across])].append(float(row["multiplier"]))
-    drawn = {name: _points(line, asked) for name, line in lines.items() if line.found}
+    drawn = {name: points for name, line in lines.items() if (points := _points(line, asked))}
     said = [_in_words(name, points, lines[name], asked) for name, points in drawn.items()]
     return {
         "name": study.name,
@@ -67,28 +77,57 @@ def curve_of(study: Study, rows: Iterable[Row]) -> dict[str, Any]:
 
 @dataclass(frozen=True)
 class _Point:
-    """Values at one place on the axis."""
+    """Walls at one place on the axis: values (k,), and the ends of all walls, of which a value has two equal ones."""
 
     place: float
-    values: np.ndarray
+    values: FloatArray
+    lows: FloatArray
+    highs: FloatArray
 
     @property
-    def mean(self) -> float:
-        return float(self.values.mean())
+    def brackets(self) -> int:
+        """How many walls have a wide bracket instead of a value."""
+        return len(self.lows) - len(self.values)
 
     @property
-    def error(self) -> float | None:
-        """The standard error of the mean; None of one value."""
-        return float(self.values.std(ddof=1)) / math.sqrt(len(self.values)) if len(self.values) > 1 else None
+    def mean(self) -> float | None:
+        """Of the values; None where there are brackets alone."""
+        return float(self.values.mean()) if len(self.values) else None
+
+    @property
+    def means(self) -> tuple[float, float]:
+        """The mean over all walls, if those with brackets collapse at the lower ends, and at the upper ones."""
+        return float(self.lows.mean()), float(self.highs.mean())
+
+    @property
+    def errors(self) -> tuple[float, float]:
+        """The standard errors of the two; zero of one wall."""
+        return _standard_error(self.lows), _standard_error(self.highs)
+
+
+def _standard_error(values: FloatArray) -> float:
+    return float(values.std(ddof=1)) / math.sqrt(len(values)) if len(values) > 1 else 0.0
 
 
 def _points(line: _Line, asked: Curve) -> list[_Point]:
-    places = sorted(line.found)
-    base = float(np.mean(line.found[places[0]]))
-    values = [np.array(line.found[place]) for place in places]
-    if asked.relative:
-        values = [100.0 * (value / base - 1.0) for value in values]
-    return [_Point(place, value) for place, value in zip(places, values, strict=True)]
+    points = []
+    for place in sorted({*line.found, *line.brackets}):
+        values, brackets = line.found.get(place, []), line.brackets.get(place, [])
+        ends = np.array([*zip(values, values, strict=True), *brackets], dtype=float)
+        points.append(_Point(place, np.array(values), ends[:, 0], ends[:, 1]))
+    return points if not asked.relative else [_change(point, points[0]) for point in points]
+
+
+def _change(point: _Point, first: _Point) -> _Point:
+    """Percent of change from the mean at the first place; as small and as large as brackets allow."""
+    lower, upper = first.means
+    values = point.values if first.mean is not None else point.values[:0]
+    return _Point(
+        point.place,
+        100.0 * (values / (first.mean or 1.0) - 1.0),
+        100.0 * (point.lows / upper - 1.0),
+        100.0 * (point.highs / lower - 1.0),
+    )
 
 
 def _series(name: str, points: Sequence[_Point]) -> dict[str, Any]:
@@ -96,8 +135,8 @@ def _series(name: str, points: Sequence[_Point]) -> dict[str, Any]:
         "name": name,
         "x": [point.place for point in points],
         "y": [point.mean for point in points],
-        "low": [float(point.values.min()) for point in points],
-        "high": [float(point.values.max()) for point in points],
+        "low": [float(point.lows.min()) for point in points],
+        "high": [float(point.highs.max()) for point in points],
     }
 
 
@@ -107,39 +146,52 @@ def _in_words(name: str, points: Sequence[_Point], line: _Line, asked: Curve) ->
     words = f"{name}: {_mean(last, unit, signed=asked.relative)} at {last.place:g} ({_of(last, unit)})"
     if asked.level is not None:
         words += f", {asked.level:g}{unit} {_reached(points, asked.level)}"
-    missing = [(line.fallen, "fell under the dead load"), (line.lost, "gave no answer")]
+    brackets = sum(map(len, line.brackets.values()))
+    missing = [
+        (line.fallen, "fell under the dead load"),
+        (line.lost, "gave no answer"),
+        (brackets, "gave a wide bracket"),
+    ]
     told = " and ".join(f"{number} {'wall' if number == 1 else 'walls'} {what}" for number, what in missing if number)
-    return words + (f"; {told} and {'is' if line.fallen + line.lost == 1 else 'are'} in no mean" if told else "")
+    number = line.fallen + line.lost + brackets
+    return words + (f"; {told} and {'is' if number == 1 else 'are'} in no mean drawn" if told else "")
 
 
 def _mean(point: _Point, unit: str, *, signed: bool) -> str:
-    """A mean and its standard error, both to the first digit of the error."""
-    if not point.error:  # one value, or equal ones
-        return f"{point.mean:{'+' if signed else ''}.{2 if signed else 3}g}{unit}"
-    decimals = max(0, -math.floor(math.log10(point.error)))
-    return f"{point.mean:{'+' if signed else ''}.{decimals}f} ± {point.error:.{decimals}f}{unit}"
+    """A mean and its standard error, both to the first digit of the error; between two ends where brackets leave it."""
+    sign, (low, high), (error, _) = "+" if signed else "", point.means, point.errors
+    if low < high:
+        return f"between {low:{sign}.3g} and {high:{sign}.3g}{unit}"
+    if not error:  # one value, or equal ones
+        return f"{low:{sign}.{2 if signed else 3}g}{unit}"
+    decimals = max(0, -math.floor(math.log10(error)))
+    return f"{low:{sign}.{decimals}f} ± {error:.{decimals}f}{unit}"
 
 
 def _of(point: _Point, unit: str) -> str:
     """Of how many walls a mean is, and how far apart these lie."""
-    number = len(point.values)
+    number = len(point.lows)
     if number == 1:
         return "one wall, scatter unknown"
-    ends = f"{float(point.values.min()):.2g} to {float(point.values.max()):.2g}{unit}"
-    return f"mean of {number} walls with its standard error; single walls {ends}"
+    ends = f"single walls {float(point.lows.min()):.2g} to {float(point.highs.max()):.2g}{unit}"
+    if point.brackets:
+        return f"mean of {number} walls, {point.brackets} of them wide brackets; {ends}"
+    return f"mean of {number} walls with its standard error; {ends}"
 
 
 def _reached(points: Sequence[_Point], level: float) -> str:
-    """Between which places the mean passes a level, given its standard error."""
+    """Between which places the mean falls to a level, as far as brackets and standard error say."""
     x = [point.place for point in points]
-    sooner, later = (
-        where(x, [point.mean + sign * (point.error or 0.0) for point in points], level) for sign in (-1.0, 1.0)
-    )
+    sooner = where(x, [point.means[0] - point.errors[0] for point in points], level)
+    middle = where(x, [0.5 * sum(point.means) for point in points], level)
+    later = where(x, [point.means[1] + point.errors[1] for point in points], level)
     if sooner is None:
         return f"nowhere up to {x[-1]:g}"
+    first = f"{sooner:.2g}"
     if later is None:
-        return f"at {sooner:.2g} or beyond"
-    first, last = f"{sooner:.2g}", f"{later:.2g}"
+        by_mean = f"at about {middle:.2g}" if middle is not None else f"not up to {x[-1]:g}"
+        return f"{by_mean} by the mean, within its uncertainty from {first} to beyond {x[-1]:g}"
+    last = f"{later:.2g}"
     return f"at about {first}" if first == last else f"between {first} and {last}"
 
 

@@ -26,6 +26,7 @@ COLUMNS = (
     "multiplier_alone",
     "bracket_low",
     "bracket_high",
+    "exceeds_accuracy",
     "judge_accepted",
     "judge_worst_residual",
     "cpu_seconds",

@@ -12,8 +12,8 @@ from harness.engine.store import Store
 from harness.engine.sweep.expand import SweepRun, Walls
 from harness.model.assembly import Assembly
 from harness.model.errors import InputError
-from harness.model.method import Finding, Status
-from harness.model.result import Judgement
+from harness.model.method import Finding, Status, Traits
+from harness.model.result import Judgement, exceeds_accuracy
 
 Row = dict[str, Any]
 """A run as a row of the study's table: the columns of `harness.engine.sweep.frame.COLUMNS` and what varied."""
@@ -81,10 +81,13 @@ def row_of(run: SweepRun, summary: Mapping[str, Any]) -> Row:
     """The row of a result, given as JSON values."""
     low, high = summary.get("bracket") or (None, None)
     judgement = Judgement.model_validate(summary.get("judge") or {})
+    beyond = None
+    if low is not None and high is not None and summary.get("flow") == "approximate":
+        beyond = exceeds_accuracy((low, high), Traits.model_validate(summary.get("traits") or {}))
     return (
         _place(run)
         | {name: summary.get(name) for name in TAKEN}
-        | {"bracket_low": low, "bracket_high": high, "judge_accepted": judgement.accepted}
+        | {"bracket_low": low, "bracket_high": high, "exceeds_accuracy": beyond, "judge_accepted": judgement.accepted}
         | {"judge_worst_residual": judgement.worst[1] if judgement.worst else None}
     )
 

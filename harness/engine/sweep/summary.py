@@ -37,8 +37,8 @@ class Summary:
         """The multipliers as a table to read: one row a wall and point of the grid, one column a method.
 
         Returns:
-            rows of words: a multiplier, a mean with its deviation where seeds or draws make several, and how many of
-            the runs are lost; `case` is left out where all are one.
+            rows of words: a multiplier or a wide bracket, a mean with its deviation where seeds or draws make several,
+            and how many of the runs are lost; `case` is left out where all are one.
         """
         found = self.tables["quantiles"]
         place = [name for name in self.groups if name != "method" and (name != "case" or found["case"].nunique() > 1)]
@@ -58,8 +58,15 @@ def _words(group: dict[Hashable, Any]) -> str:
     runs, answered = int(group["runs"]), int(group["answered"])
     if not answered:
         return "no answer"
-    spread = f" ± {group['deviation']:.2g}" if answered > 1 else ""
-    return f"{group['mean']:.6g}{spread}" + (f" ({runs - answered} of {runs} lost)" if answered < runs else "")
+    brackets = int(group["brackets"])
+    if answered == brackets:
+        said = f"[{group['mean_low']:.6g}, {group['mean_high']:.6g}]"
+    else:
+        spread = f" ± {group['deviation']:.2g}" if answered - brackets > 1 else ""
+        said = f"{group['mean']:.6g}{spread}"
+    notes = [f"{brackets} of {runs} wide brackets"] if brackets and answered > 1 else []
+    notes += [f"{runs - answered} of {runs} lost"] if answered < runs else []
+    return f"{said} ({', '.join(notes)})" if notes else said
 
 
 def grid_of(study: Study) -> list[str]:
@@ -107,6 +114,15 @@ def summarise(study: Study, rows: pd.DataFrame) -> Summary:
         remarks.append(
             f"{unjudged} of {len(rows)} runs count though the judge can neither accept nor reject their answers."
         )
+    brackets = int(counted["multiplier"].isna().sum())
+    if brackets:
+        remarks.append(
+            f"{brackets} of {len(rows)} runs give a bracket wider than the stated accuracy of their method. They are "
+            "in no mean and in no sensitivity; quantiles and probabilities are given as low and high as they allow."
+        )
+    agreement = statistics.agreement(rows, ["case", *varied_of(study)])
+    if len(agreement) > 1:
+        tables["agreement"] = agreement
     many = int(tables["quantiles"]["answered"].max()) >= statistics.FEWEST if len(rows) else False
     if many:
         curves = statistics.fragility(rows, groups)

@@ -1,0 +1,38 @@
+"""A key of what decides the mechanics of a wall, equal for walls that are written differently."""
+
+from __future__ import annotations
+
+import hashlib
+
+import numpy as np
+
+from harness.model.assembly import Assembly
+
+STEP = 1.37e-6
+"""Values are rounded to this part of their size. No round number of a drawing lies on the edge between two steps."""
+
+
+def content_of(assembly: Assembly) -> str:
+    """A hash of free blocks, interfaces, friction and loads; names, place and the unit of force do not enter.
+
+    Walls of one key are equal to a few millionths, and nearly all equal walls have one: it is a way to find a wall,
+    and no proof that two are the same.
+    """
+    free = assembly.free
+    number = np.full(assembly.n_blocks, -1)
+    number[free] = np.arange(len(free))
+    points = np.vstack([assembly.centroid[free], assembly.end1, assembly.end2])
+    loads = np.hstack([assembly.dead[free, :2], assembly.live[free, :2]])
+    digest = hashlib.sha256()
+    for joined in (number[assembly.block_a], number[assembly.block_b]):
+        digest.update(np.asarray(joined, dtype="<i8").tobytes() + b";")
+    origin = points.min(axis=0) if len(points) else 0.0
+    for values, size in (
+        (points - origin, assembly.length_scale),
+        (assembly.normal, 1.0),
+        (assembly.friction, 1.0),
+        (assembly.dilatancy, 1.0),
+        (loads, float(abs(loads).max(initial=0.0)) or 1.0),
+    ):
+        digest.update(np.rint(values / (STEP * size)).astype("<i8").tobytes() + b";")
+    return digest.hexdigest()

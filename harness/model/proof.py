@@ -1,0 +1,135 @@
+"""What is proved of a collapse state: the minimum, the minimum to rounding, or the least that is known.
+
+This is the one place that decides it. Report, appendix, CSV, JSON, terminal and library print what it says.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from decimal import ROUND_FLOOR, Context
+from enum import StrEnum
+from typing import TYPE_CHECKING, Any
+
+from harness.model.method import Status
+
+if TYPE_CHECKING:
+    from harness.model.comparison import CaseResults
+    from harness.model.result import Result
+
+CERTIFIED = 3e-6
+"""Relative height above a certified bound up to which a state is called the minimum: certificates leave 2e-6, and the
+rest is for rounding of the state."""
+EQUAL = 1e-9
+"""Relative difference of multipliers of one state that two methods found."""
+
+
+class Standing(StrEnum):
+    """How the multiplier of a collapse state stands to the minimum over all collapse states."""
+
+    MINIMUM = "minimum"
+    TO_ROUNDING = "minimum_to_rounding"
+    KNOWN = "least_known"
+    NONE = "none"
+
+
+LABELS = {
+    Standing.MINIMUM: "minimum, proved",
+    Standing.TO_ROUNDING: "least, to rounding",
+    Standing.KNOWN: "least known",
+    Standing.NONE: "",
+}
+
+
+@dataclass(frozen=True)
+class Proof:
+    """What is proved of one result.
+
+    Attributes:
+        standing: of its multiplier.
+        bound: no collapse state lies from zero to below it, proved in fractions; None where no certificate is known.
+        lower_bound: the same in floating point, from a search; None where it is zero or not above `bound`.
+    """
+
+    standing: Standing = Standing.NONE
+    bound: float | None = None
+    lower_bound: float | None = None
+
+    @property
+    def label(self) -> str:
+        """What the multiplier is called, in a few words; empty for what is no least collapse state."""
+        return LABELS[self.standing]
+
+    @property
+    def clause(self) -> str:
+        """What is known of lower collapse states; empty for what is no least collapse state."""
+        if self.standing is Standing.NONE:
+            return ""
+        if self.standing is Standing.MINIMUM and self.bound is not None:
+            return f"an exact certificate proves that no collapse state lies below {_rounded_down(self.bound)}"
+        if self.standing is Standing.TO_ROUNDING:
+            return "branch and bound in floating point leaves no collapse state below it"
+        known = [] if self.bound is None else [f"none lies below {_rounded_down(self.bound)}, by an exact certificate"]
+        if self.lower_bound is not None:
+            known.append(f"none lies below {_rounded_down(self.lower_bound)}, to rounding")
+        return "; ".join(["a lower collapse state is not excluded", *known])
+
+    @property
+    def sentence(self) -> str:
+        """The same as a sentence."""
+        return "" if not self.clause else f"{self.label[0].upper()}{self.label[1:]}: {self.clause}."
+
+    def as_json(self) -> dict[str, Any]:
+        """As JSON values."""
+        values = {"standing": str(self.standing), "bound": self.bound, "lower_bound": self.lower_bound}
+        return values | {"sentence": self.sentence}
+
+
+def _rounded_down(bound: float) -> str:
+    """A lower bound to seven digits, rounded downwards so that the printed number is a bound too."""
+    return f"{Context(prec=7, rounding=ROUND_FLOOR).create_decimal(bound).normalize():f}"
+
+
+def is_collapse_state(result: Result) -> bool:
+    """Whether a result is a collapse state without dilatancy that the judge accepts."""
+    return (
+        result.status is Status.OK
+        and result.finding.has_multiplier
+        and result.judge.accepted is True
+        and result.flow == "non-associated"
+        and result.multiplier is not None
+    )
+
+
+def least_known(item: CaseResults) -> Result | None:
+    """The least accepted collapse state without dilatancy, whichever method found it.
+
+    Of several that are equal to rounding it is one that is proved, then one of a method that seeks the least.
+    """
+    states = [result for result in item.results if is_collapse_state(result)]
+    best = min((result.multiplier or 0.0 for result in states), default=0.0)
+    near = [r for r in states if (r.multiplier or 0.0) <= best + EQUAL * max(abs(best), 1e-300)]
+    return min(
+        near, key=lambda r: (not r.details.get("proved_least"), not r.traits.seeks_least, r.method), default=None
+    )
+
+
+def proof_of(item: CaseResults, result: Result) -> Proof:
+    """What is proved of a result, by the certificate of its wall and by what the methods proved.
+
+    Args:
+        item: all results of the wall; result: one of them.
+    """
+    if not is_collapse_state(result):
+        return Proof()
+    value = result.multiplier or 0.0
+    sound = [each for each in item.results if each.status is Status.OK and each.judge.accepted is not False]
+    exact = [float(each.details["certified_bound"]) for each in sound if "certified_bound" in each.details]
+    exact += [item.certified.bound] if item.certified is not None else []
+    bound = max((each for each in exact if each <= value), default=None)
+    floating = max((float(each.details.get("lower_bound") or 0.0) for each in sound), default=0.0)
+    lower = floating if max(0.0, bound or 0.0) < floating <= value else None
+    if bound is not None and value - bound <= CERTIFIED * abs(value):
+        return Proof(Standing.MINIMUM, bound)
+    if result.details.get("proved_least"):
+        return Proof(Standing.TO_ROUNDING, bound)
+    return Proof(Standing.KNOWN, bound, lower) if result is least_known(item) else Proof()

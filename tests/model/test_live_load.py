@@ -1,0 +1,62 @@
+"""Which way a live load acts, and the same wall under the opposite one."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import pytest
+
+import drystone
+from harness.model.live_load import direction_in_words, is_horizontal, reversed_live
+
+STONES = [
+    {"id": "g", "fixed": True, "polygon": [[0, -0.1], [0.4, -0.1], [0.4, 0], [0, 0]]},
+    {"id": "a", "polygon": [[0, 0], [0.4, 0], [0.4, 0.2], [0, 0.2]]},
+]
+
+
+def loaded(live: dict[str, Any] | None, **loads: Any) -> drystone.Wall:
+    given = loads if live is None else loads | {"live": live}
+    return drystone.build_wall(
+        {"format": "wall/1", "unit_weight": 20, "friction": 0.5, "blocks": STONES, "loads": given}
+    )
+
+
+def body(x: float, y: float) -> dict[str, Any]:
+    return {"body": [{"per_weight": [x, y]}]}
+
+
+@pytest.mark.parametrize(
+    ("live", "said", "horizontal"),
+    [
+        (body(1, 0), "to the right", True),
+        (body(-0.3, 0), "to the left", True),
+        (body(0, -1), "downwards", False),
+        (body(0, 2), "upwards", False),
+        (body(1, 1), "at 45° from the right, counter-clockwise", False),
+        ({"points": [{"block": "a", "at": [0.1, 0.2], "force": [1, 0]}]}, "to the right", True),
+        (body(1, 0) | {"points": [{"block": "a", "at": [0.1, 0.2], "force": [0, -1]}]}, "at", False),
+        (None, "", False),
+    ],
+)
+def test_direction_of_a_live_load(live: dict[str, Any] | None, said: str, horizontal: bool):
+    case = loaded(live).case
+    assert direction_in_words(case).startswith(said)
+    assert bool(direction_in_words(case)) is bool(said)
+    assert is_horizontal(case) is horizontal
+
+
+def test_right_and_horizontal_are_those_of_gravity():
+    case = loaded(body(0, 1), gravity=[1, 0]).case  # the sheet is turned: down is to the right of it
+    assert is_horizontal(case)
+    assert direction_in_words(case) == "to the right"
+
+
+def test_the_reversed_wall_has_the_opposite_load_and_no_reference():
+    case = drystone.library_wall("single-block").case
+    assert case.file.references
+    turned = reversed_live(case)
+    assert turned.assembly.live.tolist() == (-case.assembly.live).tolist()
+    assert turned.assembly.dead.tolist() == case.assembly.dead.tolist()
+    assert turned.file.references == []
+    assert {direction_in_words(each) for each in (case, turned)} == {"to the right", "to the left"}

@@ -1,0 +1,74 @@
+"""What is proved of a collapse state: decided once, from certificates, searches and the other results of the wall."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import pytest
+
+from harness.model.comparison import CaseResults, Certified
+from harness.model.proof import Proof, Standing, least_known, proof_of
+from tests.reports import samples
+
+
+def answers(**details: object) -> CaseResults:
+    case = samples.bond("mine")
+    la = samples.solved(case, "la", 0.5)
+    la.details.update(details)
+    return CaseResults(case, [samples.solved(case, "fe", 0.6), la])
+
+
+def certified(item: CaseResults, bound: float) -> CaseResults:
+    return replace(item, certified=Certified(bound, "", "certificate.json"))
+
+
+def test_a_certificate_that_meets_the_state_makes_it_the_minimum_whoever_found_it():
+    item = certified(answers(), 0.4999995)
+    fe, la = item.results
+    assert proof_of(item, la) == Proof(Standing.MINIMUM, 0.4999995)
+    assert proof_of(item, fe).standing is Standing.NONE
+    item.results[0] = fe.model_copy(update={"multiplier": 0.5})
+    assert proof_of(item, item.results[0]).standing is Standing.MINIMUM
+
+
+@pytest.mark.parametrize("bound", [0.49, 0.5000001, 0.51])
+def test_a_certificate_that_does_not_meet_the_state_makes_it_no_minimum(bound: float):
+    item = certified(answers(), bound)
+    assert proof_of(item, item.results[1]).standing is Standing.KNOWN
+
+
+def test_a_bound_above_the_state_is_no_bound_of_it():
+    item = certified(answers(), 0.51)
+    assert proof_of(item, item.results[1]).bound is None
+
+
+def test_the_higher_of_two_bounds_counts_and_one_in_floating_point_only_above_the_exact_one():
+    item = certified(answers(certified_bound=0.4375, lower_bound=0.46875), 0.4)
+    proof = proof_of(item, item.results[1])
+    assert (proof.bound, proof.lower_bound) == (0.4375, 0.46875)
+    assert proof.sentence == (
+        "Least known: a lower collapse state is not excluded; none lies below 0.4375, by an exact certificate; "
+        "none lies below 0.46875, to rounding."
+    )
+    item = certified(answers(lower_bound=0.3), 0.4)
+    assert proof_of(item, item.results[1]).lower_bound is None
+
+
+def test_a_tree_in_floating_point_proves_to_rounding_only():
+    item = answers(proved_least=True)
+    proof = proof_of(item, item.results[1])
+    assert proof.standing is Standing.TO_ROUNDING
+    assert "in floating point" in proof.sentence
+
+
+def test_what_is_no_accepted_collapse_state_without_dilatancy_proves_nothing_and_is_not_the_least():
+    item = certified(answers(certified_bound=0.4999995, proved_least=True), 0.4999995)
+    for change in ({"flow": "associated"}, {"judge": item.results[1].judge.model_copy(update={"accepted": False})}):
+        changed = replace(item, results=[item.results[0], item.results[1].model_copy(update=change)])
+        assert proof_of(changed, changed.results[1]) == Proof()
+        assert least_known(changed) is changed.results[0]
+
+
+def test_a_printed_bound_is_never_above_the_proved_one():
+    item = certified(answers(), 0.49999999999)
+    assert "below 0.4999999." in proof_of(item, item.results[1]).sentence
