@@ -51,7 +51,7 @@ lock: $(READY)  ## resolve the dependencies anew (versions and hashes only)
 
 $(READY): requirements.lock pyproject.toml .ci/set-up
 	@.ci/set-up "$(VENV)" $(PYTHON)
-	$(RUN)/python -m harness.kernels
+	$(RUN)/python -m drystone.kernels
 	touch $(READY)
 
 clean:

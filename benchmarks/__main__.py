@@ -11,8 +11,8 @@ from importlib import import_module
 from pathlib import Path
 from pkgutil import iter_modules
 
+from drystone.cli.options import catching, say
 from harness.engine.threads import pin
-from harness.options import catching, say
 
 NOT_RUN = {"__main__", "walls"}
 """Modules of this folder that are no benchmarks."""

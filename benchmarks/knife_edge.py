@@ -17,13 +17,13 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from typing import Any
 
+from drystone.cli.options import say
 from harness.engine.judge import answered
 from harness.model.assembly import Assembly
 from harness.model.build import build
 from harness.model.method import Finding, load_method, prepared
 from harness.model.result import Judgement, Result
 from harness.model.wall import Wall
-from harness.options import say
 
 METHODS = ("la", "la-associated", "fe", "fe-newton", "de", "de-soft")
 TOLD, UNTOLD = (2, 3, 4, 5, 6), (9, 10, 12)

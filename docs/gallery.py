@@ -53,7 +53,7 @@ def gallery_page(folder: Path) -> None:
 
 def _run(command: str, folder: Path) -> None:
     """Run a command of the page with its files in a folder."""
-    from harness.cli import main
+    from drystone.cli.main import main
 
     words = [str(folder / word) if Path(word).suffix in (".json", ".svg") else word for word in shlex.split(command)]
     done = CliRunner().invoke(main, words[1:])

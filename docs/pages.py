@@ -12,7 +12,7 @@ def command_pages(folder: Path) -> None:
     """The help of every command."""
     from click import Context
 
-    from harness.cli import COMMANDS, main
+    from drystone.cli.main import COMMANDS, main
 
     context = Context(main, info_name="drystone")
     parts = ["# The command", "", "Written from the command itself.", ""]

@@ -13,7 +13,7 @@ def main() -> None:
     if obstacle:
         print(f"drystone: {obstacle}", file=sys.stderr)
         sys.exit(2)
-    from harness.cli import main as command
+    from drystone.cli.main import main as command
 
     command(prog_name="drystone")
 

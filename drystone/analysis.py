@@ -56,7 +56,7 @@ class Result(Record):
         >>> str(drystone.analyse(drystone.library_wall("slide")).proof.standing)
         'minimum'
         """
-        from harness.certificates import certified_results
+        from drystone.certificates import certified_results
 
         if self._of is None:
             self._of = certified_results(self._wall.case, self), self

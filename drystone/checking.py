@@ -8,8 +8,8 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal
 
+from drystone.certificates import certificate_line, certificate_runs
 from drystone.walls import Wall, library_wall, library_walls
-from harness.certificates import certificate_line, certificate_runs
 from harness.engine import compare as engine
 from harness.engine import regression
 from harness.engine.plan import Limits, Run, check_methods, gated_runs

@@ -9,8 +9,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from drystone.analysis import Result, analyse_by
+from drystone.certificates import with_certificates
 from drystone.walls import Wall
-from harness.certificates import with_certificates
 from harness.engine import compare as engine
 from harness.engine.isolate import announce
 from harness.engine.plan import Limits, Run, check_methods, plan_case

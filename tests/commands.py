@@ -20,7 +20,7 @@ from typing import Any
 
 SECONDS = 300.0
 """Time limit of a command [s]."""
-COMMAND = (sys.executable, "-m", "harness.cli")
+COMMAND = (sys.executable, "-m", "drystone.cli.main")
 
 
 def drystone(
@@ -90,10 +90,10 @@ def serve() -> None:
     from harness.engine.threads import pin
 
     pin()
-    import harness.cli
+    import drystone.cli.main
     from harness.model.method import load_method
 
-    for module, _, _ in harness.cli.COMMANDS.values():
+    for module, _, _ in drystone.cli.main.COMMANDS.values():
         __import__(f"harness.{module}")
     import reports.build  # noqa: F401
 
@@ -117,7 +117,7 @@ def _become(task: dict[str, Any]) -> None:
     sys.argv = ["drystone", *task["words"]]
     code: Any = 0
     try:
-        from harness.cli import main
+        from drystone.cli.main import main
 
         main()
     except SystemExit as ended:

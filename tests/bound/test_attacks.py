@@ -14,8 +14,8 @@ from typing import Any
 import pytest
 from click.testing import CliRunner
 
-from harness.certificates import PACKED, proved, read_certificate
-from harness.cli import main as drystone
+from drystone.certificates import PACKED, proved, read_certificate
+from drystone.cli.main import main as drystone
 from harness.model.build import build
 from harness.model.case import shipped_cases
 from harness.model.errors import InputError

@@ -9,7 +9,7 @@ from typing import Any
 import pytest
 from click.testing import CliRunner, Result
 
-from harness.cli import main as drystone
+from drystone.cli.main import main as drystone
 from methods.bound.bracket import bracket
 from methods.bound.window_search import Bracket, Stop
 from methods.la.certify.window_certificate import equations_of

@@ -19,7 +19,7 @@ from typing import Any
 
 import pytest
 
-from harness.certificates import CERTIFICATE, PACKED, read_certificate
+from drystone.certificates import CERTIFICATE, PACKED, read_certificate
 from harness.model.assembly import Assembly
 from harness.model.case import read_case, shipped_cases
 from methods.bound.document import digest

@@ -14,8 +14,8 @@ from click.testing import CliRunner
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from harness.certificates import CERTIFICATE, PACKED, read_certificate
-from harness.cli import main as drystone
+from drystone.certificates import CERTIFICATE, PACKED, read_certificate
+from drystone.cli.main import main as drystone
 from harness.model.assembly import Assembly
 from harness.model.case import read_case, shipped_cases
 from methods.bound.document import digest

@@ -15,7 +15,7 @@ import click
 import pytest
 from click.testing import CliRunner
 
-from harness.cli import COMMANDS, main
+from drystone.cli.main import COMMANDS, main
 
 ROOT = Path(__file__).resolve().parents[2]
 PAGES = [

@@ -269,7 +269,7 @@ SOLVERS = ("highspy", "numba", "scipy.optimize", "cvxpy", "pymunk", "casadi", "o
 )
 def test_a_command_imports_no_more_than_it_needs(words: tuple[str, ...], foreign: tuple[str, ...], tmp_path: Path):
     program = (
-        "import atexit, sys; from harness.cli import main\n"
+        "import atexit, sys; from drystone.cli.main import main\n"
         f"atexit.register(lambda: print([name for name in {foreign!r} if name in sys.modules], file=sys.stderr))\n"
         f"sys.argv = ['drystone', *{words!r}]; main()"
     )
@@ -307,9 +307,9 @@ def test_the_process_of_a_command_ends_with_its_exit_code_and_all_that_it_wrote(
     words: tuple[str, ...], code: int, wall: Path
 ):
     program = "import atexit, sys; from drystone.__main__ import main; sys.argv = ['drystone', *sys.argv[1:]]\n"
-    program += "import harness.cli; old = harness.cli.main\n"
+    program += "import drystone.cli.main; old = drystone.cli.main.main\n"
     program += "def late(**more): atexit.register(print, 'last words'); old(**more)\n"
-    program += "harness.cli.main = late; main()"
+    program += "drystone.cli.main.main = late; main()"
     for command in (["-m", "drystone"], ["-c", program]):
         run = [sys.executable, *command, *words]
         done = subprocess.run(run, cwd=wall.parent, capture_output=True, text=True, timeout=120, check=False)

@@ -9,11 +9,11 @@ from typing import Any
 
 import pytest
 
+from drystone.cli.studies import Amount, amount_of, in_time
 from drystone.studies import shipped_studies
 from harness.engine.sweep.curve import curve_of
 from harness.engine.sweep.study import Curve, Study, read_study
 from harness.model.errors import InputError
-from harness.studying import Amount, amount_of, in_time
 
 
 def rows(faces: str, found: dict[float, list[float | None]]) -> list[dict[str, Any]]:

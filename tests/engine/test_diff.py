@@ -9,7 +9,7 @@ from xml.etree import ElementTree
 import pytest
 from click.testing import CliRunner
 
-from harness.cli import main
+from drystone.cli.main import main
 from harness.engine.baseline import Baseline, Value, write_baseline
 from harness.engine.diff import Answered, Answers, difference, read_answers
 from harness.engine.store import open_store

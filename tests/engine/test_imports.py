@@ -15,7 +15,7 @@ from harness.model.method import Declared, load_method, method_names, prepared
 SOLVERS = {"numba", "llvmlite", "highspy", "osqp", "pymunk", "casadi", "cvxpy", "mujoco"}
 COMMAND = """
 import json, sys
-from harness.cli import main
+from drystone.cli.main import main
 try:
     main(sys.argv[1:])
 except SystemExit as end:

@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 import pytest
 
+from drystone.cli.terminal import foreign_answer, print_result
 from harness.engine.judge import judge
 from harness.model.assembly import Assembly
 from harness.model.build import build
@@ -18,7 +19,6 @@ from harness.model.method import Answer, Finding, Status, load_method
 from harness.model.reading import read_json, read_wall
 from harness.model.result import Result, result_of
 from harness.model.wall import Wall
-from harness.terminal import foreign_answer, print_result
 from reports import numbers
 from tests.walls import PUSH, assembly, case, running_bond, stack
 

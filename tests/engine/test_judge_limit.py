@@ -8,13 +8,13 @@ import numpy as np
 import pytest
 
 from benchmarks.knife_edge import KINDS
+from drystone.cli.terminal import foreign_answer
 from harness.engine.judge import judge
 from harness.model.assembly import Assembly
 from harness.model.build import build
 from harness.model.method import Answer, Finding, Status, load_method
 from harness.model.result import result_of
 from harness.model.wall import Wall
-from harness.terminal import foreign_answer
 from tests.walls import assembly, stack
 
 

@@ -357,7 +357,7 @@ def test_stores_are_merged_without_doubling(tmp_path: Path):
 def test_a_killed_coordinator_loses_no_run_that_ended_and_doubles_none(tmp_path: Path):
     (tmp_path / "wall.json").write_text(json.dumps(wall_data(stack(2))))
     words = ["sweep", "wall.json", "--vary", "friction=0.1:0.9:400", "--methods", "la-associated", "--no-report"]
-    program = "from harness.cli import main; main()"
+    program = "from drystone.cli.main import main; main()"
     child = subprocess.Popen([sys.executable, "-c", program, *words], cwd=tmp_path, stderr=subprocess.DEVNULL)
     path = tmp_path / "out" / "drystone.sqlite"
     deadline = time.monotonic() + 60.0
@@ -381,7 +381,7 @@ def kept(path: Path) -> int:
 def test_two_coordinators_on_one_store_lose_and_double_nothing(tmp_path: Path):
     (tmp_path / "wall.json").write_text(json.dumps(wall_data(stack(2))))
     words = ["sweep", "wall.json", "--vary", "friction=0.1:0.9:60", "--methods", "la-associated", "--no-report"]
-    program = "from harness.cli import main; main()"
+    program = "from drystone.cli.main import main; main()"
     both = [
         subprocess.Popen([sys.executable, "-c", program, *words, "-o", f"out/{name}"], cwd=tmp_path) for name in "ab"
     ]

@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
+from drystone.cli.terminal import _expected, print_comparison
 from harness.model.columns import BY_NAME, PRINTED
 from harness.model.comparison import ComparisonRun
 from harness.model.method import Finding, Status
 from harness.model.result import Comparison, Result, Verdict
-from harness.terminal import _expected, print_comparison
 
 
 def test_a_reference_that_asks_for_other_settings_is_not_shown_as_that_of_the_value_beside_it():

@@ -9,7 +9,7 @@ from typing import Any
 import pytest
 from click.testing import CliRunner
 
-from harness.cli import main
+from drystone.cli.main import main
 from harness.engine.sensitivity import Plateau, suggested
 from harness.model.build import build
 from harness.model.wall import Wall

@@ -37,7 +37,7 @@ def wall(tmp_path: Path) -> Path:
 
 
 def start(*words: str | Path, cwd: Path) -> subprocess.Popen[str]:
-    command = [sys.executable, "-m", "harness.cli", *map(str, words)]
+    command = [sys.executable, "-m", "drystone.cli.main", *map(str, words)]
     return subprocess.Popen(
         command, cwd=cwd, env=environment(), stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True
     )
@@ -198,7 +198,7 @@ def test_a_report_that_does_not_fit_leaves_the_earlier_one_whole_and_the_runs_st
 def test_a_full_disk_is_told_and_keeps_what_is_finished(wall: Path):
     done = in_own_mounts(
         f"mount -t tmpfs -o size=72k tmpfs '{wall.parent}/full' && cd '{wall.parent}/full' && "
-        f"'{sys.executable}' -m harness.cli compare '{wall}' --methods la,la-associated,fe,fe-qp,de; code=$?; "
+        f"'{sys.executable}' -m drystone.cli.main compare '{wall}' --methods la,la-associated,fe,fe-qp,de; code=$?; "
         f"cp -r out '{wall.parent}/kept'; exit $code",
         wall.parent / "full",
     )
@@ -226,7 +226,7 @@ def in_own_mounts(script: str, *folders: Path, **more: Any) -> subprocess.Comple
 def test_a_store_on_a_read_only_disk_can_be_reported_from(tmp_path: Path):
     store = filled(tmp_path / "disk" / "s.sqlite")
     mount = f"mount --bind '{store.parent}' '{store.parent}' && mount -o remount,ro,bind '{store.parent}'"
-    python = f"'{sys.executable}' -m harness.cli"
+    python = f"'{sys.executable}' -m drystone.cli.main"
     done = in_own_mounts(f"{mount} && {python} report --store '{store}' --report '{tmp_path}/r.html'")
     assert done.returncode == 0, done.stderr
     assert (tmp_path / "r.html").exists()
@@ -241,7 +241,7 @@ def test_no_home_and_a_read_only_installation_are_no_hindrance(wall: Path):
     homeless = environment(HOME=None, XDG_CACHE_HOME=None, PYTHONPATH=str(root))
     homeless |= {"PYTHONDONTWRITEBYTECODE": "1"}
     for home in ({}, {"HOME": "/nonexistent"}, {"HOME": str(root)}):
-        compare = f"'{sys.executable}' -m harness.cli compare '{wall}' --methods la,de,fe --json"
+        compare = f"'{sys.executable}' -m drystone.cli.main compare '{wall}' --methods la,de,fe --json"
         done = in_own_mounts(f"{mount} && cd '{wall.parent}' && {compare}", env=homeless | home)
         assert done.returncode == 0, done.stderr
         assert {row["status"] for row in rows_of(done).values()} == {"ok"}
@@ -289,7 +289,7 @@ def test_a_terminal_that_cannot_show_every_letter_is_written_to_all_the_same(tmp
     path.write_text(json.dumps(wall_data(stack(1)) | {"title": "Mauer μ 石 ✓"}))
     method = "la-associated"  # loads no kernels
     for words in (("run", method, path), ("compare", path, "--methods", method), ("run", method, path, "--json")):
-        command = [sys.executable, "-m", "harness.cli", *map(str, words)]
+        command = [sys.executable, "-m", "drystone.cli.main", *map(str, words)]
         given = environment(PYTHONIOENCODING=encoding)
         done = subprocess.run(command, cwd=tmp_path, capture_output=True, timeout=120, env=given)
         assert done.returncode == 0, done.stderr.decode(encoding)

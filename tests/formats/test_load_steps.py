@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 from click.testing import CliRunner
 
-from harness.cli import main
+from drystone.cli.main import main
 from harness.engine.symmetry import beside
 from harness.formats.exporting import WRITERS
 from harness.model.assembly import Assembly

@@ -21,7 +21,7 @@ from compas.geometry import Box, Frame, Polyhedron, Translation
 from shapely.geometry import mapping, shape
 
 from cases.start import STARTS, facade, flemish, laid
-from harness.cli import main
+from drystone.cli.main import main
 from harness.formats.exporting import WRITERS, write_npz
 from harness.formats.importing import Layer, Mapping, import_drawing
 from harness.model.build import build

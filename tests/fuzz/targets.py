@@ -12,6 +12,7 @@ from functools import cache
 from pathlib import Path
 from typing import Any
 
+from drystone.cli.terminal import foreign_answer
 from harness.engine.compare import comparison_run, recall, remember
 from harness.engine.judge import answered, judge
 from harness.engine.plan import Limits, Run
@@ -22,7 +23,6 @@ from harness.model.errors import InputError
 from harness.model.method import Finding, Status, load_method
 from harness.model.reading import parse_wall, read_json, read_wall, wall_json
 from harness.model.result import Result, result_of
-from harness.terminal import foreign_answer
 from tests.fuzz import documents
 from tests.fuzz.documents import Source, one_of
 from tests.walls import running_bond, stack, wall_data

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from click.testing import CliRunner
 
-from harness.cli import main
+from drystone.cli.main import main
 from harness.model.build import build
 from harness.model.errors import InputError
 from harness.model.method import load_method

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import pytest
 
+from drystone.cli.terminal import _value
 from harness.model import columns
 from harness.model.comparison import CaseResults
 from harness.model.method import Answer, Finding, Status
 from harness.model.result import WIDE, result_of
-from harness.terminal import _value
 from reports.export import _result_row
 from reports.facts import value_in_words
 from reports.tables import run_row

@@ -10,7 +10,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from harness import printing
+from drystone.cli import printing
 from harness.model.comparison import CaseResults
 from harness.model.live_load import reversed_live
 from reports.appendix import render, write_appendix

@@ -12,8 +12,9 @@ from typing import Any
 import pytest
 
 import drystone
-from harness import certificates, terminal
-from harness.certificates import with_certificates
+from drystone import certificates
+from drystone.certificates import with_certificates
+from drystone.cli import terminal
 from harness.engine.compare import recall
 from harness.engine.regression import violations
 from harness.engine.store import open_store

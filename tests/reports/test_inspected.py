@@ -10,7 +10,7 @@ from click.testing import CliRunner
 from matplotlib.collections import PathCollection
 
 from cases.start import stack
-from harness.cli import main
+from drystone.cli.main import main
 from harness.model.inspection import inspect
 from harness.model.salvage import salvaged
 from reports.flow import round_number

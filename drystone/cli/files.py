@@ -10,21 +10,8 @@ from typing import Any, get_args, get_type_hints
 
 import click
 
-from harness import terminal
-from harness.engine import compare as comparing
-from harness.engine.plan import Limits, Run, check_methods, find_cases
-from harness.engine.sensitivity import advised
-from harness.engine.store import open_store
-from harness.given_settings import settings_of
-from harness.model import inspection
-from harness.model.errors import InputError
-from harness.model.load_steps import NAME as LOAD_STEPS
-from harness.model.method import Finding, Status, load_method
-from harness.model.reading import wall_json
-from harness.model.units import LengthUnit
-from harness.model.wall import Wall
-from harness.model.writing import write_whole
-from harness.options import (
+from drystone.cli import terminal
+from drystone.cli.options import (
     INPUT_ERROR,
     OUTPUT,
     cases_option,
@@ -35,6 +22,19 @@ from harness.options import (
     store_option,
     warn,
 )
+from drystone.cli.settings import settings_of
+from harness.engine import compare as comparing
+from harness.engine.plan import Limits, Run, check_methods, find_cases
+from harness.engine.sensitivity import advised
+from harness.engine.store import open_store
+from harness.model import inspection
+from harness.model.errors import InputError
+from harness.model.load_steps import NAME as LOAD_STEPS
+from harness.model.method import Finding, Status, load_method
+from harness.model.reading import wall_json
+from harness.model.units import LengthUnit
+from harness.model.wall import Wall
+from harness.model.writing import write_whole
 
 KEPT = 50
 """Load steps of a series, unless a setting says otherwise: two seconds of a film."""

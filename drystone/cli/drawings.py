@@ -8,7 +8,8 @@ from pathlib import Path
 
 import click
 
-from harness import terminal
+from drystone.cli import terminal
+from drystone.cli.options import INPUT_ERROR, OUTPUT, cases_option, catching, json_flag, print_json, say
 from harness.engine.plan import check_methods, find_cases
 from harness.engine.sensitivity import Plateau, advised, over_tolerance, suggested
 from harness.model.build import build
@@ -21,7 +22,6 @@ from harness.model.reading import parse_wall, read_document, wall_json
 from harness.model.repair import repair as mend
 from harness.model.salvage import salvaged
 from harness.model.writing import write_whole
-from harness.options import INPUT_ERROR, OUTPUT, cases_option, catching, json_flag, print_json, say
 
 
 @click.command()

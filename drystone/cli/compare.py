@@ -9,22 +9,10 @@ from pathlib import Path
 
 import click
 
-from drystone.comparing import compare as make_comparison
-from drystone.walls import Wall
-from harness import terminal
-from harness.certificates import with_certificates
-from harness.engine import compare as comparing
-from harness.engine import regression
-from harness.engine.isolate import announce
-from harness.engine.plan import Limits, check_methods, find_cases, plan_case
-from harness.engine.store import open_store
-from harness.given_settings import method_settings
-from harness.junit import tests_of_comparison, write_junit
-from harness.model.comparison import ComparisonRun
-from harness.model.errors import InputError
-from harness.model.library import library
-from harness.model.live_load import is_horizontal, reversed_live
-from harness.options import (
+from drystone.certificates import with_certificates
+from drystone.cli import terminal
+from drystone.cli.junit import tests_of_comparison, write_junit
+from drystone.cli.options import (
     cases_option,
     catching,
     fresh_flag,
@@ -39,8 +27,20 @@ from harness.options import (
     store_option,
     warn,
 )
-from harness.printing import PrintError, print_pdf
-from harness.studying import curve_of_shipped
+from drystone.cli.printing import PrintError, print_pdf
+from drystone.cli.settings import method_settings
+from drystone.cli.studies import curve_of_shipped
+from drystone.comparing import compare as make_comparison
+from drystone.walls import Wall
+from harness.engine import compare as comparing
+from harness.engine import regression
+from harness.engine.isolate import announce
+from harness.engine.plan import Limits, check_methods, find_cases, plan_case
+from harness.engine.store import open_store
+from harness.model.comparison import ComparisonRun
+from harness.model.errors import InputError
+from harness.model.library import library
+from harness.model.live_load import is_horizontal, reversed_live
 
 
 @click.command()

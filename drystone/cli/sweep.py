@@ -11,17 +11,7 @@ from typing import Any
 
 import click
 
-from drystone.studies import Sweep, changed, rows_of, shipped_studies, study_file
-from harness.engine.executors import Executor, LocalExecutor
-from harness.engine.plan import Limits
-from harness.engine.store import open_store
-from harness.engine.sweep.expand import SweepRun, expand, sources_of
-from harness.engine.sweep.quick import quick_study
-from harness.engine.sweep.study import Study, read_study
-from harness.given_settings import method_settings
-from harness.model.errors import InputError
-from harness.model.library import library
-from harness.options import (
+from drystone.cli.options import (
     STORE,
     cases_option,
     catching,
@@ -34,8 +24,18 @@ from harness.options import (
     seconds_option,
     store_option,
 )
-from harness.studying import duration, progress
-from harness.terminal import print_rows
+from drystone.cli.settings import method_settings
+from drystone.cli.studies import duration, progress
+from drystone.cli.terminal import print_rows
+from drystone.studies import Sweep, changed, rows_of, shipped_studies, study_file
+from harness.engine.executors import Executor, LocalExecutor
+from harness.engine.plan import Limits
+from harness.engine.store import open_store
+from harness.engine.sweep.expand import SweepRun, expand, sources_of
+from harness.engine.sweep.quick import quick_study
+from harness.engine.sweep.study import Study, read_study
+from harness.model.errors import InputError
+from harness.model.library import library
 
 OUT = Path("out")
 

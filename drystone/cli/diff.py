@@ -9,12 +9,12 @@ from typing import Any
 
 import click
 
-from harness import terminal
+from drystone.cli import terminal
+from drystone.cli.junit import tests_of_difference, write_junit
+from drystone.cli.options import OUTPUT, catching, json_flag, junit_option, print_json, say
 from harness.engine.diff import difference, read_answers
-from harness.junit import tests_of_difference, write_junit
 from harness.model.case import shipped_cases
 from harness.model.difference import Difference, Slower
-from harness.options import OUTPUT, catching, json_flag, junit_option, print_json, say
 
 
 @click.command()

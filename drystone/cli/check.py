@@ -10,15 +10,9 @@ from pathlib import Path
 import click
 
 from drystone.checking import Tier, held, planned
-from harness import terminal
-from harness.engine import baseline as recording
-from harness.engine import compare as comparing
-from harness.engine.plan import Limits, find_cases, plan_case
-from harness.engine.store import open_store
-from harness.junit import tests_of_check, write_junit
-from harness.model.case import shipped_cases
-from harness.model.errors import InputError
-from harness.options import (
+from drystone.cli import terminal
+from drystone.cli.junit import tests_of_check, write_junit
+from drystone.cli.options import (
     OUTPUT,
     cases_option,
     catching,
@@ -30,6 +24,12 @@ from harness.options import (
     store_option,
     warn,
 )
+from harness.engine import baseline as recording
+from harness.engine import compare as comparing
+from harness.engine.plan import Limits, find_cases, plan_case
+from harness.engine.store import open_store
+from harness.model.case import shipped_cases
+from harness.model.errors import InputError
 
 
 @click.command()

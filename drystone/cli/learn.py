@@ -8,13 +8,13 @@ from pathlib import Path
 
 import click
 
-from harness import terminal
+from drystone.cli import terminal
+from drystone.cli.options import OUTPUT, catching, jobs_option, say, store_option
 from harness.engine import compare as comparing
 from harness.engine.isolate import announce
 from harness.engine.plan import Limits, find_cases, plan_case
 from harness.engine.store import open_store
 from harness.model.library import library
-from harness.options import OUTPUT, catching, jobs_option, say, store_option
 
 WALLS = ("wall-21-friction-030", "wall-21-friction-050", "wall-21", "wall-21-friction-075", "wall-21-friction-100")
 """Walls that differ in friction alone, from sliding to overturning in steps."""

@@ -9,8 +9,19 @@ from typing import Any
 import click
 
 from drystone.analysis import judge as judge_answer
+from drystone.cli import terminal
+from drystone.cli.options import (
+    OUTPUT,
+    cases_option,
+    catching,
+    json_flag,
+    print_json,
+    say,
+    say_json,
+    store_option,
+    warn,
+)
 from drystone.walls import read_wall as wall_of_file
-from harness import terminal
 from harness.engine import compare as comparing
 from harness.engine.plan import Limits, Run, check_methods, find_cases
 from harness.engine.store import open_store
@@ -22,7 +33,6 @@ from harness.model.reading import read_json, read_wall, wall_json
 from harness.model.result import Result
 from harness.model.wall import Wall
 from harness.model.writing import write_whole
-from harness.options import OUTPUT, cases_option, catching, json_flag, print_json, say, say_json, store_option, warn
 
 
 @click.command(name="list")

@@ -13,34 +13,34 @@ from harness import formats
 from harness.engine.threads import pin
 
 COMMANDS = {
-    "run": ("run_commands", "run", "Run METHOD on CASE and print what it finds."),
-    "compare": ("compare_commands", "compare", "Run methods on CASES or a suite, judge, store and report."),
-    "study": ("sweep_commands", "study", "List the studies that come with Drystone, or print one."),
-    "sweep": ("sweep_commands", "sweep_", "Make every run of a study: many walls, many settings."),
-    "store": ("sweep_commands", "store_", "Merge result stores."),
-    "learn": ("learn_commands", "learn", "Make a page for teaching: a block with sliders, a wall over friction."),
-    "report": ("compare_commands", "report", "Build the report of the last comparison again."),
-    "check": ("check_commands", "check", "Hold the methods to their gated references."),
-    "diff": ("diff_commands", "diff", "Compare the answers of two stores or baselines."),
-    "baseline": ("check_commands", "baseline", "Show how today's values stand to the recorded ones."),
-    "list": ("wall_commands", "list_", "List the cases, the methods or the suites there are."),
-    "expand": ("wall_commands", "expand", "Print WALL.json in explicit form."),
-    "judge": ("wall_commands", "judge", "Judge RESULT.json, an answer from anywhere."),
-    "bound": ("bound_commands", "bound", "Write a certificate that no collapse state lies lower."),
-    "verify-bound": ("bound_commands", "verify_bound", "Check a certificate in fractions."),
-    "schema": ("wall_commands", "schema", "Print the JSON Schema of the wall format."),
+    "run": ("run", "run", "Run METHOD on CASE and print what it finds."),
+    "compare": ("compare", "compare", "Run methods on CASES or a suite, judge, store and report."),
+    "study": ("sweep", "study", "List the studies that come with Drystone, or print one."),
+    "sweep": ("sweep", "sweep_", "Make every run of a study: many walls, many settings."),
+    "store": ("sweep", "store_", "Merge result stores."),
+    "learn": ("learn", "learn", "Make a page for teaching: a block with sliders, a wall over friction."),
+    "report": ("compare", "report", "Build the report of the last comparison again."),
+    "check": ("check", "check", "Hold the methods to their gated references."),
+    "diff": ("diff", "diff", "Compare the answers of two stores or baselines."),
+    "baseline": ("check", "baseline", "Show how today's values stand to the recorded ones."),
+    "list": ("walls", "list_", "List the cases, the methods or the suites there are."),
+    "expand": ("walls", "expand", "Print WALL.json in explicit form."),
+    "judge": ("walls", "judge", "Judge RESULT.json, an answer from anywhere."),
+    "bound": ("proof", "bound", "Write a certificate that no collapse state lies lower."),
+    "verify-bound": ("proof", "verify_bound", "Check a certificate in fractions."),
+    "schema": ("walls", "schema", "Print the JSON Schema of the wall format."),
     "validate": (
-        "drawing_commands",
+        "drawings",
         "validate",
         "List all that is wrong or doubtful in WALL.json.",
     ),
-    "repair": ("drawing_commands", "repair", "Close the gaps and overlaps of a drawing, and show what moved."),
-    "show": ("drawing_commands", "show", "Draw CASE to a file or in a window."),
-    "figure": ("wall_commands", "figure", "Draw the answers of methods as a figure for a paper."),
-    "import": ("format_commands", "import_", "Make a WALL.json of a drawing."),
-    "export": ("format_commands", "export", "Write a wall and its answer for other programs."),
-    "new": ("format_commands", "new", "Make a wall of a kind from a few numbers."),
-    "animate": ("wall_commands", "animate", "Animate the mechanism a method finds."),
+    "repair": ("drawings", "repair", "Close the gaps and overlaps of a drawing, and show what moved."),
+    "show": ("drawings", "show", "Draw CASE to a file or in a window."),
+    "figure": ("walls", "figure", "Draw the answers of methods as a figure for a paper."),
+    "import": ("files", "import_", "Make a WALL.json of a drawing."),
+    "export": ("files", "export", "Write a wall and its answer for other programs."),
+    "new": ("files", "new", "Make a wall of a kind from a few numbers."),
+    "animate": ("walls", "animate", "Animate the mechanism a method finds."),
 }
 """Every command: the module of this package it is in, its name there, and what the list of commands says of it."""
 
@@ -59,7 +59,7 @@ class Commands(click.Group):
         pin()
         module, name, _ = COMMANDS[cmd_name]
         formats.register()
-        command: click.Command = getattr(importlib.import_module(f"harness.{module}"), name)
+        command: click.Command = getattr(importlib.import_module(f"drystone.cli.{module}"), name)
         return command
 
     def format_commands(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:

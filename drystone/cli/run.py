@@ -8,12 +8,8 @@ from pathlib import Path
 import click
 
 from drystone.analysis import analyse_by
-from drystone.walls import Wall
-from harness import terminal
-from harness.engine.plan import Limits, check_methods, find_cases
-from harness.given_settings import settings_of
-from harness.model.method import Status
-from harness.options import (
+from drystone.cli import terminal
+from drystone.cli.options import (
     cases_option,
     catching,
     json_flag,
@@ -23,6 +19,10 @@ from harness.options import (
     settings_option,
     warn,
 )
+from drystone.cli.settings import settings_of
+from drystone.walls import Wall
+from harness.engine.plan import Limits, check_methods, find_cases
+from harness.model.method import Status
 
 
 @click.command()

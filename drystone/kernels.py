@@ -1,4 +1,4 @@
-"""Compile the loops of every shipped method, whose code numba keeps: `python -m harness.kernels`, run by the set-up."""
+"""Compile the loops of every shipped method, whose code numba keeps; the set-up runs `python -m drystone.kernels`."""
 
 from __future__ import annotations
 

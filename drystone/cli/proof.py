@@ -8,10 +8,10 @@ from typing import Literal
 
 import click
 
-from harness.certificates import proved, read_certificate, write_certificate
+from drystone.certificates import proved, read_certificate, write_certificate
+from drystone.cli.options import OUTPUT, cases_option, catching, json_flag, print_json, say, warn
 from harness.engine.plan import find_cases
 from harness.model.errors import InputError
-from harness.options import OUTPUT, cases_option, catching, json_flag, print_json, say, warn
 from methods.bound.exact_wall import CertificateError
 from methods.bound.same_wall import require_same_wall
 from methods.bound.verify import verify

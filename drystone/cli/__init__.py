@@ -1,0 +1,1 @@
+"""The command `drystone`, on top of the library."""
