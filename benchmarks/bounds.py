@@ -18,11 +18,11 @@ import numpy as np
 from benchmarks.walls import courses_of_stones, irregular_wall, small_arch
 from harness.model.assembly import Assembly
 from harness.model.method import Finding
-from methods.bound.tuning import WINDOWS
 from methods.la.certify.window_certificate import certified_bracket
 from methods.la.core.problem import make_problem
 from methods.la.core.search_settings import SearchSettings
 from methods.la.search_adapter import LimitAnalysis
+from methods.proof.search.tuning import WINDOWS
 
 
 def small_wall(seed: int) -> Assembly:

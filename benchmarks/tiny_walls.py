@@ -15,10 +15,10 @@ import numpy as np
 
 from benchmarks.walls import irregular_wall
 from harness.model.assembly import Assembly
-from methods.bound.bracket import bracket
-from methods.bound.tuning import WINDOWS
 from methods.la.certify.window_certificate import certifier_of, equations_of
 from methods.la.core.problem import make_problem
+from methods.proof.search.bracket import bracket
+from methods.proof.search.tuning import WINDOWS
 from tests.bound.by_cases import in_cases
 from tests.enumeration import least_by_enumeration
 from tests.la.bodies import stack

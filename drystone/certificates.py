@@ -25,11 +25,11 @@ from harness.model.proof import is_collapse_state
 from harness.model.reading import json_of, read_bytes
 from harness.model.result import Result, Verdict
 from harness.model.writing import write_whole
-from methods.bound.document import MOST_BYTES, unpacked
-from methods.bound.exact_wall import CertificateError, number
-from methods.bound.same_wall import require_same_wall
-from methods.bound.verify import verify
-from methods.bound.words import in_words
+from methods.proof.same_wall import require_same_wall
+from methods.proof.verify.checker import verify
+from methods.proof.verify.document import MOST_BYTES, unpacked
+from methods.proof.verify.exact_wall import CertificateError, number
+from methods.proof.words import in_words
 
 CERTIFICATE = "certificate.json"
 PACKED = ".gz"

@@ -33,7 +33,7 @@ KEPT = ROOT / "out" / "mutants"
 PACKAGES = {
     "judge": ("harness/engine/judge.py harness/engine/residuals.py", "tests/engine tests/conformance"),
     "proof": (
-        "methods/bound/*.py methods/la/certify/*.py drystone/certificates.py",
+        "methods/proof/*.py methods/la/certify/*.py drystone/certificates.py",
         "tests/bound tests/la/test_proof.py",
     ),
     "model": ("harness/model/*.py", "tests/model"),

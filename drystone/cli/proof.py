@@ -12,9 +12,9 @@ from drystone.certificates import proved, read_certificate, write_certificate
 from drystone.cli.options import OUTPUT, cases_option, catching, json_flag, print_json, say, warn
 from harness.engine.plan import find_cases
 from harness.model.errors import InputError
-from methods.bound.exact_wall import CertificateError
-from methods.bound.same_wall import require_same_wall
-from methods.bound.verify import verify
+from methods.proof.same_wall import require_same_wall
+from methods.proof.verify.checker import verify
+from methods.proof.verify.exact_wall import CertificateError
 
 
 @click.command()

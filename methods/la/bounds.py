@@ -10,16 +10,16 @@ from typing import Any
 
 from harness.model.assembly import Assembly
 from harness.model.method import Answer, Finding, Status
-from methods.bound.tuning import WINDOWS
-from methods.bound.verify import verify
-from methods.bound.window_search import Bracket
-from methods.bound.words import in_words
 from methods.la.certify.tree_certificate import certificate
 from methods.la.certify.window_certificate import certified_bracket
 from methods.la.core.problem import Problem
 from methods.la.core.search_settings import BoundSettings
 from methods.la.find_certificate import account, beyond
 from methods.la.least import SAME_MULTIPLIER
+from methods.proof.search.tuning import WINDOWS
+from methods.proof.search.window_search import Bracket
+from methods.proof.verify.checker import verify
+from methods.proof.words import in_words
 
 
 def with_bound(assembly: Assembly, problem: Problem, known: Answer, settings: BoundSettings) -> Answer:

@@ -10,8 +10,6 @@ from typing import Any
 
 from harness.model.assembly import Assembly
 from harness.model.method import Finding, Status
-from methods.bound.tuning import WINDOWS
-from methods.bound.window_search import Bracket
 from methods.la.certify.tree_certificate import certificate
 from methods.la.certify.window_certificate import certified_bracket
 from methods.la.core.newton_matrix import NewtonMatrix
@@ -21,6 +19,8 @@ from methods.la.declared_la import DeclaredBound
 from methods.la.least import least_known
 from methods.la.sources.budget import SIZES
 from methods.la.state_answers import dead_load_answer
+from methods.proof.search.tuning import WINDOWS
+from methods.proof.search.window_search import Bracket
 
 
 @dataclass(frozen=True)

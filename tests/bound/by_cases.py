@@ -6,13 +6,13 @@ import time
 from typing import Any
 
 from harness.model.assembly import Assembly
-from methods.bound.bracket import branched
-from methods.bound.slack_bounds import SlackProgramme
-from methods.bound.window_search import Bracket, Certify, WindowSearch
 from methods.la.certify.window_certificate import certificate_of, certifier_of, equations_of
 from methods.la.core.problem import Problem, make_problem
 from methods.la.core.search_settings import SearchSettings
 from methods.la.search_adapter import LimitAnalysis
+from methods.proof.search.bracket import branched
+from methods.proof.search.slack_bounds import SlackProgramme
+from methods.proof.search.window_search import Bracket, Certify, WindowSearch
 
 
 class Short(WindowSearch):

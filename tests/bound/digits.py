@@ -10,9 +10,9 @@ from typing import Any
 from hypothesis import reject
 from hypothesis import strategies as st
 
-from methods.bound.document import digest
-from methods.bound.exact_wall import CertificateError
-from methods.bound.verify import verify
+from methods.proof.verify.checker import verify
+from methods.proof.verify.document import digest
+from methods.proof.verify.exact_wall import CertificateError
 
 
 def one_digit_changed(data: st.DataObject, document: Any) -> Any:

@@ -20,12 +20,12 @@ from harness.model.build import build
 from harness.model.case import shipped_cases
 from harness.model.errors import InputError
 from harness.model.wall import Wall
-from methods.bound import document as documents
-from methods.bound.document import digest
-from methods.bound.exact_wall import CertificateError
-from methods.bound.same_wall import require_same_wall
-from methods.bound.verify import main, verify
 from methods.la.certify.tree_certificate import wall_document
+from methods.proof.same_wall import require_same_wall
+from methods.proof.verify import document as documents
+from methods.proof.verify.checker import main, verify
+from methods.proof.verify.document import digest
+from methods.proof.verify.exact_wall import CertificateError
 from tests.walls import wall_data
 
 DATA = Path(__file__).parents[1] / "data" / "certificates"

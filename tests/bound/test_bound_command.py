@@ -10,11 +10,11 @@ import pytest
 from click.testing import CliRunner, Result
 
 from drystone.cli.main import main as drystone
-from methods.bound.bracket import bracket
-from methods.bound.window_search import Bracket, Stop
 from methods.la.certify.window_certificate import equations_of
 from methods.la.core.problem import make_problem
 from methods.la.find_certificate import account
+from methods.proof.search.bracket import bracket
+from methods.proof.search.window_search import Bracket, Stop
 from tests.la.bodies import running_bond as bond
 from tests.walls import running_bond, stack, wall_data
 

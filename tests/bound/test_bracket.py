@@ -14,11 +14,6 @@ from benchmarks.bounds import small_wall
 from harness.model.assembly import Assembly
 from harness.model.build import build
 from harness.model.wall import Wall
-from methods.bound.bracket import bracket
-from methods.bound.case import Case
-from methods.bound.relaxation import Relaxation
-from methods.bound.slack_bounds import SlackProgramme
-from methods.bound.window_search import Bracket
 from methods.la.bound_adapter import BoundedLimitAnalysis
 from methods.la.certify.window_certificate import equations_of
 from methods.la.core.newton_matrix import NewtonMatrix
@@ -26,6 +21,11 @@ from methods.la.core.problem import Problem, make_problem
 from methods.la.core.search_settings import BoundSettings, SearchSettings
 from methods.la.search_adapter import LimitAnalysis
 from methods.la.sources.search import Search
+from methods.proof.search.bracket import bracket
+from methods.proof.search.case import Case
+from methods.proof.search.relaxation import Relaxation
+from methods.proof.search.slack_bounds import SlackProgramme
+from methods.proof.search.window_search import Bracket
 from tests.bound.by_cases import in_cases
 from tests.enumeration import least_by_enumeration
 from tests.la.bodies import column, running_bond

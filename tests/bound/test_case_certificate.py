@@ -14,20 +14,20 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from benchmarks.bounds import small_wall
-from methods.bound.case import AtContact, AtNormalForce, Case
-from methods.bound.document import digest
-from methods.bound.exact_wall import CertificateError, ExactWall
-from methods.bound.rate_bounds import RateProgramme
-from methods.bound.same_wall import require_same_wall
-from methods.bound.slack_bounds import SlackProgramme
-from methods.bound.verify import verify
-from methods.bound.verify_cases import STEPS, states_of
-from methods.bound.verify_window import WindowLimits
-from methods.bound.window_search import Bracket, WindowSearch
 from methods.la.certify.window_certificate import certificate_of, certifier_of, equations_of
 from methods.la.core.problem import make_problem
 from methods.la.core.search_settings import SearchSettings
 from methods.la.search_adapter import LimitAnalysis
+from methods.proof.same_wall import require_same_wall
+from methods.proof.search.case import AtContact, AtNormalForce, Case
+from methods.proof.search.rate_bounds import RateProgramme
+from methods.proof.search.slack_bounds import SlackProgramme
+from methods.proof.search.window_search import Bracket, WindowSearch
+from methods.proof.verify.cases import STEPS, states_of
+from methods.proof.verify.checker import verify
+from methods.proof.verify.document import digest
+from methods.proof.verify.exact_wall import CertificateError, ExactWall
+from methods.proof.verify.windows import WindowLimits
 from tests.bound.by_cases import certificate_of_cases
 from tests.bound.digits import one_digit_changed, refused_or_true
 from tests.bound.test_bracket import IRREGULAR

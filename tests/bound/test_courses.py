@@ -17,10 +17,10 @@ from harness.model.assembly import Assembly
 from harness.model.build import build
 from harness.model.reading import parse_wall
 from harness.model.wall import Wall
-from methods.bound.exact_wall import CertificateError, ExactWall
-from methods.bound.verify import digest, verify
-from methods.bound.verify_window import WindowLimits
-from methods.bound.window_limits import Course, Motions
+from methods.proof.verify.checker import digest, verify
+from methods.proof.verify.exact_wall import CertificateError, ExactWall
+from methods.proof.verify.window_limits import Course, Motions
+from methods.proof.verify.windows import WindowLimits
 from tests.bound.test_window_certificate import certificate_of
 
 DATA = Path(__file__).parents[1] / "data" / "walls"

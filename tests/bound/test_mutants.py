@@ -22,10 +22,10 @@ import pytest
 from drystone.certificates import CERTIFICATE, PACKED, read_certificate
 from harness.model.assembly import Assembly
 from harness.model.case import read_case, shipped_cases
-from methods.bound.document import digest
-from methods.bound.exact_wall import CertificateError
-from methods.bound.same_wall import require_same_wall
-from methods.bound.verify import verify
+from methods.proof.same_wall import require_same_wall
+from methods.proof.verify.checker import verify
+from methods.proof.verify.document import digest
+from methods.proof.verify.exact_wall import CertificateError
 from tests.bound import test_case_certificate as of_cases
 from tests.bound import test_window_certificate as of_windows
 from tests.bound.by_cases import certificate_of_cases

@@ -18,16 +18,16 @@ from drystone.certificates import CERTIFICATE, PACKED, read_certificate
 from drystone.cli.main import main as drystone
 from harness.model.assembly import Assembly
 from harness.model.case import read_case, shipped_cases
-from methods.bound.document import digest
-from methods.bound.exact_wall import CertificateError
-from methods.bound.same_wall import require_same_wall
-from methods.bound.verify import verify
 from methods.la.bound_adapter import BoundedLimitAnalysis
 from methods.la.certify.window_certificate import certified_bracket
 from methods.la.core.newton_matrix import NewtonMatrix
 from methods.la.core.problem import make_problem
 from methods.la.core.search_settings import BoundSettings
 from methods.la.sources.search import Search
+from methods.proof.same_wall import require_same_wall
+from methods.proof.verify.checker import verify
+from methods.proof.verify.document import digest
+from methods.proof.verify.exact_wall import CertificateError
 from tests.bound.digits import one_digit_changed, refused_or_true
 from tests.la.bodies import running_bond
 from tests.walls import stack, wall_data

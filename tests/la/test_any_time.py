@@ -10,8 +10,8 @@ from benchmarks.la_any_time import timed
 from harness.engine.judge import judge
 from harness.model.method import Finding, OutOfTime, Status, load_method
 from harness.model.result import result_of
-from methods.bound.window_search import WindowSearch
 from methods.la.sources import SOURCES
+from methods.proof.search.window_search import WindowSearch
 from tests.walls import assembly, running_bond
 
 

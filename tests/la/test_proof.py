@@ -9,7 +9,6 @@ from benchmarks.walls import small_arch
 from harness.model.assembly import Assembly
 from harness.model.build import build
 from harness.model.wall import Wall
-from methods.bound.verify import verify
 from methods.la.certify.proof import Proof, _Certificates, _Part, prove
 from methods.la.certify.tree_certificate import certificate
 from methods.la.core.extremes import ForceProgramme
@@ -19,6 +18,7 @@ from methods.la.core.search_settings import SearchSettings
 from methods.la.core.state import CollapseState
 from methods.la.search_adapter import LimitAnalysis
 from methods.la.sources.search import Search
+from methods.proof.verify.checker import verify
 from tests.la.bodies import block_on_halves, column, running_bond
 from tests.la.test_mechanisms import six_blocks
 from tests.soak import random_wall

@@ -18,13 +18,13 @@ from dataclasses import dataclass
 import numpy as np
 
 from harness.model.assembly import BoolArray, FloatArray
-from methods.bound.tuning import WINDOWS
 from methods.la.core.extremes import ForceProgramme, rates_against_any_load, units_of
 from methods.la.core.problem import Problem
 from methods.la.core.programmes import KinematicProgramme
 from methods.la.core.state import CollapseState
 from methods.la.sources.search import Search
 from methods.numerics.linear_programme import INFINITY
+from methods.proof.search.tuning import WINDOWS
 
 CLOSE = WINDOWS.closed
 """Relative distance below the least multiplier known within which no other is sought."""

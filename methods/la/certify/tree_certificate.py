@@ -1,7 +1,7 @@
 """A certificate that the least state known is the least, in fractions, from the tree of `methods/la/certify/proof.py`.
 
 Linear programmes find for every leaf the velocities or forces that exclude it; their vertices are solved for in
-fractions. What is written is what `methods/bound/verify.py` accepts, which shares nothing with this.
+fractions. What is written is what `methods/proof/verify/checker.py` accepts, which shares nothing with this.
 """
 
 from __future__ import annotations
@@ -15,10 +15,6 @@ import numpy as np
 import scipy.sparse as sp
 
 from harness.model.assembly import Assembly, BoolArray, FloatArray
-from methods.bound.document import FORMAT, digest
-from methods.bound.exact_wall import CertificateError
-from methods.bound.same_wall import block_sizes, interface_lengths, load_sizes, same_number
-from methods.bound.verify import verify
 from methods.la.certify.proof import prove
 from methods.la.certify.rational import DENOMINATOR, Row, solve_sparse
 from methods.la.core.newton_matrix import NewtonMatrix
@@ -27,6 +23,10 @@ from methods.la.core.state import CollapseState
 from methods.la.sources.search import Search
 from methods.numerics.linear_programme import INFINITY, Programme
 from methods.numerics.vertex import BASIC
+from methods.proof.same_wall import block_sizes, interface_lengths, load_sizes, same_number
+from methods.proof.verify.checker import verify
+from methods.proof.verify.document import FORMAT, digest
+from methods.proof.verify.exact_wall import CertificateError
 
 SHORT = 1e-13
 """Difference of a short fraction from the float that stands for it, relative to what it belongs to: a hundredth of

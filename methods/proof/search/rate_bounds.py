@@ -9,11 +9,11 @@ import numpy as np
 import scipy.sparse as sp
 
 from harness.model.assembly import FloatArray
-from methods.bound.case import Case
-from methods.bound.equations import Equations
-from methods.bound.slack_bounds import SlackBounds
-from methods.bound.tuning import ROUNDING
 from methods.numerics.linear_programme import INFINITY, Programme
+from methods.proof.search.case import Case
+from methods.proof.search.equations import Equations
+from methods.proof.search.slack_bounds import SlackBounds
+from methods.proof.search.tuning import ROUNDING
 
 
 @dataclass(frozen=True, eq=False)
@@ -37,7 +37,7 @@ class RateProgramme:
     """The linear programme over mechanisms of live work n, kept so that each window starts from the last basis.
 
     A mechanism of a multiplier of at most `high` loses no more in friction, at the least normal forces, than dead loads
-    and `high` times the live load give (the lift of `methods.bound.relaxation`).
+    and `high` times the live load give (the lift of `methods.proof.search.relaxation`).
     """
 
     def __init__(self, equations: Equations) -> None:

@@ -11,15 +11,15 @@ from typing import Protocol
 import numpy as np
 
 from harness.model.assembly import FloatArray
-from methods.bound.case import EVERY, Case, Division
-from methods.bound.dividing import division_of
-from methods.bound.dual import DualBound
-from methods.bound.equations import Equations
-from methods.bound.halpern import Splitting, carried_over
-from methods.bound.rate_bounds import RateProgramme, RateProof
-from methods.bound.relaxation import Relaxation
-from methods.bound.slack_bounds import SlackBounds, SlackProgramme
-from methods.bound.tuning import ROUNDING, STEPS, WINDOWS
+from methods.proof.search.case import EVERY, Case, Division
+from methods.proof.search.dividing import division_of
+from methods.proof.search.dual import DualBound
+from methods.proof.search.equations import Equations
+from methods.proof.search.halpern import Splitting, carried_over
+from methods.proof.search.rate_bounds import RateProgramme, RateProof
+from methods.proof.search.relaxation import Relaxation
+from methods.proof.search.slack_bounds import SlackBounds, SlackProgramme
+from methods.proof.search.tuning import ROUNDING, STEPS, WINDOWS
 
 
 @dataclass(frozen=True, eq=False)

@@ -15,10 +15,10 @@ import numpy as np
 import scipy.linalg
 
 from harness.model.assembly import FloatArray, IntArray
-from methods.bound.case import EVERY, Case
-from methods.bound.equations import Equations
-from methods.bound.slack_bounds import SlackBounds
-from methods.bound.tuning import ROUNDING
+from methods.proof.search.case import EVERY, Case
+from methods.proof.search.equations import Equations
+from methods.proof.search.slack_bounds import SlackBounds
+from methods.proof.search.tuning import ROUNDING
 
 
 class Relaxation:

@@ -8,16 +8,16 @@ from typing import Any
 import numpy as np
 
 from harness.model.assembly import FloatArray
-from methods.bound.case import AtContact, Division
-from methods.bound.equations import Equations
-from methods.bound.exact_wall import CertificateError, ExactWall
-from methods.bound.rate_bounds import RateProof
-from methods.bound.relaxation import Relaxation
-from methods.bound.slack_bounds import SlackBounds, SlackProgramme
-from methods.bound.tuning import PRECISION, ROUNDING
-from methods.bound.verify_cases import States, states_of
-from methods.bound.window_document import Scales, WindowDocument, below, whole_values
-from methods.bound.window_search import WindowProof
+from methods.proof.search.case import AtContact, Division
+from methods.proof.search.equations import Equations
+from methods.proof.search.rate_bounds import RateProof
+from methods.proof.search.relaxation import Relaxation
+from methods.proof.search.slack_bounds import SlackBounds, SlackProgramme
+from methods.proof.search.tuning import PRECISION, ROUNDING
+from methods.proof.search.window_document import Scales, WindowDocument, below, whole_values
+from methods.proof.search.window_search import WindowProof
+from methods.proof.verify.cases import States, states_of
+from methods.proof.verify.exact_wall import CertificateError, ExactWall
 
 Fact = tuple[str, int]
 """What a step shows: the rate of a contact is bounded, its slack is zero, or an interface is loaded."""

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from fractions import Fraction
 
-from methods.bound.tuning import PRECISION
+from methods.proof.search.tuning import PRECISION
 
 
 def in_words(value: Fraction) -> str:

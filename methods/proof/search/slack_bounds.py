@@ -8,10 +8,10 @@ import numpy as np
 import scipy.sparse as sp
 
 from harness.model.assembly import FloatArray
-from methods.bound.case import EVERY, Case
-from methods.bound.equations import Equations
-from methods.bound.tuning import ROUNDING
 from methods.numerics.linear_programme import INFINITY, Programme
+from methods.proof.search.case import EVERY, Case
+from methods.proof.search.equations import Equations
+from methods.proof.search.tuning import ROUNDING
 
 
 @dataclass(frozen=True, eq=False)

@@ -16,9 +16,9 @@ import numpy as np
 import numpy.typing as npt
 
 from harness.model.assembly import FloatArray, IntArray
-from methods.bound.dual import DualBound, dual_bound
-from methods.bound.relaxation import Relaxation
-from methods.bound.tuning import RESTARTS
+from methods.proof.search.dual import DualBound, dual_bound
+from methods.proof.search.relaxation import Relaxation
+from methods.proof.search.tuning import RESTARTS
 
 Products = npt.NDArray[np.floating[Any]]
 """(a, c) products of a relaxation in the precision of a sweep."""

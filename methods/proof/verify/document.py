@@ -8,7 +8,7 @@ import re
 import zlib
 from typing import Any
 
-from methods.bound.exact_wall import MOST_DIGITS, CertificateError
+from methods.proof.verify.exact_wall import MOST_DIGITS, CertificateError
 
 FORMAT = "drystone-bound/1"
 MOST_BYTES = 64 * 2**20

@@ -5,8 +5,17 @@ from __future__ import annotations
 from fractions import Fraction
 from typing import Any
 
-from methods.bound.exact_wall import ZERO, CertificateError, ExactWall, Form, Vector, listed, whole, whole_numbers
-from methods.bound.force_limits import Forces, Known
+from methods.proof.verify.exact_wall import (
+    ZERO,
+    CertificateError,
+    ExactWall,
+    Form,
+    Vector,
+    listed,
+    whole,
+    whole_numbers,
+)
+from methods.proof.verify.force_limits import Forces, Known
 
 
 class Columns:

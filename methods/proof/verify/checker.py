@@ -28,10 +28,19 @@ from fractions import Fraction
 from pathlib import Path
 from typing import Any
 
-from methods.bound.document import FORMAT, digest, read
-from methods.bound.exact_wall import CertificateError, ExactWall, Vector, contacts, dot, fractions_of, listed, number
-from methods.bound.verify_cases import States, case_bound, states_of
-from methods.bound.verify_window import WindowLimits
+from methods.proof.verify.cases import States, case_bound, states_of
+from methods.proof.verify.document import FORMAT, digest, read
+from methods.proof.verify.exact_wall import (
+    CertificateError,
+    ExactWall,
+    Vector,
+    contacts,
+    dot,
+    fractions_of,
+    listed,
+    number,
+)
+from methods.proof.verify.windows import WindowLimits
 
 SECONDS = 600.0
 """CPU time that a check may take. The longest of the library takes six seconds."""

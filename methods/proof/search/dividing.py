@@ -5,10 +5,10 @@ from __future__ import annotations
 import numpy as np
 
 from harness.model.assembly import FloatArray
-from methods.bound.case import AtContact, AtNormalForce, Division
-from methods.bound.halpern import Splitting
-from methods.bound.relaxation import Relaxation
-from methods.bound.tuning import ROUNDING, WINDOWS
+from methods.proof.search.case import AtContact, AtNormalForce, Division
+from methods.proof.search.halpern import Splitting
+from methods.proof.search.relaxation import Relaxation
+from methods.proof.search.tuning import ROUNDING, WINDOWS
 
 
 def division_of(run: Splitting, vain: Division | None = None) -> Division | None:

@@ -12,14 +12,14 @@ import numpy as np
 import scipy.linalg
 
 from harness.model.assembly import FloatArray, IntArray
-from methods.bound.exact_wall import CertificateError, ExactWall, Form
-from methods.bound.force_limits import Forces
-from methods.bound.relaxation import Relaxation
-from methods.bound.slack_bounds import SlackProgramme
-from methods.bound.tuning import PRECISION, ROUNDING
-from methods.bound.verify_cases import States
-from methods.bound.verify_window import WindowLimits
-from methods.bound.window_search import WindowProof
+from methods.proof.search.relaxation import Relaxation
+from methods.proof.search.slack_bounds import SlackProgramme
+from methods.proof.search.tuning import PRECISION, ROUNDING
+from methods.proof.search.window_search import WindowProof
+from methods.proof.verify.cases import States
+from methods.proof.verify.exact_wall import CertificateError, ExactWall, Form
+from methods.proof.verify.force_limits import Forces
+from methods.proof.verify.windows import WindowLimits
 
 
 @dataclass(frozen=True, eq=False)

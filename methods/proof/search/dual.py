@@ -7,8 +7,8 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from harness.model.assembly import FloatArray
-from methods.bound.relaxation import Relaxation
-from methods.bound.tuning import ROUNDING
+from methods.proof.search.relaxation import Relaxation
+from methods.proof.search.tuning import ROUNDING
 
 
 @dataclass(frozen=True)

@@ -6,10 +6,10 @@ import time
 from contextlib import suppress
 
 from harness.model.method import OutOfTime
-from methods.bound.equations import Equations
-from methods.bound.rate_bounds import RateProgramme
-from methods.bound.slack_bounds import SlackProgramme
-from methods.bound.window_search import Bracket, Certify, Stop, WindowSearch
+from methods.proof.search.equations import Equations
+from methods.proof.search.rate_bounds import RateProgramme
+from methods.proof.search.slack_bounds import SlackProgramme
+from methods.proof.search.window_search import Bracket, Certify, Stop, WindowSearch
 
 
 def bracket(

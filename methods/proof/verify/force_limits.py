@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from fractions import Fraction
 from typing import Any
 
-from methods.bound.exact_wall import (
+from methods.proof.verify.exact_wall import (
     ZERO,
     CertificateError,
     ExactWall,

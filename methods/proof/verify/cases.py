@@ -21,7 +21,7 @@ from dataclasses import dataclass, replace
 from fractions import Fraction
 from typing import Any
 
-from methods.bound.exact_wall import (
+from methods.proof.verify.exact_wall import (
     ZERO,
     CertificateError,
     ExactWall,
@@ -33,9 +33,9 @@ from methods.bound.exact_wall import (
     whole,
     whole_numbers,
 )
-from methods.bound.force_limits import Forces, Known
-from methods.bound.verify_window import WindowLimits
-from methods.bound.window_limits import most_of
+from methods.proof.verify.force_limits import Forces, Known
+from methods.proof.verify.window_limits import most_of
+from methods.proof.verify.windows import WindowLimits
 
 
 @dataclass(frozen=True)

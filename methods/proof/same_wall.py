@@ -14,8 +14,8 @@ from typing import Any
 import numpy as np
 
 from harness.model.assembly import Assembly, FloatArray
-from methods.bound.exact_wall import CertificateError, fractions_of, number
-from methods.bound.tuning import ROUNDING
+from methods.proof.search.tuning import ROUNDING
+from methods.proof.verify.exact_wall import CertificateError, fractions_of, number
 
 
 def require_same_wall(document: Any, assembly: Assembly) -> None:

@@ -22,7 +22,7 @@ import math
 from fractions import Fraction
 from typing import Any
 
-from methods.bound.exact_wall import (
+from methods.proof.verify.exact_wall import (
     ZERO,
     CertificateError,
     ExactWall,
@@ -35,8 +35,8 @@ from methods.bound.exact_wall import (
     whole,
     whole_numbers,
 )
-from methods.bound.force_limits import Forces, Known, known_of
-from methods.bound.window_limits import Columns, Motions, Reach
+from methods.proof.verify.force_limits import Forces, Known, known_of
+from methods.proof.verify.window_limits import Columns, Motions, Reach
 
 
 class WindowLimits:
