@@ -94,7 +94,7 @@ def serve() -> None:
     from harness.model.method import load_method
 
     for module, _, _ in drystone.cli.main.COMMANDS.values():
-        __import__(f"harness.{module}")
+        __import__(f"drystone.cli.{module}")
     import reports.build  # noqa: F401
 
     for method in ("la", "fe", "de"):

@@ -145,7 +145,7 @@ class DeformableJoints(DeclaredSoft):
         answer.iterations, answer.path, answer.flow = wall.steps, holds.path, "approximate"
         answer.forces_multiplier = holds.path["multiplier"][-1] if holds.path["multiplier"] else None
         if answer.finding in (Finding.COLLAPSES, Finding.FALLS):
-            answer.mechanism = holds.motion
+            answer.mechanism = None if holds.motion is None else velocities_of(holds.motion)
         answer.details |= _told(holds, stiffness)
         return answer
 
@@ -268,6 +268,19 @@ def _told(holds: Holds, stiffness: float) -> dict[str, Any]:
         "lean": _lean(holds),
         **wall.state().as_details(),
     }
+
+
+def velocities_of(displacements: FloatArray) -> FloatArray:
+    """Constant velocities (n, 3) that carry blocks through displacements (n, 3) in unit time, each about its pole.
+
+    A displacement (ux, uy, omega) by itself seems to close a contact about which a block turns, by the square of omega:
+    u = V v, V = [[sin omega, cos omega - 1], [1 - cos omega, sin omega]] / omega (logarithm of a plane rigid motion).
+    """
+    x, y, turn = displacements.T
+    half = 0.5 * turn
+    straight = np.ones_like(half)
+    np.divide(half, np.tan(half), out=straight, where=half != 0.0)
+    return np.column_stack([straight * x + half * y, straight * y - half * x, turn])
 
 
 def _lean(holds: Holds) -> float | None:

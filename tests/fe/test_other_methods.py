@@ -92,12 +92,11 @@ def test_convex_steps_whose_limits_do_not_settle_give_no_multiplier() -> None:
     assert "no proof of collapse" in answer.sentence
 
 
-def test_convex_steps_that_never_end_show_forces_near_the_dead_load() -> None:
+def test_convex_steps_that_never_end_show_forces_under_the_dead_load() -> None:
     """OSQP's accuracy is relative to the load: at 1e5 times the live load the forces miss whole block weights."""
     answer = ConvexSteps().solve(ring(5, 0.9, {"body": [{"per_weight": [0.0, -1.0]}]}), ConvexSettings())
     assert (answer.status, answer.finding) == (Status.OK, Finding.UNBOUNDED)
-    assert answer.forces_multiplier is not None
-    assert 0.0 < answer.forces_multiplier < 10.0
+    assert answer.forces_multiplier == 0.0
 
 
 def test_convex_steps_say_when_a_multiplier_is_too_small_for_them() -> None:

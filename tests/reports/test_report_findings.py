@@ -35,7 +35,7 @@ def test_one_wall_opens_with_its_multipliers_and_the_number_to_use():
     opened = opening.opening(ComparisonRun("mine", "", "", [of_one_wall()]))
     told = " ".join(opened.findings)
     assert told.startswith("mine collapses at 0.55800 under the live load to the right (LA, least known); FE 0.56520")
-    assert "; FE 0.56520, DE [0.45000, 0.61000]." in told
+    assert "; FE 0.56520, DE [0.45000, 0.61000] (26 % wide)." in told
     assert "They differ by 1.3 to 25.6 %: the mechanisms of LA and FE differ." in told, "a bracket has two ends"
     assert "For safety use 0.55800 (la), least known: a lower collapse state is not excluded." in opened.advice
     assert "Do not rely on 0.58400, which is 4.7 % above the least multiplier (la-associated)" in opened.advice
@@ -212,7 +212,7 @@ def test_own_walls_come_first_then_the_papers_then_those_that_part():
 
 def test_measured_value_is_its_bracket_in_every_table():
     rows = tables.run_rows(ComparisonRun("mine", "", "", [of_one_wall()]))[0]
-    assert [row.multiplier.text for row in rows if row.method == "de"] == ["[0.45000, 0.61000]"]
+    assert [row.multiplier.text for row in rows if row.method == "de"] == ["[0.45000, 0.61000] (26 % wide)"]
 
 
 def test_methods_run_on_few_cases_take_no_column():

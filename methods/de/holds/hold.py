@@ -69,8 +69,14 @@ class Watch:
 
     @property
     def rests(self) -> bool:
-        """Whether the residual was small enough at the last two checks."""
-        return len(self.residuals) > 1 and max(self.residuals[-2:]) < self.held
+        """Whether the residual was small enough at the last two checks and did not grow: a slow motion begins so.
+
+        Growth below a hundredth of what is small enough is rounding.
+        """
+        if len(self.residuals) < 2:
+            return False
+        before, last = self.residuals[-2:]
+        return max(before, last) < self.held and last <= max(before, 0.01 * self.held)
 
     @property
     def steady(self) -> bool:
@@ -192,7 +198,10 @@ def hold_limit(engine: Engine, settings: HoldSettings) -> int:
 
 
 def settle(engine: Engine, settings: HoldSettings) -> float:
-    """Follow a held state until its residual is below `force_residual` or no longer falls; its last residual."""
+    """Follow a held state until its residual is below `force_residual` or no longer falls; its last residual.
+
+    It no longer falls where six looks, two relaxation times, bring less than a tenth.
+    """
     check = max(10, round(engine.relaxation / 3.0))
     best = residual = engine.unbalance(engine.velocity())
     stale = 0
@@ -201,6 +210,7 @@ def settle(engine: Engine, settings: HoldSettings) -> float:
             break
         engine.advance(check)
         residual = engine.unbalance(engine.velocity())
-        stale = 0 if residual < 0.9 * best else stale + 1
-        best = min(best, residual)
+        stale += 1
+        if residual < 0.9 * best:
+            best, stale = residual, 0
     return residual
