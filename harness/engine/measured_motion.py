@@ -34,8 +34,9 @@ from harness.model.result import relative_velocities
 TOLERANCE = 0.02
 """Of a field with the forces of the motion: it is a mean over time steps, they are those of the last, and contacts
 chatter in between. A block that rocks with its rotation wrong by a quarter exceeds it."""
-TOLERANCE_ALONE = 0.05
-"""Of a field without: it may be a displacement, in which blocks that turn by an angle seem to close by its square."""
+TOLERANCE_ALONE = 0.1
+"""Of a field without: it may stand for a displacement of a quarter of a block, in which contacts between blocks that turn
+and slide seem to close by the product of both."""
 
 
 class NotOfThisWall(ValueError):

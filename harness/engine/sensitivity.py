@@ -90,10 +90,13 @@ def suggested(plateaus: list[Plateau]) -> tuple[float, Plateau] | None:
 
 
 def advised(looked: Inspection) -> float | None:
-    """A tolerance for the near misses of a wall [length]; None where it has none, or too many blocks."""
+    """A tolerance for the near misses of a wall [length]; None where it has none, too many blocks, or other faults."""
     if len(looked.names) > MOST_LOOKED or not any(mark.near_miss for mark in looked.marks):
         return None
-    advice = suggested(over_tolerance(looked.wall))
+    try:
+        advice = suggested(over_tolerance(looked.wall))
+    except InputError:  # faults that no tolerance mends, which are told themselves
+        return None
     return advice[0] if advice else None
 
 

@@ -10,12 +10,12 @@ from harness.model.assembly import Assembly
 from harness.model.build import build
 from harness.model.wall import Wall
 from methods.la.certify.proof import Proof, _Certificates, _Part, prove
-from methods.la.certify.tree_certificate import certificate
 from methods.la.core.extremes import ForceProgramme
 from methods.la.core.newton_matrix import NewtonMatrix
 from methods.la.core.problem import Problem, make_problem
 from methods.la.core.search_settings import SearchSettings
 from methods.la.core.state import CollapseState
+from methods.la.find_certificate import find_certificate
 from methods.la.search_adapter import LimitAnalysis
 from methods.la.sources.search import Search
 from methods.proof.verify.checker import verify
@@ -97,11 +97,12 @@ def test_small_arches_are_proved_by_the_tree_and_in_fractions(seed: int) -> None
     wall = small_arch(seed)
     answer = LimitAnalysis().solve(wall, SearchSettings())
     assert answer.details["proved_least"]
-    document = certificate(wall, mechanism=answer.mechanism)
+    document = find_certificate(wall, 10.0, SearchSettings()).document
     assert document is not None
     lower, upper = verify(document)
+    assert upper is not None
     assert float(upper) == pytest.approx(answer.multiplier, rel=1e-9)
-    assert float(upper - lower) == pytest.approx(2e-6 * float(upper), rel=1e-9)
+    assert 0.0 <= float(upper - lower) <= 3e-6 * float(upper)
 
 
 def test_a_part_whose_mechanisms_all_work_against_the_live_load_is_excluded() -> None:
