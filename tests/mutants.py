@@ -31,10 +31,20 @@ from coverage import CoverageData
 ROOT = Path(__file__).parents[1]
 KEPT = ROOT / "out" / "mutants"
 PACKAGES = {
-    "judge": ("harness/engine/judge.py harness/engine/residuals.py", "tests/engine tests/conformance"),
+    "judge": (
+        "harness/engine/judge.py harness/engine/residuals.py harness/engine/meas*.py",
+        "tests/engine/test_judge*.py tests/engine/test_measured_motion.py",
+    ),
     "proof": (
-        "methods/bound/*.py methods/la/certify/*.py harness/certificates.py",
-        "tests/bound tests/la/test_proof.py",
+        "methods/bound/verify*.py methods/bound/exact_wall.py methods/bound/same_wall.py methods/bound/document.py "
+        "methods/bound/force_limits.py methods/bound/window_limits.py",
+        "tests/bound/test_attacks.py tests/bound/test_*certificate.py tests/bound/test_mutants.py",
+    ),
+    "proving": ("methods/bound/*.py methods/la/certify/*.py harness/certificates.py", "tests/bound tests/la/test_proof.py"),
+    "contacts": (
+        "harness/model/contacts.py harness/model/interfaces.py harness/model/joint_law.py harness/model/geometry.py "
+        "harness/model/assembly.py",
+        "tests/model/test_co*.py tests/model/test_[g-hj]*.py tests/model/test_slips.py tests/model/test_wall_format.py",
     ),
     "model": ("harness/model/*.py", "tests/model"),
     "formats": ("harness/formats/*.py", "tests/formats"),
@@ -45,7 +55,7 @@ PACKAGES = {
     "la": ("methods/la/*.py methods/la/core/*.py methods/la/interior/*.py methods/la/sources/*.py", "tests/la"),
     "de": ("methods/de/**/*.py", "tests/de"),
 }
-"""Sources of each package and the tests that are its own."""
+"""Patterns of the sources of each package and of the tests that are its own."""
 SECONDS = 300
 """After which a mutant counts as found: its tests take no more than half of this without it."""
 COMPARED = {
@@ -118,6 +128,11 @@ def sources(package: str) -> list[str]:
     return sorted(str(path.relative_to(ROOT)) for path in found if path.name != "__init__.py")
 
 
+def own_tests(package: str) -> list[str]:
+    """Files and folders of the tests of a package, from the root of the checkout."""
+    return sorted(str(path.relative_to(ROOT)) for pattern in PACKAGES[package][1].split() for path in ROOT.glob(pattern))
+
+
 def sample(package: str, count: int, seed: int) -> list[Mutant]:
     """So many mutants of a package, drawn from all of them."""
     every = [mutant for path in sources(package) for mutant in mutants_of(path, (ROOT / path).read_text("utf-8"))]
@@ -161,7 +176,7 @@ def make_map(package: str) -> None:
     data = KEPT / f"{package}.coverage"
     settings.write_text(f"[run]\ndata_file = {data}\ndynamic_context = test_function\nsource = .\nomit = tests/*\n")
     words = ["-m", "coverage", "run", f"--rcfile={settings}", "-m", "pytest", "-q", "-m", "not slow and not browser"]
-    subprocess.run([sys.executable, *words, *PACKAGES[package][1].split()], cwd=ROOT, check=False)
+    subprocess.run([sys.executable, *words, *own_tests(package)], cwd=ROOT, check=False)
 
 
 def tests_by_line(package: str) -> dict[str, dict[int, list[str]]]:
@@ -180,7 +195,8 @@ def tests_by_line(package: str) -> dict[str, dict[int, list[str]]]:
 def node(test: str) -> list[str]:
     """What pytest calls a test that coverage calls `module.function` or `tests.room.module.function`."""
     *_, module, function = test.split(".")
-    return [f"{path.relative_to(ROOT)}::{function}" for path in ROOT.glob(f"tests/**/{module}.py")]
+    found = [path for path in ROOT.glob(f"tests/**/{module}.py") if f"def {function}(" in path.read_text("utf-8")]
+    return [f"{path.relative_to(ROOT)}::{function}" for path in found]
 
 
 def survives(package: str, mutant: Mutant, folder: Path, lines: dict[str, dict[int, list[str]]]) -> bool:
@@ -193,7 +209,7 @@ def survives(package: str, mutant: Mutant, folder: Path, lines: dict[str, dict[i
             kept.unlink()
     try:
         near = [name for test in lines.get(mutant.path, {}).get(mutant.line, [])[:40] for name in node(test)]
-        rounds = [near, PACKAGES[package][1].split()] if near else [PACKAGES[package][1].split()]
+        rounds = [near, own_tests(package)] if near else [own_tests(package)]
         return all(pytest(folder, tests, "-x", seconds=SECONDS) == 0 for tests in rounds)
     finally:
         place.write_text(source, "utf-8")
@@ -215,7 +231,10 @@ def main(words: tuple[str, ...], count: int, seed: int, jobs: int) -> None:
         with tempfile.TemporaryDirectory() as room, ThreadPoolExecutor(jobs) as pool:
             free: Queue[Path] = Queue()
             for number in range(jobs):
-                free.put(copy_of_checkout(Path(room, str(number))))
+                folder = copy_of_checkout(Path(room, str(number)))
+                if pytest(folder, own_tests(package), "-x") != 0:  # compiles the loops of the copy, too
+                    raise click.ClickException(f"the tests of {package} fail without any mutant")
+                free.put(folder)
 
             def tried(mutant: Mutant, package: str = package, lines: object = lines, free: Queue[Path] = free) -> bool:
                 folder = free.get()

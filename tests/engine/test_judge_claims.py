@@ -15,6 +15,7 @@ from harness.model.assembly import Assembly
 from harness.model.build import build
 from harness.model.errors import InputError
 from harness.model.method import Answer, Finding, Status, load_method
+from harness.model.proof import Proof
 from harness.model.reading import read_json, read_wall
 from harness.model.result import Result, result_of
 from harness.model.wall import Wall
@@ -224,5 +225,5 @@ def test_multiplier_is_printed_with_the_digits_that_its_error_allows(capsys: pyt
     assert rough.judge.multiplier_error == pytest.approx(3e-5, rel=0.1)
     assert rough.judge.decimals == 4
     assert numbers.multiplier(rough.multiplier, rough.judge.decimals) == "0.5000"
-    print_result(rough, case(stack(1), 0.5))
+    print_result(rough, case(stack(1), 0.5), Proof())
     assert re.search(r"finding +0\.5000 *\n", capsys.readouterr().out)
