@@ -40,7 +40,10 @@ PACKAGES = {
         "methods/bound/force_limits.py methods/bound/window_limits.py",
         "tests/bound/test_attacks.py tests/bound/test_*certificate.py tests/bound/test_mutants.py",
     ),
-    "proving": ("methods/bound/*.py methods/la/certify/*.py harness/certificates.py", "tests/bound tests/la/test_proof.py"),
+    "proving": (
+        "methods/bound/*.py methods/la/certify/*.py harness/certificates.py",
+        "tests/bound tests/la/test_proof.py",
+    ),
     "contacts": (
         "harness/model/contacts.py harness/model/interfaces.py harness/model/joint_law.py harness/model/geometry.py "
         "harness/model/assembly.py",
@@ -130,7 +133,9 @@ def sources(package: str) -> list[str]:
 
 def own_tests(package: str) -> list[str]:
     """Files and folders of the tests of a package, from the root of the checkout."""
-    return sorted(str(path.relative_to(ROOT)) for pattern in PACKAGES[package][1].split() for path in ROOT.glob(pattern))
+    return sorted(
+        str(path.relative_to(ROOT)) for pattern in PACKAGES[package][1].split() for path in ROOT.glob(pattern)
+    )
 
 
 def sample(package: str, count: int, seed: int) -> list[Mutant]:
