@@ -131,11 +131,10 @@ def sources(package: str) -> list[str]:
     return sorted(str(path.relative_to(ROOT)) for path in found if path.name != "__init__.py")
 
 
-def own_tests(package: str) -> list[str]:
-    """Files and folders of the tests of a package, from the root of the checkout."""
-    return sorted(
-        str(path.relative_to(ROOT)) for pattern in PACKAGES[package][1].split() for path in ROOT.glob(pattern)
-    )
+def own_tests(package: str, folder: Path = ROOT) -> list[str]:
+    """Files and folders of the tests of a package in a copy of the checkout, from its root."""
+    found = [path for pattern in PACKAGES[package][1].split() for path in folder.glob(pattern)]
+    return sorted(str(path.relative_to(folder)) for path in found)
 
 
 def sample(package: str, count: int, seed: int) -> list[Mutant]:
@@ -197,11 +196,11 @@ def tests_by_line(package: str) -> dict[str, dict[int, list[str]]]:
     return found
 
 
-def node(test: str) -> list[str]:
+def node(test: str, folder: Path) -> list[str]:
     """What pytest calls a test that coverage calls `module.function` or `tests.room.module.function`."""
     *_, module, function = test.split(".")
-    found = [path for path in ROOT.glob(f"tests/**/{module}.py") if f"def {function}(" in path.read_text("utf-8")]
-    return [f"{path.relative_to(ROOT)}::{function}" for path in found]
+    found = [path for path in folder.glob(f"tests/**/{module}.py") if f"def {function}(" in path.read_text("utf-8")]
+    return [f"{path.relative_to(folder)}::{function}" for path in found]
 
 
 def survives(package: str, mutant: Mutant, folder: Path, lines: dict[str, dict[int, list[str]]]) -> bool:
@@ -213,8 +212,9 @@ def survives(package: str, mutant: Mutant, folder: Path, lines: dict[str, dict[i
         for kept in folder.rglob("*.nb[ic]"):
             kept.unlink()
     try:
-        near = [name for test in lines.get(mutant.path, {}).get(mutant.line, [])[:40] for name in node(test)]
-        rounds = [near, own_tests(package)] if near else [own_tests(package)]
+        near = [name for test in lines.get(mutant.path, {}).get(mutant.line, [])[:40] for name in node(test, folder)]
+        own = own_tests(package, folder)
+        rounds = [near, own] if near else [own]
         return all(pytest(folder, tests, "-x", seconds=SECONDS) == 0 for tests in rounds)
     finally:
         place.write_text(source, "utf-8")
@@ -237,7 +237,7 @@ def main(words: tuple[str, ...], count: int, seed: int, jobs: int) -> None:
             free: Queue[Path] = Queue()
             for number in range(jobs):
                 folder = copy_of_checkout(Path(room, str(number)))
-                if pytest(folder, own_tests(package), "-x") != 0:  # compiles the loops of the copy, too
+                if pytest(folder, own_tests(package, folder), "-x") != 0:  # compiles the loops of the copy, too
                     raise click.ClickException(f"the tests of {package} fail without any mutant")
                 free.put(folder)
 
@@ -245,6 +245,7 @@ def main(words: tuple[str, ...], count: int, seed: int, jobs: int) -> None:
                 folder = free.get()
                 alive = survives(package, mutant, folder, lines)  # type: ignore[arg-type]
                 free.put(folder)
+                click.echo("." if not alive else "", nl=alive, err=True)
                 if alive:
                     print("ALIVE", mutant.shown((ROOT / mutant.path).read_text("utf-8")), flush=True)
                 return alive
