@@ -87,8 +87,14 @@ def compare(limits: WindowLimits, states: Set, window: Any, reach: Any, per_size
 
 
 def known(states: States) -> Any:
-    sides = {p: side for p, side in states.forces.sides.items()}
-    return states.low, states.forces.tight, sides, states.known.still, states.known.least, states.known.slow
+    return (
+        states.low,
+        states.forces.tight,
+        states.forces.sides,
+        states.known.still,
+        states.known.least,
+        states.known.slow,
+    )
 
 
 def known_again(states: Set) -> Any:

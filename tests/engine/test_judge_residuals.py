@@ -290,12 +290,26 @@ def test_gain_and_closing_of_a_fall_by_hand():
     assert wider.accepted is False
 
 
-def test_a_fall_moves_no_support():
+@pytest.mark.parametrize(("tolerance", "accepted"), [(1e-9, False), (0.24, False), (0.25, True)])
+def test_a_fall_moves_no_support_by_more_than_the_tolerance(tolerance: float, accepted: bool):
     wall, sinking = falling()
     sinking[wall.block_ids.index("f"), 0] = 0.25
-    judgement = said(wall, Answer(Status.OK, Finding.FALLS, "", mechanism=sinking))
-    assert judgement.residuals["supports"] == pytest.approx(0.25)
-    assert judgement.accepted is False
+    judgement = said(wall, Answer(Status.OK, Finding.FALLS, "", mechanism=sinking), tolerance)
+    assert judgement.residuals["supports"] == 0.25
+    assert judgement.accepted is accepted
+
+
+@pytest.mark.parametrize(("share", "accepted"), [(1e-13, True), (1e-10, False)])
+def test_what_forces_without_end_violate_is_held_to_rounding_whatever_the_tolerance(share: float, accepted: bool):
+    wall = of_blocks(
+        [box("a", 0.0, 0.0, WIDTH, HEIGHT, weight=WEIGHT)], 0.5, {"live": {"body": [{"per_weight": [0, -1]}]}}
+    )
+    forces = bed(wall, "a", 10.0, 10.0, 0.0)
+    answer = Answer(Status.OK, Finding.UNBOUNDED, "", forces=forces, forces_multiplier=0.0)
+    answer.details = {"live_forces": ((1.0 + share) * forces).tolist()}
+    judgement = said(wall, answer, 1e-3)
+    assert judgement.accepted is accepted
+    assert ("live_equilibrium" in judgement.sentence) is not accepted
 
 
 def test_measured_motion_by_hand():
