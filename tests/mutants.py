@@ -187,7 +187,7 @@ def make_map(package: str) -> None:
 
 
 def tests_by_line(package: str) -> dict[str, dict[int, list[str]]]:
-    """Functions of tests that run each line of each source, as the map has them, those first that run the fewest lines."""
+    """Functions of tests that run each line of each source, as the map has them; first those that run few lines."""
     data = CoverageData(str(KEPT / f"{package}.coverage"))
     data.read()
     found: dict[str, dict[int, list[str]]] = {}
@@ -210,8 +210,10 @@ def node(test: str, folder: Path) -> list[str]:
     return [f"{path.relative_to(folder)}::{function}" for path in found]
 
 
-def survives(package: str, mutant: Mutant, folder: Path, lines: dict[str, dict[int, list[str]]]) -> bool:
-    """Whether a mutant passes the tests that run its line, and then all tests of its package."""
+def survives(
+    package: str, mutant: Mutant, folder: Path, lines: dict[str, dict[int, list[str]]], near_only: bool
+) -> bool:
+    """Whether a mutant passes the tests that run its line, and then, unless those are enough, all of its package."""
     place = folder / mutant.path
     source = place.read_text("utf-8")
     place.write_text(mutant.applied(source), "utf-8")
@@ -221,7 +223,7 @@ def survives(package: str, mutant: Mutant, folder: Path, lines: dict[str, dict[i
     try:
         near = [name for test in lines.get(mutant.path, {}).get(mutant.line, [])[:40] for name in node(test, folder)]
         own = own_tests(package, folder)
-        rounds = [near, own] if near else [own]
+        rounds = [near, *([] if near_only else [own])] if near else [own]
         return all(pytest(folder, tests, "-x", seconds=SECONDS) == 0 for tests in rounds)
     finally:
         place.write_text(source, "utf-8")
@@ -232,7 +234,8 @@ def survives(package: str, mutant: Mutant, folder: Path, lines: dict[str, dict[i
 @click.option("--count", default=60, show_default=True, help="Mutants a package.")
 @click.option("--seed", default=1, show_default=True, help="Of the sample.")
 @click.option("--jobs", default=1, show_default=True, help="Mutants tried at a time.")
-def main(words: tuple[str, ...], count: int, seed: int, jobs: int) -> None:
+@click.option("--near", is_flag=True, help="Ask only the tests that run the changed line, where there are any.")
+def main(words: tuple[str, ...], count: int, seed: int, jobs: int, near: bool) -> None:
     """Make the map of PACKAGES (`map PACKAGE...`), or try mutants of them."""
     if words[0] == "map":
         for package in words[1:]:
@@ -244,13 +247,13 @@ def main(words: tuple[str, ...], count: int, seed: int, jobs: int) -> None:
             free: Queue[Path] = Queue()
             for number in range(jobs):
                 folder = copy_of_checkout(Path(room, str(number)))
-                if pytest(folder, own_tests(package, folder), "-x") != 0:  # compiles the loops of the copy, too
+                if not near and pytest(folder, own_tests(package, folder), "-x") != 0:  # compiles the loops of the copy, too
                     raise click.ClickException(f"the tests of {package} fail without any mutant")
                 free.put(folder)
 
             def tried(mutant: Mutant, package: str = package, lines: object = lines, free: Queue[Path] = free) -> bool:
                 folder = free.get()
-                alive = survives(package, mutant, folder, lines)  # type: ignore[arg-type]
+                alive = survives(package, mutant, folder, lines, near)  # type: ignore[arg-type]
                 free.put(folder)
                 click.echo("." if not alive else "", nl=alive, err=True)
                 if alive:
