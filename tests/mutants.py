@@ -247,7 +247,9 @@ def main(words: tuple[str, ...], count: int, seed: int, jobs: int, near: bool) -
             free: Queue[Path] = Queue()
             for number in range(jobs):
                 folder = copy_of_checkout(Path(room, str(number)))
-                if not near and pytest(folder, own_tests(package, folder), "-x") != 0:  # compiles the loops of the copy, too
+                if (
+                    not near and pytest(folder, own_tests(package, folder), "-x") != 0
+                ):  # compiles the loops of the copy, too
                     raise click.ClickException(f"the tests of {package} fail without any mutant")
                 free.put(folder)
 

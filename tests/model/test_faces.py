@@ -221,7 +221,8 @@ def test_sizes_and_distances_of_outlines():
 )
 def test_faults_of_outlines_name_their_element(polygon: list[Any], words: str):
     sound = outline(0.0, 0.0, 1.0, 1.0)
-    faults = geometry.polygon_faults([sound, np.array(polygon, dtype=float), sound * 1e-6], ["a", "b", "c"])
+    blocks = [sound * 1e7, np.array(polygon, dtype=float), sound * 1e-6]  # no area is small for the extent alone
+    faults = geometry.polygon_faults(blocks, ["a", "b", "c"])
     assert [str(fault.element) for fault in faults] == ["b"]
     assert words in str(faults[0])
     assert geometry.polygon_faults([], []) == []
