@@ -19,6 +19,7 @@ import signal
 import subprocess
 import sys
 import tempfile
+from collections import Counter
 from collections.abc import Iterator
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
@@ -31,10 +32,25 @@ from coverage import CoverageData
 ROOT = Path(__file__).parents[1]
 KEPT = ROOT / "out" / "mutants"
 PACKAGES = {
-    "judge": ("harness/engine/judge.py harness/engine/residuals.py", "tests/engine tests/conformance"),
+    "judge": (
+        "harness/engine/judge.py harness/engine/residuals.py harness/engine/meas*.py",
+        "tests/engine/test_judge*.py tests/engine/test_measured_motion.py",
+    ),
     "proof": (
-        "methods/proof/*.py methods/la/certify/*.py drystone/certificates.py",
+        "methods/proof/verify*.py methods/proof/verify/exact_wall.py methods/proof/same_wall.py methods/proof/verify/document.py "
+        "methods/proof/verify/force_limits.py methods/proof/verify/window_limits.py",
+        "tests/bound/test_attacks.py tests/bound/test_*certificate.py tests/bound/test_courses.py "
+        "tests/bound/test_mutants.py tests/bound/test_same_numbers.py",
+    ),
+    "proving": (
+        "methods/proof/**/*.py methods/la/certify/*.py drystone/certificates.py",
         "tests/bound tests/la/test_proof.py",
+    ),
+    "contacts": (
+        "harness/model/contacts.py harness/model/interfaces.py harness/model/joint_law.py harness/model/geometry.py "
+        "harness/model/assembly.py",
+        "tests/model/test_assembly.py tests/model/test_[cf]*.py tests/model/test_[g-hj]*.py tests/model/test_slips.py "
+        "tests/model/test_wall_format.py",
     ),
     "model": ("harness/model/*.py", "tests/model"),
     "formats": ("harness/formats/*.py", "tests/formats"),
@@ -45,7 +61,7 @@ PACKAGES = {
     "la": ("methods/la/*.py methods/la/core/*.py methods/la/interior/*.py methods/la/sources/*.py", "tests/la"),
     "de": ("methods/de/**/*.py", "tests/de"),
 }
-"""Sources of each package and the tests that are its own."""
+"""Patterns of the sources of each package and of the tests that are its own."""
 SECONDS = 300
 """After which a mutant counts as found: its tests take no more than half of this without it."""
 COMPARED = {
@@ -118,6 +134,12 @@ def sources(package: str) -> list[str]:
     return sorted(str(path.relative_to(ROOT)) for path in found if path.name != "__init__.py")
 
 
+def own_tests(package: str, folder: Path = ROOT) -> list[str]:
+    """Files and folders of the tests of a package in a copy of the checkout, from its root."""
+    found = [path for pattern in PACKAGES[package][1].split() for path in folder.glob(pattern)]
+    return sorted(str(path.relative_to(folder)) for path in found)
+
+
 def sample(package: str, count: int, seed: int) -> list[Mutant]:
     """So many mutants of a package, drawn from all of them."""
     every = [mutant for path in sources(package) for mutant in mutants_of(path, (ROOT / path).read_text("utf-8"))]
@@ -161,11 +183,11 @@ def make_map(package: str) -> None:
     data = KEPT / f"{package}.coverage"
     settings.write_text(f"[run]\ndata_file = {data}\ndynamic_context = test_function\nsource = .\nomit = tests/*\n")
     words = ["-m", "coverage", "run", f"--rcfile={settings}", "-m", "pytest", "-q", "-m", "not slow and not browser"]
-    subprocess.run([sys.executable, *words, *PACKAGES[package][1].split()], cwd=ROOT, check=False)
+    subprocess.run([sys.executable, *words, *own_tests(package)], cwd=ROOT, check=False)
 
 
 def tests_by_line(package: str) -> dict[str, dict[int, list[str]]]:
-    """Functions of tests that run each line of each source, as the map has them."""
+    """Functions of tests that run each line of each source, as the map has them; first those that run few lines."""
     data = CoverageData(str(KEPT / f"{package}.coverage"))
     data.read()
     found: dict[str, dict[int, list[str]]] = {}
@@ -174,17 +196,24 @@ def tests_by_line(package: str) -> dict[str, dict[int, list[str]]]:
             lines = data.contexts_by_lineno(file)
             path = str(Path(file).relative_to(ROOT))
             found[path] = {line: [test for test in tests if test] for line, tests in lines.items()}
+    runs = Counter(test for lines in found.values() for tests in lines.values() for test in tests)
+    for lines in found.values():
+        for tests in lines.values():
+            tests.sort(key=lambda test: (runs[test], test))
     return found
 
 
-def node(test: str) -> list[str]:
+def node(test: str, folder: Path) -> list[str]:
     """What pytest calls a test that coverage calls `module.function` or `tests.room.module.function`."""
     *_, module, function = test.split(".")
-    return [f"{path.relative_to(ROOT)}::{function}" for path in ROOT.glob(f"tests/**/{module}.py")]
+    found = [path for path in folder.glob(f"tests/**/{module}.py") if f"def {function}(" in path.read_text("utf-8")]
+    return [f"{path.relative_to(folder)}::{function}" for path in found]
 
 
-def survives(package: str, mutant: Mutant, folder: Path, lines: dict[str, dict[int, list[str]]]) -> bool:
-    """Whether a mutant passes the tests that run its line, and then all tests of its package."""
+def survives(
+    package: str, mutant: Mutant, folder: Path, lines: dict[str, dict[int, list[str]]], near_only: bool
+) -> bool:
+    """Whether a mutant passes the tests that run its line, and then, unless those are enough, all of its package."""
     place = folder / mutant.path
     source = place.read_text("utf-8")
     place.write_text(mutant.applied(source), "utf-8")
@@ -192,8 +221,9 @@ def survives(package: str, mutant: Mutant, folder: Path, lines: dict[str, dict[i
         for kept in folder.rglob("*.nb[ic]"):
             kept.unlink()
     try:
-        near = [name for test in lines.get(mutant.path, {}).get(mutant.line, [])[:40] for name in node(test)]
-        rounds = [near, PACKAGES[package][1].split()] if near else [PACKAGES[package][1].split()]
+        near = [name for test in lines.get(mutant.path, {}).get(mutant.line, [])[:40] for name in node(test, folder)]
+        own = own_tests(package, folder)
+        rounds = [near, *([] if near_only else [own])] if near else [own]
         return all(pytest(folder, tests, "-x", seconds=SECONDS) == 0 for tests in rounds)
     finally:
         place.write_text(source, "utf-8")
@@ -204,7 +234,8 @@ def survives(package: str, mutant: Mutant, folder: Path, lines: dict[str, dict[i
 @click.option("--count", default=60, show_default=True, help="Mutants a package.")
 @click.option("--seed", default=1, show_default=True, help="Of the sample.")
 @click.option("--jobs", default=1, show_default=True, help="Mutants tried at a time.")
-def main(words: tuple[str, ...], count: int, seed: int, jobs: int) -> None:
+@click.option("--near", is_flag=True, help="Ask only the tests that run the changed line, where there are any.")
+def main(words: tuple[str, ...], count: int, seed: int, jobs: int, near: bool) -> None:
     """Make the map of PACKAGES (`map PACKAGE...`), or try mutants of them."""
     if words[0] == "map":
         for package in words[1:]:
@@ -215,12 +246,18 @@ def main(words: tuple[str, ...], count: int, seed: int, jobs: int) -> None:
         with tempfile.TemporaryDirectory() as room, ThreadPoolExecutor(jobs) as pool:
             free: Queue[Path] = Queue()
             for number in range(jobs):
-                free.put(copy_of_checkout(Path(room, str(number))))
+                folder = copy_of_checkout(Path(room, str(number)))
+                if (
+                    not near and pytest(folder, own_tests(package, folder), "-x") != 0
+                ):  # compiles the loops of the copy, too
+                    raise click.ClickException(f"the tests of {package} fail without any mutant")
+                free.put(folder)
 
             def tried(mutant: Mutant, package: str = package, lines: object = lines, free: Queue[Path] = free) -> bool:
                 folder = free.get()
-                alive = survives(package, mutant, folder, lines)  # type: ignore[arg-type]
+                alive = survives(package, mutant, folder, lines, near)  # type: ignore[arg-type]
                 free.put(folder)
+                click.echo("." if not alive else "", nl=alive, err=True)
                 if alive:
                     print("ALIVE", mutant.shown((ROOT / mutant.path).read_text("utf-8")), flush=True)
                 return alive

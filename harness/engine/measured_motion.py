@@ -35,8 +35,8 @@ TOLERANCE = 0.02
 """Of a field with the forces of the motion: it is a mean over time steps, they are those of the last, and contacts
 chatter in between. A block that rocks with its rotation wrong by a quarter exceeds it."""
 TOLERANCE_ALONE = 0.1
-"""Of a field without: it may stand for a displacement of a quarter of a block, in which contacts between blocks that turn
-and slide seem to close by the product of both."""
+"""Of a field without: it may stand for a displacement of a quarter of a block, in which contacts of blocks that
+turn and slide seem to close by the product of both."""
 
 
 class NotOfThisWall(ValueError):

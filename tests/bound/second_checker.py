@@ -125,21 +125,27 @@ def _leaf(wall: Wall, bound: Fraction, leaf: Any) -> None:
                 need(force >= 0 or 4 * p + k in leaf["still"], "work is lost")
 
 
+def window_of(wall: Wall, window: Any) -> Set:
+    """The states of a window, with what it shows of their forces and contacts."""
+    low, high = rational(window["low"]), rational(window["high"])
+    need(low < high, "no window")
+    states = Set(wall, low, high).with_forces(window["forces"])
+    still = [whole(k, 0, 4 * wall.m - 1) for k in listed(window["still"])]
+    for k, v in zip(still, listed(window["still_velocities"], len(still)), strict=True):
+        need(states.least_slack(k, v) > 0, "may move")
+    joints = [whole(p, 0, wall.m - 1) for p in listed(window["loaded"])]
+    least = [rational(v) for v in listed(window["least"], len(joints))]
+    for p, v, u in zip(joints, least, listed(window["least_velocities"], len(joints)), strict=True):
+        need(0 <= v <= states.least_normal([p], u), "less normal force")
+    return replace(states, still=frozenset(still), loaded=dict(zip(joints, least, strict=True)))
+
+
 def _proved(wall: Wall, document: Any) -> Fraction:
     proved = NIL
     last: Set | None = None
     for window in listed(document["windows"]):
-        low, high = rational(window["low"]), rational(window["high"])
-        need(low < high and low <= proved, "no window, or a gap below it")
-        states = Set(wall, low, high).with_forces(window["forces"])
-        still = [whole(k, 0, 4 * wall.m - 1) for k in listed(window["still"])]
-        for k, v in zip(still, listed(window["still_velocities"], len(still)), strict=True):
-            need(states.least_slack(k, v) > 0, "may move")
-        joints = [whole(p, 0, wall.m - 1) for p in listed(window["loaded"])]
-        least = [rational(v) for v in listed(window["least"], len(joints))]
-        for p, v, u in zip(joints, least, listed(window["least_velocities"], len(joints)), strict=True):
-            need(0 <= v <= states.least_normal([p], u), "less normal force")
-        states = replace(states, still=frozenset(still), loaded=dict(zip(joints, least, strict=True)))
+        states = window_of(wall, window)
+        need(states.low <= proved, "a gap below a window")
         motion = Motion(states, window)
         reach = motion.per_size(window["motions"])
         size = size_of(gain(motion, window["size"], True, reach, True))
@@ -153,24 +159,28 @@ def _proved(wall: Wall, document: Any) -> Fraction:
 def _case(states: Set, node: Any) -> Fraction:
     for step in listed(node["steps"]):
         need(states.low < states.high, "a step of nothing")
-        states = _step(states, step)
+        states = step_of(states, step)
     if "parts" not in node:
         return states.low
     first, second = listed(node["parts"], 2)
+    few, many = halves_of(states, node)
+    return min(_case(few, first), _case(many, second))
+
+
+def halves_of(states: Set, node: Any) -> tuple[Set, Set]:
+    """Both parts of a division at a contact or at a normal force."""
     if "contact" in node:
         k = whole(node["contact"], 0, 4 * states.wall.m - 1)
-        halves = replace(states, tight=states.tight | {k}), replace(states, still=states.still | {k})
-    else:
-        p, normal = whole(node["interface"], 0, states.wall.m - 1), rational(node["normal"])
-        need(normal >= 0, "a normal force below zero")
-        least, most = states.sides.get(p, (NIL, None))
-        few = {p: (least, normal if most is None else min(normal, most))}
-        many = {p: (max(least, normal), most)}
-        halves = replace(states, sides=states.sides | few), replace(states, sides=states.sides | many)
-    return min(_case(halves[0], first), _case(halves[1], second))
+        return replace(states, tight=states.tight | {k}), replace(states, still=states.still | {k})
+    p, normal = whole(node["interface"], 0, states.wall.m - 1), rational(node["normal"])
+    need(normal >= 0, "a normal force below zero")
+    least, most = states.sides.get(p, (NIL, None))
+    few = {p: (least, normal if most is None else min(normal, most))}
+    many = {p: (max(least, normal), most)}
+    return replace(states, sides=states.sides | few), replace(states, sides=states.sides | many)
 
 
-def _step(states: Set, step: Any) -> Set:
+def step_of(states: Set, step: Any) -> Set:
     wall, shows = states.wall, step["shows"]
     if shows in ("still", "slow", "tight"):
         k = whole(step["contact"], 0, 4 * wall.m - 1)
