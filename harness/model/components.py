@@ -73,8 +73,8 @@ def _component(assembly: Assembly, moving: BoolArray) -> Component:
     blocks = np.flatnonzero(kept)
     place = np.full(assembly.n_blocks, -1, dtype=np.int64)
     place[blocks] = np.arange(len(blocks))
-    by_block = ("centroid", "weight", "fixed", "dead", "live")
-    by_interface = ("end1", "end2", "face1", "face2", "normal", "friction", "dilatancy")
+    by_block = ("centroid", "weight", "fixed", "dead", "live", "support_motion")
+    by_interface = ("end1", "end2", "face1", "face2", "normal", "friction", "dilatancy", "constant")
     part = replace(
         assembly,
         block_ids=tuple(assembly.block_ids[i] for i in blocks),

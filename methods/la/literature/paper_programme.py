@@ -20,7 +20,8 @@ import scipy.sparse as sp
 from scipy.sparse.csgraph import dijkstra
 
 from harness.model.assembly import FloatArray, IntArray
-from methods.la.core.problem import Problem, slack_matrix
+from harness.model.joint_law import block_diagonal
+from methods.la.core.problem import Problem
 from methods.numerics.failures import sparse_lu
 from methods.numerics.optional import optional
 
@@ -108,7 +109,7 @@ def solve_paper_programme(
     forces = casadi.SX.zeros(3 * m)
     forces[rows1.tolist()] = first_forces
     forces[rows2.tolist()] = second_forces
-    slack = _matrix(casadi, slack_matrix(problem.friction).toarray()) @ forces
+    slack = _matrix(casadi, block_diagonal(problem.law.rows).toarray()) @ forces
     work = casadi.dot(slack, rates) / problem.live_work
     constraints = casadi.vertcat(
         _matrix(casadi, compatibility) @ rates, slack, work, _matrix(casadi, live_row[None, :]) @ rates - 1.0
