@@ -16,7 +16,7 @@ Sign conventions, used everywhere in Drystone
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cached_property, partial
 from typing import TYPE_CHECKING
 
@@ -102,6 +102,12 @@ class Assembly:
     def law(self) -> JointLaw:
         """The law of its joints."""
         return JointLaw(self.friction, self.dilatancy, self.constant)
+
+    def with_joints(self, kept: IntArray | BoolArray) -> Assembly:
+        """The same blocks with these interfaces alone, by index in this order or by a mask (m,)."""
+        index = np.arange(self.n_interfaces)[kept]
+        arrays = {name: getattr(self, name)[index] for name in OF_JOINTS}
+        return replace(self, joint=tuple(self.joint[p] for p in index), **arrays)
 
     @property
     def dilates(self) -> bool:

@@ -4,10 +4,10 @@ Forces r = (n1, n2, s) of an interface are within yield where its slacks y = S r
 tension at either end, and shear within friction both ways. Tensile strength T of an interface is the constant part T/2
 at both ends, cohesion c on an area A the constant part c A both ways of shear. At collapse it moves along the flow
 vectors of the rows that are zero, q = E g with rates g = (open1, open2, slip+, slip-) >= 0, y . g = 0 and
-q = (open1, open2, slip), as strains are defined in `assembly`; the joint then dissipates -q . r = s0 . g beyond what a
-dry one does. A slip lifts both ends by the dilatancy psi, 0 <= psi <= mu: E = S' for psi = mu (associated flow), and
-nothing is lifted for psi = 0. Sources: Coulomb (1776); Drucker (1954) for flow with dilatancy; Baggio and Trovalusci
-(1995); Orduna and Lourenco (2003) for cohesion and tension.
+q = (open1, open2, slip), as strains are defined in `assembly`. A slip lifts both ends by the dilatancy psi,
+0 <= psi <= mu: E = S' for psi = mu (associated flow), and nothing is lifted for psi = 0. The work that the joint takes
+is -q . r = s0 . g for associated flow, and (mu - psi) N times the slip more for any other. Sources: Coulomb (1776);
+Drucker (1954) for flow with dilatancy; Baggio and Trovalusci (1995); Orduna and Lourenco (2003) for cohesion, tension.
 """
 
 from __future__ import annotations

@@ -314,7 +314,8 @@ def _power_of_two(size: FloatArray) -> FloatArray:
 def standing(problem: Problem) -> StaticSolution | KinematicSolution | str:
     """Forces that carry the dead load within yield, or the dilatant mechanism that proves that none do; or the end.
 
-    The part of the dead load that need not be carried is least: zero or, because yield of dry joints is a cone, all of it.
+    The part of the dead load that need not be carried is least: zero or, because yield of dry joints is a cone, all
+    of it.
     """
     found = force_programme(replace(problem, live=-problem.dead)).extreme(greatest=False)
     if isinstance(found, str):
