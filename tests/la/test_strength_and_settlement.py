@@ -11,9 +11,10 @@ from typing import Any
 import numpy as np
 import pytest
 
-from harness.engine.symmetry import VIEWS
+from harness.engine.symmetry import VIEWS, beside
 from harness.model.assembly import Assembly
 from harness.model.build import build
+from harness.model.components import components_of
 from harness.model.errors import InputError
 from harness.model.method import check_takes, load_method, method_names
 from harness.model.wall import Wall
@@ -184,6 +185,43 @@ def test_wall_of_21_bricks_on_a_base_that_settles(friction: float, least: float,
     assert reactions(wall) == pytest.approx((least, most), rel=PRINTED)
 
 
+def spreading_arch(thickness: float, count: int, friction: float) -> Assembly:
+    """A semicircular arch of centreline radius one, whose right abutment gives way outwards by one."""
+    ring = {"type": "ring", "inner_radius": 1.0 - thickness / 2, "outer_radius": 1.0 + thickness / 2, "count": count}
+    wall = assembly(ring, friction, unit_weight=1.0)
+    motion = np.zeros((wall.n_blocks, 3))
+    motion[np.flatnonzero(wall.fixed)[wall.centroid[wall.fixed, 0].argmax()], 0] = 1.0
+    return replace(wall, support_motion=motion)
+
+
+ROUGH = 20.0
+"""Friction at which no voussoir slides."""
+
+
+@pytest.mark.parametrize(
+    ("thickness", "count", "friction", "least", "most"),
+    [
+        (0.12, 20, ROUGH, 0.1912256, 0.2079935),
+        (0.15, 20, ROUGH, 0.1756349, 0.2277179),
+        (0.2, 20, ROUGH, 0.1542448, 0.2553107),
+        (0.2, 100, 0.4, 0.1540326, 0.2),
+        (0.2, 100, 0.5, 0.1540326, 0.25),
+        (0.2, 100, 0.7, 0.1540326, 0.2545831),
+    ],
+)
+def test_thrust_of_an_arch_whose_abutments_move(
+    thickness: float, count: int, friction: float, least: float, most: float
+):
+    """The least and greatest thrust over the weight; where the springings slide the greatest is mu/2."""
+    wall = spreading_arch(thickness, count, friction)
+    thrust = np.array(reactions(wall)) / float(wall.weight[wall.free].sum())
+    np.testing.assert_allclose(thrust, (least, most), rtol=5e-7)  # of values that are known to seven decimals
+
+
+def test_arch_that_no_thrust_holds_has_no_reaction():
+    assert extreme_reaction(spreading_arch(0.2, 100, 0.3), greatest=False) == "infeasible"
+
+
 @pytest.mark.parametrize("view", sorted(VIEWS))
 def test_views_of_a_wall_keep_strength_and_motion(view: str):
     wall = with_strength(on_split_ground(wall_data(BOND, 0.65, unit_weight=1.0), 1.5), 0.05, 0.025)
@@ -212,3 +250,12 @@ def test_methods_refuse_strength_and_moving_supports(name: str):
         check_takes(method, with_strength(wall, 1.0))
     with pytest.raises(InputError, match=f"{name} takes supports at rest only; .* moves"):
         check_takes(method, replace(wall, support_motion=np.where(wall.fixed[:, None], [0.0, -1.0, 0.0], 0.0)))
+
+
+def test_components_of_a_wall_keep_strength_and_motion():
+    wall = with_strength(on_split_ground(wall_data(BOND, 0.65, unit_weight=1.0), 1.5), 0.05, 0.025)
+    first, second = components_of(beside(wall, 0.5))
+    np.testing.assert_array_equal(first.assembly.constant, wall.constant)
+    np.testing.assert_array_equal(first.assembly.support_motion, wall.support_motion)
+    assert not second.assembly.constant.any()
+    assert not second.assembly.support_motion.any()

@@ -96,7 +96,7 @@ def solve_paper_programme(
     b1, b2 = problem.kinematic[rows1].tocsc(), problem.kinematic[rows2].tocsc()
     inverse = sparse_lu(b1).solve(np.eye(len(rows1)))
     transfer = np.where(abs(b2 @ inverse) > 1e-13, b2 @ inverse, 0.0)
-    flow = sp.kron(sp.eye(m), np.array([[1.0, 0, 0, 0], [0, 1.0, 0, 0], [0, 0, 1.0, -1.0]])).tocsr()
+    flow = block_diagonal(problem.law.flow)
     m1, m2 = flow[rows1].toarray(), flow[rows2].toarray()
     compatibility = transfer @ m1 - m2
     live_row = (inverse.T @ problem.live) @ m1 / problem.live_work
