@@ -74,8 +74,8 @@ def drawn_ends(assembly: Assembly, found: Thrusts) -> FloatArray:
 
 
 def friction_used(assembly: Assembly, forces: FloatArray) -> FloatArray:
-    """Shear of every interface over friction times compression (m,), from forces (m, 3); NaN where that limit is 0."""
-    limit = assembly.friction * forces[:, :2].sum(axis=1)
+    """Shear of every interface over its shear strength (m,), from forces (m, 3); NaN where that limit is 0."""
+    limit = assembly.law.strength(forces)
     return np.asarray(np.divide(abs(forces[:, 2]), limit, out=np.full(len(limit), np.nan), where=limit > 0.0))
 
 

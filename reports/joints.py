@@ -49,7 +49,8 @@ def _motion(assembly: Assembly, result: Result) -> Motion:
     opening, slip = relative_velocities(assembly, velocities)
     still = STILL_MEASURED if result.flow == "approximate" else STILL
     associated = result.flow == "associated"
-    lifted = (assembly.friction if associated else assembly.law.dilatancy) * abs(slip)
+    law = assembly.law.associated if associated else assembly.law
+    lifted = law.dilatancy * abs(slip)
     ends = np.asarray(opening - lifted[:, None] > still)
     slides = np.asarray(abs(slip) > still)
     parts = ends[:, 0] & ends[:, 1]

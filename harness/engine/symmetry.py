@@ -16,9 +16,13 @@ def _mapped(assembly: Assembly, matrix: FloatArray, shift: FloatArray, length: f
     def place(points: FloatArray) -> FloatArray:
         return np.asarray(length * points @ matrix.T + shift)
 
+    sign = -1.0 if flip else 1.0
+
     def load(values: FloatArray) -> FloatArray:
-        sign = -1.0 if flip else 1.0
         return np.column_stack([values[:, :2] @ matrix.T, sign * length * values[:, 2]])
+
+    def motion(values: FloatArray) -> FloatArray:
+        return np.column_stack([length * values[:, :2] @ matrix.T, sign * values[:, 2]])
 
     return replace(
         assembly,
@@ -31,6 +35,7 @@ def _mapped(assembly: Assembly, matrix: FloatArray, shift: FloatArray, length: f
         normal=assembly.normal @ matrix.T,
         dead=load(assembly.dead),
         live=load(assembly.live),
+        support_motion=motion(assembly.support_motion),
     )
 
 
@@ -61,8 +66,9 @@ def scaled(assembly: Assembly) -> Assembly:
 
 
 def heavier(assembly: Assembly) -> Assembly:
-    """All loads 250 times as great."""
-    return replace(assembly, weight=250.0 * assembly.weight, dead=250.0 * assembly.dead, live=250.0 * assembly.live)
+    """All loads and strengths 250 times as great."""
+    forces = ("weight", "dead", "live", "constant")
+    return replace(assembly, **{name: 250.0 * getattr(assembly, name) for name in forces})
 
 
 def renumbered(assembly: Assembly, seed: int = 1) -> Assembly:
@@ -82,6 +88,7 @@ def renumbered(assembly: Assembly, seed: int = 1) -> Assembly:
         fixed=assembly.fixed[blocks],
         dead=assembly.dead[blocks],
         live=assembly.live[blocks],
+        support_motion=assembly.support_motion[blocks],
         block_a=np.where(swap, b, a),
         block_b=np.where(swap, a, b),
         end1=assembly.end1[joints],
@@ -91,6 +98,7 @@ def renumbered(assembly: Assembly, seed: int = 1) -> Assembly:
         normal=np.where(swap[:, None], -1.0, 1.0) * assembly.normal[joints],
         friction=assembly.friction[joints],
         dilatancy=assembly.dilatancy[joints],
+        constant=np.where(swap[:, None], assembly.constant[joints][:, [0, 1, 3, 2]], assembly.constant[joints]),
         joint=tuple(assembly.joint[k] for k in joints),
     )
 
@@ -118,6 +126,7 @@ def beside(assembly: Assembly, share: float) -> Assembly:
         fixed=np.append(assembly.fixed, [False, True]),
         dead=np.vstack([assembly.dead, down, np.zeros(3)]),
         live=np.vstack([assembly.live, live, np.zeros(3)]),
+        support_motion=np.vstack([assembly.support_motion, np.zeros((2, 3))]),
         block_a=np.append(assembly.block_a, n + 1),
         block_b=np.append(assembly.block_b, n),
         end1=np.vstack([assembly.end1, ends[:1]]),
@@ -127,6 +136,7 @@ def beside(assembly: Assembly, share: float) -> Assembly:
         normal=np.vstack([assembly.normal, [[0.0, 1.0]]]),
         friction=np.append(assembly.friction, 0.5),
         dilatancy=np.append(assembly.dilatancy, 0.0),
+        constant=np.vstack([assembly.constant, np.zeros(4)]),
         joint=(*assembly.joint, "bed"),
     )
 

@@ -16,8 +16,8 @@ Sign conventions, used everywhere in Drystone
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from functools import cached_property
+from dataclasses import dataclass, field, replace
+from functools import cached_property, partial
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -32,8 +32,8 @@ FloatArray = NDArray[np.float64]
 IntArray = NDArray[np.int64]
 BoolArray = NDArray[np.bool_]
 
-OF_BLOCKS = ("polygons", "centroid", "weight", "fixed", "dead", "live")
-OF_JOINTS = ("block_a", "block_b", "end1", "end2", "face1", "face2", "normal", "friction", "dilatancy")
+OF_BLOCKS = ("polygons", "centroid", "weight", "fixed", "dead", "live", "support_motion")
+OF_JOINTS = ("block_a", "block_b", "end1", "end2", "face1", "face2", "normal", "friction", "dilatancy", "constant")
 
 
 @dataclass(frozen=True, eq=False)
@@ -55,6 +55,9 @@ class Assembly:
         dilatancy: (m,) coefficients by which a slip lifts the ends, from zero to the friction.
         joint: (m,) names of the joints ("bed", "head" or as given).
         dead, live: (n, 3) generalised loads (fx, fy, moment about the centroid); zero on fixed blocks.
+        constant: (m, 4) constant parts of the yield slacks [force], as `joint_law` has them; zero for dry joints.
+        support_motion: (n, 3) prescribed motion (ux, uy, omega) of fixed blocks; zero where supports rest, and on free
+            blocks.
     """
 
     name: str
@@ -75,22 +78,36 @@ class Assembly:
     joint: tuple[str, ...]
     dead: FloatArray
     live: FloatArray
+    constant: FloatArray = field(default_factory=partial(np.zeros, (0, 4)))
+    support_motion: FloatArray = field(default_factory=partial(np.zeros, (0, 3)))
 
     def __post_init__(self) -> None:
-        """Every joint has one entry in each array of joints, every block in each of blocks.
+        """Every joint has one entry in each array of joints, every block in each of blocks; only fixed ones are moved.
 
         Raises:
             ValueError: if not, naming the array.
         """
+        if not len(self.constant):
+            object.__setattr__(self, "constant", np.zeros((len(self.joint), 4)))
+        if not len(self.support_motion):
+            object.__setattr__(self, "support_motion", np.zeros((len(self.block_ids), 3)))
         for names, count in ((OF_BLOCKS, len(self.block_ids)), (OF_JOINTS, len(self.joint))):
             for name in names:
                 if len(getattr(self, name)) != count:
                     raise ValueError(f"{name} has {len(getattr(self, name))} entries for {count}")
+        if np.any(self.support_motion[~self.fixed]):
+            raise ValueError("support_motion moves a block that is not fixed")
 
     @cached_property
     def law(self) -> JointLaw:
         """The law of its joints."""
-        return JointLaw(self.friction, self.dilatancy)
+        return JointLaw(self.friction, self.dilatancy, self.constant)
+
+    def with_joints(self, kept: IntArray | BoolArray) -> Assembly:
+        """The same blocks with these interfaces alone, by index in this order or by a mask (m,)."""
+        index = np.arange(self.n_interfaces)[kept]
+        arrays = {name: getattr(self, name)[index] for name in OF_JOINTS}
+        return replace(self, joint=tuple(self.joint[p] for p in index), **arrays)
 
     @property
     def dilates(self) -> bool:
@@ -183,10 +200,20 @@ class Assembly:
 
         Used by the methods; the judge does not use it.
         """
+        return self._strains_of(self.free)
+
+    @cached_property
+    def support_strains(self) -> FloatArray:
+        """(m, 3) strains (open1, open2, slip) that the motion of the supports makes while the free blocks rest."""
+        fixed = np.flatnonzero(self.fixed)
+        return np.asarray(self._strains_of(fixed) @ self.support_motion[fixed].ravel()).reshape(-1, 3)
+
+    def _strains_of(self, blocks: IntArray) -> sp.csr_matrix:
+        """Sparse (3m, 3k) matrix of the strains that the velocities of k blocks make."""
         import scipy.sparse as sp
 
         column = np.full(self.n_blocks, -1, dtype=np.int64)
-        column[self.free] = np.arange(self.n_free)
+        column[blocks] = np.arange(len(blocks))
         rows: list[IntArray] = []
         columns: list[IntArray] = []
         values: list[FloatArray] = []
@@ -204,7 +231,7 @@ class Assembly:
                     values.append((sign * value)[moving])
         return sp.csr_matrix(
             (np.concatenate(values), (np.concatenate(rows), np.concatenate(columns))),
-            shape=(3 * self.n_interfaces, 3 * self.n_free),
+            shape=(3 * self.n_interfaces, 3 * len(blocks)),
         )
 
     def free_loads(self) -> tuple[FloatArray, FloatArray]:

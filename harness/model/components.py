@@ -12,7 +12,7 @@ from typing import Any
 
 import numpy as np
 
-from harness.model.assembly import Assembly, BoolArray, FloatArray, IntArray
+from harness.model.assembly import OF_BLOCKS, Assembly, BoolArray, FloatArray, IntArray
 from harness.model.errors import first_few
 from harness.model.groups import groups_of
 from harness.model.method import MOVING_FORCES, Answer, Finding, OutOfTime, Status
@@ -73,17 +73,13 @@ def _component(assembly: Assembly, moving: BoolArray) -> Component:
     blocks = np.flatnonzero(kept)
     place = np.full(assembly.n_blocks, -1, dtype=np.int64)
     place[blocks] = np.arange(len(blocks))
-    by_block = ("centroid", "weight", "fixed", "dead", "live")
-    by_interface = ("end1", "end2", "face1", "face2", "normal", "friction", "dilatancy")
     part = replace(
-        assembly,
+        assembly.with_joints(interfaces),
         block_ids=tuple(assembly.block_ids[i] for i in blocks),
         polygons=tuple(assembly.polygons[i] for i in blocks),
         block_a=place[assembly.block_a[interfaces]],
         block_b=place[assembly.block_b[interfaces]],
-        joint=tuple(assembly.joint[p] for p in interfaces),
-        **{name: getattr(assembly, name)[blocks] for name in by_block},
-        **{name: getattr(assembly, name)[interfaces] for name in by_interface},
+        **{name: getattr(assembly, name)[blocks] for name in OF_BLOCKS if name != "polygons"},
     )
     return Component(part, blocks, interfaces)
 

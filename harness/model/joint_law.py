@@ -1,15 +1,19 @@
-"""The law of dry joints in one place: which forces they bear and how they move when those are at their limit.
+"""The law of joints in one place: which forces they bear, and how they move when those are at their limit.
 
-Forces r = (n1, n2, s) of an interface lie in a cone of four rows, y = S r >= 0: no tension at either end, and shear
-within friction both ways. At collapse it moves along the flow vectors of the rows that are zero, q = E g with
-rates g = (open1, open2, slip+, slip-) >= 0 and q = (open1, open2, slip), as strains are defined in `assembly`.
-A slip lifts both ends by the dilatancy psi, 0 <= psi <= mu: E = S' for psi = mu (associated flow), and nothing is
-lifted for psi = 0. Sources: Coulomb (1776); Drucker (1954) for flow with dilatancy; Baggio and Trovalusci (1995).
+Forces r = (n1, n2, s) of an interface are within yield where its slacks y = S r + s0 >= 0: in dry joints (s0 = 0) no
+tension at either end, and shear within friction both ways. Tensile strength T of an interface is the constant part T/2
+at both ends, cohesion c on an area A the constant part c A both ways of shear. At collapse it moves along the flow
+vectors of the rows that are zero, q = E g with rates g = (open1, open2, slip+, slip-) >= 0, y . g = 0 and
+q = (open1, open2, slip), as strains are defined in `assembly`. A slip lifts both ends by the dilatancy psi,
+0 <= psi <= mu: E = S' for psi = mu (associated flow), and nothing is lifted for psi = 0. The work that the joint takes
+is -q . r = s0 . g for associated flow, and (mu - psi) N times the slip more for any other. Sources: Coulomb (1776);
+Drucker (1954) for flow with dilatancy; Baggio and Trovalusci (1995); Orduna and Lourenco (2003) for cohesion, tension.
 """
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
+from functools import cached_property, partial
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -28,14 +32,24 @@ class JointLaw:
     Attributes:
         friction: (m,) coefficients mu, zero or more.
         dilatancy: (m,) coefficients psi by which a slip lifts the ends, from zero to mu.
+        constant: (m, 4) constant parts s0 of the slacks [force], zero for dry joints; or what broadcasts to it.
     """
 
     friction: FloatArray
     dilatancy: FloatArray
+    constant: FloatArray = field(default_factory=partial(np.zeros, 4))
+
+    def __post_init__(self) -> None:
+        """Every interface has its constants.
+
+        Raises:
+            ValueError: the constants are of other interfaces.
+        """
+        object.__setattr__(self, "constant", np.broadcast_to(self.constant, (len(self.friction), 4)))
 
     @property
     def rows(self) -> FloatArray:
-        """(m, 4, 3) rows S of the yield slacks y = S r = (n1, n2, mu N + s, mu N - s), N = n1 + n2."""
+        """(m, 4, 3) rows S of the yield slacks y = S r + s0 = (n1, n2, mu N + s, mu N - s) + s0, N = n1 + n2."""
         return _rows(self.friction)
 
     @property
@@ -43,19 +57,70 @@ class JointLaw:
         """(m, 3, 4) flow vectors E, one a column, of the strains q = E g."""
         return np.asarray(_rows(self.dilatancy).transpose(0, 2, 1))
 
+    @cached_property
+    def dry(self) -> NDArray[np.bool_]:
+        """(m,) interfaces without constant parts, whose yield domain is a cone."""
+        return np.asarray(~np.any(self.constant, axis=1))
+
+    @property
+    def least_normal(self) -> FloatArray:
+        """(m, 2) least normal forces at both ends: minus half the tensile strength, zero in dry joints."""
+        return np.asarray(0.0 - self.constant[:, :2])  # the negative of zero would have a sign
+
+    def by_friction(self, compression: FloatArray) -> FloatArray:
+        """(m,) shear mu N that friction bears at compressions N (m,)."""
+        return np.asarray(self.friction * compression)
+
+    def shear_range(self, forces: FloatArray) -> tuple[FloatArray, FloatArray]:
+        """(m,) least and (m,) greatest shear that the normal forces of (m, 3) leave each interface."""
+        borne = self.by_friction(forces[:, 0] + forces[:, 1])
+        return -(borne + self.constant[:, 2]), borne + self.constant[:, 3]
+
     def strength(self, forces: FloatArray) -> FloatArray:
-        """(m,) greatest shear mu (n1 + n2) that forces (m, 3) leave each interface."""
-        return np.asarray(self.friction * (forces[:, 0] + forces[:, 1]))
+        """(m,) shear strength mu (n1 + n2) + c A that forces (m, 3) leave each interface: half its `shear_range`."""
+        cohesion = 0.5 * (self.constant[:, 2] + self.constant[:, 3])
+        return self.by_friction(forces[:, 0] + forces[:, 1]) + cohesion
 
     def slacks(self, forces: FloatArray) -> FloatArray:
-        """(m, 4) yield slacks S r of forces (m, 3), negative where they break the law."""
-        strength, shear = self.strength(forces), forces[:, 2]
-        return np.column_stack([forces[:, :2], strength + shear, strength - shear])
+        """(m, 4) yield slacks S r + s0 of forces (m, 3), negative where they break the law."""
+        borne, shear = self.by_friction(forces[:, 0] + forces[:, 1]), forces[:, 2]
+        return np.column_stack([forces[:, :2], borne + shear, borne - shear]) + self.constant
+
+    def forces_of_slacks(self, slack: FloatArray) -> FloatArray:
+        """(m, 3) forces of slacks (m, 4)."""
+        own = slack - self.constant
+        return np.column_stack([own[:, :2], 0.5 * (own[:, 2] - own[:, 3])])
+
+    def within(self, forces: FloatArray) -> FloatArray:
+        """Forces (m, 3) without the tension and then without the shear that break the law, as rounding leaves them."""
+        normal = np.maximum(forces[:, :2], self.least_normal)
+        return np.column_stack([normal, np.clip(forces[:, 2], *self.shear_range(normal))])
+
+    def dissipation(self, rates: FloatArray) -> float:
+        """Work s0 . g that the constant parts take on rates (m, 4)."""
+        return float((self.constant * rates).sum())
+
+    def lift(self, share: float) -> FloatArray:
+        """(m,) coefficients by which a slip lifts: the joints' own for `share` 0, the friction for 1."""
+        return np.asarray(self.dilatancy + share * (self.friction - self.dilatancy))
 
     @property
     def associated(self) -> JointLaw:
         """The same joints with the dilatancy of associated flow."""
-        return JointLaw(self.friction, self.friction)
+        return JointLaw(self.friction, self.friction, self.constant)
+
+    @property
+    def without_constant(self) -> JointLaw:
+        """The same joints dry: the directions in which forces within yield have no end."""
+        return JointLaw(self.friction, self.dilatancy)
+
+    def in_units(self, force: float) -> JointLaw:
+        """The law of forces that are measured in this unit [force]."""
+        return JointLaw(self.friction, self.dilatancy, self.constant / force)
+
+    def with_friction(self, friction: FloatArray) -> JointLaw:
+        """The joints with friction (m,), and the dilatancy that this leaves them."""
+        return JointLaw(friction, np.minimum(self.dilatancy, friction), self.constant)
 
 
 def _rows(slope: FloatArray) -> FloatArray:

@@ -183,7 +183,7 @@ def bracket_collapse(
     record = PathRecord()
     limit = _settle(programme, 0.0, np.zeros(model.n_points), fixed_points)
     if limit is None:
-        rough = model.mu * float(np.abs(model.dead).sum())
+        rough = model.law.by_friction(np.full(model.n_points, np.abs(model.dead).sum()))
         limit = _settle(programme, 0.0, rough, 2 * fixed_points, TRESCA.damped)
     if limit is None:
         programme.solve(0.0, rough)
@@ -231,7 +231,7 @@ def _settle(
             programme.without_minimum |= answer is not None
             programme.restart()
             return None
-        new = model.mu * answer[1]
+        new = model.law.by_friction(answer[1])
         change = float(np.abs(new - limit).max())
         if change < TRESCA.repeated * share * scale:
             return new

@@ -8,6 +8,7 @@ import numpy as np
 import scipy.sparse as sp
 
 from harness.model.assembly import Assembly, FloatArray, IntArray
+from harness.model.joint_law import JointLaw
 
 if TYPE_CHECKING:
     from methods.numerics.vertex import Vertex
@@ -21,36 +22,38 @@ Entries = tuple[FloatArray, IntArray, IntArray]
 """Values, rows and columns of a sparse matrix."""
 
 
-def shear_limits(friction: FloatArray) -> sp.csr_matrix:
-    """The sparse (2m, 3m) matrix of `entries_of_shear_limits`."""
-    values, rows, columns = entries_of_shear_limits(friction)
-    return sp.csr_matrix((values, (rows, columns)), shape=(2 * len(friction), 3 * len(friction)))
+def shear_limits(law: JointLaw) -> sp.csr_matrix:
+    """The sparse (2m, 3m) matrix of `entries_of_shear_limits` of a law's rows."""
+    m = len(law.friction)
+    values, rows, columns = entries_of_shear_limits(law.rows)
+    return sp.csr_matrix((values, (rows, columns)), shape=(2 * m, 3 * m))
 
 
-def entries_of_shear_limits(friction: FloatArray) -> Entries:
-    """Entries of the (2m, 3m) slacks mu (n1 + n2) +- s of forces (n1, n2, s), over mu where that is above one.
+def entries_of_shear_limits(rows: FloatArray) -> Entries:
+    """Entries of the (2m, 3m) shear rows mu (n1 + n2) +- s of the rows (m, 4, 3) of a law, over `shear_unit`.
 
     Shears themselves are the unknowns, because their difference from a large strength would cost digits.
     """
-    m = len(friction)
-    size = np.maximum(friction, 1.0)
-    base, pair, part, share = 3 * np.arange(m), 2 * np.arange(m), friction / size, 1.0 / size
-    rows = np.concatenate([pair, pair, pair, pair + 1, pair + 1, pair + 1])
-    columns = np.concatenate([base, base + 1, base + 2] * 2)
-    values = np.concatenate([part, part, share, part, part, -share])
-    return values, rows, columns
+    m = len(rows)
+    values = rows[:, 2:] / shear_unit(rows[:, 2, 0])[:, None, None]
+    row = np.arange(2 * m).reshape(m, 2, 1)
+    column = 3 * np.arange(m).reshape(m, 1, 1) + np.arange(3)
+    return values.ravel(), np.broadcast_to(row, values.shape).ravel(), np.broadcast_to(column, values.shape).ravel()
+
+
+def shear_unit(slope: FloatArray) -> FloatArray:
+    """(m,) what one unit of a shear slack is worth in a programme: the slope mu (m,) where that is above one."""
+    return np.asarray(np.maximum(slope, 1.0))
+
+
+def least_shear_slacks(law: JointLaw) -> FloatArray:
+    """(2m,) least values of the rows of `shear_limits`: minus the cohesion, zero in dry joints."""
+    return np.asarray((0.0 - law.constant[:, 2:] / shear_unit(law.friction)[:, None]).ravel())
 
 
 def rows_of_blocks(n_free: int, m: int) -> IntArray:
     """(3 n_free + 2 m,) block behind each row of equilibrium, and a number of its own for each of 2 m further rows."""
     return np.append(np.repeat(np.arange(n_free), 3), n_free + np.arange(2 * m))
-
-
-def within_yield(forces: FloatArray, friction: FloatArray) -> FloatArray:
-    """Forces (m, 3) without the tension and the excess of shear that rounding leaves, for friction (m,)."""
-    normal = np.maximum(forces[:, :2], 0.0)
-    strength = friction * normal.sum(axis=1)
-    return np.column_stack([normal, np.clip(forces[:, 2], -strength, strength)])
 
 
 def out_of_balance(assembly: Assembly, forces: FloatArray, load: FloatArray) -> FloatArray:
@@ -86,7 +89,7 @@ def admissible_forces(assembly: Assembly, load: FloatArray) -> FloatArray | None
     if m == 0:
         return None
     vertex, unit = _vertex_of_forces(assembly, load)
-    return None if vertex is None else within_yield(vertex.value.reshape(-1, 3), assembly.friction) * unit
+    return None if vertex is None else assembly.law.in_units(unit).within(vertex.value.reshape(-1, 3)) * unit
 
 
 def greatest_multiplier(assembly: Assembly) -> tuple[float, FloatArray, FloatArray] | None:
@@ -99,7 +102,7 @@ def greatest_multiplier(assembly: Assembly) -> tuple[float, FloatArray, FloatArr
     vertex, unit = _vertex_of_forces(assembly, assembly.dead, assembly.live)
     if vertex is None:
         return None
-    forces = within_yield(vertex.value[:-1].reshape(-1, 3), assembly.friction) * unit
+    forces = assembly.law.in_units(unit).within(vertex.value[:-1].reshape(-1, 3)) * unit
     motion = np.zeros((assembly.n_blocks, 3))
     motion[assembly.free] = -vertex.dual[: 3 * assembly.n_free].reshape(-1, 3) * _units_of_velocity(assembly)
     return float(vertex.value[-1]) * assembly.load_unit, forces, motion
@@ -125,8 +128,10 @@ def _vertex_of_forces(
     unit = float(abs(own).sum()) / max(assembly.n_free, 1)
     m = assembly.n_interfaces
     statics = (assembly.kinematic_matrix @ sp.diags(column)).T
-    matrix = sp.csc_matrix(sp.vstack([sp.csc_matrix(statics), shear_limits(assembly.friction)]))
-    lower, cost = np.tile([0.0, 0.0, -INFINITY], m), np.zeros(3 * m)
+    law, cost = assembly.law.in_units(unit), np.zeros(3 * m)
+    lower = np.column_stack([law.least_normal, np.full(m, -INFINITY)]).ravel()
+    limits = least_shear_slacks(law)
+    matrix = sp.csc_matrix(sp.vstack([sp.csc_matrix(statics), shear_limits(law)]))
     if live is not None:
         acting = live[assembly.free].ravel() * column * (assembly.load_unit / unit)
         matrix = sp.csc_matrix(sp.hstack([matrix, sp.csc_matrix(np.append(acting, np.zeros(2 * m))[:, None])]))
@@ -135,7 +140,7 @@ def _vertex_of_forces(
         matrix,
         cost,
         (lower, np.full(len(lower), INFINITY)),
-        (np.append(-own / unit, np.zeros(2 * m)), np.append(-own / unit, np.full(2 * m, INFINITY))),
+        (np.append(-own / unit, limits), np.append(-own / unit, np.full(2 * m, INFINITY))),
     )
     status, _, _ = programme.run()
     vertex = programme.vertex(rows_of_blocks(assembly.n_free, m)) if status == "optimal" else None

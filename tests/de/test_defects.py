@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from methods.de.uneven.defects import closed_contacts, crown, cut_corners, lose_contacts, restrict
+from methods.de.uneven.defects import closed_contacts, crown, cut_corners, lose_contacts
 from tests.de.answers import run
 from tests.walls import assembly, running_bond, stack
 
@@ -55,7 +55,7 @@ def test_contacts_that_carry_nothing_can_be_left_out():
     closed = closed_contacts(wall, dead.forces)
     beds = np.array([joint == "bed" for joint in wall.joint])
     assert closed[beds].sum() > 0
-    assert restrict(wall, closed).n_interfaces == closed.sum()
+    assert wall.with_joints(closed).n_interfaces == closed.sum()
 
 
 def test_lost_contacts_are_seeded():

@@ -14,7 +14,7 @@ from benchmarks.walls import irregular_wall, random_wall
 from harness.engine.isolate import run_isolated
 from harness.engine.judge import answered
 from harness.engine.worker import Task
-from harness.model.assembly import OF_JOINTS, Assembly
+from harness.model.assembly import Assembly
 from harness.model.build import build
 from harness.model.method import Answer, Finding, Status, load_method
 from harness.model.reading import parse_wall
@@ -144,8 +144,7 @@ def test_fe_floating_block_is_a_gravity_failure_that_names_it() -> None:
     wall = running_bond(3, 3, 0.65)
     top = wall.n_blocks - 1
     keep = (wall.block_a != top) & (wall.block_b != top)
-    cut = {name: getattr(wall, name)[keep] for name in OF_JOINTS}
-    answer = solve(replace(wall, joint=tuple(np.array(wall.joint)[keep]), **cut))
+    answer = solve(wall.with_joints(keep))
     assert answer.finding is Finding.FALLS
     assert answer.details["path_status"] == "gravity_failure"
     assert answer.details["moving_blocks"] == [wall.block_ids[top]]

@@ -12,7 +12,7 @@ from typing import Literal
 
 import numpy as np
 
-from harness.model.assembly import OF_JOINTS, Assembly, BoolArray, FloatArray
+from harness.model.assembly import Assembly, BoolArray, FloatArray
 
 Faces = Literal["beds", "heads", "both"]
 
@@ -89,17 +89,10 @@ def set_in(assembly: Assembly, move: FloatArray) -> Assembly:
 def lose_contacts(assembly: Assembly, chance: float, faces: Faces = "beds", seed: int = 0) -> Assembly:
     """Drop each of these joints with this chance, as where a stone does not touch its neighbour."""
     drawn = np.random.default_rng(seed).uniform(size=assembly.n_interfaces)
-    return restrict(assembly, ~(affected(assembly, faces) & (drawn < chance)))
+    return assembly.with_joints(~(affected(assembly, faces) & (drawn < chance)))
 
 
 def closed_contacts(assembly: Assembly, forces: FloatArray, threshold: float = 1e-9) -> BoolArray:
     """(m,) interfaces that carry a force (m, 3) above `threshold` of the mean dead load of a block."""
     closed: BoolArray = forces[:, 0] + forces[:, 1] > threshold * assembly.force_scale / assembly.n_free
     return closed
-
-
-def restrict(assembly: Assembly, keep: BoolArray) -> Assembly:
-    """The same blocks with only the interfaces of the mask (m,): what another method analyses afterwards."""
-    index = np.flatnonzero(keep)
-    arrays = {name: getattr(assembly, name)[index] for name in OF_JOINTS}
-    return replace(assembly, joint=tuple(assembly.joint[p] for p in index), **arrays)

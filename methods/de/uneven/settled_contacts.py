@@ -232,6 +232,7 @@ def with_contacts(assembly: Assembly, space: BlockSpace, places: FloatArray) -> 
         normal=np.array([row[4] for row in rows]),
         friction=np.array([row[5] for row in rows]),
         dilatancy=np.zeros(len(rows)),
+        constant=np.zeros((len(rows), 4)),
         joint=tuple("bed" if flat else "head" for flat in level),
     ), single
 

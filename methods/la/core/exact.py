@@ -42,22 +42,24 @@ WEIGHTS = Weights()
 def close_tight(problem: Problem, tight: BoolArray | None = None) -> BoolArray:
     """Tight slacks (m, 4), by default none, with those that follow.
 
-    No normal force means no shear, both shear limits mean no force, no friction means no shear.
+    In a dry joint no normal force means no shear, and both shear limits mean no force; without friction and cohesion
+    there is no shear.
     """
     closed = np.zeros((problem.n_interfaces, 4), dtype=bool) if tight is None else tight.copy()
     closed[problem.rigid_in_shear, 2:] = True
     both = closed[:, 2] & closed[:, 3] & ~problem.rigid_in_shear
-    closed[both] = True
-    closed[closed[:, 0] & closed[:, 1]] = True
+    closed[both & problem.law.dry] = True
+    closed[closed[:, 0] & closed[:, 1] & problem.law.dry] = True
     return closed
 
 
 def snap(problem: Problem, forces: FloatArray, tight: BoolArray) -> FloatArray:
     """Forces (m, 3) with the tight slacks exactly zero and no slack negative."""
-    normal = np.where(tight[:, :2], 0.0, np.maximum(forces[:, :2], 0.0))
-    strength = problem.law(False).strength(normal)
-    shear = np.clip(forces[:, 2], -strength, strength)
-    shear = np.where(tight[:, 2], -strength, np.where(tight[:, 3], strength, shear))
+    law = problem.law
+    normal = np.where(tight[:, :2], law.least_normal, np.maximum(forces[:, :2], law.least_normal))
+    least, greatest = law.shear_range(normal)
+    shear = np.clip(forces[:, 2], least, greatest)
+    shear = np.where(tight[:, 2], least, np.where(tight[:, 3], greatest, shear))
     return np.column_stack([normal, shear])
 
 
@@ -91,7 +93,7 @@ def exact_forces(
         slack = problem.slacks(current)
         least = floor * max(float(slack.max(initial=0.0)), 1e-9)
         weight = np.where(tight, WEIGHTS.rigid, 1.0 / np.maximum(slack, least) ** 2)
-        compliance = Compliance(problem.friction, weight, problem.friction)
+        compliance = Compliance(problem.law, weight, problem.friction)
         factor = newton.factorise(compliance.matrices, 1e-13)
         by_live = factor.solve(problem.live)
         stiffness = float(problem.live @ by_live)
@@ -123,7 +125,7 @@ def exact_mechanism(
     """
     still = np.column_stack([~moving[:, 0], ~moving[:, 1], ~(moving[:, 2] | moving[:, 3])]).astype(float)
     transform = np.tile(np.eye(3), (problem.n_interfaces, 1, 1))
-    sense = np.where(moving[:, 2], 1.0, np.where(moving[:, 3], -1.0, 0.0)) * problem.law(associated).dilatancy
+    sense = np.where(moving[:, 2], 1.0, np.where(moving[:, 3], -1.0, 0.0)) * problem.flow_law(associated).dilatancy
     transform[:, 0, 2] = transform[:, 1, 2] = -sense
     stiff = np.einsum("pki,pk,pkj->pij", transform, still, transform)
     factor = newton.factorise(stiff * WEIGHTS.penalty, 0.0, shift=1.0)

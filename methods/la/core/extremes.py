@@ -1,8 +1,8 @@
 """Programmes over contact forces whose vertices are computed to rounding: extreme multipliers, falls, bounds.
 
-min or max lambda s.t. C' r + f0 + lambda fL = 0, S r >= 0, and its dual: a dilatant mechanism. Both sides are read from
-one vertex (`methods.numerics.vertex`), so that neither is nearer to the truth than the other. Forces are measured in
-units of their interface and equilibrium in units of its block, so that a light block beside a heavy one counts.
+min or max lambda s.t. C' r + f0 + lambda fL = 0, S r + s0 >= 0, and its dual: a dilatant mechanism. Both sides are read
+from one vertex (`methods.numerics.vertex`), so that neither is nearer to the truth than the other. Forces are measured
+in units of their interface and equilibrium in units of its block, so that a light block beside a heavy one counts.
 """
 
 from __future__ import annotations
@@ -16,7 +16,7 @@ from harness.model.assembly import BoolArray, FloatArray
 from methods.la.core.problem import Problem
 from methods.la.core.programmes import KinematicSolution, StaticSolution
 from methods.numerics.linear_programme import INFINITY, Programme
-from methods.numerics.statics import Entries, entries_of_shear_limits, rows_of_blocks, within_yield
+from methods.numerics.statics import Entries, entries_of_shear_limits, least_shear_slacks, rows_of_blocks, shear_unit
 from methods.numerics.vertex import Vertex
 
 
@@ -79,7 +79,7 @@ class ForceProgramme:
         self._columns = np.repeat(self._units.interfaces, 3)
         self._loads = 1 if also is None else 2
         self._equilibrium = self._entries_of_equilibrium([problem.live] if also is None else [also, problem.live])
-        self._matrix = self._with_limits(problem.friction)
+        self._matrix = self._with_limits(problem.law.rows)
         self._dead = self._rows * problem.dead
 
     def _entries_of_equilibrium(self, loads: list[FloatArray]) -> Entries:
@@ -94,10 +94,10 @@ class ForceProgramme:
         values, rows, columns = (np.concatenate(part) for part in zip(*parts, strict=True))
         return values, rows, columns
 
-    def _with_limits(self, slope: FloatArray) -> sp.csc_matrix:
-        """The matrix of equilibrium and of shear within `slope` (m,) times compression."""
+    def _with_limits(self, limits: FloatArray) -> sp.csc_matrix:
+        """The matrix of equilibrium and of the shear rows of (m, 4, 3)."""
         n, m = self.problem.n_velocities, self.problem.n_interfaces
-        shear = entries_of_shear_limits(slope)
+        shear = entries_of_shear_limits(limits)
         values, rows, columns = (
             np.concatenate([ours, theirs]) for ours, theirs in zip(self._equilibrium, shear, strict=True)
         )
@@ -114,20 +114,52 @@ class ForceProgramme:
         """
         m = self.problem.n_interfaces
         tight = np.zeros((m, 4), dtype=bool) if tight is None else tight
-        lower = np.tile([0.0, 0.0, -INFINITY], m)
-        upper = np.where(np.column_stack([tight[:, :2], np.zeros(m, dtype=bool)]).ravel(), 0.0, INFINITY)
-        limits = (np.zeros(2 * m), np.where(tight[:, 2:].ravel(), 0.0, INFINITY))
-        cost = VERTICES.cost * self.problem.live_work * (-1.0 if greatest else 1.0)
+        column, limits = self._within_yield(tight)
+        cost = self._of_multiplier(-1.0 if greatest else 1.0)
         multiplier = (-INFINITY if greatest else 0.0, INFINITY)
-        solved = self._solved((lower, upper), limits, cost, multiplier, solver, presolve=not greatest)
+        solved = self._solved(column, limits, cost, multiplier, solver, presolve=not greatest)
         if isinstance(solved, str):
             return solved
         vertex, iterations = solved
-        forces = (vertex.value[: 3 * m] * self._columns).reshape(-1, 3)
         velocities, rates = self._motion(vertex)
+        work = abs(float(self.problem.live @ velocities))
+        scale = self.problem.live_work / work if work > 0.0 else 1.0
         return ExtremeSolution(
-            StaticSolution(within_yield(forces, self.problem.friction), float(vertex.value[-1]), iterations),
-            KinematicSolution(velocities, rates),
+            StaticSolution(self._forces(vertex), float(vertex.value[-1]), iterations),
+            KinematicSolution(scale * velocities, scale * rates),
+        )
+
+    def extreme_work(self, strains: FloatArray, greatest: bool) -> tuple[FloatArray, FloatArray] | str:
+        """The forces (m, 3) that do the greatest or least work on strains (m, 3) without live load, or how it ended.
+
+        Beside them stand the velocities (3n,) of the mechanism dual to them, which has these strains besides those of
+        its velocities; for the greatest work, the opposite strains.
+        """
+        sense = -1.0 if greatest else 1.0
+        scale = VERTICES.cost / float(abs(strains).max())
+        cost = np.append(sense * scale * strains.ravel() * self._columns, np.zeros(self._loads))
+        column, limits = self._within_yield(np.zeros((self.problem.n_interfaces, 4), dtype=bool))
+        solved = self._solved(column, limits, cost, (0.0, 0.0), "auto")
+        if isinstance(solved, str):
+            return solved
+        return self._forces(solved[0]), self._motion(solved[0])[0] / scale
+
+    def _of_multiplier(self, sense: float) -> FloatArray:
+        """Cost of the columns: of the multiplier alone."""
+        cost = np.zeros(3 * self.problem.n_interfaces + self._loads)
+        cost[-1] = VERTICES.cost * self.problem.live_work * sense
+        return cost
+
+    def _within_yield(self, tight: BoolArray) -> tuple[tuple[FloatArray, FloatArray], tuple[FloatArray, FloatArray]]:
+        """Bounds of the columns of forces (3m,) and of the shear rows (2m,) with slacks `tight` (m, 4) held at zero."""
+        law, m = self.problem.law, self.problem.n_interfaces
+        unit = self._units.interfaces[:, None]
+        least = np.column_stack([law.least_normal / unit, np.full(m, -INFINITY)])
+        still = np.column_stack([tight[:, :2], np.zeros(m, dtype=bool)])
+        limits = least_shear_slacks(law) / np.repeat(unit, 2)
+        return (
+            (least.ravel(), np.where(still, least, INFINITY).ravel()),
+            (limits, np.where(tight[:, 2:].ravel(), limits, INFINITY)),
         )
 
     def least_dead_work(self, still: BoolArray) -> DeadWork | str:
@@ -163,10 +195,10 @@ class ForceProgramme:
         if self.problem.dilates:
             least, most = np.full((2, m), INFINITY) * np.array([[-1.0], [1.0]])
             limits = np.where(~still[:, 2:].ravel(), 0.0, -INFINITY)
-            matrix = self._with_limits(self.problem.law(False).dilatancy)
+            matrix = self._with_limits(self.problem.law.flow.transpose(0, 2, 1))
         column = (np.column_stack([lower, least]).ravel(), np.column_stack([np.full((m, 2), INFINITY), most]).ravel())
         within = (limits, np.full(2 * m, INFINITY))
-        cost, loads = -VERTICES.cost * self.problem.live_work, (-INFINITY, most_live)
+        cost, loads = self._of_multiplier(-1.0), (-INFINITY, most_live)
         solved = self._solved(column, within, cost, loads, "simplex", matrix, dead)
         if isinstance(solved, str):
             return solved
@@ -178,7 +210,7 @@ class ForceProgramme:
         self,
         column: tuple[FloatArray, FloatArray],
         limits: tuple[FloatArray, FloatArray],
-        cost: float,
+        cost: FloatArray,
         multiplier: tuple[float, float],
         solver: str,
         matrix: sp.csc_matrix | None = None,
@@ -191,7 +223,7 @@ class ForceProgramme:
         also = self._loads - 1
         programme = Programme(
             self._matrix if matrix is None else matrix,
-            np.append(np.zeros(3 * m + also), cost),
+            cost,
             (
                 np.concatenate([column[0], np.zeros(also), [multiplier[0]]]),
                 np.concatenate([column[1], np.full(also, INFINITY), [multiplier[1]]]),
@@ -214,15 +246,18 @@ class ForceProgramme:
         return (vertex, iterations) if vertex is not None and vertex.optimal else "unknown"
 
     def _motion(self, vertex: Vertex) -> tuple[FloatArray, FloatArray]:
-        """Velocities (3n,) and rates (m, 4) dual to a vertex, scaled to the live work of the problem."""
+        """Velocities (3n,) and rates (m, 4) dual to a vertex."""
         n = self.problem.n_velocities
         velocities = -vertex.dual[:n] * self._rows
         own = 1.0 / self._units.interfaces[:, None]
-        slips = own * vertex.dual[n:].reshape(-1, 2) / np.maximum(self.problem.friction, 1.0)[:, None]
+        slips = own * vertex.dual[n:].reshape(-1, 2) / shear_unit(self.problem.friction)[:, None]
         rates = np.column_stack([own * vertex.reduced[: 3 * self.problem.n_interfaces].reshape(-1, 3)[:, :2], slips])
-        work = abs(float(self.problem.live @ velocities))
-        scale = self.problem.live_work / work if work > 0.0 else 1.0
-        return scale * velocities, scale * rates
+        return velocities, rates
+
+    def _forces(self, vertex: Vertex) -> FloatArray:
+        """Forces (m, 3) of a vertex."""
+        values = vertex.value[: 3 * self.problem.n_interfaces]
+        return self.problem.law.within((values * self._columns).reshape(-1, 3))
 
 
 def force_programme(problem: Problem) -> ForceProgramme:
@@ -279,7 +314,8 @@ def _power_of_two(size: FloatArray) -> FloatArray:
 def standing(problem: Problem) -> StaticSolution | KinematicSolution | str:
     """Forces that carry the dead load within yield, or the dilatant mechanism that proves that none do; or the end.
 
-    The part of the dead load that need not be carried is least: zero or, because yield is a cone, all of it.
+    The part of the dead load that need not be carried is least: zero or, because yield of dry joints is a cone, all
+    of it.
     """
     found = force_programme(replace(problem, live=-problem.dead)).extreme(greatest=False)
     if isinstance(found, str):

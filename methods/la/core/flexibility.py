@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from harness.model.assembly import FloatArray
+from harness.model.joint_law import JointLaw
 
 
 class Compliance:
@@ -14,13 +15,13 @@ class Compliance:
     diag(w1, w2) plus a rank-one term of the dilatancy.
 
     Args:
-        friction: (m,) friction coefficients mu.
+        law: of the joints, for its rows S.
         weight: (m, 4) weights w > 0 of the slacks; 1e40 holds a slack where it is.
         lift: (m,) coefficients by which a slip lifts: mu for associated flow, 0 for sliding without dilatancy.
     """
 
-    def __init__(self, friction: FloatArray, weight: FloatArray, lift: FloatArray) -> None:
-        self.friction = friction
+    def __init__(self, law: JointLaw, weight: FloatArray, lift: FloatArray) -> None:
+        self._law, friction = law, law.friction
         self.total = weight[:, 2] + weight[:, 3]
         self.share = weight[:, 2:] / self.total[:, None]
         tilt = self.share[:, 0] - self.share[:, 1]
@@ -49,7 +50,7 @@ class Compliance:
     def response(self, strain: FloatArray) -> tuple[FloatArray, FloatArray]:
         """Forces (m, 3) and their slacks S A^-1 e (m, 4): y3 = 2 mu N w4/(w3 + w4) + e3/(w3 + w4) and y4 likewise."""
         forces, normal = self._both(strain)
-        strength = 2.0 * self.friction * normal
+        strength = 2.0 * self._law.by_friction(normal)
         own = strain[:, 2] / self.total
         ends = forces[:, :2]
         return forces, np.column_stack([ends, strength * self.share[:, 1] + own, strength * self.share[:, 0] - own])

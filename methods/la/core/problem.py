@@ -1,8 +1,7 @@
 """The limit-analysis problem of an assembly in dimensionless form, with its yield domain and flow rules.
 
-Per interface the forces r = (n1, n2, s) give the yield slacks y = S r = (n1, n2, mu N + s, mu N - s) >= 0 with
-N = n1 + n2. The mechanism u has the strains C u = E g with rates g = (open1, open2, slip+, slip-) >= 0, where
-E = S' for associated flow, and with the dilatancy of the joints in place of mu else. At collapse y o g = 0.
+Per interface the forces r = (n1, n2, s) give the yield slacks y = S r + s0 >= 0, and the mechanism u has the strains
+C u = E g with rates g >= 0, both as `harness.model.joint_law` says. At collapse y o g = 0.
 Source: Baggio and Trovalusci (1995), equations 1 to 7.
 """
 
@@ -16,7 +15,7 @@ import scipy.sparse as sp
 from scipy.sparse.linalg import spsolve
 
 from harness.model.assembly import Assembly, BoolArray, FloatArray
-from harness.model.joint_law import JointLaw, block_diagonal
+from harness.model.joint_law import JointLaw
 
 
 @dataclass(frozen=True)
@@ -47,24 +46,25 @@ class Problem:
         assembly: where it comes from.
         kinematic: (3m, 3n) scaled matrix C, strains from velocities (ux, uy, omega * unit_length).
         dead, live: (3n,) scaled loads.
-        friction: (m,) friction coefficients.
-        dilatancy: (m,) coefficients by which a slip lifts, at most the friction.
+        law: of the joints, its constant parts scaled.
         unit_force: mean dead load of a free block [force].
         unit_length: typical size of a block [length].
         unit_multiplier: multiplier per scaled multiplier.
-        cohesion: None, or (m, 4) constants c of the slacks y = S r + c, for programmes that need them.
     """
 
     assembly: Assembly
     kinematic: sp.csr_matrix
     dead: FloatArray
     live: FloatArray
-    friction: FloatArray
+    law: JointLaw
     unit_force: float
     unit_length: float
     unit_multiplier: float
-    dilatancy: FloatArray
-    cohesion: FloatArray | None = None
+
+    @property
+    def friction(self) -> FloatArray:
+        """(m,) friction coefficients."""
+        return self.law.friction
 
     @property
     def n_interfaces(self) -> int:
@@ -106,38 +106,29 @@ class Problem:
 
     @cached_property
     def rigid_in_shear(self) -> BoolArray:
-        """(m,) interfaces without friction, whose shear is zero and whose slip is free."""
-        without = self.friction == 0.0
-        return np.asarray(without if self.cohesion is None else without & (self.cohesion[:, 2:].sum(axis=1) == 0.0))
+        """(m,) interfaces without friction and cohesion, whose shear is zero and whose slip is free."""
+        return np.asarray((self.friction == 0.0) & (self.law.constant[:, 2:].sum(axis=1) == 0.0))
 
     def slacks(self, forces: FloatArray) -> FloatArray:
-        """(m, 4) yield slacks y = S r (+ c) of forces (m, 3)."""
-        slack = self.law(False).slacks(forces)
-        return slack if self.cohesion is None else slack + self.cohesion
+        """(m, 4) yield slacks of forces (m, 3)."""
+        return self.law.slacks(forces)
 
     def forces_of_slacks(self, slack: FloatArray) -> FloatArray:
         """(m, 3) forces of slacks (m, 4)."""
-        own = slack if self.cohesion is None else slack - self.cohesion
-        return np.column_stack([own[:, :2], 0.5 * (own[:, 2] - own[:, 3])])
+        return self.law.forces_of_slacks(slack)
 
     @property
     def dilates(self) -> bool:
         """Whether any joint lifts as it slides."""
-        return bool(np.any(self.dilatancy > 0.0))
+        return bool(np.any(self.law.dilatancy > 0.0))
 
-    def lift(self, share: float) -> FloatArray:
-        """(m,) coefficients by which a slip lifts: the joints' own for `share` 0, the friction for 1."""
-        own = np.minimum(self.dilatancy, self.friction)
-        return np.asarray(own + share * (self.friction - own))
-
-    def law(self, associated: bool) -> JointLaw:
+    def flow_law(self, associated: bool) -> JointLaw:
         """The law of the joints, of associated flow if so."""
-        law = JointLaw(self.friction, np.minimum(self.dilatancy, self.friction))
-        return law.associated if associated else law
+        return self.law.associated if associated else self.law
 
     def strains_of_rates(self, rates: FloatArray, dilatancy: float) -> FloatArray:
-        """(m, 3) strains E g of rates g (m, 4); a slip lifts by `lift` of `dilatancy`."""
-        dilation = self.lift(dilatancy) * (rates[:, 2] + rates[:, 3])
+        """(m, 3) strains E g of rates g (m, 4); a slip lifts by `JointLaw.lift` of `dilatancy`."""
+        dilation = self.law.lift(dilatancy) * (rates[:, 2] + rates[:, 3])
         return np.column_stack([rates[:, 0] + dilation, rates[:, 1] + dilation, rates[:, 2] - rates[:, 3]])
 
     def strains(self, velocities: FloatArray) -> FloatArray:
@@ -151,7 +142,7 @@ class Problem:
     def rates_of_strains(self, strain: FloatArray, associated: bool) -> FloatArray:
         """(m, 4) smallest rates g with q = E g of strains q (m, 3), as `rates_of_velocities` tells them."""
         slip = strain[:, 2]
-        dilation = self.law(associated).dilatancy * abs(slip)
+        dilation = self.flow_law(associated).dilatancy * abs(slip)
         return np.column_stack(
             [strain[:, 0] - dilation, strain[:, 1] - dilation, np.maximum(slip, 0.0), np.maximum(-slip, 0.0)]
         )
@@ -171,22 +162,22 @@ class Problem:
     def to_mechanism(self, velocities: FloatArray) -> FloatArray:
         """(n_blocks, 3) velocities (ux, uy, omega) of all blocks, scaled to a largest component of one."""
         motion = np.zeros((self.assembly.n_blocks, 3))
-        moving = velocities.reshape(-1, 3).copy()
-        moving[:, 2] /= self.unit_length
+        moving = self.velocities_of_blocks(velocities)
         largest = abs(moving).max(initial=0.0)
         motion[self.assembly.free] = moving / (largest or 1.0)
         return motion
+
+    def velocities_of_blocks(self, velocities: FloatArray) -> FloatArray:
+        """(n, 3) velocities (ux, uy, omega) of the free blocks."""
+        moving = velocities.reshape(-1, 3).copy()
+        moving[:, 2] /= self.unit_length
+        return moving
 
     def from_mechanism(self, mechanism: FloatArray) -> FloatArray:
         """(3n,) scaled velocities of block velocities (n_blocks, 3)."""
         moving = mechanism[self.assembly.free].copy()
         moving[:, 2] *= self.unit_length
         return np.asarray(moving.ravel())
-
-
-def slack_matrix(friction: FloatArray) -> sp.csr_matrix:
-    """Sparse (4m, 3m) matrix S of the slacks y = S r of forces r = (n1, n2, s), for friction coefficients (m,)."""
-    return block_diagonal(JointLaw(friction, friction).rows)
 
 
 def make_problem(assembly: Assembly) -> Problem:
@@ -198,15 +189,15 @@ def make_problem(assembly: Assembly) -> Problem:
     dead = dead * column / unit_force
     live = live * column / unit_force
     size = float(abs(live.reshape(-1, 3)).sum())
+    friction = np.where(assembly.friction < PROBLEM.friction, 0.0, assembly.friction)
     unit_multiplier = assembly.n_free / size if size > 0.0 else 1.0
     return Problem(
         assembly=assembly,
         kinematic=(assembly.kinematic_matrix @ sp.diags(column)).tocsr(),
         dead=dead,
         live=live * unit_multiplier,
-        friction=np.where(assembly.friction < PROBLEM.friction, 0.0, assembly.friction),
+        law=assembly.law.with_friction(friction).in_units(unit_force),
         unit_force=unit_force,
         unit_length=unit_length,
         unit_multiplier=unit_multiplier,
-        dilatancy=assembly.law.dilatancy,
     )

@@ -52,25 +52,21 @@ class KinematicSolution:
 
 
 class StaticProgramme:
-    """min lambda >= 0, or max lambda, s.t. C' r + f0 + lambda fL = 0, S r >= 0, (S r)_k = 0 for tight k.
+    """min lambda >= 0, or max lambda, s.t. C' r + f0 + lambda fL = 0, y = S r + s0 >= 0, y_k = 0 for tight k.
 
-    Columns are (n1, n2, y3) an interface and lambda, with s = y3 - mu (n1 + n2) and y4 = 2 mu (n1 + n2) - y3.
+    Columns are the slacks (y1, y2, y3) of an interface, from which r and y4 follow, and lambda.
     """
 
     def __init__(self, problem: Problem) -> None:
         self.problem = problem
-        m, mu = problem.n_interfaces, problem.friction
-        base = 3 * np.arange(m)
-        shear_rows = np.concatenate([base + 2, base + 2, base + 2])
-        columns = np.concatenate([base, base + 1, base + 2])
-        normals = sp.diags(np.tile([1.0, 1.0, 0.0], m))
-        shear = sp.coo_matrix((np.concatenate([-mu, -mu, np.ones(m)]), (shear_rows, columns)), shape=(3 * m, 3 * m))
-        forces = (normals + shear).tocsr()
+        m, rows, constant = problem.n_interfaces, problem.law.rows, problem.law.constant
+        inverse = 2.0 * np.eye(3) - rows[:, :3]  # of a matrix whose diagonal is one, with entries in the last row only
+        forces, last = block_diagonal(inverse), rows[:, 3:] @ inverse
         equilibrium = sp.hstack([problem.statics @ forces, sp.csr_matrix(problem.live[:, None])])
-        backward = sp.coo_matrix(
-            (np.concatenate([2 * mu, 2 * mu, -np.ones(m)]), (np.tile(np.arange(m), 3), columns)), shape=(m, 3 * m + 1)
-        )
-        self._forces = forces
+        backward = sp.hstack([block_diagonal(last), sp.csr_matrix((m, 1))])
+        self._forces, self._constant = forces, constant[:, :3]
+        self._least_last = 0.0 - (constant[:, 3] - (last[:, 0] * constant[:, :3]).sum(axis=1))
+        dead = problem.dead - problem.statics @ np.asarray(forces @ constant[:, :3].ravel())
         # Weights that differ let one vertex alone have the least sum; by so little that it is that of least forces.
         self._weights = np.random.default_rng(0).uniform(1.0, 1.1, size=3 * m)
         self._free = (np.zeros(3 * m), np.full(3 * m, INFINITY))
@@ -79,7 +75,7 @@ class StaticProgramme:
             sp.csc_matrix(sp.vstack([equilibrium, backward])),
             cost,
             (np.append(self._free[0], -INFINITY), np.append(self._free[1], INFINITY)),
-            (np.append(-problem.dead, np.zeros(m)), np.append(-problem.dead, np.full(m, INFINITY))),
+            (np.append(-dead, self._least_last), np.append(-dead, np.full(m, INFINITY))),
         )
         self._programme.highs.setOptionValue("solver", "simplex" if m <= STATIC.simplex_up_to else "ipm")
         if m > STATIC.devex_above:
@@ -100,7 +96,8 @@ class StaticProgramme:
         tight = np.zeros((m, 4), dtype=bool) if tight is None else tight
         upper = np.where(tight[:, :3].ravel(), 0.0, INFINITY)
         self._programme.set_columns(0, self._free[0], upper)
-        self._programme.set_rows(self.problem.n_velocities, np.zeros(m), np.where(tight[:, 3], 0.0, INFINITY))
+        most = np.where(tight[:, 3], self._least_last, INFINITY)
+        self._programme.set_rows(self.problem.n_velocities, self._least_last, most)
         self._programme.set_columns(3 * m, np.array([-INFINITY if greatest else 0.0]), np.array([INFINITY]))
         self._programme.set_costs(3 * m, np.array([-1.0 if greatest else 1.0]))
         status, value, _ = self._programme.run()
@@ -136,12 +133,13 @@ class StaticProgramme:
         """Let no slack be held, but the multiplier."""
         m = self.problem.n_interfaces
         self._programme.set_columns(0, *self._free)
-        self._programme.set_rows(self.problem.n_velocities, np.zeros(m), np.full(m, INFINITY))
+        self._programme.set_rows(self.problem.n_velocities, self._least_last, np.full(m, INFINITY))
         self._programme.set_columns(3 * m, np.array([multiplier]), np.array([multiplier]))
 
     def _to_forces(self, value: FloatArray) -> FloatArray:
         """Forces (m, 3) of the columns."""
-        return np.asarray(self._forces @ np.maximum(value[:-1], 0.0)).reshape(-1, 3)
+        slack = np.maximum(value[:-1], 0.0) - self._constant.ravel()
+        return np.asarray(self._forces @ slack).reshape(-1, 3)
 
 
 class KinematicProgramme:
@@ -150,7 +148,7 @@ class KinematicProgramme:
     def __init__(self, problem: Problem, associated: bool = False) -> None:
         self.problem = problem
         m, n = problem.n_interfaces, problem.n_velocities
-        flow = block_diagonal(problem.law(associated).flow)
+        flow = block_diagonal(problem.flow_law(associated).flow)
         live = sp.hstack([sp.csr_matrix(problem.live[None, :]), sp.csr_matrix((1, 4 * m))])
         right = np.append(np.zeros(3 * m), problem.live_work)
         self._n = n

@@ -1,8 +1,8 @@
 """The greatest multiplier of statics alone: the linear programme of associated limit analysis, with its mechanism.
 
-max lambda s.t. C' r + f0 + lambda fL = 0, S r >= 0 (Livesley 1978). Its dual gives velocities with dilatant flow,
-C u = S' g, fL.u = 1, of value -f0.u; we compare the two values ourselves. Both are read from one vertex, computed to
-rounding (`methods.numerics.vertex`).
+max lambda s.t. C' r + f0 + lambda fL = 0, S r + s0 >= 0 (Livesley 1978). Its dual gives velocities with dilatant flow,
+C u = S' g, fL.u = 1, of value s0.g - f0.u; we compare the two values ourselves. Both are read from one vertex, computed
+to rounding (`methods.numerics.vertex`).
 """
 
 from __future__ import annotations
@@ -13,6 +13,7 @@ from typing import Any
 import numpy as np
 
 from harness.model.assembly import FloatArray
+from harness.model.joint_law import block_diagonal
 from methods.la.core.exact import exact_forces, exact_mechanism
 from methods.la.core.extremes import force_programme, standing
 from methods.la.core.newton_matrix import NewtonMatrix
@@ -99,7 +100,9 @@ def solve_associated(problem: Problem, newton: NewtonMatrix, solver: str = "auto
 
 
 def _bears_live_load_alone(problem: Problem) -> bool:
-    return isinstance(standing(replace(problem, dead=problem.live)), StaticSolution)
+    """Whether forces bear the live load that may be added to others within yield any number of times."""
+    alone = replace(problem, dead=problem.live, law=problem.law.without_constant)
+    return isinstance(standing(alone), StaticSolution)
 
 
 def with_mechanism(
@@ -120,7 +123,9 @@ def with_mechanism(
 
 def duality_gap(problem: Problem, state: CollapseState) -> float:
     """Distance of the static multiplier from the kinematic one of the same state, relative to max(1, |multiplier|)."""
-    kinematic = -float(problem.dead @ state.velocities) / float(problem.live @ state.velocities)
+    rates = problem.rates_of_velocities(state.velocities, associated=True)
+    spent = problem.law.dissipation(rates) - float(problem.dead @ state.velocities)
+    kinematic = spent / float(problem.live @ state.velocities)
     return abs(state.multiplier - kinematic) / max(1.0, abs(state.multiplier))
 
 
@@ -187,16 +192,12 @@ def solve_with_cvxpy(problem: Problem, solver: str) -> tuple[str, FloatArray | N
     m = problem.n_interfaces
     forces: Any = cvxpy.Variable((m, 3))
     multiplier: Any = cvxpy.Variable()
-    normal, shear = forces[:, 0:2], forces[:, 2]
-    strength = cvxpy.multiply(problem.friction, normal[:, 0] + normal[:, 1])
     flat = cvxpy.vec(forces, order="C")
     programme = cvxpy.Problem(
         cvxpy.Maximize(multiplier),
         [
             problem.statics @ flat + problem.dead + multiplier * problem.live == 0,
-            normal >= 0,
-            strength + shear >= 0,
-            strength - shear >= 0,
+            block_diagonal(problem.law.rows) @ flat + problem.law.constant.ravel() >= 0,
         ],
     )
     programme.solve(solver=solver)

@@ -13,6 +13,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from harness.model.assembly import FloatArray
+from harness.model.joint_law import JointLaw
 from methods.la.core.exact import close_tight
 from methods.la.core.newton_matrix import NewtonMatrix
 from methods.la.core.problem import Problem
@@ -65,6 +66,7 @@ def kinematic_programme(problem: Problem, cost: FloatArray) -> Problem:
     """The programme min c.g, C u = E g, fL.u = const for costs c (m, 4), as a problem of associated flow.
 
     It is the dual of max lambda s.t. C' r + lambda fL = 0, E' r + c >= 0: the same wall without dead load, with
-    the dilatancy in place of the friction and with cohesion c.
+    the dilatancy in place of the friction and with the constant parts c.
     """
-    return replace(problem, dead=np.zeros_like(problem.dead), friction=problem.law(False).dilatancy, cohesion=cost)
+    dilatancy = problem.law.dilatancy
+    return replace(problem, dead=np.zeros_like(problem.dead), law=JointLaw(dilatancy, dilatancy, cost))

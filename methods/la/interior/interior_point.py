@@ -104,9 +104,9 @@ def start_point(
     tight = close_tight(problem) if tight is None else tight
     normal = np.where(tight[:, :2], 0.0, normal)
     tilt = np.where(tight[:, 2], -1.0, np.where(tight[:, 3], 1.0, tilt))
-    forces = np.column_stack([normal, tilt * problem.friction * normal.sum(axis=1)])
+    forces = np.column_stack([normal, tilt * problem.law.strength(normal)])
     slack = np.where(tight, 0.0, problem.slacks(forces))
-    if problem.cohesion is not None:
+    if not problem.law.dry.all():
         slack = np.where(tight, 0.0, np.maximum(slack, 1e-3))
     rates = np.where(tight, 0.0, target / np.where(tight, 1.0, slack))
     return Point(slack, 0.0, np.zeros(problem.n_velocities), rates)

@@ -14,6 +14,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from harness.model.assembly import FloatArray
+from harness.model.joint_law import JointLaw
 from methods.la.core.exact import close_tight
 from methods.la.core.newton_matrix import NewtonMatrix
 from methods.la.core.problem import Problem
@@ -53,8 +54,8 @@ SHARP = PathSettings(dilatancy=1.0, gap=1e-17, residual=1e-3, max_iterations=150
 
 def with_bounds(problem: Problem, bound: FloatArray) -> Problem:
     """The problem with fixed friction bounds (m,) instead of friction."""
-    cohesion = np.column_stack([np.zeros((len(bound), 2)), bound, bound])
-    return replace(problem, friction=np.zeros(len(bound)), cohesion=cohesion)
+    none = np.zeros(len(bound))
+    return replace(problem, law=JointLaw(none, none, np.column_stack([none, none, bound, bound])))
 
 
 def lagged_mechanism(problem: Problem, newton: NewtonMatrix, steps: int, follow: float) -> tuple[PathResult, int]:
@@ -96,7 +97,7 @@ def lagged_mechanism(problem: Problem, newton: NewtonMatrix, steps: int, follow:
 
 
 def _strength(problem: Problem, point: Point) -> FloatArray:
-    return np.asarray(np.maximum(problem.friction * point.slack[:, :2].sum(axis=1), LAGGING.least_bound))
+    return np.asarray(np.maximum(problem.law.strength(problem.forces_of_slacks(point.slack)), LAGGING.least_bound))
 
 
 def _step(step: NewtonStep, point: Point, shift: FloatArray, mean: float) -> tuple[Point, float]:

@@ -64,7 +64,7 @@ class NewtonStep:
             raise FloatingPointError("the iterate left the interior")
         self.slack = np.where(tight, 1.0, point.slack)
         self.weight = np.where(tight, WEIGHTS.rigid, np.maximum(point.rates / self.slack, WEIGHTS.softest))
-        self.compliance = Compliance(problem.friction, self.weight, problem.lift(dilatancy))
+        self.compliance = Compliance(problem.law, self.weight, problem.law.lift(dilatancy))
         self.statics = problem.imbalance(problem.forces_of_slacks(point.slack), point.multiplier)
         self.kinematics = problem.strains(point.velocities) - problem.strains_of_rates(point.rates, dilatancy)
         self.work = problem.live_work - float(problem.live @ point.velocities)
@@ -134,7 +134,7 @@ class NewtonStep:
         ahead = self.weight[:, 2] >= self.weight[:, 3]
         rate[:, 2] = np.where(stiff & ahead, strain[:, 2] + backward, forward)
         rate[:, 3] = np.where(stiff & ~ahead, forward - strain[:, 2], backward)
-        dilation = self.problem.lift(self.dilatancy) * (rate[:, 2] + rate[:, 3])
+        dilation = self.problem.law.lift(self.dilatancy) * (rate[:, 2] + rate[:, 3])
         for end in (0, 1):
             rate[:, end] = np.where(self.weight[:, end] > 1.0, strain[:, end] - dilation, rate[:, end])
         return rate
@@ -143,7 +143,7 @@ class NewtonStep:
         """The point after a step; the larger shear slack is set from y3 + y4 = 2 mu N, so that no error builds up."""
         point = self.point
         slack = point.slack + primal * change.slack
-        if self.problem.cohesion is None:
+        if self.problem.law.dry.all():
             self._agree(slack)
         return Point(
             np.where(self.tight, 0.0, slack),
@@ -153,7 +153,7 @@ class NewtonStep:
         )
 
     def _agree(self, slack: FloatArray) -> None:
-        strength = 2.0 * self.problem.friction * (slack[:, 0] + slack[:, 1])
+        strength = 2.0 * self.problem.law.strength(slack)  # whose first columns are the normal forces of dry joints
         low = np.minimum(slack[:, 2], slack[:, 3])
         first = slack[:, 2] <= slack[:, 3]
         safe = strength > 2.0 * low

@@ -2,8 +2,8 @@
 
 Both are linear, hence their central paths are monotone however large the wall is. The kinematic programme
 min c.g, C u = E g, fL.u = const is the dual of max lambda s.t. C' r + lambda fL = 0, E' r + c >= 0: the same problem
-without dead load and friction and with cohesion c. The static programme min lambda, y_J = 0 is the associated one
-with the live load reversed and the slacks J held at zero.
+without dead load and friction and with the constant parts c. The static programme min lambda, y_J = 0 is the
+associated one with the live load reversed and the slacks J held at zero.
 """
 
 from __future__ import annotations

@@ -52,14 +52,11 @@ def moving_region(problem: Problem, velocities: FloatArray) -> Region:
     speed = abs(motion).max(axis=1)
     fixed = ~with_all_above(assembly, speed > PART.moves * speed.max())
     kept = ~(fixed[assembly.block_a] & fixed[assembly.block_b])
-    by_interface = ("block_a", "block_b", "end1", "end2", "face1", "face2", "normal", "friction", "dilatancy")
     part = replace(
-        assembly,
+        assembly.with_joints(kept),
         fixed=fixed,
         dead=np.where(fixed[:, None], 0.0, assembly.dead),
         live=np.where(fixed[:, None], 0.0, assembly.live),
-        joint=tuple(np.array(assembly.joint)[kept]),
-        **{name: getattr(assembly, name)[kept] for name in by_interface},
     )
     scaled = make_problem(part)
     return Region(scaled, NewtonMatrix(scaled), kept)

@@ -11,7 +11,8 @@ import osqp
 import scipy.sparse as sp
 
 from harness.model.assembly import FloatArray
-from methods.la.core.problem import Problem, slack_matrix
+from harness.model.joint_law import block_diagonal
+from methods.la.core.problem import Problem
 
 
 def project_forces(problem: Problem, forces: FloatArray, multiplier: float) -> tuple[FloatArray, float, bool]:
@@ -23,7 +24,7 @@ def project_forces(problem: Problem, forces: FloatArray, multiplier: float) -> t
         multiplier: scaled multiplier they belong to.
     """
     m = problem.n_interfaces
-    slacks = sp.hstack([slack_matrix(problem.friction), sp.csr_matrix((4 * m, 1))])
+    slacks = sp.hstack([block_diagonal(problem.law.rows), sp.csr_matrix((4 * m, 1))])
     equilibrium = sp.hstack([problem.statics, sp.csr_matrix(problem.live[:, None])])
     target = np.append(forces.ravel(), multiplier)
     weight = np.append(np.ones(3 * m), float(m))

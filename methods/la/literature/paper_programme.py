@@ -20,7 +20,8 @@ import scipy.sparse as sp
 from scipy.sparse.csgraph import dijkstra
 
 from harness.model.assembly import FloatArray, IntArray
-from methods.la.core.problem import Problem, slack_matrix
+from harness.model.joint_law import block_diagonal
+from methods.la.core.problem import Problem
 from methods.numerics.failures import sparse_lu
 from methods.numerics.optional import optional
 
@@ -95,7 +96,7 @@ def solve_paper_programme(
     b1, b2 = problem.kinematic[rows1].tocsc(), problem.kinematic[rows2].tocsc()
     inverse = sparse_lu(b1).solve(np.eye(len(rows1)))
     transfer = np.where(abs(b2 @ inverse) > 1e-13, b2 @ inverse, 0.0)
-    flow = sp.kron(sp.eye(m), np.array([[1.0, 0, 0, 0], [0, 1.0, 0, 0], [0, 0, 1.0, -1.0]])).tocsr()
+    flow = block_diagonal(problem.law.flow)
     m1, m2 = flow[rows1].toarray(), flow[rows2].toarray()
     compatibility = transfer @ m1 - m2
     live_row = (inverse.T @ problem.live) @ m1 / problem.live_work
@@ -108,7 +109,7 @@ def solve_paper_programme(
     forces = casadi.SX.zeros(3 * m)
     forces[rows1.tolist()] = first_forces
     forces[rows2.tolist()] = second_forces
-    slack = _matrix(casadi, slack_matrix(problem.friction).toarray()) @ forces
+    slack = _matrix(casadi, block_diagonal(problem.law.rows).toarray()) @ forces
     work = casadi.dot(slack, rates) / problem.live_work
     constraints = casadi.vertcat(
         _matrix(casadi, compatibility) @ rates, slack, work, _matrix(casadi, live_row[None, :]) @ rates - 1.0

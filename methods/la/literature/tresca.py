@@ -44,7 +44,7 @@ def tresca_sequence(
     cost = np.append(np.zeros(3 * m), -1.0)
     matrix = sp.csc_matrix(sp.hstack([problem.statics, sp.csr_matrix(problem.live[:, None])]))
     programme = Programme(matrix, cost, (lower, np.full(3 * m + 1, INFINITY)), (-problem.dead, -problem.dead))
-    law = problem.law(False)
+    law = problem.law
     bound = law.strength(forces)
     history: list[float] = []
     change, multiplier = float("inf"), float("nan")

@@ -16,7 +16,8 @@ from numpy.typing import NDArray
 from scipy.optimize import linprog
 
 from harness.model.assembly import FloatArray
-from methods.la.core.problem import Problem, slack_matrix
+from harness.model.joint_law import block_diagonal
+from methods.la.core.problem import Problem
 
 ROUNDING = 1e-9
 """Rates and products of unit vectors up to this are zero to rounding."""
@@ -66,7 +67,7 @@ def least_of_block(
     """
     own = slice(3 * block, 3 * block + 3)
     rates = strains @ motion
-    slacks = np.pad(slack_matrix(problem.friction[joints]).toarray(), ((0, 0), (0, 1)))
+    slacks = np.pad(block_diagonal(problem.law.rows[joints]).toarray(), ((0, 0), (0, 1)))
     moving = np.column_stack([rates, -rates[:, 2]]).ravel() > ROUNDING
     solution = linprog(
         np.eye(slacks.shape[1])[-1],

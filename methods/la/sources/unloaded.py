@@ -19,5 +19,7 @@ ROUGHEST = 1.5
 def smoothed(problem: Problem, factor: float) -> Problem | None:
     """The wall with friction of ROUGHEST at most, times `factor` in the unloaded joints; None if all are loaded."""
     unloaded = problem.unloaded_joints
+    if not unloaded.any():
+        return None
     friction = np.minimum(problem.friction, ROUGHEST)
-    return replace(problem, friction=np.where(unloaded, factor * friction, friction)) if unloaded.any() else None
+    return replace(problem, law=problem.law.with_friction(np.where(unloaded, factor * friction, friction)))

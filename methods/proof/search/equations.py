@@ -40,13 +40,14 @@ class Equations:
     @cached_property
     def slack(self) -> FloatArray:
         """(4m, 3m) matrix S of the slacks y = S r = (n1, n2, mu N + s, mu N - s) of every interface."""
-        return block_diagonal(self._law.rows).toarray()
+        return block_diagonal(self.law.rows).toarray()
 
     @cached_property
     def flow(self) -> FloatArray:
         """(3m, 4m) matrix E of the strains E g of rates g = (opening 1, opening 2, slip +, slip -)."""
-        return block_diagonal(self._law.flow).toarray()
+        return block_diagonal(self.law.flow).toarray()
 
-    @property
-    def _law(self) -> JointLaw:
+    @cached_property
+    def law(self) -> JointLaw:
+        """The law of its joints, without dilatancy."""
         return JointLaw(self.friction, np.zeros(self.n_interfaces))

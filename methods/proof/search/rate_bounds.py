@@ -84,7 +84,7 @@ class RateProgramme:
         still[list(case.still)] = True
         upper = np.where(still, 0.0, INFINITY)
         self._programme.set_columns(n, np.zeros(4 * m), upper)
-        strength = np.repeat(self._equations.friction * bounds.normal_least, 4).reshape(m, 4)
+        strength = np.repeat(self._equations.law.by_friction(bounds.normal_least), 4).reshape(m, 4)
         strength[:, :2] = 0.0
         lift = np.append(high * self._equations.live + self._equations.dead, -strength)
         self._programme.set_row(3 * m + 1, lift)

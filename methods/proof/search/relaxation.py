@@ -101,7 +101,7 @@ class Relaxation:
     def friction_work(self) -> FloatArray:
         """(f,) least friction work of unit rates, over the live work n: mu N_min / n of slips, zero of openings."""
         interface = self.free // 4
-        strength = self.equations.friction[interface] * self.normal[interface] / self.equations.n_blocks
+        strength = self.equations.law.by_friction(self.normal)[interface] / self.equations.n_blocks
         return np.where(self.free % 4 >= 2, strength, 0.0)
 
     def _product_bounds(self) -> tuple[FloatArray, FloatArray]:

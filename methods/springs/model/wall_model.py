@@ -9,12 +9,14 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import cached_property
 from typing import cast
 
 import numpy as np
 import scipy.sparse as sp
 
 from harness.model.assembly import Assembly, FloatArray, IntArray
+from harness.model.joint_law import JointLaw
 from methods.numerics.block_lu import elimination_order
 from methods.numerics.compiled import compiled
 from methods.numerics.vectors import largest
@@ -99,6 +101,11 @@ class WallModel:
     def n_points(self) -> int:
         """P, the number of gap points."""
         return len(self.kn)
+
+    @cached_property
+    def law(self) -> JointLaw:
+        """The law of the gap points."""
+        return JointLaw(self.mu, np.zeros(self.n_points))
 
     def strains(self, u: FloatArray) -> tuple[FloatArray, FloatArray]:
         """Openings and slips (P,) of the gap points at displacements u (N,)."""

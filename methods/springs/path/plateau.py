@@ -197,7 +197,8 @@ def _beyond_yield(model: WallModel, opening: FloatArray, trial: FloatArray, stat
     """(P,) points whose forces in these states are tensile or exceed friction."""
     normal, shear = np.empty_like(opening), np.empty_like(opening)
     gap_forces(opening, trial, model.kn, model.mu, state, normal, shear)
-    return np.asarray((normal < -COLLAPSE.certificate) | (np.abs(shear) > model.mu * normal + COLLAPSE.certificate))
+    borne = model.law.by_friction(normal)
+    return np.asarray((normal < -COLLAPSE.certificate) | (np.abs(shear) > borne + COLLAPSE.certificate))
 
 
 def _bordered(tangent: sp.csc_matrix, fastest: int, live: FloatArray) -> SuperLU:

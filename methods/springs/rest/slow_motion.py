@@ -293,4 +293,4 @@ class SlowMotion:
 
 def _limits(model: WallModel, opening: FloatArray) -> FloatArray:
     """Friction limits mu N (P,) at openings g (P,)."""
-    return model.mu * np.maximum(-model.kn * opening, 0.0)
+    return model.law.by_friction(np.maximum(-model.kn * opening, 0.0))

@@ -1,0 +1,54 @@
+"""Least and greatest reaction of supports that move: limit analysis with the reaction as the load.
+
+Supports move by u_s, which strains the joints on them by q = C_s u_s while the free blocks rest. The contact forces do
+the work R = q.r on it, which for a unit motion is the reaction along it. Programmes and their dual mechanisms u are
+
+    min or max q.r  s.t.  C' r + f0 = 0, S r + s0 >= 0;     C u +- q = S' g, g >= 0, R = +-(f0.u - s0.g)
+
+The least reaction is that of a support that gives way, the greatest that of one that pushes against its prescribed
+motion. Sources: Portioli and Cascini (2016); Iannuzzo et al. (2018).
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from harness.model.assembly import Assembly, FloatArray
+from methods.la.core.extremes import force_programme
+from methods.la.core.problem import make_problem
+
+
+@dataclass(frozen=True)
+class ExtremeReaction:
+    """A reaction of moving supports, forces and mechanism that prove it.
+
+    Attributes:
+        reaction: work R of the contact forces on the motion of the supports; a force where they move by one.
+        forces: (m, 3) contact forces [force].
+        mechanism: (n, 3) motion of all blocks, for the greatest reaction with the supports moving backwards.
+    """
+
+    reaction: float
+    forces: FloatArray
+    mechanism: FloatArray
+
+
+def extreme_reaction(assembly: Assembly, greatest: bool) -> ExtremeReaction | str:
+    """The greatest or least reaction of the moving supports under dead load, or how the programme ended without one.
+
+    Raises:
+        ValueError: no support with a joint moves.
+    """
+    strains = assembly.support_strains
+    if not np.any(strains):
+        raise ValueError("no support with a joint moves: support_motion is zero there")
+    problem = make_problem(assembly)
+    found = force_programme(problem).extreme_work(strains, greatest)
+    if isinstance(found, str):
+        return found
+    forces = problem.to_forces(found[0])
+    mechanism = -assembly.support_motion if greatest else assembly.support_motion.copy()
+    mechanism[assembly.free] = problem.velocities_of_blocks(found[1])
+    return ExtremeReaction(float((strains * forces).sum()), forces, mechanism)
