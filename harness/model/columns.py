@@ -89,7 +89,7 @@ NUMBERED = (
         "from_neighbour", "boolean", "", "whether a mechanism of a neighbouring wall led to it; missing: none given"
     ),
     ResultColumn(
-        "bracket_wide",
+        "exceeds_accuracy",
         "boolean",
         "",
         "whether the multiplier is only known to lie in the bracket, which is wider than the method's stated accuracy; "
