@@ -1,12 +1,12 @@
-"""How much of the weight of a lintel may grow as a live load when a tenth of it is dead and it pushes on a block?
+"""How much of the weight of a stone may come on as live load when a tenth of it is dead?
 
-Nine tenths of the gravity of the upper of two blocks (b = 0.4 m, h = 0.4 m each) are lifted by a dead body force, and
-a horizontal multiple of its weight W is live. Moments about the toe of both: (W + 0.1 W) b/2 = lambda W 3h/2, so
-lambda = 0.11/0.3/2 = 0.366667; it slides on the lower one before, at 0.8 x 0.1.
+The lower block leans 0.2 m over the edge of its support, so its centroid lies 0.3 m behind the edge. The stone on it,
+of the same weight W, has its centroid 0.15 m in front of the edge; nine tenths of its gravity are lifted. Moments about
+the edge: (0.1 + lambda) W 0.15 = W 0.3, so lambda = 1.9.
 
 Expected:
 
-    multiplier 0.080000
+    multiplier 1.900000
 """
 
 import drystone
@@ -14,14 +14,15 @@ import drystone
 
 def main() -> None:
     """Print the answer."""
+    offsets = [-0.8, -0.35]
     document = {
         "format": "wall/1",
         "unit_weight": 20,
         "friction": 0.8,
-        "pattern": {"type": "stack", "width": 0.4, "height": 0.4, "count": 2},
+        "pattern": {"type": "stack", "width": 1, "height": 0.4, "count": 2, "offsets": offsets, "base": [-1, 0]},
         "loads": {
             "dead": {"body": [{"per_weight": [0, 0.9], "blocks": ["2"]}]},
-            "live": {"body": [{"per_weight": [1, 0], "blocks": ["2"]}]},
+            "live": {"body": [{"per_weight": [0, -1], "blocks": ["2"]}]},
         },
     }
     print(f"multiplier {drystone.analyse(drystone.build_wall(document), 'la').multiplier:.6f}")
