@@ -1,8 +1,8 @@
 """Do finite elements, limit analysis and distinct elements find the same mechanism of the 21-brick wall?
 
-The cosine of two mechanisms is 1 if all blocks move alike; above 0.95 they are called the same here. Finite and distinct
+The cosine of two mechanisms is 1 if all blocks move alike; above 0.95 they are called the same. Finite and distinct
 elements and the associated maximum move alike, as Baggio and Trovalusci (1995) report. The least state known to `la`
-has another mechanism. The multipliers: 1567589759/2809311829, an exact state, and 13/23, the plateau of two other codes.
+has another mechanism. Multipliers: 1567589759/2809311829, an exact state, and 13/23, the plateau of two other codes.
 
 Expected:
 
@@ -24,7 +24,9 @@ def main() -> None:
     results = {name: drystone.analyse(wall, name) for name in ("la", "fe", "de", "la-associated")}
     for name in ("la", "fe"):
         print(f"{name} {results[name].multiplier:.6f}")
-    motions = {name: np.ravel(result.mechanism) for name, result in results.items()}
+    motions: dict[str, np.ndarray] = {
+        name: np.array(result.mechanism, float).ravel() for name, result in results.items()
+    }
     for name in ("de", "la-associated", "la"):
         one, other = motions["fe"], motions[name]
         cosine = one @ other / np.linalg.norm(one) / np.linalg.norm(other)

@@ -16,7 +16,8 @@ def main() -> None:
     """Print the answer."""
     wall = drystone.library_wall("opening-lintel")
     print(f"greatest {drystone.analyse(wall, 'la-associated').multiplier:.6f}")
-    print(f"least known at most 0.475101: {drystone.analyse(wall, 'la').multiplier <= 0.475101 + 1e-6}")
+    least = drystone.analyse(wall, "la").multiplier
+    print(f"least known at most 0.475101: {least is not None and least <= 0.475101 + 1e-6}")
 
 
 if __name__ == "__main__":

@@ -36,8 +36,7 @@ class SlidingBlock:
 def main() -> None:
     """Print the answer."""
     wall = drystone.library_wall("slide")
-    for method in (SlidingBlock(), "la"):
-        result = drystone.analyse(wall, method)
+    for result in (drystone.analyse(wall, SlidingBlock()), drystone.analyse(wall, "la")):
         print(f"{result.method} {result.multiplier:.6f}, {result.judge.outcome}")
 
 

@@ -28,6 +28,7 @@ def main() -> None:
         }
     )
     least, greatest = (drystone.analyse(wall, method) for method in ("la", "la-associated"))
+    assert least.multiplier is not None and greatest.multiplier is not None
     print(f"force {greatest.multiplier:.3f} {wall.units['force']}, {greatest.judge.outcome}")
     print(f"la is not above it: {least.multiplier <= greatest.multiplier + 1e-6}")
 

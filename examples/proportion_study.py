@@ -1,6 +1,6 @@
 """How much does a running bond gain from longer bricks?
 
-Length over height 2 gives the gated reference of the case `wall-21`, 0.584461 by two independent programmes. No wall can
+Length over height 2 gives the reference of the case `wall-21`, 0.584461 by two independent programmes. No wall can
 exceed its friction 0.65, at which it slides on its base, and flat bricks reach that. The stockier bricks have no closed
 form: less than the others, as overturning of every part of the wall gets easier with the height of its bricks.
 

@@ -1,14 +1,15 @@
 """How do I make a page with sliders that shows why three methods differ on one block?
 
 `drystone learn` makes the page for the class; the same from Python with only the paper's block. The page works
-offline, and the three values on it are those of docs/theory-single-block.md. Sliders: friction of both halves and stiffness.
+offline, and the three values on it are those of docs/theory-single-block.md. Its sliders
+are the friction of both halves and the stiffness, and the friction of the wall of 21 bricks.
 
 Expected:
 
     la 0.400000
     fe 0.476190
     la-associated 0.545455
-    sliders 3
+    sliders 4
 """
 
 from pathlib import Path

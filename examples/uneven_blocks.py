@@ -18,6 +18,7 @@ def main() -> None:
     wall = drystone.new_wall("stack", count=3, width=0.3, height=0.2, friction=0.8)
     even = drystone.analyse(wall, "de")
     uneven = drystone.analyse(wall, "de-uneven")
+    assert even.multiplier is not None and uneven.multiplier is not None
     print(f"even blocks {even.multiplier:.3f}")
     print(f"uneven blocks within 0.05 of it: {abs(uneven.multiplier - 0.5) <= 0.05}")
 
