@@ -17,9 +17,9 @@ from typing import Any
 
 import pytest
 
-from harness.certificates import PACKED
-from methods.proof.verify.exact_wall import CertificateError, ExactWall
+from drystone.certificates import PACKED
 from methods.proof.verify.cases import States, states_of
+from methods.proof.verify.exact_wall import CertificateError, ExactWall
 from methods.proof.verify.windows import WindowLimits
 from tests.bound import test_case_certificate as of_cases
 from tests.bound import test_window_certificate as of_windows

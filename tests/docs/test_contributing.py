@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 ROOT = Path(__file__).resolve().parents[2]
-PLACES = re.compile(r"`((?:drystone|harness|methods|reports|cases|docs|tests|benchmarks)/[\w./-]*)`")
+PLACES = re.compile(r"`((?:drystone|harness|methods|reports|cases|docs|tests|benchmarks|examples)/[\w./-]*)`")
 
 
 @pytest.mark.parametrize("page", ["CONTRIBUTING.md"])
