@@ -13,8 +13,7 @@ from typing import Any
 import numpy as np
 
 from harness.model.assembly import Assembly, FloatArray
-from harness.model.method import Answer, Finding, OutOfTime, Status
-from methods.de.declared_de import DeclaredSoft
+from harness.model.method import Answer, Finding, OutOfTime, Solver, Status
 from methods.de.engines.courses import courses, number_of_courses
 from methods.de.engines.engine import motion_units
 from methods.de.engines.soft_wall import SoftWall
@@ -111,7 +110,7 @@ class Holds:
                 return Hold(State.UNDECIDED, residual, wall.steps - start, places - before)
 
 
-class DeformableJoints(DeclaredSoft):
+class DeformableJoints(Solver):
     """Distinct elements with deformable joints and rounded corners (`de-soft`)."""
 
     def solve(self, assembly: Assembly, settings: SoftSettings) -> Answer:
