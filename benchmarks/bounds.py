@@ -21,8 +21,8 @@ from harness.model.method import Finding
 from methods.bound.tuning import WINDOWS
 from methods.la.certify.window_certificate import certified_bracket
 from methods.la.core.problem import make_problem
-from methods.la.core.search_settings import SearchSettings
-from methods.la.search_adapter import LimitAnalysis
+from methods.la.search import LimitAnalysis
+from methods.la.settings import SearchSettings
 
 
 def small_wall(seed: int) -> Assembly:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from harness.model.method import Listed, Traits
-from methods.de.hold_settings import MujocoSettings, ReleaseSettings, SweepSettings
+from methods.de.settings import MujocoSettings, ReleaseSettings, SweepSettings
 from methods.de.soft_settings import SoftSettings
 from methods.de.uneven_settings import ClosedSettings, UnevenSettings
 
@@ -14,7 +14,7 @@ DE = Listed(
     name="de",
     family="de",
     title="distinct elements (damped holds)",
-    solver="methods.de.hold_adapter:DampedHolds",
+    solver="methods.de.damped_holds:DampedHolds",
     Settings=SweepSettings,
     tolerance=1e-6,
     shares_work=True,
@@ -32,7 +32,7 @@ DE_MUJOCO = Listed(
     name="de-mujoco",
     family="de",
     title="distinct elements (MuJoCo, damped holds)",
-    solver="methods.de.hold_adapter:MujocoHolds",
+    solver="methods.de.damped_holds:MujocoHolds",
     Settings=MujocoSettings,
     tolerance=1e-4,
     traits=Traits(
@@ -52,7 +52,7 @@ DE_TILT = Listed(
     name="de-tilt",
     family="de",
     title="distinct elements, released after the bracket",
-    solver="methods.de.hold_adapter:ReleasedCollapse",
+    solver="methods.de.damped_holds:ReleasedCollapse",
     Settings=ReleaseSettings,
     tolerance=1e-6,
     traits=Traits(
@@ -70,7 +70,7 @@ DE_UNEVEN = Listed(
     name="de-uneven",
     family="de",
     title="distinct elements, uneven blocks",
-    solver="methods.de.imperfect:UnevenBlocks",
+    solver="methods.de.uneven_blocks:UnevenBlocks",
     Settings=UnevenSettings,
     tolerance=1e-6,
     traits=Traits(
@@ -88,7 +88,7 @@ DE_CLOSED = Listed(
     name="de-closed",
     family="de",
     title="distinct elements find contacts and gaps, FE loads them",
-    solver="methods.de.closed:ClosedContacts",
+    solver="methods.de.closed_contacts:ClosedContacts",
     Settings=ClosedSettings,
     tolerance=1e-6,
     traits=Traits(

@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 from harness.model.method import Listed, Traits
-from methods.fe.path_settings import ConvexSettings, GapSpringsSettings, NewtonSettings
+from methods.fe.settings import ConvexSettings, GapSpringsSettings, NewtonSettings
 
 FE = Listed(
     name="fe",
     family="fe",
     title="FE, exact continuation",
-    solver="methods.fe.gap_spring_adapter:GapSprings",
+    solver="methods.fe.gap_springs:GapSprings",
     Settings=GapSpringsSettings,
     tolerance=1e-8,
     traits=Traits(
@@ -25,7 +25,7 @@ FE_NEWTON = Listed(
     name="fe-newton",
     family="fe",
     title="FE, incremental Newton",
-    solver="methods.fe.gap_spring_adapter:IncrementalNewton",
+    solver="methods.fe.gap_springs:IncrementalNewton",
     Settings=NewtonSettings,
     tolerance=1e-8,
     traits=Traits(
@@ -42,7 +42,7 @@ FE_QP = Listed(
     name="fe-qp",
     family="fe",
     title="FE, convex steps",
-    solver="methods.fe.gap_spring_adapter:ConvexSteps",
+    solver="methods.fe.gap_springs:ConvexSteps",
     Settings=ConvexSettings,
     tolerance=1e-3,
     traits=Traits(

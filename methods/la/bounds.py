@@ -17,9 +17,9 @@ from methods.bound.words import in_words
 from methods.la.certify.tree_certificate import certificate
 from methods.la.certify.window_certificate import certified_bracket
 from methods.la.core.problem import Problem
-from methods.la.core.search_settings import BoundSettings
 from methods.la.find_certificate import account, beyond
 from methods.la.least import SAME_MULTIPLIER
+from methods.la.settings import BoundSettings
 
 
 def with_bound(assembly: Assembly, problem: Problem, known: Answer, settings: BoundSettings) -> Answer:

@@ -9,9 +9,9 @@ from typing import Any
 
 from harness.model.assembly import Assembly
 from harness.model.method import Answer, Finding, Solver
+from methods.la.answers import dead_load_answer
 from methods.la.core.newton_matrix import NewtonMatrix
 from methods.la.core.problem import Problem, make_problem
-from methods.la.state_answers import dead_load_answer
 from methods.numerics.claims import analysed
 
 Answering = Callable[[Assembly, Problem, NewtonMatrix, Any], Answer]

@@ -12,15 +12,15 @@ from harness.model.assembly import Assembly
 from harness.model.method import Finding, Status
 from methods.bound.tuning import WINDOWS
 from methods.bound.window_search import Bracket
+from methods.la.answers import dead_load_answer
 from methods.la.certify.tree_certificate import certificate
 from methods.la.certify.window_certificate import certified_bracket
 from methods.la.core.newton_matrix import NewtonMatrix
 from methods.la.core.problem import Problem, make_problem
-from methods.la.core.search_settings import BoundSettings, SearchSettings
 from methods.la.least import least_known
 from methods.la.methods import LA_BOUND
+from methods.la.settings import BoundSettings, SearchSettings
 from methods.la.sources.budget import SIZES
-from methods.la.state_answers import dead_load_answer
 
 
 @dataclass(frozen=True)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from harness.model.method import Listed, Traits
-from methods.la.core.search_settings import (
+from methods.la.settings import (
     AssociatedSettings,
     BoundSettings,
     CvxpySettings,
@@ -17,7 +17,7 @@ LA = Listed(
     name="la",
     family="la",
     title="LA, least known",
-    solver="methods.la.search_adapter:LimitAnalysis",
+    solver="methods.la.search:LimitAnalysis",
     Settings=SearchSettings,
     tolerance=1e-10,
     follows_motions=True,
@@ -36,7 +36,7 @@ LA_BOUND = Listed(
     name="la-bound",
     family="la",
     title="LA, least known and lower bound",
-    solver="methods.la.bound_adapter:BoundedLimitAnalysis",
+    solver="methods.la.bounded:BoundedLimitAnalysis",
     Settings=BoundSettings,
     tolerance=1e-10,
     traits=Traits(
@@ -49,7 +49,7 @@ LA_ASSOCIATED = Listed(
     name="la-associated",
     family="la",
     title="LA, associated (greatest)",
-    solver="methods.la.associated_adapter:AssociatedLimitAnalysis",
+    solver="methods.la.associated:AssociatedLimitAnalysis",
     Settings=AssociatedSettings,
     tolerance=1e-9,
     traits=Traits(
@@ -68,7 +68,7 @@ LA_ASSOCIATED_CVXPY = Listed(
     name="la-associated-cvxpy",
     family="la",
     title="LA, associated (cvxpy)",
-    solver="methods.la.associated_adapter:AssociatedLimitAnalysisCvxpy",
+    solver="methods.la.associated:AssociatedLimitAnalysisCvxpy",
     Settings=CvxpySettings,
     tolerance=1e-9,
     traits=Traits(
@@ -87,7 +87,7 @@ LA_PAPER = Listed(
     name="la-paper",
     family="la",
     title="LA, programme of 1995",
-    solver="methods.la.literature.literature_adapters:PaperProgramme",
+    solver="methods.la.literature.solvers:PaperProgramme",
     Settings=PaperSettings,
     tolerance=1e-9,
     traits=Traits(
@@ -105,7 +105,7 @@ LA_TRESCA = Listed(
     name="la-tresca",
     family="la",
     title="LA, friction-bound sequence",
-    solver="methods.la.literature.literature_adapters:TrescaSequence",
+    solver="methods.la.literature.solvers:TrescaSequence",
     Settings=TrescaSettings,
     tolerance=1e-8,
     traits=Traits(
@@ -123,7 +123,7 @@ LA_FROM_FE = Listed(
     name="la-from-fe",
     family="la",
     title="LA started from FE",
-    solver="methods.la.literature.literature_adapters:FromFiniteElements",
+    solver="methods.la.literature.solvers:FromFiniteElements",
     Settings=FromFeSettings,
     tolerance=1e-10,
     traits=Traits(

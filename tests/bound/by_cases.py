@@ -11,8 +11,8 @@ from methods.bound.slack_bounds import SlackProgramme
 from methods.bound.window_search import Bracket, Certify, WindowSearch
 from methods.la.certify.window_certificate import certificate_of, certifier_of, equations_of
 from methods.la.core.problem import Problem, make_problem
-from methods.la.core.search_settings import SearchSettings
-from methods.la.search_adapter import LimitAnalysis
+from methods.la.search import LimitAnalysis
+from methods.la.settings import SearchSettings
 
 
 class Short(WindowSearch):

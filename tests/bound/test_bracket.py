@@ -19,12 +19,12 @@ from methods.bound.case import Case
 from methods.bound.relaxation import Relaxation
 from methods.bound.slack_bounds import SlackProgramme
 from methods.bound.window_search import Bracket
-from methods.la.bound_adapter import BoundedLimitAnalysis
+from methods.la.bounded import BoundedLimitAnalysis
 from methods.la.certify.window_certificate import equations_of
 from methods.la.core.newton_matrix import NewtonMatrix
 from methods.la.core.problem import Problem, make_problem
-from methods.la.core.search_settings import BoundSettings, SearchSettings
-from methods.la.search_adapter import LimitAnalysis
+from methods.la.search import LimitAnalysis
+from methods.la.settings import BoundSettings, SearchSettings
 from methods.la.sources.search import Search
 from tests.bound.by_cases import in_cases
 from tests.enumeration import least_by_enumeration

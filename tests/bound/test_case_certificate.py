@@ -26,8 +26,8 @@ from methods.bound.verify_window import WindowLimits
 from methods.bound.window_search import Bracket, WindowSearch
 from methods.la.certify.window_certificate import certificate_of, certifier_of, equations_of
 from methods.la.core.problem import make_problem
-from methods.la.core.search_settings import SearchSettings
-from methods.la.search_adapter import LimitAnalysis
+from methods.la.search import LimitAnalysis
+from methods.la.settings import SearchSettings
 from tests.bound.by_cases import certificate_of_cases
 from tests.bound.digits import one_digit_changed, refused_or_true
 from tests.bound.test_bracket import IRREGULAR

@@ -21,9 +21,9 @@ from methods.bound.document import digest
 from methods.bound.exact_wall import CertificateError
 from methods.bound.same_wall import require_same_wall
 from methods.bound.verify import main, verify
-from methods.la.bound_adapter import BoundedLimitAnalysis
+from methods.la.bounded import BoundedLimitAnalysis
 from methods.la.certify.tree_certificate import certificate
-from methods.la.core.search_settings import BoundSettings
+from methods.la.settings import BoundSettings
 from tests.bound.digits import one_digit_changed
 from tests.walls import assembly, stack, wall_data
 

@@ -22,11 +22,11 @@ from methods.bound.document import digest
 from methods.bound.exact_wall import CertificateError
 from methods.bound.same_wall import require_same_wall
 from methods.bound.verify import verify
-from methods.la.bound_adapter import BoundedLimitAnalysis
+from methods.la.bounded import BoundedLimitAnalysis
 from methods.la.certify.window_certificate import certified_bracket
 from methods.la.core.newton_matrix import NewtonMatrix
 from methods.la.core.problem import make_problem
-from methods.la.core.search_settings import BoundSettings
+from methods.la.settings import BoundSettings
 from methods.la.sources.search import Search
 from tests.bound.digits import one_digit_changed, refused_or_true
 from tests.la.bodies import running_bond

@@ -12,7 +12,7 @@ from harness.engine.residuals import displaced_residuals, force_residuals
 from harness.model.displaced import DisplacedState
 from harness.model.method import Finding, Status, load_method
 from harness.model.result import result_of
-from methods.de.closed import ClosedContacts, ClosedSettings
+from methods.de.closed_contacts import ClosedContacts, ClosedSettings
 from methods.de.engines.edges import FacingEdges
 from methods.de.methods import DE_CLOSED
 from methods.de.uneven.settled_contacts import settle_uneven

@@ -11,10 +11,10 @@ import pytest
 from harness.engine.residuals import force_residuals
 from harness.model.errors import InputError
 from harness.model.method import Finding, Status
+from methods.de.damped_holds import MujocoHolds
 from methods.de.engines.mujoco_wall import SOFT_CONTACTS, UNIFORM, MujocoWall, SolverFailed
-from methods.de.hold_adapter import MujocoHolds
-from methods.de.hold_settings import MujocoSettings
 from methods.de.methods import DE_MUJOCO
+from methods.de.settings import MujocoSettings
 from tests.de.answers import run
 from tests.de.test_damped_holds import two_friction_block
 from tests.walls import assembly, running_bond, stack

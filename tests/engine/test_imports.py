@@ -78,12 +78,14 @@ def test_lists_and_drawings_import_no_solver(words: tuple[str, ...], tmp_path: P
     more = ("-o", tmp_path / "wall.svg") if words[0] == "show" else ()
     modules = imported(COMMAND, *words, *more)
     assert not modules & SOLVERS
-    assert not {name for name in modules if name.startswith("methods.") and name.endswith(("adapter", "kernels"))}
+    methods = map(load_method, method_names())
+    assert not modules & {method.solver.partition(":")[0] for method in methods if isinstance(method, Listed)}
+    assert not {name for name in modules if name.startswith("methods.") and name.endswith("kernels")}
 
 
 def test_a_run_imports_the_solver_of_its_method_alone():
     modules = imported(COMMAND, "run", "la-associated", "single-block")
-    assert {"scipy", "highspy", "methods.la.associated_adapter"} <= modules
+    assert {"scipy", "highspy", "methods.la.associated"} <= modules
     assert not modules & {"osqp", "pymunk", "sqlite3", "pandas", "matplotlib"}
 
 

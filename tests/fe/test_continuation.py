@@ -18,9 +18,9 @@ from harness.model.assembly import OF_JOINTS, Assembly
 from harness.model.build import build
 from harness.model.method import Answer, Finding, Status, load_method
 from harness.model.reading import parse_wall
-from methods.fe.gap_spring_adapter import GapSprings
+from methods.fe.gap_springs import GapSprings
 from methods.fe.methods import FE
-from methods.fe.path_settings import GapSpringsSettings
+from methods.fe.settings import GapSpringsSettings
 from methods.springs.model.factor import make_factor
 from methods.springs.model.wall_model import build_model
 from methods.springs.path.plateau import check

@@ -13,10 +13,10 @@ from harness.model.build import build
 from harness.model.case import read_case
 from harness.model.method import Finding, Status, load_method
 from harness.model.wall import Wall
-from methods.la.associated_adapter import AssociatedLimitAnalysis
-from methods.la.core.search_settings import AssociatedSettings, FromFeSettings, SearchSettings
-from methods.la.literature.literature_adapters import FromFiniteElements
-from methods.la.search_adapter import LimitAnalysis
+from methods.la.associated import AssociatedLimitAnalysis
+from methods.la.literature.solvers import FromFiniteElements
+from methods.la.search import LimitAnalysis
+from methods.la.settings import AssociatedSettings, FromFeSettings, SearchSettings
 from tests.la.bodies import column, running_bond
 from tests.walls import assembly, stack, wedge
 

@@ -15,9 +15,9 @@ from methods.la.certify.tree_certificate import certificate
 from methods.la.core.extremes import ForceProgramme
 from methods.la.core.newton_matrix import NewtonMatrix
 from methods.la.core.problem import Problem, make_problem
-from methods.la.core.search_settings import SearchSettings
 from methods.la.core.state import CollapseState
-from methods.la.search_adapter import LimitAnalysis
+from methods.la.search import LimitAnalysis
+from methods.la.settings import SearchSettings
 from methods.la.sources.search import Search
 from tests.la.bodies import block_on_halves, column, running_bond
 from tests.la.test_mechanisms import six_blocks

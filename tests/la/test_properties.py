@@ -12,10 +12,10 @@ from hypothesis import strategies as st
 from harness.engine.symmetry import VIEWS
 from harness.model.assembly import Assembly
 from harness.model.method import Finding, Status, load_method
-from methods.la.associated_adapter import AssociatedLimitAnalysis
+from methods.la.associated import AssociatedLimitAnalysis
 from methods.la.core.flexibility import Compliance
-from methods.la.core.search_settings import AssociatedSettings, SearchSettings
-from methods.la.search_adapter import LimitAnalysis
+from methods.la.search import LimitAnalysis
+from methods.la.settings import AssociatedSettings, SearchSettings
 from tests.la.bodies import column, running_bond
 
 QUICK = SearchSettings(effort="quick")

@@ -1,4 +1,4 @@
-"""The adapters of the literature's methods and of co-operation with finite elements."""
+"""What solves the methods of the literature and the co-operation with finite elements."""
 
 from __future__ import annotations
 
@@ -8,6 +8,7 @@ import numpy as np
 
 from harness.model.assembly import Assembly
 from harness.model.method import Answer, Finding, Status, load_method
+from methods.la.answers import NO_MOTION, collapse_answer, not_converged, unbounded_answer
 from methods.la.core.newton_matrix import NewtonMatrix
 from methods.la.core.problem import Problem
 from methods.la.core.state import CollapseState, moving_contacts, polished, tight_contacts
@@ -19,7 +20,6 @@ from methods.la.literature.tresca import tresca_sequence
 from methods.la.methods import LA_FROM_FE, LA_PAPER, LA_TRESCA
 from methods.la.sources.budget import Budget, Limits
 from methods.la.sources.search import Search
-from methods.la.state_answers import NO_MOTION, collapse_answer, not_converged, unbounded_answer
 from methods.numerics.failures import NumericalFailure
 
 

@@ -6,11 +6,11 @@ from typing import Any
 
 from harness.model.assembly import Assembly
 from harness.model.method import Answer
+from methods.la.answers import collapse_answer, not_converged, unbounded_answer
 from methods.la.core.newton_matrix import NewtonMatrix
 from methods.la.core.problem import Problem
 from methods.la.family import LimitAnalysisFamily
 from methods.la.interior.associated import AssociatedResult, solve_associated, solve_with_cvxpy, with_mechanism
-from methods.la.state_answers import collapse_answer, not_converged, unbounded_answer
 
 
 class AssociatedLimitAnalysis(LimitAnalysisFamily):

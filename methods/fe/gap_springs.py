@@ -12,10 +12,7 @@ import numpy as np
 from harness.model.assembly import Assembly
 from harness.model.load_steps import NAME
 from harness.model.method import Answer, Finding, Solver, Status
-from methods.fe.convex_steps import bracket_collapse
-from methods.fe.histories import HISTORIES, HistoryResult, Plan, trace_history, with_initial_shear
-from methods.fe.incremental import IncrementalResult, march
-from methods.fe.path_answers import (
+from methods.fe.answers import (
     bracket_answer,
     collapse_answer,
     compact,
@@ -25,7 +22,10 @@ from methods.fe.path_answers import (
     standing_answer,
     stands,
 )
-from methods.fe.path_settings import GapSpringsSettings, NewtonSettings
+from methods.fe.convex_steps import bracket_collapse
+from methods.fe.histories import HISTORIES, HistoryResult, Plan, trace_history, with_initial_shear
+from methods.fe.incremental import IncrementalResult, march
+from methods.fe.settings import GapSpringsSettings, NewtonSettings
 from methods.numerics.claims import analysed
 from methods.springs.model.factor import Factor, make_factor
 from methods.springs.model.wall_model import WallModel, build_model

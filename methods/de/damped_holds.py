@@ -6,6 +6,7 @@ import numpy as np
 
 from harness.model.assembly import Assembly, IntArray
 from harness.model.method import Answer, Finding, OutOfTime, Solver, Status
+from methods.de.answers import solve_by_holds
 from methods.de.engines.courses import Tuning
 from methods.de.engines.engine import Engine, motion_units
 from methods.de.engines.mujoco_wall import MujocoWall, SolverFailed, load_mujoco, mujoco_tunings
@@ -13,10 +14,9 @@ from methods.de.engines.space import StripSpace
 from methods.de.engines.strips import CannotModel
 from methods.de.engines.sweeps import SweptWall
 from methods.de.engines.warm_sweeps import load_sweeps
-from methods.de.hold_settings import MujocoSettings, ReleaseSettings, SweepSettings
-from methods.de.holds.answer import solve_by_holds
 from methods.de.holds.release import release
 from methods.de.methods import DE, DE_MUJOCO
+from methods.de.settings import MujocoSettings, ReleaseSettings, SweepSettings
 from methods.numerics.claims import analysed
 
 
@@ -28,7 +28,7 @@ class DampedHolds(Solver):
         load_sweeps()
 
     def solve(self, assembly: Assembly, settings: SweepSettings) -> Answer:
-        """Bracket of the collapse multiplier over body orders; see `methods.de.holds.answer`."""
+        """Bracket of the collapse multiplier over body orders; see `methods.de.answers`."""
 
         return analysed(assembly, lambda part: self._of_component(part, settings))
 
@@ -47,7 +47,7 @@ class MujocoHolds(Solver):
     """The holds, the bracket and the orders of `de` on MuJoCo, so that an answer does not hang on one engine."""
 
     def solve(self, assembly: Assembly, settings: MujocoSettings) -> Answer:
-        """Bracket of the collapse multiplier over body orders; see `methods.de.holds.answer`.
+        """Bracket of the collapse multiplier over body orders; see `methods.de.answers`.
 
         Raises:
             InputError: mujoco is not installed.
