@@ -13,11 +13,10 @@ from typing import Any
 
 from harness.model.assembly import Assembly
 from harness.model.method import Answer, Finding, Solver, Status, load_method
-from methods.de.holds.loading import FALL
+from methods.de.settings import FALL, ClosedSettings
 from methods.de.uneven.gapped import GappedWall, load_gapped
 from methods.de.uneven.settled_contacts import load_uneven, settle_uneven
 from methods.de.uneven_blocks import BRACKET_MEANING
-from methods.de.uneven_settings import ClosedSettings
 
 
 class ClosedContacts(Solver):

@@ -3,9 +3,14 @@
 from __future__ import annotations
 
 from harness.model.method import Listed, Traits
-from methods.de.settings import MujocoSettings, ReleaseSettings, SweepSettings
-from methods.de.soft_settings import SoftSettings
-from methods.de.uneven_settings import ClosedSettings, UnevenSettings
+from methods.de.settings import (
+    ClosedSettings,
+    MujocoSettings,
+    ReleaseSettings,
+    SoftSettings,
+    SweepSettings,
+    UnevenSettings,
+)
 
 UNEVEN_RESOLUTION = 0.005
 """Difference to which brackets of uneven walls are narrowed by default."""

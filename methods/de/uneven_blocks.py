@@ -5,8 +5,8 @@ from __future__ import annotations
 from harness.model.assembly import Assembly
 from harness.model.method import Answer, Finding, Solver, Status
 from harness.model.rings import rings_of
+from methods.de.settings import UnevenSettings
 from methods.de.uneven.settled_contacts import Loading, load_uneven
-from methods.de.uneven_settings import UnevenSettings
 
 BRACKET_MEANING = "[highest multiplier at which it came to rest, lowest at which it fell]"
 

@@ -14,8 +14,8 @@ from harness.model.method import Finding, Status
 from harness.model.result import result_of
 from methods.de.holds.loading import raise_until_it_falls
 from methods.de.methods import DE_SOFT
+from methods.de.settings import SoftSettings
 from methods.de.soft import DeformableJoints
-from methods.de.soft_settings import SoftSettings
 from tests.walls import assembly, running_bond, stack
 
 
