@@ -315,7 +315,7 @@ def load_method(name: str) -> Method:
         if point.name == name:
             with _loading(name):
                 found = point.load()
-                made = found() if isinstance(found, type) else found
+                made = found() if callable(found) else found
             return checked_method(made, f"method {name}")
     raise KeyError(f"no method is called {name!r}; there are: {', '.join(method_names())}")
 
