@@ -20,8 +20,8 @@ from harness.model.assembly import Assembly
 from harness.model.method import Finding
 from methods.la.certify.window_certificate import certified_bracket
 from methods.la.core.problem import make_problem
-from methods.la.core.search_settings import SearchSettings
-from methods.la.search_adapter import LimitAnalysis
+from methods.la.search import LimitAnalysis
+from methods.la.settings import SearchSettings
 from methods.proof.search.tuning import WINDOWS
 
 

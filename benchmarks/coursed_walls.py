@@ -12,9 +12,9 @@ from dataclasses import dataclass, field
 
 from benchmarks.walls import random_wall
 from harness.model.method import Status, load_method
-from methods.fe.gap_spring_adapter import GapSprings
-from methods.fe.path_answers import TOLD
-from methods.fe.path_settings import GapSpringsSettings
+from methods.fe.answers import TOLD
+from methods.fe.gap_springs import GapSprings
+from methods.fe.settings import GapSpringsSettings
 from methods.springs.path.plateau import COLLAPSE
 
 ABOVE = 1e-6

@@ -14,8 +14,8 @@ from collections.abc import Sequence
 
 from harness.model.assembly import Assembly
 from harness.model.case import read_case, shipped_cases
-from methods.fe.gap_spring_adapter import GapSprings
-from methods.fe.path_settings import GapSpringsSettings
+from methods.fe.gap_springs import GapSprings
+from methods.fe.settings import GapSpringsSettings
 from methods.springs.patterns import arch, block_on_halves, running_bond
 
 WALLS: tuple[tuple[int, int, float, float, float], ...] = (

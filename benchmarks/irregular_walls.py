@@ -13,9 +13,9 @@ from collections.abc import Sequence
 
 from benchmarks.walls import drawn
 from harness.model.method import load_method
-from methods.la.associated_adapter import AssociatedLimitAnalysis
-from methods.la.core.search_settings import AssociatedSettings, SearchSettings
-from methods.la.search_adapter import LimitAnalysis
+from methods.la.associated import AssociatedLimitAnalysis
+from methods.la.search import LimitAnalysis
+from methods.la.settings import AssociatedSettings, SearchSettings
 
 SAME = 1e-7
 """Relative difference of multipliers that count as equal."""

@@ -17,8 +17,8 @@ from pathlib import Path
 from benchmarks.walls import drawn, random_wall
 from harness.model.assembly import Assembly
 from harness.model.case import read_case
-from methods.la.core.search_settings import SearchSettings
-from methods.la.search_adapter import LimitAnalysis
+from methods.la.search import LimitAnalysis
+from methods.la.settings import SearchSettings
 
 CASES = Path(__file__).parents[1] / "cases"
 SAME = 1e-7

@@ -18,9 +18,9 @@ import scipy.sparse as sp
 from benchmarks.walls import bond
 from harness.model.assembly import Assembly, FloatArray
 from harness.model.method import Answer
-from methods.la.associated_adapter import AssociatedLimitAnalysis
-from methods.la.core.search_settings import AssociatedSettings, SearchSettings
-from methods.la.search_adapter import LimitAnalysis
+from methods.la.associated import AssociatedLimitAnalysis
+from methods.la.search import LimitAnalysis
+from methods.la.settings import AssociatedSettings, SearchSettings
 
 BRICKS = (6, 3, 0.2)
 WALLS: tuple[tuple[tuple[int, int, float], float, str, str], ...] = (

@@ -12,8 +12,8 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from harness.model.assembly import Assembly
-from methods.fe.gap_spring_adapter import GapSprings
-from methods.fe.path_settings import GapSpringsSettings
+from methods.fe.gap_springs import GapSprings
+from methods.fe.settings import GapSpringsSettings
 from methods.springs.patterns import running_bond
 
 RATIOS = (0.01, 0.03, 0.1, 0.3, 0.5, 1.0, 3.0, 10.0)

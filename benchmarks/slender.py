@@ -21,7 +21,7 @@ from harness.engine.plan import Limits, Run
 from harness.engine.threads import pin
 from harness.model.assembly import Assembly, FloatArray
 from harness.model.case import Case, CaseFile
-from harness.model.method import Answer, Finding, Status, load_method, traits_of
+from harness.model.method import Answer, Finding, Status, load_method
 from harness.model.result import Result
 from harness.model.wall import Wall
 
@@ -164,7 +164,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     for kind in given.kinds.split(","):
         walls = list(known_walls(kind, given.count, given.seed, given.least))
         for name in given.methods.split(","):
-            accuracy = traits_of(load_method(name)).accuracy
+            accuracy = load_method(name).traits.accuracy
             ordered = given.orders and "orders" in load_method(name).Settings.model_fields
             settings = {"orders": given.orders} if ordered else {}
             runs = [Run(known.case, name, settings, Limits(given.seconds)) for known in walls]

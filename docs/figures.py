@@ -162,14 +162,14 @@ def friction_figure(folder: Path) -> None:
     """The 21-brick wall at seven frictions: the values that the last baseline recorded, method by method."""
     from harness.engine.baseline import read_baseline
     from harness.model.case import read_case, shipped_cases
-    from harness.model.method import load_method, traits_of
+    from harness.model.method import load_method
 
     values = read_baseline(shipped_cases() / "baseline.json").values
     names = [name for name in values if name == "wall-21" or name.startswith("wall-21-friction-")]
     rows = sorted((float(read_case(shipped_cases() / name).assembly.friction.max()), name) for name in names)
     with _drawing(folder / "friction.svg", 6.0, 3.6) as (axes,):
         for method in ("la-associated", "fe", "de", "la"):
-            traits = traits_of(load_method(method))
+            traits = load_method(method).traits
             points = [(mu, values[name][method].multiplier) for mu, name in rows]
             axes.plot(*zip(*points, strict=True), color=traits.colour or INK, marker=traits.marker or ".", label=method)
         axes.set_xlabel("friction")

@@ -37,7 +37,7 @@ def columns_page(folder: Path) -> None:
 def settings_page(folder: Path) -> None:
     """Every installed method with its settings."""
     from harness.model.errors import InputError
-    from harness.model.method import load_method, method_names, traits_of
+    from harness.model.method import load_method, method_names
 
     parts = ["# Methods and their settings", ""]
     for name in method_names():
@@ -46,7 +46,7 @@ def settings_page(folder: Path) -> None:
         except InputError as error:
             parts += [f"## {name}", "", f"{error}", ""]
             continue
-        parts += [f"## {name}", "", f"{method.title}. Its number: {traits_of(method).caption or 'not said'}.", ""]
+        parts += [f"## {name}", "", f"{method.title}. Its number: {method.traits.caption or 'not said'}.", ""]
         fields = method.Settings.model_fields
         if fields:
             meanings = _attributes(method.Settings)

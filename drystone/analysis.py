@@ -16,7 +16,16 @@ from harness.engine.provenance import machine, versions
 from harness.model.answer_check import checked
 from harness.model.comparison import CaseResults
 from harness.model.errors import InputError
-from harness.model.method import Answer, Method, allowing, check_takes, load_method, method_names, prepared, traits_of
+from harness.model.method import (
+    Answer,
+    Method,
+    allowing,
+    check_takes,
+    checked_method,
+    load_method,
+    method_names,
+    prepared,
+)
 from harness.model.proof import Proof, proof_of
 from harness.model.reading import validate
 from harness.model.result import Judgement, result_of
@@ -163,7 +172,7 @@ def analyse_by(
     elif isolated:
         raise InputError("an isolated method is called by its name", "Give it an entry point, or run it here", "method")
     else:
-        loaded = method
+        loaded = checked_method(method)
     check_shares(loaded, processes)
     chosen = validate(loaded.Settings, settings, "settings")
     references = tuple(item for item in wall.case.file.references if loaded.name in item.applies_to)
@@ -178,7 +187,7 @@ def analyse_by(
         answer = checked(loaded.solve(wall.assembly, chosen), wall.assembly)
     cost = {"cpu_seconds": time.process_time() - work, "wall_seconds": time.perf_counter() - clock}
     record = result_of(
-        answer, wall.assembly, case=wall.name, method=loaded.name, family=loaded.family, traits=traits_of(loaded)
+        answer, wall.assembly, case=wall.name, method=loaded.name, family=loaded.family, traits=loaded.traits
     ).model_copy(
         update={
             **cost,

@@ -13,15 +13,14 @@ import numpy as np
 
 import drystone
 from harness.model.assembly import Assembly
-from harness.model.method import Answer, Finding, Settings, Status, Traits
+from harness.model.method import Answer, Finding, Method, Settings, Status, Traits
 
 
-class SlidingBlock:
+class SlidingBlock(Method):
     """One block on one joint, at the multiplier at which it slides to the right."""
 
     name, family, title, tolerance = "mine", "mine", "sliding block", 1e-9
     traits = Traits(caption="sliding block")
-    Settings = Settings
 
     def solve(self, assembly: Assembly, settings: Settings) -> Answer:
         """Forces from equilibrium at the multiplier mu, and the block as it slides."""

@@ -14,7 +14,7 @@ from harness.engine.judge import answered
 from harness.engine.symmetry import VIEWS
 from harness.model.assembly import Assembly
 from harness.model.build import build
-from harness.model.method import Finding, Method, Status, load_method, method_names, traits_of
+from harness.model.method import Finding, Method, Status, load_method, method_names
 from harness.model.result import Judgement, Result
 from harness.model.wall import Wall
 
@@ -68,7 +68,7 @@ def slack_of(method: Method) -> float:
 
     A calculating method with a bracket conforms if that holds the value within the method's tolerance.
     """
-    traits = traits_of(method)
+    traits = method.traits
     return traits.accuracy if traits.brackets else 1e-8
 
 

@@ -6,13 +6,13 @@ import contextlib
 import os
 import sys
 import time
-from typing import ClassVar, Literal
+from typing import Literal
 
 import numpy as np
 
 from harness.model.assembly import Assembly
 from harness.model.errors import InputError
-from harness.model.method import Answer, Finding, OutOfTime, Settings, Status
+from harness.model.method import Answer, Finding, Method, OutOfTime, Settings, Status
 
 
 class DummySettings(Settings):
@@ -35,14 +35,14 @@ class DummySettings(Settings):
     ] = "answer"
 
 
-class Dummy:
+class Dummy(Method):
     """Answers "stands" with no forces, or fails in the way it is told to."""
 
-    name: ClassVar[str] = "dummy"
-    family: ClassVar[str] = "dummy"
-    title: ClassVar[str] = "misbehaves on order (tests of the engine)"
-    tolerance: ClassVar[float] = 1e-9
-    Settings: ClassVar[type[Settings]] = DummySettings
+    name = "dummy"
+    family = "dummy"
+    title = "misbehaves on order (tests of the engine)"
+    tolerance = 1e-9
+    Settings = DummySettings
 
     def solve(self, assembly: Assembly, settings: DummySettings) -> Answer:
         """Do what the settings say."""

@@ -40,8 +40,8 @@ def bound(
     compressed. Where the certificate does not meet the least state known, or there is none, a sentence says how far the
     bound came and what stopped it. Exit code 1: nothing is proved in fractions, and nothing is written.
     """
-    from methods.la.core.search_settings import SearchSettings
     from methods.la.find_certificate import find_certificate
+    from methods.la.settings import SearchSettings
 
     (found,) = find_cases([case], None, folders)
     warn(found)

@@ -19,7 +19,7 @@ from harness.engine.store import open_store
 from harness.model.comparison import ComparisonRun
 from harness.model.difference import Difference, Kind, Pairs, Row, Slower
 from harness.model.errors import InputError
-from harness.model.method import load_method, method_names, traits_of
+from harness.model.method import load_method, method_names
 
 
 @dataclass(frozen=True)
@@ -131,7 +131,7 @@ def _seeks_least(method: str, old: Answered, new: Answered) -> bool:
     for said in (new.seeks_least, old.seeks_least):
         if said is not None:
             return said
-    return traits_of(load_method(method)).seeks_least if method in method_names() else False
+    return load_method(method).traits.seeks_least if method in method_names() else False
 
 
 def _ratio(old: Answered, new: Answered) -> float | None:

@@ -44,7 +44,7 @@ from harness.engine.residuals import (
 from harness.model.assembly import Assembly, FloatArray
 from harness.model.displaced import DisplacedState
 from harness.model.limit import accuracy, least_told
-from harness.model.method import Finding, Method, Status, check_takes, traits_of
+from harness.model.method import Finding, Method, Status, check_takes
 from harness.model.result import Judgement, Result, relative_velocities, result_of
 
 
@@ -105,7 +105,7 @@ def answered(method: Method, assembly: Assembly, **settings: Any) -> tuple[Resul
     check_takes(method, assembly)
     answer = method.solve(assembly, method.Settings.model_validate(settings))
     result = result_of(
-        answer, assembly, case=assembly.name, method=method.name, family=method.family, traits=traits_of(method)
+        answer, assembly, case=assembly.name, method=method.name, family=method.family, traits=method.traits
     )
     return result, judge(assembly, result, method.tolerance)
 

@@ -140,7 +140,7 @@ def check_shares(method: Method, processes: int) -> None:
     Raises:
         InputError: that is so.
     """
-    if processes > 1 and not getattr(method, "shares_work", False):
+    if processes > 1 and not method.shares_work:
         raise InputError(
             f"{method.name} makes a run in one process: its parts begin with what those before them found",
             "Leave it out; several runs go side by side in `drystone compare` and `drystone sweep`",

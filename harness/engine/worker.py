@@ -33,7 +33,6 @@ from harness.model.errors import InputError, MissingPackage, visible
 from harness.model.method import (
     Answer,
     Finding,
-    FollowsMotions,
     Method,
     OutOfTime,
     Settings,
@@ -43,7 +42,6 @@ from harness.model.method import (
     check_takes,
     load_method,
     prepared,
-    traits_of,
 )
 from harness.model.reading import validate
 
@@ -61,8 +59,8 @@ class Task:
         settings: those that differ from the method's defaults.
         seconds: wall-clock limit [s].
         memory_bytes: limit of resident memory [bytes].
-        motions: (m, 3) motions of the joints in mechanisms that the method shall take up (`FollowsMotions`) in place of
-            a search of its own; none: it answers by itself.
+        motions: (m, 3) motions of the joints in mechanisms that the method shall take up (`Method.solve_from`) in place
+            of a search of its own; none: it answers by itself.
         processes: that the run may use side by side.
     """
 
@@ -100,7 +98,7 @@ def serve(engine: connection.Connection, folder: str) -> None:
         while True:
             task = engine.recv()
             method, failure = _load(task)
-            if used and getattr(method, "fresh_process", False):
+            if used and method is not None and method.fresh_process:
                 _send(engine, REPLACE)
                 continue
             _send(engine, LOADED)
@@ -189,7 +187,7 @@ def _about(method: Method) -> dict[str, Any]:
     Raises:
         AnswerFault: it says what nothing can be made of.
     """
-    traits, tolerance, family = traits_of(method), method.tolerance, method.family
+    traits, tolerance, family = method.traits, method.tolerance, method.family
     if not isinstance(traits, Traits):
         raise AnswerFault(f"The method's traits are {type(traits).__name__} instead of Traits")
     if not isinstance(tolerance, int | float) or not 0.0 <= tolerance < math.inf:
@@ -202,7 +200,7 @@ def _about(method: Method) -> dict[str, Any]:
 def _answer(method: Method, task: Task, settings: Settings) -> Answer:
     if not task.motions:
         return method.solve(task.assembly, settings)
-    if not isinstance(method, FollowsMotions):
+    if not method.follows_motions:
         raise InputError(f"{method.name} takes up no mechanisms of other walls", "Let it answer by itself", "method")
     return method.solve_from(task.assembly, settings, task.motions)
 

@@ -4,15 +4,16 @@ from __future__ import annotations
 
 import math
 import signal
+from abc import ABC, abstractmethod
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from contextvars import ContextVar
 from dataclasses import dataclass, field
 from enum import StrEnum
 from functools import cache
-from importlib import import_module
 from importlib.metadata import EntryPoint, entry_points
-from typing import Any, ClassVar, Literal, Protocol, runtime_checkable
+from pkgutil import resolve_name
+from typing import Any, Literal
 
 import numpy as np
 from pydantic import BaseModel, ConfigDict, Field
@@ -178,41 +179,18 @@ class Traits(BaseModel):
     line: Literal["solid", "dashed", "dotted", "dashdot"] = "solid"
 
 
-class Method(Protocol):
-    """A method: found by name through the entry-point group `drystone.methods`.
+class Solver(ABC):
+    """What answers for an assembly: a method, or what a listed method leads to."""
 
-    Attributes:
-        name: the name users type, e.g. "la".
-        family: "fe", "la", "de" or a word of your own; the report groups by it.
-        title: a few words for the head of a column.
-        tolerance: the largest relative residual the judge may find in an answer of this method
-        Settings: the class of its settings; its defaults are what `drystone compare` runs.
+    def prepare(self) -> None:  # noqa: B027 - a method without it needs nothing
+        """Load what its runs need (libraries, compiled kernels); called once in a process before a run's clock starts.
 
-    A method says what its numbers are by `traits = Traits(...)` (a class attribute; without it nothing is said).
-    They travel with each result, so that whoever shows results need not load the method.
+        May raise; that is told as a method that cannot be loaded.
+        """
 
-    Importing its module should cost little, since lists of methods do. What its runs need (libraries, compiled kernels)
-    it loads in `prepare()`, where it has one: that is called once in a process before the clock of a run starts.
-
-    A method whose library keeps something from one run to the next says `fresh_process = True` (a class attribute that
-    others leave out): each of its runs then has a process of its own. One that makes parts of a run side by side where
-    `processes_allowed()` is more than one says `shares_work = True`; its answer must be the same to the bit.
-    """
-
-    name: ClassVar[str]
-    family: ClassVar[str]
-    title: ClassVar[str]
-    tolerance: ClassVar[float]
-    Settings: ClassVar[type[Settings]]
-
+    @abstractmethod
     def solve(self, assembly: Assembly, settings: Any) -> Answer:
         """Answer for this assembly. May raise; the engine turns any exception into a row with a sentence."""
-        ...
-
-
-@runtime_checkable
-class FollowsMotions(Protocol):
-    """What a method offers besides, if it can take up mechanisms that were found on other walls."""
 
     def solve_from(self, assembly: Assembly, settings: Any, motions: Sequence[FloatArray]) -> Answer:
         """The answer that given mechanisms alone lead to on this wall, by its own forces; `solve` is the whole search.
@@ -222,14 +200,78 @@ class FollowsMotions(Protocol):
             settings: as for `solve`.
             motions: (m, 3) openings at both ends and slip of the joints in each mechanism, found on a wall with the
                 same blocks and joints in the same order, whose friction or shape may be other.
+
+        Raises:
+            NotImplementedError: it follows no motions (`Method.follows_motions`).
         """
-        ...
+        raise NotImplementedError
 
 
-def traits_of(method: Method | None) -> Traits:
-    """What a method says of its numbers; nothing where it does not, or where there is no method."""
-    traits: Traits = getattr(method, "traits", Traits())
-    return traits
+class Method(Solver):
+    """Base of a method: a name that users type, what its numbers are, its settings and `solve`.
+
+    A method of your own is a subclass with at least `name`, `family`, `title`, `tolerance` and `solve`; the rest has
+    defaults. Importing its module should cost little, since lists of methods do: what its runs need is loaded in
+    `prepare`. An entry point in the group `drystone.methods` leads to the class.
+
+    Attributes:
+        name: the name users type, e.g. "la".
+        family: "fe", "la", "de" or a word of your own; the report groups by it.
+        title: a few words for the head of a column.
+        tolerance: the largest relative residual the judge may find in an answer of this method
+        Settings: the class of its settings; its defaults are what `drystone compare` runs.
+        traits: what its numbers are. They travel with each result, so that whoever shows results need not load the
+            method.
+        fresh_process: each of its runs has a process of its own, as its library keeps something from run to run.
+        shares_work: it makes parts of a run side by side where `processes_allowed()` is more than one; its answer must
+            be the same to the bit.
+        follows_motions: it takes up mechanisms that were found on other walls (`solve_from`).
+    """
+
+    name: str
+    family: str
+    title: str
+    tolerance: float
+    Settings: type[Settings] = Settings
+    traits: Traits = Traits()
+    fresh_process: bool = False
+    shares_work: bool = False
+    follows_motions: bool = False
+
+
+@dataclass(frozen=True, kw_only=True)
+class Listed(Method):
+    """A method described apart from what solves it, which is imported when a run needs it and not to list the method.
+
+    Attributes:
+        solver: "module:Class" of its `Solver`; the others as for `Method`.
+    """
+
+    solver: str
+    name: str
+    family: str
+    title: str
+    tolerance: float
+    Settings: type[Settings]
+    traits: Traits
+    shares_work: bool = False
+    follows_motions: bool = False
+
+    def prepare(self) -> None:
+        """Import the solver, and let it load what it needs besides."""
+        self._solver().prepare()
+
+    def solve(self, assembly: Assembly, settings: Any) -> Answer:
+        """The answer of the solver."""
+        return self._solver().solve(assembly, settings)
+
+    def solve_from(self, assembly: Assembly, settings: Any, motions: Sequence[FloatArray]) -> Answer:
+        """What the solver makes of mechanisms that are given."""
+        return self._solver().solve_from(assembly, settings, motions)
+
+    def _solver(self) -> Solver:
+        found: Solver = resolve_name(self.solver)()
+        return found
 
 
 def check_takes(method: Method, assembly: Assembly) -> None:
@@ -246,7 +288,7 @@ def check_takes(method: Method, assembly: Assembly) -> None:
     def between(joint: int) -> str:
         return " and ".join(assembly.block_ids[side[joint]] for side in (assembly.block_a, assembly.block_b))
 
-    if assembly.dilates and not traits_of(method).any_dilatancy:
+    if assembly.dilates and not method.traits.any_dilatancy:
         joint = int(np.argmax(law.dilatancy))
         raise InputError(
             f"{method.name} lets no joint lift as it slides; that between {between(joint)} has the dilatancy "
@@ -286,39 +328,27 @@ def load_method(name: str) -> Method:
 
     Raises:
         KeyError: no installed method has this name; the message lists those there are.
-        InputError: its package is there but cannot be loaded.
+        InputError: its package is there but cannot be loaded, or brings no method.
     """
     for point in method_points():
         if point.name == name:
             with _loading(name):
-                method: Method = point.load()()
-            return method
+                found = point.load()
+                made = found() if callable(found) else found
+            return checked_method(made, f"method {name}")
     raise KeyError(f"no method is called {name!r}; there are: {', '.join(method_names())}")
 
 
-class Declared:
-    """A method that is told apart from what solves: its solver is imported when a run needs it, and not to list it.
+def checked_method(found: object, element: str = "method") -> Method:
+    """What a user gives as a method, which must be one; `element` is what named it.
 
-    Attributes:
-        solver: "module:Class" of what solves, itself a method and a subclass of what declares it.
+    Raises:
+        InputError: it does not inherit from `Method`.
     """
-
-    solver: ClassVar[str]
-
-    def prepare(self) -> None:
-        """Import the solver, and let it load what it needs besides."""
-        found = self._solver()
-        if type(found) is not type(self):
-            found.prepare()
-
-    def solve(self, assembly: Assembly, settings: Any) -> Answer:
-        """The answer of the solver."""
-        answer: Answer = self._solver().solve(assembly, settings)
-        return answer
-
-    def _solver(self) -> Any:
-        module, _, name = self.solver.partition(":")
-        return getattr(import_module(module), name)()
+    if not isinstance(found, Method):
+        hint = "Give an object of a class that inherits from `harness.model.method.Method`"
+        raise InputError(f"{found!r:.80} is no method", hint, element)
+    return found
 
 
 def prepared(method: Method) -> Method:
@@ -327,10 +357,8 @@ def prepared(method: Method) -> Method:
     Raises:
         InputError: that is not there.
     """
-    prepare = getattr(method, "prepare", None)
-    if prepare is not None:
-        with _loading(method.name):
-            prepare()
+    with _loading(method.name):
+        method.prepare()
     return method
 
 

@@ -13,17 +13,16 @@ from typing import Any
 import numpy as np
 
 from harness.model.assembly import Assembly, FloatArray
-from harness.model.method import Answer, Finding, OutOfTime, Status
-from methods.de.declared_de import DeclaredSoft
+from harness.model.method import Answer, Finding, OutOfTime, Solver, Status
 from methods.de.engines.courses import courses, number_of_courses
 from methods.de.engines.engine import motion_units
 from methods.de.engines.soft_wall import SoftWall
 from methods.de.holds.hold import Hold, State, Watch
-from methods.de.holds.loading import FALL, raise_until_it_falls
+from methods.de.holds.loading import raise_until_it_falls
 from methods.de.holds.motion import MotionProof, by_travel
 from methods.de.holds.order_bracket import BRACKET
 from methods.de.holds.stopped import STOPPED, undecided, unmoved
-from methods.de.soft_settings import JOINTS, SOFT_HOLDS, SoftSettings
+from methods.de.settings import FALL, JOINTS, SOFT_HOLDS, SoftSettings
 from methods.numerics.claims import at_limit, with_proof
 
 BRACKET_MEANING = "[highest multiplier at which it came to rest, lowest at which it fell]"
@@ -111,7 +110,7 @@ class Holds:
                 return Hold(State.UNDECIDED, residual, wall.steps - start, places - before)
 
 
-class DeformableJoints(DeclaredSoft):
+class DeformableJoints(Solver):
     """Distinct elements with deformable joints and rounded corners (`de-soft`)."""
 
     def solve(self, assembly: Assembly, settings: SoftSettings) -> Answer:

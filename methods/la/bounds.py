@@ -13,9 +13,9 @@ from harness.model.method import Answer, Finding, Status
 from methods.la.certify.tree_certificate import certificate
 from methods.la.certify.window_certificate import certified_bracket
 from methods.la.core.problem import Problem
-from methods.la.core.search_settings import BoundSettings
 from methods.la.find_certificate import account, beyond
 from methods.la.least import SAME_MULTIPLIER
+from methods.la.settings import BoundSettings
 from methods.proof.search.tuning import WINDOWS
 from methods.proof.search.window_search import Bracket
 from methods.proof.verify.checker import verify

@@ -2,16 +2,16 @@
 
 from __future__ import annotations
 
-from abc import ABC, abstractmethod
+from abc import abstractmethod
 from collections.abc import Callable, Sequence
 from dataclasses import replace
-from typing import Any, ClassVar
+from typing import Any
 
 from harness.model.assembly import Assembly
-from harness.model.method import Answer, Finding
+from harness.model.method import Answer, Finding, Solver
+from methods.la.answers import dead_load_answer
 from methods.la.core.newton_matrix import NewtonMatrix
 from methods.la.core.problem import Problem, make_problem
-from methods.la.state_answers import dead_load_answer
 from methods.numerics.claims import analysed
 
 Answering = Callable[[Assembly, Problem, NewtonMatrix, Any], Answer]
@@ -48,10 +48,8 @@ def proved_of_all(answer: Answer, parts: Sequence[Answer]) -> Answer:
     return replace(answer, sentence=answer.sentence + said, details=details)
 
 
-class LimitAnalysisFamily(ABC):
-    """Base of the adapters: a wall that falls under its dead load, or has no live load, is answered here."""
-
-    family: ClassVar[str] = "la"
+class LimitAnalysisFamily(Solver):
+    """Base of the solvers: a wall that falls under its dead load, or has no live load, is answered here."""
 
     def solve(self, assembly: Assembly, settings: Any) -> Answer:
         """The answer from those for the independent components of the wall, with what is proved of all of them."""

@@ -10,15 +10,15 @@ from typing import Any
 
 from harness.model.assembly import Assembly
 from harness.model.method import Finding, Status
+from methods.la.answers import dead_load_answer
 from methods.la.certify.tree_certificate import certificate
 from methods.la.certify.window_certificate import certified_bracket
 from methods.la.core.newton_matrix import NewtonMatrix
 from methods.la.core.problem import Problem, make_problem
-from methods.la.core.search_settings import BoundSettings, SearchSettings
-from methods.la.declared_la import DeclaredBound
 from methods.la.least import least_known
+from methods.la.methods import LA_BOUND
+from methods.la.settings import BoundSettings, SearchSettings
 from methods.la.sources.budget import SIZES
-from methods.la.state_answers import dead_load_answer
 from methods.proof.search.tuning import WINDOWS
 from methods.proof.search.window_search import Bracket
 
@@ -70,7 +70,7 @@ def find_certificate(
             f"lies well below the least state known. The search for that state comes first, then {seconds:g} s of CPU "
             "time for the bound."
         )
-    known = least_known(problem, newton, search, DeclaredBound.tolerance)
+    known = least_known(problem, newton, search, LA_BOUND.tolerance)
     if known.status is not Status.OK or known.finding is not Finding.COLLAPSES or known.multiplier is None:
         return Attempt(None, known.sentence)
     if known.multiplier <= 0.0 or known.mechanism is None:

@@ -9,18 +9,7 @@ from typing import Any
 
 from harness.model.errors import first_few
 from harness.model.method import Answer, OutOfTime, Status
-from methods.la.certify.proof import Proof, prove
-from methods.la.certify.rational import confirm
-from methods.la.core.exact import exact_mechanism
-from methods.la.core.extremes import ForceProgramme, Units, units_of
-from methods.la.core.newton_matrix import NewtonMatrix
-from methods.la.core.problem import Problem
-from methods.la.core.search_settings import SearchSettings
-from methods.la.core.state import CollapseState, local_residuals, polished, residuals
-from methods.la.sources import SOURCES, Source, explore
-from methods.la.sources.budget import Budget, rounds_of
-from methods.la.sources.search import CHOICES, Search
-from methods.la.state_answers import (
+from methods.la.answers import (
     LOCAL_RESIDUAL,
     NO_MOTION,
     NO_STATE,
@@ -28,6 +17,17 @@ from methods.la.state_answers import (
     not_converged,
     unbounded_answer,
 )
+from methods.la.certify.proof import Proof, prove
+from methods.la.certify.rational import confirm
+from methods.la.core.exact import exact_mechanism
+from methods.la.core.extremes import ForceProgramme, Units, units_of
+from methods.la.core.newton_matrix import NewtonMatrix
+from methods.la.core.problem import Problem
+from methods.la.core.state import CollapseState, local_residuals, polished, residuals
+from methods.la.settings import SearchSettings
+from methods.la.sources import SOURCES, Source, explore
+from methods.la.sources.budget import Budget, rounds_of
+from methods.la.sources.search import CHOICES, Search
 from methods.numerics.failures import NumericalFailure
 
 NOT_EXACT = "No state was found that holds beside the lightest blocks too: weights differ too much within the wall"

@@ -9,7 +9,7 @@ import numpy as np
 from methods.springs.model.exact_rates import exact_gap_rates
 from methods.springs.model.factor import SparseFactor
 from methods.springs.model.gap_law import STICK, neighbour_states
-from methods.springs.model.spring_settings import GapSettings
+from methods.springs.model.settings import GapSettings
 from methods.springs.model.wall_model import build_model
 from methods.springs.path.continuation import Tracer
 from methods.springs.path.kinks import live_rate, strain_rates

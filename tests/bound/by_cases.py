@@ -8,8 +8,8 @@ from typing import Any
 from harness.model.assembly import Assembly
 from methods.la.certify.window_certificate import certificate_of, certifier_of, equations_of
 from methods.la.core.problem import Problem, make_problem
-from methods.la.core.search_settings import SearchSettings
-from methods.la.search_adapter import LimitAnalysis
+from methods.la.search import LimitAnalysis
+from methods.la.settings import SearchSettings
 from methods.proof.search.bracket import branched
 from methods.proof.search.slack_bounds import SlackProgramme
 from methods.proof.search.window_search import Bracket, Certify, WindowSearch

@@ -14,12 +14,12 @@ from benchmarks.bounds import small_wall
 from harness.model.assembly import Assembly
 from harness.model.build import build
 from harness.model.wall import Wall
-from methods.la.bound_adapter import BoundedLimitAnalysis
+from methods.la.bounded import BoundedLimitAnalysis
 from methods.la.certify.window_certificate import equations_of
 from methods.la.core.newton_matrix import NewtonMatrix
 from methods.la.core.problem import Problem, make_problem
-from methods.la.core.search_settings import BoundSettings, SearchSettings
-from methods.la.search_adapter import LimitAnalysis
+from methods.la.search import LimitAnalysis
+from methods.la.settings import BoundSettings, SearchSettings
 from methods.la.sources.search import Search
 from methods.proof.search.bracket import bracket
 from methods.proof.search.case import Case

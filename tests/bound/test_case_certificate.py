@@ -16,8 +16,8 @@ from hypothesis import strategies as st
 from benchmarks.bounds import small_wall
 from methods.la.certify.window_certificate import certificate_of, certifier_of, equations_of
 from methods.la.core.problem import make_problem
-from methods.la.core.search_settings import SearchSettings
-from methods.la.search_adapter import LimitAnalysis
+from methods.la.search import LimitAnalysis
+from methods.la.settings import SearchSettings
 from methods.proof.same_wall import require_same_wall
 from methods.proof.search.case import AtContact, AtNormalForce, Case
 from methods.proof.search.rate_bounds import RateProgramme

@@ -17,9 +17,9 @@ from hypothesis import strategies as st
 from drystone.certificates import CERTIFICATE, read_certificate
 from drystone.cli.main import main as drystone
 from harness.model.case import read_case, shipped_cases
-from methods.la.bound_adapter import BoundedLimitAnalysis
+from methods.la.bounded import BoundedLimitAnalysis
 from methods.la.certify.tree_certificate import certificate
-from methods.la.core.search_settings import BoundSettings
+from methods.la.settings import BoundSettings
 from methods.proof.same_wall import require_same_wall
 from methods.proof.verify.checker import main, verify
 from methods.proof.verify.document import digest

@@ -18,11 +18,11 @@ from drystone.certificates import CERTIFICATE, PACKED, read_certificate
 from drystone.cli.main import main as drystone
 from harness.model.assembly import Assembly
 from harness.model.case import read_case, shipped_cases
-from methods.la.bound_adapter import BoundedLimitAnalysis
+from methods.la.bounded import BoundedLimitAnalysis
 from methods.la.certify.window_certificate import certified_bracket
 from methods.la.core.newton_matrix import NewtonMatrix
 from methods.la.core.problem import make_problem
-from methods.la.core.search_settings import BoundSettings
+from methods.la.settings import BoundSettings
 from methods.la.sources.search import Search
 from methods.proof.same_wall import require_same_wall
 from methods.proof.verify.checker import verify

@@ -8,8 +8,8 @@ import numpy as np
 
 from harness.model.assembly import Assembly
 from harness.model.method import Answer
-from methods.de.hold_adapter import DampedHolds
-from methods.de.hold_settings import SweepSettings
+from methods.de.damped_holds import DampedHolds
+from methods.de.settings import SweepSettings
 
 
 def run(wall: Assembly, **settings: Any) -> Answer:

@@ -15,9 +15,9 @@ from harness.model.components import analysed_apart
 from harness.model.method import Answer, Finding, OutOfTime, Status, load_method
 from harness.model.result import result_of
 from harness.model.wall import Wall
+from methods.de import answers as de_answer
 from methods.de.engines.soft_wall import SoftWall
 from methods.de.engines.sweeps import SweptWall
-from methods.de.holds import answer as de_answer
 from methods.de.holds.stopped import highest_shown
 from tests.walls import assembly, running_bond, stack
 

@@ -12,8 +12,9 @@ from harness.engine.residuals import displaced_residuals, force_residuals
 from harness.model.displaced import DisplacedState
 from harness.model.method import Finding, Status, load_method
 from harness.model.result import result_of
-from methods.de.closed import ClosedContacts, ClosedSettings
+from methods.de.closed_contacts import ClosedContacts, ClosedSettings
 from methods.de.engines.edges import FacingEdges
+from methods.de.methods import DE_CLOSED
 from methods.de.uneven.settled_contacts import settle_uneven
 from tests.walls import assembly, running_bond, stack
 
@@ -41,7 +42,7 @@ def test_fe_and_la_agree_on_the_closed_contacts_alone_and_their_state_is_an_equi
     one, two = (method.solve(structure, method.Settings()) for method in map(load_method, ("fe", "la")))
     # Here both find the same collapse state; rounding only is between them.
     assert one.multiplier == pytest.approx(two.multiplier, rel=1e-6)
-    assert max(force_residuals(structure, one.forces, one.multiplier).values()) < ClosedContacts.tolerance
+    assert max(force_residuals(structure, one.forces, one.multiplier).values()) < DE_CLOSED.tolerance
 
 
 def test_gaps_that_stay_open_make_the_contacts_alone_weaker_than_the_wall():
@@ -55,7 +56,7 @@ def test_the_state_at_rest_is_judged_with_the_contacts_where_they_are():
     wall = assembly(running_bond(6, 3), 0.75)
     answer = closed(wall, size=0.03, seed=2, alone=(), compare=False)
     result = result_of(answer, wall, case="wall", method="de-closed", family="de")
-    assert judge(wall, result, ClosedContacts.tolerance).accepted is True
+    assert judge(wall, result, DE_CLOSED.tolerance).accepted is True
     state = DisplacedState.of(answer.details)
     elsewhere = replace(state, point=state.point + np.array([0.0, 0.01]))
     assert displaced_residuals(wall, elsewhere, answer.forces_multiplier)["equilibrium"] > 1e-4

@@ -13,9 +13,8 @@ from harness.engine.judge import answered
 from harness.engine.plan import find_cases
 from harness.engine.symmetry import beside
 from harness.model.build import build
-from harness.model.method import Finding, Status
+from harness.model.method import Finding, Status, load_method
 from harness.model.reading import parse_wall
-from methods.de.hold_adapter import DampedHolds
 from tests.de.answers import run, unbalanced, unyielding
 from tests.walls import assembly, running_bond, stack
 
@@ -88,7 +87,7 @@ def test_arches_that_settle_slowly_are_followed_to_rest(name, exact):
 @pytest.mark.parametrize("name", ["leaning-live-01", "press-cube-049", "stack-smooth"])
 def test_a_wall_that_bears_no_live_load_at_all_is_at_its_limit(name):
     wall = drawn(name)
-    result, judgement = answered(DampedHolds(), wall)
+    result, judgement = answered(load_method("de"), wall)
     assert (result.status, result.finding, result.multiplier) == (Status.OK, Finding.AT_LIMIT, 0.0)
     assert judgement.accepted, judgement.sentence
     assert result.bracket[0] == 0.0
@@ -99,7 +98,7 @@ def test_a_wall_that_bears_no_live_load_at_all_is_at_its_limit(name):
 # Bricks that overhang to the limit stand at 0, and what their head joints carry besides is left open: the associated
 # maximum is 2/119.
 def test_a_range_that_orders_leave_open_is_an_answer_though_it_is_wide_beside_the_brackets():
-    result, judgement = answered(DampedHolds(), drawn("p01-overhang-6-mu010"))
+    result, judgement = answered(load_method("de"), drawn("p01-overhang-6-mu010"))
     assert (result.status, result.finding) == (Status.OK, Finding.COLLAPSES)
     assert judgement.accepted, judgement.sentence
     assert 0.0 <= result.bracket[0] < result.bracket[1] <= 2 / 119
@@ -110,7 +109,9 @@ def test_a_range_that_orders_leave_open_is_an_answer_though_it_is_wide_beside_th
 @pytest.mark.parametrize("friction", ["stable", "sliding"])
 def test_arch_next_to_the_least_friction_is_decided(friction):
     """The engine of whole bodies left it undecided: places rounded to 1e-9 shook the contacts by as much."""
-    result, judgement = answered(DampedHolds(), find_cases((f"arch-100-friction-{friction}",), None, ())[0].assembly)
+    result, judgement = answered(
+        load_method("de"), find_cases((f"arch-100-friction-{friction}",), None, ())[0].assembly
+    )
     assert result.finding is (Finding.STANDS if friction == "stable" else Finding.FALLS)
     assert judgement.accepted, judgement.sentence
 
@@ -121,7 +122,7 @@ def test_arch_next_to_the_least_friction_is_decided(friction):
 )
 def test_an_independent_block_of_any_weight_changes_no_bracket(name, share):
     wall = find_cases((name,), None, ())[0].assembly
-    alone, (result, judgement) = run(wall, orders=1), answered(DampedHolds(), beside(wall, share), orders=1)
+    alone, (result, judgement) = run(wall, orders=1), answered(load_method("de"), beside(wall, share), orders=1)
     assert judgement.accepted, judgement.sentence
     assert result.multiplier == pytest.approx(alone.multiplier, rel=1e-9)
     assert result.bracket == pytest.approx(alone.bracket, rel=1e-9)

@@ -6,12 +6,12 @@ import numpy as np
 import pytest
 
 from harness.model.method import Finding, Status
+from methods.de.answers import solve_by_holds
 from methods.de.engines.courses import Tuning
 from methods.de.engines.space import StripSpace
-from methods.de.hold_settings import HoldSettings
-from methods.de.holds.answer import solve_by_holds
 from methods.de.holds.hold import Watch
 from methods.de.holds.motion import Trend, by_power, by_travel, by_virtual_work
+from methods.de.settings import HoldSettings
 from tests.walls import assembly, stack
 
 MECHANISM = np.random.default_rng(0).normal(size=(12, 3))

@@ -11,9 +11,10 @@ import pytest
 from harness.engine.residuals import force_residuals
 from harness.model.errors import InputError
 from harness.model.method import Finding, Status
+from methods.de.damped_holds import MujocoHolds
 from methods.de.engines.mujoco_wall import SOFT_CONTACTS, UNIFORM, MujocoWall, SolverFailed
-from methods.de.hold_adapter import MujocoHolds
-from methods.de.hold_settings import MujocoSettings
+from methods.de.methods import DE_MUJOCO
+from methods.de.settings import MujocoSettings
 from tests.de.answers import run
 from tests.de.test_damped_holds import two_friction_block
 from tests.walls import assembly, running_bond, stack
@@ -80,7 +81,7 @@ def test_wall_of_21_bricks_agrees_with_the_other_engine(friction):
     wall = assembly(running_bond(6, 3), friction)
     answer = run_mujoco(wall, orders=1)
     assert answer.multiplier == pytest.approx(min(friction, 13 / 23), rel=5e-3)
-    assert force_residuals(wall, answer.forces, answer.forces_multiplier)["equilibrium"] < MujocoHolds.tolerance
+    assert force_residuals(wall, answer.forces, answer.forces_multiplier)["equilibrium"] < DE_MUJOCO.tolerance
 
 
 @needs_mujoco

@@ -41,7 +41,7 @@ def test_two_processes_give_the_answer_of_one_to_the_bit():
 
 def test_another_tuning_than_the_first_gives_the_same_answer_too(monkeypatch: pytest.MonkeyPatch):
     slow = Tuning(0.4, 0.999999)  # hardly damped: it does not settle in the work there is
-    monkeypatch.setattr("methods.de.holds.answer.tunings", lambda *_: [slow, Tuning(0.4, 0.95)])
+    monkeypatch.setattr("methods.de.answers.tunings", lambda *_: [slow, Tuning(0.4, 0.95)])
     wall = assembly(running_bond(3, 2))
     one, two = (answered(wall, processes, work=300_000) for processes in (1, 2))
     assert one.details["damping"] == 0.95

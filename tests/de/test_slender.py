@@ -8,7 +8,7 @@ import pytest
 
 from benchmarks.slender import known_walls, verdict
 from harness.engine.judge import answered
-from harness.model.method import load_method, traits_of
+from harness.model.method import load_method
 
 
 @pytest.mark.parametrize(
@@ -23,6 +23,6 @@ def test_thin_arches_and_slender_walls_are_right_or_undecided(kind, name, blocks
         settings = {"orders": 1} if name == "de" else {}
         result, judgement = answered(method, known.case.assembly, **settings)
         assert judgement.accepted is not False, judgement.sentence
-        said.append(verdict(known, result, traits_of(method).accuracy))
+        said.append(verdict(known, result, method.traits.accuracy))
     assert set(said) <= {"right", "undecided"}
     assert "right" in said

@@ -13,8 +13,9 @@ from harness.model.displaced import DisplacedState
 from harness.model.method import Finding, Status
 from harness.model.result import result_of
 from methods.de.holds.loading import raise_until_it_falls
+from methods.de.methods import DE_SOFT
+from methods.de.settings import SoftSettings
 from methods.de.soft import DeformableJoints
-from methods.de.soft_settings import SoftSettings
 from tests.walls import assembly, running_bond, stack
 
 
@@ -74,7 +75,7 @@ def test_the_state_at_rest_is_judged_where_the_blocks_have_moved_to():
     unit = wall.force_scale / wall.n_free / wall.length_scale**2
     answer = soft(wall, stiffness=1e3 * unit)
     result = result_of(answer, wall, case="wall", method="de-soft", family="de")
-    assert judge(wall, result, DeformableJoints.tolerance).accepted is True
+    assert judge(wall, result, DE_SOFT.tolerance).accepted is True
     state = DisplacedState.of(answer.details)
     # The blocks have moved so far that the state is none where they were: the judge would see that.
     assert np.abs(state.places[:, 0]).max() > 1e-3

@@ -8,7 +8,7 @@ import pytest
 from methods.de.engines.courses import courses, insertion_orders, tunings
 from methods.de.engines.space import StripSpace
 from methods.de.engines.sweeps import SweptWall
-from methods.de.hold_settings import HoldSettings
+from methods.de.settings import HoldSettings
 from tests.de.answers import run, unbalanced, unyielding
 from tests.walls import assembly, running_bond, stack
 

@@ -133,7 +133,7 @@ def test_a_worker_with_other_code_is_refused_with_a_sentence(tmp_path: Path):
     other = tmp_path / "other"
     for package in ("harness", "methods", "cases", "reports"):
         shutil.copytree(ROOT / package, other / package, ignore=shutil.ignore_patterns("__pycache__", "cases"))
-    source = other / "methods" / "la" / "declared_la.py"
+    source = other / "methods" / "la" / "methods.py"
     source.write_text(source.read_text() + "\n# changed\n")
     with cluster(tmp_path) as made:
         made.scheduler()

@@ -5,12 +5,31 @@ from __future__ import annotations
 import json
 import subprocess
 import sys
+from importlib.metadata import EntryPoint
 from pathlib import Path
+from pkgutil import resolve_name
+from typing import Any
 
 import pytest
 
+import drystone
 from harness.engine.preload import shipped
-from harness.model.method import Declared, load_method, method_names, prepared
+from harness.model.assembly import Assembly
+from harness.model.errors import InputError
+from harness.model.method import (
+    GROUP,
+    Answer,
+    Finding,
+    Listed,
+    Method,
+    Solver,
+    Status,
+    Traits,
+    load_method,
+    method_names,
+    prepared,
+)
+from methods.dummy import Dummy
 
 SOLVERS = {"numba", "llvmlite", "highspy", "osqp", "pymunk", "casadi", "cvxpy", "mujoco"}
 COMMAND = """
@@ -22,6 +41,24 @@ except SystemExit as end:
     assert not end.code, end.code
 print(json.dumps(sorted(sys.modules)))
 """
+
+
+class Plain(Method):
+    """What the base class asks for, and no more."""
+
+    name, family, title, tolerance = "plain", "hand", "Plain", 1e-9
+
+    def solve(self, assembly: Assembly, settings: Any) -> Answer:
+        return Answer(Status.NOT_CONVERGED, Finding.NONE, "Nothing was looked for.")
+
+
+class Alone:
+    """A class like a method that does not inherit from it."""
+
+    name, family, title, tolerance = "alone", "hand", "Alone", 1e-9
+
+    def solve(self, assembly: Assembly, settings: Any) -> Answer:
+        return Plain().solve(assembly, settings)
 
 
 def imported(program: str, *words: str | Path) -> set[str]:
@@ -41,21 +78,48 @@ def test_lists_and_drawings_import_no_solver(words: tuple[str, ...], tmp_path: P
     more = ("-o", tmp_path / "wall.svg") if words[0] == "show" else ()
     modules = imported(COMMAND, *words, *more)
     assert not modules & SOLVERS
-    assert not {name for name in modules if name.startswith("methods.") and name.endswith(("adapter", "kernels"))}
+    methods = map(load_method, method_names())
+    assert not modules & {method.solver.partition(":")[0] for method in methods if isinstance(method, Listed)}
+    assert not {name for name in modules if name.startswith("methods.") and name.endswith("kernels")}
 
 
 def test_a_run_imports_the_solver_of_its_method_alone():
     modules = imported(COMMAND, "run", "la-associated", "single-block")
-    assert {"scipy", "highspy", "methods.la.associated_adapter"} <= modules
+    assert {"scipy", "highspy", "methods.la.associated"} <= modules
     assert not modules & {"osqp", "pymunk", "sqlite3", "pandas", "matplotlib"}
 
 
 @pytest.mark.parametrize("name", [name for name in shipped(method_names()) if name not in ("dummy", "de-mujoco")])
-def test_what_declares_a_method_leads_to_what_solves_it(name: str):
-    declared = load_method(name)
-    assert isinstance(declared, Declared)
-    module, _, solver = declared.solver.partition(":")
-    prepared(declared)
-    found = getattr(sys.modules[module], solver)
-    assert issubclass(found, type(declared))
-    assert found().name == name, "the solver answers under the same name"
+def test_a_listed_method_leads_to_what_solves_it(name: str):
+    listed = load_method(name)
+    assert isinstance(listed, Listed)
+    assert listed.name == name
+    prepared(listed)
+    found = resolve_name(listed.solver)
+    assert issubclass(found, Solver)
+    takes_motions = found.solve_from is not Solver.solve_from
+    assert takes_motions == listed.follows_motions
+
+
+@pytest.mark.parametrize("given", ["tests.engine.test_imports:Alone", "tests.engine.test_imports:GROUP"])
+def test_what_an_entry_point_leads_to_must_be_a_method(given: str, monkeypatch: pytest.MonkeyPatch):
+    monkeypatch.setattr("harness.model.method.method_points", lambda: (EntryPoint("alone", given, GROUP),))
+    with pytest.raises(InputError, match=r"method alone.* is no method.*inherits from"):
+        load_method("alone")
+
+
+@pytest.mark.parametrize("given", [Alone(), Dummy, None])
+def test_what_is_given_in_place_of_a_name_must_be_a_method(given: object):
+    with pytest.raises(InputError, match=r"is no method.*inherits from"):
+        drystone.analyse(drystone.library_wall("single-block"), given)
+
+
+def test_a_method_has_defaults_for_all_but_what_it_says_and_solves():
+    method = Plain()
+    assert prepared(method) is method
+    assert (method.fresh_process, method.shares_work, method.follows_motions) == (False, False, False)
+    assert method.traits == Traits()
+    assert method.Settings().model_dump() == {}
+    with pytest.raises(NotImplementedError):
+        method.solve_from(drystone.library_wall("single-block").assembly, method.Settings(), [])
+    assert drystone.analyse(drystone.library_wall("single-block"), method).finding is Finding.NONE

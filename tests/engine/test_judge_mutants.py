@@ -208,7 +208,7 @@ def test_the_engine_rejects_from_a_method_what_the_judge_rejects(data: st.DataOb
     item = data.draw(st.sampled_from(known()))
     answer = spoiled(data, item)
 
-    class Spoiling:
+    class Spoiling(Method):
         name, family, title, tolerance = "spoiling", "hand", "Spoiling", TOLERANCE
         Settings = Settings
 

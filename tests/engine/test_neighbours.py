@@ -18,7 +18,7 @@ from harness.engine.sweep.neighbours import handed_on
 from harness.engine.sweep.running import Row, sweep
 from harness.engine.sweep.study import Study
 from harness.engine.sweep.summary import summarise, varied_of
-from harness.model.method import Finding, FollowsMotions, Status, load_method
+from harness.model.method import Finding, Status, load_method
 from harness.model.reading import validate
 from harness.model.result import relative_velocities
 from tests.model.test_components import three_columns
@@ -93,7 +93,7 @@ def test_runs_of_other_joints_or_settings_take_nothing_from_each_other(tmp_path:
 
 def test_a_given_mechanism_counts_by_the_forces_of_this_wall_alone():
     la = load_method("la")
-    assert isinstance(la, FollowsMotions)
+    assert la.follows_motions
     rough, smooth = assembly(stack(1), friction=2.0), assembly(stack(1), friction=0.2)
     topples = la.solve(rough, la.Settings())
     assert topples.multiplier == pytest.approx(1.5)
@@ -107,7 +107,7 @@ def test_a_given_mechanism_counts_by_the_forces_of_this_wall_alone():
 
 def test_a_component_in_which_nothing_given_moves_is_searched():
     la = load_method("la")
-    assert isinstance(la, FollowsMotions)
+    assert la.follows_motions
     wall = three_columns((1.0, 0.0), (1.0, 0.0), (1.0, 0.0))
     whole = la.solve(wall, la.Settings())
     taken = la.solve_from(wall, la.Settings(), [motion_of(wall, whole.mechanism)])

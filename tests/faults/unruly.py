@@ -16,7 +16,7 @@ from typing import Any
 import numpy as np
 
 from harness.model.assembly import Assembly
-from harness.model.method import Answer, Finding, Settings, Status
+from harness.model.method import Answer, Finding, Method, Settings, Status
 
 
 class UnrulySettings(Settings):
@@ -64,7 +64,7 @@ ANSWERS: dict[str, dict[str, Any]] = {
 """Answers with one thing wrong."""
 
 
-class Unruly:
+class Unruly(Method):
     """Answers as ordered."""
 
     name = family = "unruly"

@@ -11,8 +11,8 @@ from harness.model.assembly import Assembly
 from harness.model.build import build
 from harness.model.method import Finding
 from harness.model.wall import Wall
-from methods.fe.gap_spring_adapter import GapSprings
-from methods.fe.path_settings import GapSpringsSettings
+from methods.fe.gap_springs import GapSprings
+from methods.fe.settings import GapSpringsSettings
 from methods.springs.patterns import arch
 
 CLOSED_FORM = 1e-8  # what issue 5 asks of slide, overturn, incline and the arches under acceleration

@@ -18,8 +18,9 @@ from harness.model.assembly import Assembly
 from harness.model.build import build
 from harness.model.method import Answer, Finding, Status, load_method
 from harness.model.reading import parse_wall
-from methods.fe.gap_spring_adapter import GapSprings
-from methods.fe.path_settings import GapSpringsSettings
+from methods.fe.gap_springs import GapSprings
+from methods.fe.methods import FE
+from methods.fe.settings import GapSpringsSettings
 from methods.springs.model.factor import make_factor
 from methods.springs.model.wall_model import build_model
 from methods.springs.path.plateau import check
@@ -94,7 +95,7 @@ def test_fe_answer_is_an_exact_collapse_state() -> None:
     assert answer.forces is not None
     assert answer.mechanism is not None
     state = check(wall, answer.multiplier, answer.forces, answer.mechanism)
-    assert state.worst < GapSprings.tolerance
+    assert state.worst < FE.tolerance
     assert state.work_multiplier == pytest.approx(answer.multiplier, rel=1e-8)
 
 

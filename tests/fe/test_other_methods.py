@@ -12,8 +12,8 @@ from harness.model.assembly import Assembly
 from harness.model.build import build
 from harness.model.method import Finding, Status
 from harness.model.wall import Wall
-from methods.fe.gap_spring_adapter import ConvexSteps, GapSprings, IncrementalNewton
-from methods.fe.path_settings import ConvexSettings, GapSpringsSettings, NewtonSettings
+from methods.fe.gap_springs import ConvexSteps, GapSprings, IncrementalNewton
+from methods.fe.settings import ConvexSettings, GapSpringsSettings, NewtonSettings
 from methods.springs.patterns import block_on_halves, running_bond
 
 

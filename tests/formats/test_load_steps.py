@@ -21,7 +21,7 @@ from harness.model.load_steps import STATES, UNKNOWN, LoadSteps
 from harness.model.method import Answer, load_method
 from harness.model.reading import parse_wall
 from harness.model.result import Result, result_of
-from methods.fe.path_settings import GapSpringsSettings
+from methods.fe.settings import GapSpringsSettings
 from methods.springs.path.path_record import LoadStep, PathRecord
 from tests.walls import running_bond, wall_data
 

@@ -14,7 +14,7 @@ from harness.model.build import build
 from harness.model.case import case_folders, read_case, shipped_cases
 from harness.model.errors import InputError
 from harness.model.joint_law import JointLaw
-from harness.model.method import Answer, Finding, check_takes, load_method, method_names, traits_of
+from harness.model.method import Answer, Finding, check_takes, load_method, method_names
 from harness.model.result import result_of
 from harness.model.wall import Wall
 from tests.walls import assembly, running_bond, wall_data
@@ -128,7 +128,7 @@ def test_methods_without_dilatancy_refuse_the_wall_by_name():
     takes = set()
     for name in method_names():
         method = load_method(name)
-        if traits_of(method).any_dilatancy:
+        if method.traits.any_dilatancy:
             takes.add(name)
             check_takes(method, wall)
             continue

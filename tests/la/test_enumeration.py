@@ -14,9 +14,9 @@ from hypothesis import strategies as st
 
 from harness.model.assembly import Assembly
 from harness.model.method import Finding, Status
-from methods.la.associated_adapter import AssociatedLimitAnalysis
-from methods.la.core.search_settings import AssociatedSettings, SearchSettings
-from methods.la.search_adapter import LimitAnalysis
+from methods.la.associated import AssociatedLimitAnalysis
+from methods.la.search import LimitAnalysis
+from methods.la.settings import AssociatedSettings, SearchSettings
 from tests.enumeration import least_by_enumeration
 from tests.la.bodies import column
 

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import warnings
 from pathlib import Path
-from typing import Any
 
 import pytest
 
@@ -12,12 +11,12 @@ from cases.families import wall_21
 from harness.model.assembly import Assembly
 from harness.model.build import build
 from harness.model.case import read_case
-from harness.model.method import Finding, Status
+from harness.model.method import Finding, Status, load_method
 from harness.model.wall import Wall
-from methods.la.associated_adapter import AssociatedLimitAnalysis
-from methods.la.core.search_settings import AssociatedSettings, FromFeSettings, SearchSettings
-from methods.la.literature.literature_adapters import FromFiniteElements, TrescaSequence
-from methods.la.search_adapter import LimitAnalysis
+from methods.la.associated import AssociatedLimitAnalysis
+from methods.la.literature.solvers import FromFiniteElements
+from methods.la.search import LimitAnalysis
+from methods.la.settings import AssociatedSettings, FromFeSettings, SearchSettings
 from tests.la.bodies import column, running_bond
 from tests.walls import assembly, stack, wedge
 
@@ -65,10 +64,11 @@ def test_start_from_finite_elements_never_answers_above_their_plateau(case: str)
     assert answer.multiplier <= answer.details["fe_multiplier"] * (1.0 + 1e-9)
 
 
-@pytest.mark.parametrize("method", [FromFiniteElements, TrescaSequence])
-def test_load_that_presses_the_wall_on_its_base_is_unbounded_without_a_state_to_start_from(method: Any) -> None:
+@pytest.mark.parametrize("name", ["la-from-fe", "la-tresca"])
+def test_load_that_presses_the_wall_on_its_base_is_unbounded_without_a_state_to_start_from(name: str) -> None:
+    method = load_method(name)
     pressed = assembly(stack(3), loads={"live": {"body": [{"per_weight": [0, -1]}]}})
-    answer = method().solve(pressed, method.Settings())
+    answer = method.solve(pressed, method.Settings())
     assert (answer.status, answer.finding) == (Status.OK, Finding.UNBOUNDED)
 
 
@@ -118,8 +118,9 @@ def test_forces_of_a_lower_friction_lead_to_a_mechanism_where_none_is_carried() 
 
 
 @pytest.mark.parametrize(("courses", "bricks"), [(6, 3), (28, 16)])
-@pytest.mark.parametrize("method", [LimitAnalysis(), AssociatedLimitAnalysis()])
-def test_wall_without_friction_bears_exactly_nothing(method: Any, courses: int, bricks: int) -> None:
+@pytest.mark.parametrize("name", ["la", "la-associated"])
+def test_wall_without_friction_bears_exactly_nothing(name: str, courses: int, bricks: int) -> None:
+    method = load_method(name)
     answer = method.solve(running_bond(courses, bricks, 0.2, 0.0), method.Settings())
     assert answer.multiplier == 0.0
     assert " 0" in answer.sentence

@@ -6,16 +6,16 @@ import numpy as np
 import pytest
 
 from harness.model.method import Answer, Finding, Status
-from methods.la.associated_adapter import AssociatedLimitAnalysis, AssociatedLimitAnalysisCvxpy
-from methods.la.core.search_settings import (
+from methods.la.associated import AssociatedLimitAnalysis, AssociatedLimitAnalysisCvxpy
+from methods.la.literature.solvers import PaperProgramme, TrescaSequence
+from methods.la.search import LimitAnalysis
+from methods.la.settings import (
     AssociatedSettings,
     CvxpySettings,
     PaperSettings,
     SearchSettings,
     TrescaSettings,
 )
-from methods.la.literature.literature_adapters import PaperProgramme, TrescaSequence
-from methods.la.search_adapter import LimitAnalysis
 from tests.la.bodies import block_on_halves, column, running_bond
 
 

@@ -10,11 +10,10 @@ from scipy.linalg import block_diag
 
 from benchmarks.la_and_fe import ABOVE, facade, solved
 from harness.model.method import Finding
-from methods.la.associated_adapter import AssociatedLimitAnalysis
+from methods.la.associated import AssociatedLimitAnalysis
 from methods.la.core.exact import close_tight
 from methods.la.core.newton_matrix import NewtonMatrix
 from methods.la.core.problem import make_problem
-from methods.la.core.search_settings import AssociatedSettings, SearchSettings
 from methods.la.core.state import residuals
 from methods.la.interior.arc import STEPPING, ArcPath, Stepping
 from methods.la.interior.associated import END
@@ -23,7 +22,8 @@ from methods.la.interior.interior_point import PathSettings, follow_path, start_
 from methods.la.interior.newton_step import NewtonStep, Point
 from methods.la.interior.region import with_all_above
 from methods.la.least import least_of
-from methods.la.search_adapter import LimitAnalysis
+from methods.la.search import LimitAnalysis
+from methods.la.settings import AssociatedSettings, SearchSettings
 from methods.la.sources import explore
 from methods.la.sources.arcs import ArcPaths
 from methods.la.sources.budget import Budget, Limits

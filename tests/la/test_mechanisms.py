@@ -10,8 +10,8 @@ from harness.model.assembly import Assembly, FloatArray
 from harness.model.build import build
 from harness.model.wall import Wall
 from methods.la.core.problem import make_problem
-from methods.la.core.search_settings import SearchSettings
-from methods.la.search_adapter import LimitAnalysis
+from methods.la.search import LimitAnalysis
+from methods.la.settings import SearchSettings
 from methods.la.sources.mechanisms import extreme_motions, least_of_block
 from tests.la.bodies import column
 

@@ -11,9 +11,9 @@ from benchmarks.walls import drawn, irregular_wall
 from harness.model.assembly import Assembly
 from methods.la.core.newton_matrix import NewtonMatrix
 from methods.la.core.problem import make_problem
-from methods.la.core.search_settings import SearchSettings
 from methods.la.core.state import CollapseState, polished, residuals
-from methods.la.search_adapter import LimitAnalysis
+from methods.la.search import LimitAnalysis
+from methods.la.settings import SearchSettings
 from methods.la.sources import SOURCES, Source, explore
 from methods.la.sources.budget import Budget, Limits
 from methods.la.sources.search import Search

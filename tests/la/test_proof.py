@@ -13,10 +13,10 @@ from methods.la.certify.proof import Proof, _Certificates, _Part, prove
 from methods.la.core.extremes import ForceProgramme
 from methods.la.core.newton_matrix import NewtonMatrix
 from methods.la.core.problem import Problem, make_problem
-from methods.la.core.search_settings import SearchSettings
 from methods.la.core.state import CollapseState
 from methods.la.find_certificate import find_certificate
-from methods.la.search_adapter import LimitAnalysis
+from methods.la.search import LimitAnalysis
+from methods.la.settings import SearchSettings
 from methods.la.sources.search import Search
 from methods.proof.verify.checker import verify
 from tests.la.bodies import block_on_halves, column, running_bond

@@ -11,11 +11,11 @@ from hypothesis import strategies as st
 
 from harness.engine.symmetry import VIEWS
 from harness.model.assembly import Assembly
-from harness.model.method import Finding, Status
-from methods.la.associated_adapter import AssociatedLimitAnalysis
+from harness.model.method import Finding, Status, load_method
+from methods.la.associated import AssociatedLimitAnalysis
 from methods.la.core.flexibility import Compliance
-from methods.la.core.search_settings import AssociatedSettings, SearchSettings
-from methods.la.search_adapter import LimitAnalysis
+from methods.la.search import LimitAnalysis
+from methods.la.settings import AssociatedSettings, SearchSettings
 from tests.la.bodies import column, running_bond
 
 QUICK = SearchSettings(effort="quick")
@@ -66,7 +66,7 @@ def test_least_is_never_above_greatest_on_random_columns(
 def test_wall_that_overhangs_too_far_falls_by_a_mechanism_that_gains_dead_work() -> None:
     wall = column([0.3], [0.2], 0.7)
     wall = replace(wall, dead=wall.dead + np.array([[0, 0, 0], [0, 0, 1.0]]))
-    for method in (LimitAnalysis(), AssociatedLimitAnalysis()):
+    for method in (load_method("la"), load_method("la-associated")):
         answer = method.solve(wall, method.Settings())
         assert answer.finding is Finding.FALLS
         assert answer.multiplier is None
@@ -84,7 +84,7 @@ def test_wall_without_live_load_stands() -> None:
 def test_load_that_presses_down_cannot_make_a_wall_collapse() -> None:
     wall = column([0.3, 0.3], [0.2, 0.2], 0.7)
     wall = replace(wall, live=wall.dead.copy())
-    for method in (LimitAnalysis(), AssociatedLimitAnalysis()):
+    for method in (load_method("la"), load_method("la-associated")):
         answer = method.solve(wall, method.Settings())
         assert answer.finding is Finding.UNBOUNDED
         assert answer.multiplier is None

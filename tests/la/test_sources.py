@@ -13,8 +13,8 @@ from methods.la.certify.proof import prove
 from methods.la.core.newton_matrix import NewtonMatrix
 from methods.la.core.problem import make_problem
 from methods.la.core.programmes import StaticProgramme
-from methods.la.core.search_settings import SearchSettings
-from methods.la.search_adapter import LimitAnalysis
+from methods.la.search import LimitAnalysis
+from methods.la.settings import SearchSettings
 from methods.la.sources import SOURCES, explore
 from methods.la.sources.budget import Budget, Limits, Sizes
 from methods.la.sources.paths import CentralPath

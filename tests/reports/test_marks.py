@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from harness.model.comparison import CaseResults, ComparisonRun
-from harness.model.method import Traits, load_method, method_names, traits_of
+from harness.model.method import Traits, load_method, method_names
 from harness.model.result import Result
 from reports import build, charts, marks
 from tests.reports import samples
@@ -17,7 +17,7 @@ def of(method: str, traits: Traits | None = None) -> Result:
 
 
 def test_methods_installed_are_told_apart_without_colour():
-    looks = [marks.mark_of(of(name, traits_of(load_method(name)))) for name in method_names()]
+    looks = [marks.mark_of(of(name, load_method(name).traits)) for name in method_names()]
     assert all(look.shape and look.colour.startswith("#") for look in looks)
     assert len({(look.marker, look.line) for look in looks}) == len(looks)
 

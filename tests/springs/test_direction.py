@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from harness.model.assembly import FloatArray, IntArray
-from methods.fe.path_settings import GapSpringsSettings
+from methods.fe.settings import GapSpringsSettings
 from methods.springs.model.factor import DenseFactor, SparseFactor
 from methods.springs.model.gap_law import OPEN, SLIP_PLUS, STICK, neighbour_states
 from methods.springs.model.wall_model import WallModel, build_model

@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from methods.fe.path_settings import GapSpringsSettings
+from methods.fe.settings import GapSpringsSettings
 from methods.springs.model import factor as factor_module
 from methods.springs.model.factor import DenseFactor, Factor, SingularTangent, SparseFactor, refactor_any
 from methods.springs.model.gap_law import OPEN, STICK, neighbour_states

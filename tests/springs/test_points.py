@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from pydantic import ValidationError
 
-from methods.fe.path_settings import GapSpringsSettings
+from methods.fe.settings import GapSpringsSettings
 from methods.springs.model.points import gap_points
 
 

@@ -9,7 +9,7 @@ from methods.la.core.problem import make_problem
 from methods.la.interior.interior_point import PathSettings, follow_path, start_point
 from methods.springs.model.factor import make_factor
 from methods.springs.model.gap_law import gap_forces
-from methods.springs.model.spring_settings import GapSettings
+from methods.springs.model.settings import GapSettings
 from methods.springs.model.wall_model import build_model
 from methods.springs.path.preload import preloaded
 from tests.la.bodies import running_bond

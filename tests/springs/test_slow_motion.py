@@ -10,7 +10,7 @@ import pytest
 from benchmarks.walls import drawn
 from harness.model.assembly import Assembly
 from methods.springs.model.factor import make_factor
-from methods.springs.model.spring_settings import GapSettings
+from methods.springs.model.settings import GapSettings
 from methods.springs.model.wall_model import build_model
 from methods.springs.patterns import running_bond
 from methods.springs.rest.newton import newton

@@ -20,7 +20,7 @@ from harness.engine.store import Store
 from harness.engine.sweep.expand import Motion, SweepRun, Walls
 from harness.engine.sweep.running import Row
 from harness.model.assembly import Assembly, IntArray
-from harness.model.method import Finding, FollowsMotions, Status, load_method
+from harness.model.method import Finding, Status, load_method
 from harness.model.result import relative_velocities
 
 Make = Callable[[Sequence[SweepRun]], list[Row]]
@@ -123,7 +123,7 @@ def handed_on(
 
 def _cells(runs: Sequence[SweepRun], rows: dict[int, Row], nearest: int) -> Iterable[_Cell]:
     """The runs that may take states over, each with its neighbours."""
-    follow = {name for name in {run.method for run in runs} if isinstance(load_method(name), FollowsMotions)}
+    follow = {name for name in {run.method for run in runs} if load_method(name).follows_motions}
     walls, groups = Walls(), defaultdict[Hashable, list[_Cell]](list)
     for run in runs:
         row = rows[run.number]

@@ -21,7 +21,7 @@ from methods.de.engines.courses import Tuning, courses, is_chain, light_top, mas
 from methods.de.engines.engine import motion_units
 from methods.de.engines.space import polygon_gyration
 from methods.de.engines.strips import STRIP, require_lengths
-from methods.de.hold_settings import MujocoSettings
+from methods.de.settings import MujocoSettings
 from methods.numerics.optional import optional
 
 

@@ -9,8 +9,8 @@ import numpy as np
 
 from harness.model.assembly import FloatArray
 from methods.de.engines.engine import Engine, Measured, motion_units
-from methods.de.hold_settings import HoldSettings
 from methods.de.holds.motion import Motion, MotionProof, Trend, by_power, by_virtual_work
+from methods.de.settings import HoldSettings
 
 SMALL = 0.01
 """Live load, as a part of the dead load, below which residuals are told as shares of it: .0001 and .002 in `de`."""

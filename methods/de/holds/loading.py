@@ -4,23 +4,9 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from dataclasses import dataclass
 
+from methods.de.settings import FALL
 
-@dataclass(frozen=True)
-class FallTests:
-    """When a wall that keeps its displacements falls.
-
-    Attributes:
-        reach: length scales by which a block moves under one load.
-        rise: factor on the rise of the multiplier from one that shows no motion to the next.
-    """
-
-    reach: float = 0.25
-    rise: float = 2.0
-
-
-FALL = FallTests()
 Rests = Callable[[float], bool]
 """Whether the wall comes to rest at a multiplier, from where it rested last. If not, it is put back there."""
 

@@ -6,9 +6,9 @@ from dataclasses import dataclass, field
 
 from harness.model.assembly import FloatArray
 from methods.de.engines.engine import Engine
-from methods.de.hold_settings import HoldSettings
 from methods.de.holds.hold import Hold, State, hold, least_motion, settle
 from methods.de.holds.motion import MotionProof
+from methods.de.settings import HoldSettings
 
 
 @dataclass(frozen=True)

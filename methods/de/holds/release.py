@@ -8,7 +8,7 @@ import numpy as np
 
 from harness.model.assembly import Assembly, FloatArray
 from methods.de.engines.bodies import BODIES, BlockSpace
-from methods.de.hold_settings import ReleaseSettings
+from methods.de.settings import ReleaseSettings
 
 
 @dataclass(frozen=True, eq=False)

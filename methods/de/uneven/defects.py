@@ -8,13 +8,11 @@ experimental load 20 % below the computed one, and ask for the contacts of the i
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import Literal
 
 import numpy as np
 
 from harness.model.assembly import Assembly, BoolArray, FloatArray
-
-Faces = Literal["beds", "heads", "both"]
+from methods.de.settings import Faces
 
 
 def block_height(assembly: Assembly) -> float:

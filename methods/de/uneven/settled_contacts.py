@@ -14,9 +14,10 @@ import numpy as np
 from harness.model.assembly import Assembly, FloatArray
 from methods.de.engines.bodies import BlockSpace
 from methods.de.engines.engine import motion_units
-from methods.de.holds.loading import FALL, raise_until_it_falls, shown_to_fall
+from methods.de.holds.loading import raise_until_it_falls, shown_to_fall
 from methods.de.holds.motion import by_travel
-from methods.de.uneven.defects import Faces, block_height
+from methods.de.settings import FALL, Faces
+from methods.de.uneven.defects import block_height
 
 
 @dataclass(frozen=True)

@@ -10,7 +10,7 @@ from __future__ import annotations
 from dataclasses import dataclass, field, replace
 
 from methods.la.core.problem import Problem
-from methods.la.core.search_settings import SearchSettings
+from methods.la.settings import SearchSettings
 
 
 @dataclass(frozen=True)

@@ -32,7 +32,7 @@ from methods.la.sources.record import LEAST_IMPROVEMENT
 from methods.la.sources.search import Search
 from methods.la.sources.unloaded import smoothed
 from methods.springs.model.factor import SingularTangent, make_factor
-from methods.springs.model.spring_settings import GapSettings
+from methods.springs.model.settings import GapSettings
 from methods.springs.model.wall_model import build_model
 from methods.springs.path.continuation import Tracer
 from methods.springs.path.follow import follow

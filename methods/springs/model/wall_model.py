@@ -30,7 +30,7 @@ from methods.springs.model.gap_law import (
     tangent_coefficients,
 )
 from methods.springs.model.points import gap_points
-from methods.springs.model.spring_settings import GapSettings
+from methods.springs.model.settings import GapSettings
 
 
 @dataclass(frozen=True)

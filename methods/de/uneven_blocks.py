@@ -3,16 +3,15 @@
 from __future__ import annotations
 
 from harness.model.assembly import Assembly
-from harness.model.method import Answer, Finding, Status
+from harness.model.method import Answer, Finding, Solver, Status
 from harness.model.rings import rings_of
-from methods.de.declared_de import DeclaredUneven
+from methods.de.settings import UnevenSettings
 from methods.de.uneven.settled_contacts import Loading, load_uneven
-from methods.de.uneven_settings import UnevenSettings
 
 BRACKET_MEANING = "[highest multiplier at which it came to rest, lowest at which it fell]"
 
 
-class UnevenBlocks(DeclaredUneven):
+class UnevenBlocks(Solver):
     """Distinct elements on a wall with seeded defects of planarity (C. Baggio and P. Trovalusci 1995, section 6)."""
 
     def solve(self, assembly: Assembly, settings: UnevenSettings) -> Answer:

@@ -12,16 +12,14 @@ import time
 from typing import Any
 
 from harness.model.assembly import Assembly
-from harness.model.method import Answer, Finding, Status, load_method
-from methods.de.declared_de import DeclaredClosed
-from methods.de.holds.loading import FALL
-from methods.de.imperfect import BRACKET_MEANING
+from harness.model.method import Answer, Finding, Solver, Status, load_method
+from methods.de.settings import FALL, ClosedSettings
 from methods.de.uneven.gapped import GappedWall, load_gapped
 from methods.de.uneven.settled_contacts import load_uneven, settle_uneven
-from methods.de.uneven_settings import ClosedSettings
+from methods.de.uneven_blocks import BRACKET_MEANING
 
 
-class ClosedContacts(DeclaredClosed):
+class ClosedContacts(Solver):
     """Contacts and gaps of an uneven wall from distinct elements, its multiplier from gap springs (`de-closed`)."""
 
     def solve(self, assembly: Assembly, settings: ClosedSettings) -> Answer:

@@ -1,4 +1,4 @@
-"""The adapters of the literature's methods and of co-operation with finite elements."""
+"""What solves the methods of the literature and the co-operation with finite elements."""
 
 from __future__ import annotations
 
@@ -8,18 +8,18 @@ import numpy as np
 
 from harness.model.assembly import Assembly
 from harness.model.method import Answer, Finding, Status, load_method
+from methods.la.answers import NO_MOTION, collapse_answer, not_converged, unbounded_answer
 from methods.la.core.newton_matrix import NewtonMatrix
 from methods.la.core.problem import Problem
 from methods.la.core.state import CollapseState, moving_contacts, polished, tight_contacts
-from methods.la.declared_la import DeclaredFromFe, DeclaredPaper, DeclaredTresca
 from methods.la.family import LimitAnalysisFamily
 from methods.la.interior.associated import solve_associated
 from methods.la.literature.cooperation import project_forces
 from methods.la.literature.paper_programme import PaperResult, solve_paper_programme
 from methods.la.literature.tresca import tresca_sequence
+from methods.la.methods import LA_FROM_FE, LA_PAPER, LA_TRESCA
 from methods.la.sources.budget import Budget, Limits
 from methods.la.sources.search import Search
-from methods.la.state_answers import NO_MOTION, collapse_answer, not_converged, unbounded_answer
 from methods.numerics.failures import NumericalFailure
 
 
@@ -36,7 +36,7 @@ def without_start(given: Answer) -> Answer:
     return not_converged("The finite-element run gave no collapse state to start from.")
 
 
-class PaperProgramme(LimitAnalysisFamily, DeclaredPaper):
+class PaperProgramme(LimitAnalysisFamily):
     """The paper's own programme (8)-(11) in reduced unknowns, by Ipopt (`la-paper`)."""
 
     def answer(self, assembly: Assembly, problem: Problem, newton: NewtonMatrix, settings: Any) -> Answer:
@@ -58,7 +58,7 @@ class PaperProgramme(LimitAnalysisFamily, DeclaredPaper):
             result = solve_paper_programme(problem, start, settings.max_iterations, settings.epsilons)
         except (ValueError, NumericalFailure) as error:
             return not_converged(f"The programme could not be set up or solved: {error}")
-        return paper_answer(problem, newton, result, settings.start, self.tolerance)
+        return paper_answer(problem, newton, result, settings.start, LA_PAPER.tolerance)
 
 
 def paper_answer(problem: Problem, newton: NewtonMatrix, result: PaperResult, start: str, tolerance: float) -> Answer:
@@ -90,7 +90,7 @@ def paper_answer(problem: Problem, newton: NewtonMatrix, result: PaperResult, st
     )
 
 
-class TrescaSequence(LimitAnalysisFamily, DeclaredTresca):
+class TrescaSequence(LimitAnalysisFamily):
     """Sequence of programmes with the friction bound of the previous iterate: a baseline (`la-tresca`)."""
 
     def answer(self, assembly: Assembly, problem: Problem, newton: NewtonMatrix, settings: Any) -> Answer:
@@ -118,13 +118,13 @@ class TrescaSequence(LimitAnalysisFamily, DeclaredTresca):
             state,
             f"The sequence settles at {problem.to_multiplier(state.multiplier):.7g}: a collapse state, "
             "seldom the least one.",
-            self.tolerance,
+            LA_TRESCA.tolerance,
             len(result.history),
             details,
         )
 
 
-class FromFiniteElements(LimitAnalysisFamily, DeclaredFromFe):
+class FromFiniteElements(LimitAnalysisFamily):
     """Ray descent from the finite-element collapse state, against a cold start (`la-from-fe`)."""
 
     def answer(self, assembly: Assembly, problem: Problem, newton: NewtonMatrix, settings: Any) -> Answer:
@@ -169,7 +169,7 @@ class FromFiniteElements(LimitAnalysisFamily, DeclaredFromFe):
             state,
             f"From the finite-element state at {given.multiplier:.6g} the descent leads to a collapse state at "
             f"{state.multiplier * unit:.7g}.",
-            self.tolerance,
+            LA_FROM_FE.tolerance,
             spent,
             details,
         )

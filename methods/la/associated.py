@@ -6,15 +6,14 @@ from typing import Any
 
 from harness.model.assembly import Assembly
 from harness.model.method import Answer
+from methods.la.answers import collapse_answer, not_converged, unbounded_answer
 from methods.la.core.newton_matrix import NewtonMatrix
 from methods.la.core.problem import Problem
-from methods.la.declared_la import DeclaredAssociated, DeclaredCvxpy
 from methods.la.family import LimitAnalysisFamily
 from methods.la.interior.associated import AssociatedResult, solve_associated, solve_with_cvxpy, with_mechanism
-from methods.la.state_answers import collapse_answer, not_converged, unbounded_answer
 
 
-class AssociatedLimitAnalysis(LimitAnalysisFamily, DeclaredAssociated):
+class AssociatedLimitAnalysis(LimitAnalysisFamily):
     """Greatest multiplier of statics, the linear programme of associated limit analysis (`la-associated`)."""
 
     def answer(self, assembly: Assembly, problem: Problem, newton: NewtonMatrix, settings: Any) -> Answer:
@@ -22,7 +21,7 @@ class AssociatedLimitAnalysis(LimitAnalysisFamily, DeclaredAssociated):
         return associated_answer(problem, solve_associated(problem, newton, settings.solver), 1e-9)
 
 
-class AssociatedLimitAnalysisCvxpy(LimitAnalysisFamily, DeclaredCvxpy):
+class AssociatedLimitAnalysisCvxpy(LimitAnalysisFamily):
     """The same linear programme written in cvxpy, to be read beside the formulas (`la-associated-cvxpy`)."""
 
     def answer(self, assembly: Assembly, problem: Problem, newton: NewtonMatrix, settings: Any) -> Answer:

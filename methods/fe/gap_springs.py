@@ -11,12 +11,8 @@ import numpy as np
 
 from harness.model.assembly import Assembly
 from harness.model.load_steps import NAME
-from harness.model.method import Answer, Finding, Status
-from methods.fe.convex_steps import bracket_collapse
-from methods.fe.declared_fe import DeclaredConvex, DeclaredGapSprings, DeclaredNewton
-from methods.fe.histories import HISTORIES, HistoryResult, Plan, trace_history, with_initial_shear
-from methods.fe.incremental import IncrementalResult, march
-from methods.fe.path_answers import (
+from harness.model.method import Answer, Finding, Solver, Status
+from methods.fe.answers import (
     bracket_answer,
     collapse_answer,
     compact,
@@ -26,7 +22,10 @@ from methods.fe.path_answers import (
     standing_answer,
     stands,
 )
-from methods.fe.path_settings import GapSpringsSettings, NewtonSettings
+from methods.fe.convex_steps import bracket_collapse
+from methods.fe.histories import HISTORIES, HistoryResult, Plan, trace_history, with_initial_shear
+from methods.fe.incremental import IncrementalResult, march
+from methods.fe.settings import GapSpringsSettings, NewtonSettings
 from methods.numerics.claims import analysed
 from methods.springs.model.factor import Factor, make_factor
 from methods.springs.model.wall_model import WallModel, build_model
@@ -63,7 +62,7 @@ class EventLimits:
 EVENTS = EventLimits()
 
 
-class GapSprings(DeclaredGapSprings):
+class GapSprings(Solver):
     """Gap-spring finite elements with the path traced exactly, kink by kink (`fe`)."""
 
     def solve(self, assembly: Assembly, settings: Any) -> Answer:
@@ -155,7 +154,7 @@ def _incremental_answer(model: WallModel, result: IncrementalResult, sentence: s
     )
 
 
-class IncrementalNewton(DeclaredNewton):
+class IncrementalNewton(Solver):
     """Ordinary incremental Newton: load control, then displacement control (`fe-newton`)."""
 
     def solve(self, assembly: Assembly, settings: Any) -> Answer:
@@ -179,7 +178,7 @@ class IncrementalNewton(DeclaredNewton):
         return _incremental_answer(model, result, result.sentence, details)
 
 
-class ConvexSteps(DeclaredConvex):
+class ConvexSteps(Solver):
     """Each step as convex quadratic programmes with frozen friction limits (`fe-qp`)."""
 
     def prepare(self) -> None:

@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 
 from harness.model.assembly import Assembly, IntArray
-from harness.model.method import Answer, Finding, OutOfTime, Status
-from methods.de.declared_de import DeclaredHolds, DeclaredMujoco, DeclaredRelease
+from harness.model.method import Answer, Finding, OutOfTime, Solver, Status
+from methods.de.answers import solve_by_holds
 from methods.de.engines.courses import Tuning
 from methods.de.engines.engine import Engine, motion_units
 from methods.de.engines.mujoco_wall import MujocoWall, SolverFailed, load_mujoco, mujoco_tunings
@@ -14,13 +14,13 @@ from methods.de.engines.space import StripSpace
 from methods.de.engines.strips import CannotModel
 from methods.de.engines.sweeps import SweptWall
 from methods.de.engines.warm_sweeps import load_sweeps
-from methods.de.hold_settings import MujocoSettings, ReleaseSettings, SweepSettings
-from methods.de.holds.answer import solve_by_holds
 from methods.de.holds.release import release
+from methods.de.methods import DE, DE_MUJOCO
+from methods.de.settings import MujocoSettings, ReleaseSettings, SweepSettings
 from methods.numerics.claims import analysed
 
 
-class DampedHolds(DeclaredHolds):
+class DampedHolds(Solver):
     """Damped holds of a wall at frozen geometry, bracketed over body orders."""
 
     def prepare(self) -> None:
@@ -28,7 +28,7 @@ class DampedHolds(DeclaredHolds):
         load_sweeps()
 
     def solve(self, assembly: Assembly, settings: SweepSettings) -> Answer:
-        """Bracket of the collapse multiplier over body orders; see `methods.de.holds.answer`."""
+        """Bracket of the collapse multiplier over body orders; see `methods.de.answers`."""
 
         return analysed(assembly, lambda part: self._of_component(part, settings))
 
@@ -38,16 +38,16 @@ class DampedHolds(DeclaredHolds):
             return make(assembly, blocks, joints, settings.iterations, tuning)
 
         try:
-            return solve_by_holds(assembly, settings, engine, self.tolerance)
+            return solve_by_holds(assembly, settings, engine, DE.tolerance)
         except CannotModel as error:
             return Answer(Status.REFUSED, Finding.NONE, str(error))
 
 
-class MujocoHolds(DeclaredMujoco):
+class MujocoHolds(Solver):
     """The holds, the bracket and the orders of `de` on MuJoCo, so that an answer does not hang on one engine."""
 
     def solve(self, assembly: Assembly, settings: MujocoSettings) -> Answer:
-        """Bracket of the collapse multiplier over body orders; see `methods.de.holds.answer`.
+        """Bracket of the collapse multiplier over body orders; see `methods.de.answers`.
 
         Raises:
             InputError: mujoco is not installed.
@@ -64,14 +64,14 @@ class MujocoHolds(DeclaredMujoco):
             return MujocoWall(assembly, blocks, joints, settings.iterations, tuning, soft[tuning], ratio)
 
         try:
-            return solve_by_holds(assembly, settings, engine, self.tolerance, [tuning for tuning, _ in candidates])
+            return solve_by_holds(assembly, settings, engine, DE_MUJOCO.tolerance, [tuning for tuning, _ in candidates])
         except CannotModel as error:
             return Answer(Status.REFUSED, Finding.NONE, str(error))
         except SolverFailed as error:
             return Answer(Status.NOT_CONVERGED, Finding.NONE, str(error))
 
 
-class ReleasedCollapse(DeclaredRelease):
+class ReleasedCollapse(Solver):
     """The bracket of `de`, and the collapse followed through large displacements once the wall is released."""
 
     def prepare(self) -> None:

@@ -12,9 +12,9 @@ from harness.model.assembly import Assembly, IntArray
 from harness.model.method import MOVING_FORCES, Answer, Finding, OutOfTime, Status
 from methods.de.engines.courses import Tuning, courses, insertion_orders, tunings
 from methods.de.engines.engine import Engine
-from methods.de.hold_settings import HoldSettings
 from methods.de.holds.order_bracket import BRACKET, BracketSearch, OrderBracket, held_forces, mechanism_at
 from methods.de.holds.stopped import KnownBrackets, stopped_answer
+from methods.de.settings import HoldSettings
 
 BRACKET_MEANING = (
     "[lowest multiplier held, highest multiplier moving] over the body orders: every order was held at or above the "

@@ -10,21 +10,21 @@ from harness.model.components import joints_of
 from harness.model.method import Answer
 from methods.la.core.newton_matrix import NewtonMatrix
 from methods.la.core.problem import Problem
-from methods.la.declared_la import DeclaredSearch
 from methods.la.family import LimitAnalysisFamily
 from methods.la.least import least_known
+from methods.la.methods import LA
 from methods.la.sources import from_motions
 from methods.springs.warm_up import load_kernels
 
 load_kernels()
 
 
-class LimitAnalysis(LimitAnalysisFamily, DeclaredSearch):
+class LimitAnalysis(LimitAnalysisFamily):
     """Least collapse state known, under zero dilatancy (`la`): the method to use."""
 
     def answer(self, assembly: Assembly, problem: Problem, newton: NewtonMatrix, settings: Any) -> Answer:
         """The search that the settings ask for, and a lower bound where they ask for one."""
-        known = least_known(problem, newton, settings, self.tolerance)
+        known = least_known(problem, newton, settings, LA.tolerance)
         if settings.bound is None:
             return known
         from methods.la.bounds import with_bound  # the relaxation, which most searches do without
@@ -39,6 +39,6 @@ class LimitAnalysis(LimitAnalysisFamily, DeclaredSearch):
 
         def answered(part: Assembly, problem: Problem, newton: NewtonMatrix, settings: Any) -> Answer:
             sources = from_motions([motion[joints_of(part, assembly)] for motion in motions])
-            return least_known(problem, newton, settings, self.tolerance, sources)
+            return least_known(problem, newton, settings, LA.tolerance, sources)
 
         return self._of_components(assembly, settings, answered)

@@ -1,0 +1,125 @@
+"""The distinct-element methods, a row each; naming them imports no solver."""
+
+from __future__ import annotations
+
+from harness.model.method import Listed, Traits
+from methods.de.settings import (
+    ClosedSettings,
+    MujocoSettings,
+    ReleaseSettings,
+    SoftSettings,
+    SweepSettings,
+    UnevenSettings,
+)
+
+UNEVEN_RESOLUTION = 0.005
+"""Difference to which brackets of uneven walls are narrowed by default."""
+
+DE = Listed(
+    name="de",
+    family="de",
+    title="distinct elements (damped holds)",
+    solver="methods.de.damped_holds:DampedHolds",
+    Settings=SweepSettings,
+    tolerance=1e-6,
+    shares_work=True,
+    traits=Traits(
+        caption="between held and moving",
+        brackets=True,
+        moves_no_lower=True,
+        colour="#2f6b3a",
+        marker="d",
+    ),
+)
+"""Damped holds of a wall at frozen geometry, bracketed over body orders."""
+
+DE_MUJOCO = Listed(
+    name="de-mujoco",
+    family="de",
+    title="distinct elements (MuJoCo, damped holds)",
+    solver="methods.de.damped_holds:MujocoHolds",
+    Settings=MujocoSettings,
+    tolerance=1e-4,
+    traits=Traits(
+        # Three times the most that a held state lay above the associated maximum on 45 random walls: contacts give way.
+        held_accuracy=5e-4,
+        caption="between held and moving, in MuJoCo",
+        brackets=True,
+        moves_no_lower=True,
+        colour="#2f6b3a",
+        marker="<",
+        line="dashed",
+    ),
+)
+"""The holds, the bracket and the orders of `de` on MuJoCo, so that an answer does not hang on one engine."""
+
+DE_TILT = Listed(
+    name="de-tilt",
+    family="de",
+    title="distinct elements, released after the bracket",
+    solver="methods.de.damped_holds:ReleasedCollapse",
+    Settings=ReleaseSettings,
+    tolerance=1e-6,
+    traits=Traits(
+        caption="as de, then released and followed",
+        brackets=True,
+        moves_no_lower=True,
+        colour="#2f6b3a",
+        marker=">",
+        line="dotted",
+    ),
+)
+"""The bracket of `de`, and the collapse followed through large displacements once the wall is released."""
+
+DE_UNEVEN = Listed(
+    name="de-uneven",
+    family="de",
+    title="distinct elements, uneven blocks",
+    solver="methods.de.uneven_blocks:UnevenBlocks",
+    Settings=UnevenSettings,
+    tolerance=1e-6,
+    traits=Traits(
+        caption="between held and moving, uneven blocks",
+        brackets=True,
+        resolution=UNEVEN_RESOLUTION,
+        colour="#2f6b3a",
+        marker="h",
+        line="dashdot",
+    ),
+)
+"""Distinct elements on a wall with seeded defects of planarity (C. Baggio and P. Trovalusci 1995, section 6)."""
+
+DE_CLOSED = Listed(
+    name="de-closed",
+    family="de",
+    title="distinct elements find contacts and gaps, FE loads them",
+    solver="methods.de.closed_contacts:ClosedContacts",
+    Settings=ClosedSettings,
+    tolerance=1e-6,
+    traits=Traits(
+        caption="plateau over the contacts that closed",
+        brackets=True,
+        resolution=UNEVEN_RESOLUTION,
+        colour="#2f6b3a",
+        marker="p",
+        line="dashed",
+    ),
+)
+"""Contacts and gaps of an uneven wall from distinct elements, its multiplier from gap springs (`de-closed`)."""
+
+DE_SOFT = Listed(
+    name="de-soft",
+    family="de",
+    title="distinct elements, deformable joints",
+    solver="methods.de.soft:DeformableJoints",
+    Settings=SoftSettings,
+    tolerance=1e-5,
+    traits=Traits(
+        caption="between held and moving, joints that give",
+        brackets=True,
+        colour="#2f6b3a",
+        marker="*",
+        line="dotted",
+    ),
+)
+"""Distinct elements with deformable joints and rounded corners (`de-soft`)."""

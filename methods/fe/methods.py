@@ -1,0 +1,56 @@
+"""The gap-spring methods, a row each; naming them imports no solver."""
+
+from __future__ import annotations
+
+from harness.model.method import Listed, Traits
+from methods.fe.settings import ConvexSettings, GapSpringsSettings, NewtonSettings
+
+FE = Listed(
+    name="fe",
+    family="fe",
+    title="FE, exact continuation",
+    solver="methods.fe.gap_springs:GapSprings",
+    Settings=GapSpringsSettings,
+    tolerance=1e-8,
+    traits=Traits(
+        caption="plateau of the traced path",
+        elastic=True,
+        colour="#1f4e79",
+        marker="o",
+    ),
+)
+"""Gap-spring finite elements with the path traced exactly, kink by kink (`fe`)."""
+
+FE_NEWTON = Listed(
+    name="fe-newton",
+    family="fe",
+    title="FE, incremental Newton",
+    solver="methods.fe.gap_springs:IncrementalNewton",
+    Settings=NewtonSettings,
+    tolerance=1e-8,
+    traits=Traits(
+        caption="plateau, where it arrives",
+        elastic=True,
+        colour="#1f4e79",
+        marker="x",
+        line="dashed",
+    ),
+)
+"""Ordinary incremental Newton: load control, then displacement control (`fe-newton`)."""
+
+FE_QP = Listed(
+    name="fe-qp",
+    family="fe",
+    title="FE, convex steps",
+    solver="methods.fe.gap_springs:ConvexSteps",
+    Settings=ConvexSettings,
+    tolerance=1e-3,
+    traits=Traits(
+        caption="plateau, by convex steps",
+        elastic=True,
+        colour="#1f4e79",
+        marker="+",
+        line="dotted",
+    ),
+)
+"""Each step as convex quadratic programmes with frozen friction limits (`fe-qp`)."""
