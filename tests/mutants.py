@@ -40,7 +40,8 @@ PACKAGES = {
         "methods/bound/verify*.py methods/bound/exact_wall.py methods/bound/same_wall.py methods/bound/document.py "
         "methods/bound/force_limits.py methods/bound/window_limits.py",
         "tests/bound/test_attacks.py tests/bound/test_*certificate.py tests/bound/test_courses.py "
-        "tests/bound/test_leaves.py tests/bound/test_numbers.py tests/bound/test_mutants.py tests/bound/test_same_numbers.py",
+        "tests/bound/test_leaves.py tests/bound/test_numbers.py tests/bound/test_mutants.py "
+        "tests/bound/test_same_numbers.py",
     ),
     "proving": (
         "methods/bound/*.py methods/la/certify/*.py harness/certificates.py",

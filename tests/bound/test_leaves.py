@@ -1,4 +1,4 @@
-"""Statements of leaves and windows at the ends of what they may say: one of both loads alone, a normal force of zero."""
+"""Leaves and windows at the ends of what they may say: one of both loads alone, a normal force of zero."""
 
 from __future__ import annotations
 
