@@ -1,0 +1,68 @@
+"""Numbers of certificates at the ends of what may stand there, and how they are put together."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from fractions import Fraction
+from typing import Any
+
+import pytest
+
+from methods.bound.exact_wall import (
+    MOST_BITS,
+    MOST_DIGITS,
+    CertificateError,
+    common_denominator,
+    contacts,
+    dot,
+    fractions_of,
+    integers,
+    number,
+    paired,
+    whole,
+    whole_numbers,
+)
+
+HALF, THIRD = Fraction(1, 2), Fraction(1, 3)
+WITHIN: dict[str, tuple[Callable[[], Any], Any]] = {
+    "digits": (lambda: number("9" * MOST_DIGITS), Fraction("9" * MOST_DIGITS)),
+    "digits below": (lambda: number("-1/" + "9" * MOST_DIGITS), Fraction("-1/" + "9" * MOST_DIGITS)),
+    "a whole number": (lambda: number(-7), Fraction(-7)),
+    "ends": (lambda: [whole(k, -2, 3) for k in (-2, 3)], [-2, 3]),
+    "bits": (lambda: whole_numbers([2 ** (3 * MOST_DIGITS) - 1], 1), [2 ** (3 * MOST_DIGITS) - 1]),
+    "contacts": (lambda: contacts([0, 7], 2), frozenset([0, 7])),
+    "pairs": (lambda: paired("ab", [1, 2]), [("a", 1), ("b", 2)]),
+    "fractions": (lambda: fractions_of(["1/2", 3], 2), [HALF, Fraction(3)]),
+    "denominators": (lambda: common_denominator([HALF, Fraction(1, 6), Fraction(1, 4)]), 12),
+    "many bits": (lambda: common_denominator([Fraction(1, 2 ** (MOST_BITS - 1))]), 2 ** (MOST_BITS - 1)),
+    "inner product": (lambda: dot([HALF, THIRD, Fraction(0)], [Fraction(4), Fraction(6), Fraction(9)]), 4),
+    "forms": (lambda: integers([{0: HALF, 5: Fraction(0)}, {3: -THIRD}]), ([{0: 3}, {3: -2}], 6)),
+}
+BEYOND: dict[str, Callable[[], Any]] = {
+    "digits": lambda: number("1" + "0" * MOST_DIGITS),
+    "digits below": lambda: number("1/1" + "0" * MOST_DIGITS),
+    "below": lambda: whole(-3, -2, 3),
+    "above": lambda: whole(4, -2, 3),
+    "true": lambda: whole(True, 0, 3),
+    "bits": lambda: whole_numbers([2 ** (3 * MOST_DIGITS)], 1),
+    "one true of whole numbers": lambda: whole_numbers([1, True], 2),
+    "one whole number less": lambda: whole_numbers([1], 2),
+    "contact after the last": lambda: contacts([8], 2),
+    "contact before the first": lambda: contacts([-1], 2),
+    "one less": lambda: paired("ab", [1]),
+    "text as a list": lambda: paired("ab", "ab"),
+    "one fraction more": lambda: fractions_of(["1/2", 3], 1),
+    "many bits": lambda: common_denominator([Fraction(1, 2**MOST_BITS)]),
+}
+
+
+@pytest.mark.parametrize("name", WITHIN)
+def test_what_may_stand_there_is_read(name: str) -> None:
+    read, value = WITHIN[name]
+    assert read() == value
+
+
+@pytest.mark.parametrize("name", BEYOND)
+def test_what_is_beyond_is_refused(name: str) -> None:
+    with pytest.raises(CertificateError):
+        BEYOND[name]()
