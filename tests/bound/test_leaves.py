@@ -7,10 +7,10 @@ from typing import Any
 
 import pytest
 
-from methods.bound.exact_wall import CertificateError, ExactWall
-from methods.bound.force_limits import known_of
-from methods.bound.verify import _Leaf
-from methods.bound.verify_window import WindowLimits
+from methods.proof.verify.checker import _Leaf
+from methods.proof.verify.exact_wall import CertificateError, ExactWall
+from methods.proof.verify.force_limits import known_of
+from methods.proof.verify.windows import WindowLimits
 from tests.bound.test_attacks import tree, windows
 
 EVERY = list(range(8))

@@ -8,7 +8,7 @@ from typing import Any
 
 import pytest
 
-from methods.bound.exact_wall import (
+from methods.proof.verify.exact_wall import (
     MOST_BITS,
     MOST_DIGITS,
     CertificateError,
