@@ -116,8 +116,25 @@ def checked(case: Case, path: Path) -> Certified:
     document, assembly, source = read_certificate(path), case.assembly, path.name
     if path != certificate_of(case):
         assembly, source = _named_as(document, assembly), f"{path.parent.name}/{path.name}"
+    return _checked(document, assembly, source)
+
+
+def _checked(document: Any, assembly: Assembly, source: str) -> Certified:
     require_same_wall(document, assembly)
-    return Certified(_not_above(verify(document)[0]), proved(document), source)
+    return Certified(_not_above(verify(document)[0]), proved(document), source, "windows" in document)
+
+
+def _of_results(item: CaseResults) -> list[Certified]:
+    """What certificates that methods handed on prove, each checked here: a method's word for its bound is none."""
+    found = []
+    for result in item.results:
+        if isinstance(result.details.get("certificate"), dict):
+            try:
+                certificate = result.details["certificate"]
+                found.append(_checked(certificate, item.case.assembly, f"certificate of {result.method}"))
+            except (CertificateError, InputError):
+                continue  # it proves nothing of this wall
+    return found
 
 
 def _named_as(document: Any, assembly: Assembly) -> Assembly:
@@ -170,7 +187,7 @@ def _held(result: Result, certified: Certified) -> tuple[Verdict, str]:
     if not result.finding.has_multiplier or result.multiplier is None:
         return Verdict.OUTSIDE_TOLERANCE, f"{certified.sentence}, and {result.method} gives no multiplier"
     found = f"{result.method} finds {result.multiplier:.9g}"
-    if _below(result, certified.bound):
+    if _below(result, certified):
         return Verdict.VIOLATES_BOUND, f"{certified.sentence}, and {found}"
     return Verdict.AGREES, f"{certified.sentence}; {found}"
 
@@ -197,11 +214,13 @@ def _with_certificate(item: CaseResults) -> CaseResults:
                 name="certificate", statement=statement, passed=False, sentence=f"{path.name} is refused: {error}"
             )
             return replace(item, gates=[*item.gates, gate])
-    if certified is None:
+    known = [*([] if certified is None else [certified]), *_of_results(item)]
+    if not known:
         return item
+    certified = max(known, key=lambda each: each.bound)
     judged = [each for each in item.results if each.traits.seeks_least and each.judge.accepted]
     found = [each for each in judged if each.multiplier is not None]
-    low = [each for each in found if _below(each, certified.bound)]
+    low = [each for each in found if _below(each, certified)]
     told = ", ".join(f"{each.method} {each.multiplier:.9g}" for each in low or found) or "no method has a state"
     gate = Gate(
         name="certificate",
@@ -218,8 +237,11 @@ def certified_results(case: Case, result: Result) -> CaseResults:
     return _with_certificate(item) if is_collapse_state(result) else item
 
 
-def _below(result: Result, bound: float) -> bool:
-    return result.multiplier is not None and result.multiplier < bound - ROUNDING * abs(bound)
+def _below(result: Result, certified: Certified) -> bool:
+    """Whether a multiplier is one that the certificate excludes; windows say nothing of those below zero."""
+    value, bound = result.multiplier, certified.bound
+    excluded = value is not None and value < bound - ROUNDING * abs(bound)
+    return excluded and not (certified.from_zero and value is not None and value < 0.0)
 
 
 def _not_above(bound: Fraction) -> float:

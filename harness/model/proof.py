@@ -114,7 +114,9 @@ def least_known(item: CaseResults) -> Result | None:
 
 
 def proof_of(item: CaseResults, result: Result) -> Proof:
-    """What is proved of a result, by the certificate of its wall and by what the methods proved.
+    """What is proved of a result, by a certificate that was checked here and by what the methods found to rounding.
+
+    A bound that a method says it has certified counts only through its certificate: see `drystone.certificates`.
 
     Args:
         item: all results of the wall; result: one of them.
@@ -123,9 +125,7 @@ def proof_of(item: CaseResults, result: Result) -> Proof:
         return Proof()
     value = result.multiplier or 0.0
     sound = [each for each in item.results if each.status is Status.OK and each.judge.accepted is not False]
-    exact = [float(each.details["certified_bound"]) for each in sound if "certified_bound" in each.details]
-    exact += [item.certified.bound] if item.certified is not None else []
-    bound = max((each for each in exact if each <= value), default=None)
+    bound = item.certified.bound if item.certified is not None and item.certified.bound <= value else None
     floating = max((float(each.details.get("lower_bound") or 0.0) for each in sound), default=0.0)
     lower = floating if max(0.0, bound or 0.0) < floating <= value else None
     if bound is not None and value - bound <= CERTIFIED * abs(value):

@@ -42,8 +42,13 @@ def test_a_bound_above_the_state_is_no_bound_of_it():
     assert proof_of(item, item.results[1]).bound is None
 
 
-def test_the_higher_of_two_bounds_counts_and_one_in_floating_point_only_above_the_exact_one():
-    item = certified(answers(certified_bound=0.4375, lower_bound=0.46875), 0.4)
+def test_a_bound_that_a_method_says_is_certified_is_not_believed():
+    item = answers(certified_bound=0.4999995)
+    assert proof_of(item, item.results[1]) == Proof(Standing.KNOWN)
+
+
+def test_a_bound_in_floating_point_counts_only_above_the_exact_one():
+    item = certified(answers(lower_bound=0.46875), 0.4375)
     proof = proof_of(item, item.results[1])
     assert (proof.bound, proof.lower_bound) == (0.4375, 0.46875)
     assert proof.sentence == (

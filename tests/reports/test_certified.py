@@ -13,13 +13,13 @@ import pytest
 
 import drystone
 from drystone import certificates
-from drystone.certificates import with_certificates
+from drystone.certificates import _below, with_certificates
 from drystone.cli import terminal
 from harness.engine.compare import recall
 from harness.engine.regression import violations
 from harness.engine.store import open_store
 from harness.model.case import read_case, shipped_cases
-from harness.model.comparison import ComparisonRun
+from harness.model.comparison import Certified, ComparisonRun
 from reports import appendix
 from reports.opening import wall_findings, which_number
 from reports.tables import run_row
@@ -171,3 +171,21 @@ def test_every_output_says_the_same_of_a_proved_minimum(tmp_path: Path):
     listed = run_command("compare", file, "--methods", "la", "--no-report", "--store", store).stdout
     assert said in " ".join(listed.split())
     assert "∎ 0.5579978" in listed
+
+
+def test_a_certificate_that_a_method_hands_on_counts_only_as_far_as_it_is_checked_here():
+    wall = drystone.new_wall("stack", count=2, width=0.3, height=0.2, friction=0.5)
+    compared = drystone.compare(wall, ["la"], isolated=False)
+    (item,) = compared.run.cases
+    other = json.loads((shipped_cases() / "slide" / "certificate.json").read_text())
+    item.results[0].details.update(certificate=other, certified_bound=item.results[0].multiplier)
+    (again,) = with_certificates(compared.run).cases
+    assert again.certified is None
+
+
+@pytest.mark.parametrize(("from_zero", "below"), [(True, False), (False, True)])
+def test_windows_exclude_no_multiplier_below_zero(from_zero: bool, below: bool):
+    wall = drystone.new_wall("stack", count=2, width=0.3, height=0.2, friction=0.5)
+    (item,) = drystone.compare(wall, ["la"], isolated=False).run.cases
+    negative = item.results[0].model_copy(update={"multiplier": -0.1})
+    assert _below(negative, Certified(0.2, "", "", from_zero)) is below

@@ -8,7 +8,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from harness.model.comparison import CaseResults, ComparisonRun, Gate
+from harness.model.comparison import CaseResults, Certified, ComparisonRun, Gate
 from harness.model.method import Finding, Status
 from harness.model.result import Verdict
 from reports import build, joints, mechanism_drawing, opening, reasons, tables
@@ -54,8 +54,7 @@ def test_least_is_the_minimum_only_where_it_is_proved():
 
 @pytest.mark.parametrize(("bound", "said"), [(0.557999, True), (0.5579, False), (0.558001, False)])
 def test_the_minimum_is_called_proved_only_where_a_certificate_meets_it(bound: float, said: bool):
-    item = of_one_wall(proved_least=True)
-    item.results[0].details["certified_bound"] = bound
+    item = replace(of_one_wall(proved_least=True), certified=Certified(bound, "", ""))
     assert ("minimum, proved" in opening.wall_findings(item)) is said
     assert ("an exact certificate proves that" in opening.which_number(item)) is said
 

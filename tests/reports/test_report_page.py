@@ -11,7 +11,7 @@ from typing import Any
 import pytest
 
 from harness.model import columns
-from harness.model.comparison import CaseResults, ComparisonRun
+from harness.model.comparison import CaseResults, Certified, ComparisonRun
 from harness.model.method import Status
 from reports import build, drawing
 from tests.reports import samples
@@ -178,11 +178,9 @@ def test_unknown_method_of_a_third_party_is_shown():
 def test_only_values_that_are_proved_are_marked_as_proved():
     case = samples.bond()
     proved, known = samples.solved(case, "la", 0.5), samples.solved(case, "la-from-fe", 0.5)
-    proved.details["certified_bound"], known.details["proved_least"] = 0.499999, True
-    pages = [
-        build.render(ComparisonRun("small", "", "", [CaseResults(case, [result])]), data_folder="x")
-        for result in (proved, known)
-    ]
+    proved.details["proved_least"] = known.details["proved_least"] = True
+    items = [CaseResults(case, [proved], certified=Certified(0.499999, "", "")), CaseResults(case, [known])]
+    pages = [build.render(ComparisonRun("small", "", "", [item]), data_folder="x") for item in items]
     assert ["least, proved in fractions</span>" in page for page in pages] == [True, False]
 
 
