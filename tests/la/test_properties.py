@@ -11,6 +11,7 @@ from hypothesis import strategies as st
 
 from harness.engine.symmetry import VIEWS
 from harness.model.assembly import Assembly
+from harness.model.joint_law import JointLaw
 from harness.model.method import Finding, Status, load_method
 from methods.la.associated import AssociatedLimitAnalysis
 from methods.la.core.flexibility import Compliance
@@ -94,7 +95,7 @@ def test_load_that_presses_down_cannot_make_a_wall_collapse() -> None:
 def test_compliance_inverts_the_interface_matrix(dilatancy: float) -> None:
     generator = np.random.default_rng(1)
     weight, friction = generator.uniform(0.01, 5.0, (6, 4)), generator.uniform(0.0, 2.0, 6)
-    compliance = Compliance(friction, weight, dilatancy * friction)
+    compliance = Compliance(JointLaw(friction, dilatancy * friction), weight, dilatancy * friction)
     strain = generator.normal(size=(6, 3))
     for p, mu in enumerate(friction):
         slack_of_force = np.array([[1, 0, 0], [0, 1, 0], [mu, mu, 1], [mu, mu, -1]])

@@ -8,6 +8,7 @@ from drystone.cli.terminal import _value
 from harness.model import columns
 from harness.model.comparison import CaseResults
 from harness.model.method import Answer, Finding, Status
+from harness.model.proof import Proof
 from harness.model.result import WIDE, result_of
 from reports.export import _result_row
 from reports.facts import value_in_words
@@ -46,7 +47,7 @@ def test_every_output_says_that_a_bracket_is_wide():
     assert "11 % wide" in _value(found)
     assert "11 % wide" in value_in_words(found)
     assert "11 % wide" in run_row(0, 0, CaseResults(samples.bond(), [found])).multiplier.text
-    row = _result_row(found)
+    row = _result_row(found, Proof())
     assert row["bracket_width"] == pytest.approx(0.11)
     assert row["bracket_wide"] is True
     assert {"bracket_width", "bracket_wide"} <= set(columns.TYPES)
