@@ -11,8 +11,9 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from reports.figures import BLUE, GREY, INK, RUST
+from reports.looks import COLOURS
 
+BLUE, GREY, INK, RUST = (COLOURS[name] for name in ("blue", "grey", "ink", "rust"))
 ARROW = {"arrowstyle": "-|>", "linewidth": 1.4, "shrinkA": 0, "shrinkB": 0}
 """An arrow that begins and ends where it says."""
 LOWEST, HIGHEST = 0.4, 0.6

@@ -2,13 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from functools import partial
 from pathlib import Path
 from typing import Any
 
 import numpy as np
-from matplotlib.axes import Axes
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from PIL import Image
 
@@ -17,8 +14,12 @@ from harness.model.displaced import carried, released
 from harness.model.errors import InputError
 from harness.model.result import Result
 from harness.model.writing import replacing
-from reports import figures, joints, numbers, shapes, words
-from reports.force_figure import INK
+from reports import figures, numbers, shapes, words
+from reports.display_list import DisplayList
+from reports.looks import COLOURS
+from reports.mechanism_drawing import moved_wall
+from reports.plot import plot
+from reports.wall_drawing import displaced_drawing
 
 FORMATS = (".gif", ".png", ".apng", ".webp")
 FRAMES = 28
@@ -67,40 +68,20 @@ def frames(case: Case, result: Result) -> list[Image.Image]:
     assembly = case.assembly
     followed = released(result, assembly.n_blocks)
     if followed is not None:
-        return [
-            _picture(
-                case,
-                result,
-                partial(figures.draw_blocks, assembly=assembly, polygons=carried(assembly, places)),
-            )
-            for places in followed
-        ]
-    mechanism = np.asarray(result.mechanism, dtype=float)
-    scale = shapes.amplitude(assembly, mechanism)
+        return [_picture(case, result, displaced_drawing(case, carried(assembly, places))) for places in followed]
     # The square of time lets the blocks move ever faster, as in a collapse.
-    return [
-        _picture(
-            case,
-            result,
-            partial(
-                figures.draw_mechanism,
-                assembly=assembly,
-                mechanism=mechanism,
-                states=joints.joint_states(assembly, result) if time > 0.0 else None,
-                scale=float(GREATEST * scale * time**2),
-            ),
-        )
-        for time in np.linspace(0.0, 1.0, FRAMES)
-    ]
+    scale = GREATEST * shapes.amplitude(assembly, np.asarray(result.mechanism, dtype=float))
+    times = np.linspace(0.0, 1.0, FRAMES).tolist()
+    return [_picture(case, result, moved_wall(assembly, result, scale * time**2)) for time in times]
 
 
-def _picture(case: Case, result: Result, draw: Callable[[Axes], None]) -> Image.Image:
-    """One frame: a title and what `draw` puts on the axes."""
+def _picture(case: Case, result: Result, drawn: DisplayList) -> Image.Image:
+    """One frame: a title and a drawing."""
     with figures.style():
         page, axes = figures.blank(case.assembly, 1, 1)
         value = "" if result.multiplier is None else f" at {numbers.multiplier(result.multiplier)}"
-        axes[0][0].set_title(f"{case.id}, {result.method}{value}", pad=3, color=INK)
-        draw(axes[0][0])
+        axes[0][0].set_title(f"{case.id}, {result.method}{value}", pad=3, color=COLOURS["ink"])
+        plot(axes[0][0], drawn)
         page.set_dpi(DOTS_PER_INCH)
         canvas: Any = FigureCanvasAgg(page)
         canvas.draw()

@@ -12,25 +12,28 @@ from typing import Any
 
 from markupsafe import Markup
 
+from harness.model.case import Case
 from harness.model.columns import BY_NAME, LISTED, REPEATED
-from harness.model.comparison import CaseResults, ComparisonRun
+from harness.model.comparison import ComparisonRun
+from harness.model.units import DIMENSIONLESS
 from harness.model.writing import write_whole
 from reports import agreement, numbers, paper, shapes, tables, words
 from reports.curves import curves
-from reports.drawing import case_data, fields_drawn, force_unit, result_data, wall_svg
 from reports.environment import environment
 from reports.export import export
 from reports.limits import known_limits
+from reports.looks import HATCH, css
 from reports.once import each_once
 from reports.opening import opening, run_in_order
+from reports.page_drawings import PageDrawings, fields_drawn
 from reports.sections import CaseSection, case_section
 from reports.studies import studies
+from reports.svg import inline
+from reports.wall_drawing import wall_drawing
 
-DRAWING_BUDGET = 1_700_000
-"""Bytes the fields of mechanisms and forces may take in the page, so that it stays below 5 MB: at 65 cases of 60 blocks
-and 8 methods all else takes 3 MB."""
-STILL_BUDGET, STILL_BYTES = 400_000, 140
-"""Bytes that still drawings of forces, for pages without scripts, may take, and about what one joint takes of them."""
+DRAWING_BUDGET, INLINE = 1_600_000, 300_000
+"""Bytes that drawings of mechanisms and forces may take in the page, packed, and more for some that are not, so that it
+stays below 5 MB: at 65 cases of 60 blocks and 8 methods all else takes 3 MB."""
 
 
 def write_report(run: ComparisonRun, path: Path, *, drawn: bool = False) -> None:
@@ -58,8 +61,9 @@ def render(run: ComparisonRun, *, data_folder: str) -> str:
     run = run_in_order(run)
     rows = tables.run_rows(run)
     shown = tables.overview_columns(run)
-    scripts = [_static(name) for name in ("table.js", "draw.js")]
-    fields = fields_drawn(run, DRAWING_BUDGET)
+    scripts = [_static(name) for name in ("table.js", "move.js")]
+    fields, drawings = fields_drawn(run, DRAWING_BUDGET), PageDrawings(INLINE)
+    sections = _sections(run, rows, fields, drawings)
     template = environment().get_template("report.html.j2")
     return template.render(
         run=run,
@@ -81,18 +85,25 @@ def render(run: ComparisonRun, *, data_folder: str) -> str:
         gates=[(number, item.case.id, gate) for number, item in enumerate(run.cases) for gate in item.gates],
         paper=paper.paper_comparison(run),
         errata=[(number, item.case) for number, item in enumerate(run.cases) if item.case.file.errata],
-        sections=_sections(run, rows, fields),
+        sections=sections,
+        packed=Markup(drawings.packed()),
         studies=studies(run),
         limits=known_limits(run),
         provenance=_provenance(run),
         origins=_origins(rows),
         data_folder=data_folder,
         data=Markup(script_json(_data(run, fields))),
-        style=Markup(_static("report.css")),
+        style=page_style(),
+        hatch=Markup(HATCH),
         scripts=[Markup(script) for script in scripts],
         script_hashes=Markup(" ".join(script_hash(script) for script in scripts)),
         numbers=numbers,
     )
+
+
+def page_style() -> Markup:
+    """The style sheet of a page, with the looks of its drawings."""
+    return Markup(_static("report.css").replace("/* Drawings */", css()))
 
 
 def _static(name: str) -> str:
@@ -129,37 +140,41 @@ def _matrix(
     ]
 
 
-def _sections(run: ComparisonRun, rows: list[list[tables.RunRow]], fields: list[str]) -> list[CaseSection]:
-    sections, left = [], STILL_BUDGET
+def _sections(
+    run: ComparisonRun, rows: list[list[tables.RunRow]], fields: list[str], drawings: PageDrawings
+) -> list[CaseSection]:
+    sections = []
     for number, item in enumerate(run.cases):
         if shapes.problem(item.case):
-            sections.append(case_section(number, item, rows[number], [], [], Markup("")))
+            sections.append(case_section(number, item, rows[number], [], [], Markup(""), drawings))
             continue
-        pairs = agreement.agreements(item)
-        joints = item.case.assembly.n_interfaces * sum(result.forces is not None for result in item.results)
-        still = STILL_BYTES * joints <= left
-        left -= STILL_BYTES * joints if still else 0
-        wall = wall_svg(item.case)
-        sections.append(
-            case_section(number, item, rows[number], pairs, curves(item), wall, fields[number], still_forces=still)
-        )
+        pairs, wall = agreement.agreements(item), inline(wall_drawing(item.case))
+        sections.append(case_section(number, item, rows[number], pairs, curves(item), wall, drawings, fields[number]))
     return sections
 
 
-def _data(run: ComparisonRun, fields: list[str]) -> list[dict[str, Any]]:
-    """What the page draws from: per case its geometry and the fields of its results, within the budget."""
-    return [_case_data(item, level) for item, level in zip(run.cases, fields, strict=True)]
+def _data(run: ComparisonRun, fields: list[str]) -> list[dict[str, list[str]]]:
+    """What the page says of a block, an interface and a force under the pointer, for each case with drawings.
+
+    A line of `moves`, `joint` or `force` takes the values of the element for its braces, and is left out where one of
+    them is missing.
+    """
+    return [
+        {} if level == "none" or shapes.problem(item.case) else _sayings(item.case)
+        for item, level in zip(run.cases, fields, strict=True)
+    ]
 
 
-def _case_data(item: CaseResults, fields: str) -> dict[str, Any]:
-    if fields == "none" or shapes.problem(item.case):
-        return {"results": []}
-    unit = force_unit(item.results)
-    return case_data(item.case) | {
-        "unit": unit,
-        "results": [
-            {"method": result.method} | result_data(item.case, result, unit, fields=fields) for result in item.results
-        ],
+def _sayings(case: Case) -> dict[str, list[str]]:
+    assembly, unit = case.assembly, case.wall.units.force
+    ids, force = assembly.block_ids, "" if unit == DIMENSIONLESS else f" {unit}"
+    joints = zip(assembly.block_a.tolist(), assembly.block_b.tolist(), assembly.joint, assembly.friction, strict=True)
+    return {
+        "blocks": [f"block {name}" for name in ids],
+        "joints": [f"{ids[a]} | {ids[b]}\n{kind} joint, tan φ = {numbers.given(mu, 3)}" for a, b, kind, mu in joints],
+        "moves": ["u = ({}, {})", "ω = {}"],
+        "joint": ["{}", "opening {}, {}; slip {}"],
+        "force": [f"n₁ = {{}}, n₂ = {{}}{force}", f"s = {{}}{force}", "friction used: {} %"],
     }
 
 

@@ -11,9 +11,10 @@ from harness.model.comparison import CaseResults
 from harness.model.displaced import carried, released
 from harness.model.result import Result
 from reports import charts, numbers, words
-from reports.drawing import polygons_svg
 from reports.marks import mark_of
 from reports.once import once
+from reports.svg import inline
+from reports.wall_drawing import displaced_drawing
 
 TIMES = ("cpu_seconds", "seconds", "search_seconds")
 """Columns of a path that tell when a value was found [s]."""
@@ -108,7 +109,7 @@ def _release(item: CaseResults, result: Result) -> list[tuple[str, Markup]]:
         found.append(
             (
                 f"{result.method}: the wall at the end of the release.",
-                polygons_svg(item.case, carried(item.case.assembly, frames[-1])),
+                inline(displaced_drawing(item.case, carried(item.case.assembly, frames[-1]))),
             )
         )
     return found

@@ -12,34 +12,28 @@ from typing import Any
 
 import matplotlib as mpl
 import numpy as np
-from matplotlib.axes import Axes
-from matplotlib.collections import LineCollection
 from matplotlib.figure import Figure
 
-from harness.model.assembly import Assembly, FloatArray
+from harness.model.assembly import Assembly
 from harness.model.build import Built
 from harness.model.case import Case
 from harness.model.errors import InputError
 from harness.model.result import Result
 from harness.model.writing import replacing
-from reports import flow, joints, shapes
-from reports.drawing import LABELLED_BLOCKS, block_labels, stroke_factor
+from reports import flow, shapes
+from reports.display_list import Frame
 from reports.facts import friction_text, value_in_words
-from reports.force_figure import BLUE, GREY, INK, PLUM, RUST, draw_forces, length_scale, stones
+from reports.force_drawing import force_drawing
+from reports.looks import COLOURS
+from reports.mechanism_drawing import mechanism_drawing
+from reports.plot import plot
+from reports.wall_drawing import plain_wall
 
 COLUMN, PAGE = 88 / 25.4, 180 / 25.4
 """Width of one and of two columns [inch]."""
 WINDOW_DPI = 220
 KINDS = ("mechanism", "forces", "thrust", "wall", "comparison")
 FORMATS = (".pdf", ".svg", ".png")
-MARKS = {
-    joints.SLIDE: (RUST, 1.8, "-"),
-    joints.DILATANT: (RUST, 2.1, "-"),
-    joints.ROCK: (BLUE, 1.1, "-"),
-    joints.BOTH: (RUST, 1.8, "-"),
-    joints.OPEN: (PLUM, 1.0, "--"),
-}
-"""Colour, width [pt] and line of what a joint does."""
 _STYLE: dict[Any, Any] = {
     "font.family": "DejaVu Sans",
     "font.size": 7.0,
@@ -146,14 +140,8 @@ def _no_window(error: Exception) -> InputError:
 
 
 def _wall(built: Built, title: str = "") -> Figure:
-    assembly = built.assembly
-    page, axes = blank(assembly, 1, 1, head=_title(title, assembly) if title else "")
-    length_scale(axes[0][0], assembly, built.wall.units)
-    draw_blocks(axes[0][0], assembly, list(assembly.polygons))
-    draw_joints(axes[0][0], assembly)
-    _labels(axes[0][0], assembly)
-    draw_loads(axes[0][0], assembly, shapes.extra_dead_load(assembly), RUST, "dead")
-    draw_loads(axes[0][0], assembly, assembly.live, BLUE, "live")
+    page, axes = blank(built.assembly, 1, 1, head=_title(title, built.assembly) if title else "")
+    plot(axes[0][0], plain_wall(built.assembly, built.wall.units, title))
     return page
 
 
@@ -188,21 +176,20 @@ def metadata(path: Path) -> dict[str, Any]:
 
 def blank(assembly: Assembly, rows: int, columns: int, head: str = "") -> tuple[Figure, Any]:
     """A figure of a journal's width whose axes have the shape of the wall, with a line of text above all."""
-    extent = shapes.extent(assembly)
-    margin = 0.14 * extent.longest
+    frame = Frame.of(assembly)
+    left, top, wide, high = frame.box
     width = COLUMN if columns == 1 else PAGE
-    aspect = (extent.height + 2 * margin) / (extent.width + 2 * margin)
-    each = width / columns
     above = 0.22 + (0.34 if head else 0.0)
-    height = min(rows * (each * min(aspect, 1.6) + 0.28) + above - 0.22, 9.2)
+    height = min(rows * (width / columns * min(high / wide, 1.6) + 0.28) + above - 0.22, 9.2)
     page = Figure(figsize=(width, height))
     axes = page.subplots(rows, columns, squeeze=False)
     page.subplots_adjust(left=0.01, right=0.99, bottom=0.01, top=1.0 - above / height, wspace=0.03, hspace=0.12)
     if head:
         page.suptitle(_fitting(head, width), x=0.01, y=1.0 - 0.05 / height, ha="left", va="top", fontsize=7.5)
     for ax in axes.ravel():
-        ax.set_xlim(extent.left - margin, extent.right + margin)
-        ax.set_ylim(extent.bottom - margin, extent.top + margin)
+        (x0, y0), (x1, y1) = frame.back(np.array([(left, top + high), (left + wide, top)])).tolist()
+        ax.set_xlim(x0, x1)
+        ax.set_ylim(y0, y1)
         ax.set_aspect("equal")
         ax.axis("off")
     return page, axes
@@ -219,20 +206,14 @@ def _title(title: str, assembly: Assembly) -> str:
 
 
 def _panels(case: Case, results: list[Result], rows: list[str]) -> Figure:
-    assembly, units = case.assembly, case.wall.units
-    page, axes = blank(assembly, len(rows), len(results), head=_title(case.file.title, assembly))
+    page, axes = blank(case.assembly, len(rows), len(results), head=_title(case.file.title, case.assembly))
     for column, result in enumerate(results):
         for row, what in enumerate(rows):
-            ax = axes[row][column]
-            field = result.mechanism if what == "mechanism" else result.forces
-            if field is None:
+            if (result.mechanism if what == "mechanism" else result.forces) is None:
                 continue
-            ax.set_title(_panel_title(case, result, what), pad=3, color=INK)
-            length_scale(ax, assembly, units)
-            if what == "mechanism":
-                draw_mechanism(ax, assembly, np.asarray(field, dtype=float), joints.joint_states(assembly, result))
-            else:
-                draw_forces(ax, assembly, np.asarray(field, dtype=float), thrust=what == "thrust", units=units)
+            axes[row][column].set_title(_panel_title(case, result, what), pad=3, color=COLOURS["ink"])
+            drawn = mechanism_drawing(case, result) if what == "mechanism" else force_drawing(case, result, (what,))
+            plot(axes[row][column], drawn)
     return page
 
 
@@ -242,91 +223,3 @@ def _panel_title(case: Case, result: Result, what: str) -> str:
         found = shapes.thrusts(case.assembly, np.asarray(result.forces, dtype=float), flow.STYLE.smallest)
         what = "line of thrust" if flow.has_line_of_thrust(case.assembly, found) else "flow of forces"
     return f"{result.method}, {value_in_words(result)}: {what}"
-
-
-def draw_blocks(ax: Axes, assembly: Assembly, polygons: list[FloatArray], moving: np.ndarray | None = None) -> None:
-    """Blocks at given places: fixed ones hatched, moving ones shaded."""
-    fixed = [polygon for polygon, still in zip(polygons, assembly.fixed, strict=True) if still]
-    ax.add_collection(stones(fixed, facecolor="white", edgecolor=INK, linewidth=0.5, hatch="/////"))
-    moves = np.zeros(assembly.n_blocks, dtype=bool) if moving is None else moving
-    free = [(polygon, bool(moves[k])) for k, polygon in enumerate(polygons) if not assembly.fixed[k]]
-    colours = ["#dfe8f1" if move else "white" for _, move in free]
-    ax.add_collection(stones([p for p, _ in free], facecolor=colours, edgecolor=INK, linewidth=0.5))
-
-
-def draw_joints(ax: Axes, assembly: Assembly) -> None:
-    """Interfaces as heavier lines, with dots at their contact points."""
-    segments = np.stack([assembly.end1, assembly.end2], axis=1)
-    ax.add_collection(LineCollection(list(segments), colors=INK, linewidths=0.9))
-    if assembly.n_interfaces <= 240:
-        points = segments.reshape(-1, 2)
-        ax.plot(points[:, 0], points[:, 1], ".", color=INK, markersize=2.2)
-
-
-def draw_mechanism(
-    ax: Axes, assembly: Assembly, mechanism: FloatArray, states: list[str] | None, scale: float | None = None
-) -> None:
-    """A mechanism (n, 3) as displaced blocks; what slides bold, a dot at a hinge, open dashed, dilatant double.
-
-    Args:
-        ax: where.
-        assembly: the wall.
-        mechanism: normalised block velocities.
-        states: of the interfaces, as of `joints.joint_states`; or None.
-        scale: displacement of the fastest vertex [length]; one that shows well by default.
-    """
-    scale = shapes.amplitude(assembly, mechanism) if scale is None else scale
-    ax.add_collection(
-        stones(list(assembly.polygons), facecolor="none", edgecolor=GREY, linewidth=0.3, linestyle=(0, (3, 3)))
-    )
-    draw_blocks(ax, assembly, shapes.displaced(assembly, mechanism, scale), shapes.moving(assembly, mechanism))
-    if states is None:
-        return
-    names, thinner = np.array(states), stroke_factor(assembly)
-    for state, (colour, width, line) in MARKS.items():
-        chosen = np.flatnonzero(names == state)
-        if not len(chosen):
-            continue
-        ends = shapes.moved_ends(assembly, mechanism, scale, chosen)
-        ax.add_collection(LineCollection(list(ends), colors=colour, linewidths=thinner * width, linestyles=line))
-        if state == joints.DILATANT:
-            ax.add_collection(LineCollection(list(ends), colors="white", linewidths=0.4 * thinner * width))
-        if state in (joints.ROCK, joints.BOTH):
-            hinges = shapes.hinges(assembly, mechanism, ends, chosen)
-            ax.plot(hinges[:, 0], hinges[:, 1], "o", color=BLUE, markersize=2.8 * thinner)
-
-
-def _labels(ax: Axes, assembly: Assembly) -> None:
-    if assembly.n_blocks > LABELLED_BLOCKS:
-        return
-    for label, centroid in zip(block_labels(assembly), assembly.centroid, strict=True):
-        ax.annotate(label, centroid, xytext=(0, 2.2), textcoords="offset points", ha="center", color=INK, fontsize=5.5)
-
-
-def draw_loads(ax: Axes, assembly: Assembly, load: FloatArray, colour: str, kind: str) -> None:
-    """A load (n, 3) as arrows at its blocks, dashed where it is dead."""
-    arrows = shapes.load_arrows(assembly, load)
-    arrows = arrows[:: shapes.drawn_every(len(arrows))]
-    if not arrows:
-        return
-    largest = max(float(np.linalg.norm(arrow.force)) for arrow in arrows)
-    wall = shapes.extent(assembly).longest
-    longest = min(0.11 * wall, max(0.04 * wall, 0.8 * assembly.length_scale))
-    for arrow in arrows:
-        size = float(np.linalg.norm(arrow.force))
-        step = arrow.force / size * longest * (0.35 + 0.65 * np.sqrt(size / largest))
-        ax.annotate(
-            "",
-            arrow.point + step,
-            xytext=tuple(arrow.point),
-            arrowprops={
-                "arrowstyle": "-|>",
-                "edgecolor": colour,
-                "linewidth": 0.7,
-                "linestyle": "-" if kind == "live" else (0, (2, 1.2)),
-                "shrinkA": 0,
-                "shrinkB": 0,
-                "mutation_scale": 5,
-                "facecolor": colour if kind == "live" else "white",
-            },
-        )

@@ -1,105 +1,116 @@
-"""Contact forces as an inline SVG, as static/draw.js draws them: for pages without scripts and for vector files."""
+"""Contact forces as a display list: resultants at their centres of pressure, or their way through the blocks."""
 
 from __future__ import annotations
 
-import math
-from collections import defaultdict
+from collections.abc import Collection
 
 import numpy as np
-from markupsafe import Markup, escape
 
 from harness.model.assembly import Assembly, FloatArray
 from harness.model.case import Case
 from harness.model.result import Result
 from reports import flow, numbers, shapes
-from reports.drawing import BELOW, Frame, data_of, length_scale, outlines, stroke_factor
+from reports.display_list import BELOW, Circles, DisplayList, Frame, Group, Lines, Polygons, Shape, Text, chosen
 from reports.once import once
+from reports.wall_drawing import length_scale
 
 WIDEST, THINNEST = 0.16, 0.02
 """Width of the largest and of the smallest force, in block sizes."""
-WIDTHS = 12
-"""Widths are rounded to so many steps, so that forces of nearly one size share an element of the page."""
+LAYERS = ("forces", "thrust")
 
 
 @once
-def forces_svg(case: Case, result: Result) -> Markup:
-    """Resultants of the contact forces (m, 3) of a result at their centres of pressure, with lengths and forces told.
+def force_drawing(case: Case, result: Result, layers: Collection[str] = LAYERS) -> DisplayList:
+    """Contact forces (m, 3) of a result with their sizes and scales; a force at the limit of friction is circled.
 
     Args:
         case: the case.
         result: one of its results, with forces.
+        layers: "forces" for the resultants, "thrust" for lines through the blocks; a page shows one of both.
     """
-    assembly = case.assembly
-    frame = Frame(assembly)
+    assembly, frame = case.assembly, Frame.of(case.assembly)
+    drawn = DisplayList(frame, f"Contact forces of {result.case} by {result.method}")
+    placed = [frame.place(polygon) for polygon in assembly.polygons]
+    drawn.parts.append(Polygons("ground", chosen(placed, assembly.fixed)))
+    drawn.parts.append(Polygons("outline", chosen(placed, ~assembly.fixed)))
+    drawn.parts.extend(length_scale(frame, case.wall.units.length))
     forces = np.asarray(result.forces, dtype=float)
-    drawn = Markup('<svg class="wall" style="--k:{}" viewBox="{}" role="img" aria-label="{}">').format(
-        stroke_factor(assembly), frame.view_box, f"Contact forces of {case.id} by {result.method}"
-    )
-    for still, name in ((True, "outline held"), (False, "outline")):
-        data = data_of(outlines(assembly), assembly.fixed == still)
-        drawn += Markup('<path class="{}" d="{}"/>').format(name, data)
     found = shapes.thrusts(assembly, forces, smallest=flow.STYLE.smallest)
-    drawn += length_scale(frame, case.wall.units.length)
     if len(found.size):
-        drawn += _arrows(frame, assembly, found, forces)
-        drawn += _force_scale(frame, assembly, float(found.size.max()), case.wall.units.force)
-    return drawn + Markup("</svg>")
+        drawn.parts.extend(_groups(frame, assembly, found, forces, layers))
+        drawn.parts.extend(_force_scale(frame, float(found.size.max()), case.wall.units.force))
+    return drawn
 
 
-def _width(frame: Frame, assembly: Assembly, share: float) -> float:
-    """Width of the line of a force that is a share of the largest, in drawing units."""
-    block = assembly.length_scale * frame.scale
-    return max(THINNEST, WIDEST * math.ceil(WIDTHS * share) / WIDTHS) * block
+def _width(frame: Frame, share: float) -> float:
+    """Width of the line of a force that is a share of the largest."""
+    return max(THINNEST, WIDEST * share) * frame.block
 
 
-def _arrows(frame: Frame, assembly: Assembly, found: shapes.Thrusts, forces: FloatArray) -> Markup:
-    block = assembly.length_scale * frame.scale
-    full = flow.at_friction_limit(assembly, forces)[found.interface]
-    ends, way = flow.drawn_ends(assembly, found), flow.towards_ground(found) * [1.0, -1.0]
-    bars: dict[tuple[bool, float], str] = defaultdict(str)
-    heads, rings = {True: "", False: ""}, ""
-    width = np.array([_width(frame, assembly, share) for share in (found.size / found.size.max()).tolist()])
-    size = np.maximum(0.2 * block, 1.7 * width)[:, None]
-    tail, tip = (np.array(frame.places(ends[:, end]), dtype=float) for end in (0, 1))
-    neck, side = tip - size * way, 0.4 * size * np.column_stack([-way[:, 1], way[:, 0]])
-    lines = np.column_stack([tail, 0.3 * tip + 0.7 * neck, tip, neck + side, neck - side]).tolist()
-    for at_limit, wide, line, (x, y) in zip(
-        full.tolist(), width.tolist(), lines, frame.places(found.point), strict=True
-    ):
-        bars[at_limit, wide] += "M{:.0f} {:.0f}L{:.0f} {:.0f}".format(*line[:4])
-        heads[at_limit] += "M{:.0f} {:.0f}L{:.0f} {:.0f}L{:.0f} {:.0f}z".format(*line[4:])
-        if at_limit:
-            rings += f'<circle cx="{x}" cy="{y}" r="{max(0.05 * block, 0.5 * wide + 9):.0f}"/>'
-    drawn = {True: Markup(rings), False: Markup("")}
-    for (at_limit, wide), data in bars.items():
-        drawn[at_limit] += Markup('<path stroke-width="{:.0f}" d="{}"/>').format(wide, data)
-    for at_limit, data in heads.items():
-        if data:
-            drawn[at_limit] += Markup('<path class="tip-of" d="{}"/>').format(data)
-    groups = Markup('<g class="full">{}</g><g>{}</g>').format(drawn[True], drawn[False])
-    return Markup('<g class="bars">{}{}</g>').format(groups, _sizes(frame, assembly, found))
+def _groups(
+    frame: Frame, assembly: Assembly, found: shapes.Thrusts, forces: FloatArray, layers: Collection[str]
+) -> list[Group]:
+    """A group for each interface that carries force."""
+    full, used = flow.at_friction_limit(assembly, forces), percent_used(assembly, forces)
+    points, width = frame.place(found.point), [_width(frame, share) for share in (found.size / found.size.max())]
+    arrows = _arrows(frame, frame.place(flow.drawn_ends(assembly, found)), np.array(width))
+    lines = _through_blocks(frame, assembly, found)
+    labelled = len(found.size) <= flow.STYLE.labelled
+    drawn = []
+    for k, p in enumerate(found.interface.tolist()):
+        parts: list[Shape] = []
+        if "forces" in layers:
+            parts.append(Polygons("full" if full[p] else "force", (arrows[k],)))
+            if labelled:
+                level = abs(float(assembly.normal[p, 1])) > 0.5
+                parts.append(_size(frame, points[k], float(found.size[k]), level=level))
+            if full[p]:
+                parts.append(Circles("ring", points[k][None], max(0.05 * frame.block, 0.5 * width[k] + 9)))
+        if "thrust" in layers:
+            parts.append(Lines("thrust", (lines[k],), width[k]))
+        share = used[p] if used[p] >= 0 else None
+        drawn.append(Group(tuple(parts), joint=p, values=(*forces[p].tolist(), share)))
+    return drawn
 
 
-def _sizes(frame: Frame, assembly: Assembly, found: shapes.Thrusts) -> Markup:
-    """The size of each force beside it, where there is room for all of them."""
-    if len(found.size) > flow.STYLE.labelled:
-        return Markup("")
-    block, texts = assembly.length_scale * frame.scale, ""
-    levels = abs(assembly.normal[found.interface, 1]) > 0.5
-    for (x, y), size, level in zip(frame.places(found.point), found.size.tolist(), levels.tolist(), strict=True):
-        across, up = (0.09, 0.05) if level else (0.0, 0.1)
-        anchor = ' style="text-anchor:start"' if level else ""
-        place = f'x="{x + across * block:.0f}" y="{y - up * block:.0f}"'
-        texts += f"<text {place}{anchor}>{escape(numbers.given(size, 3))}</text>"
-    return Markup('<g font-size="{:.0f}">{}</g>').format(min(110.0, 0.17 * block), Markup(texts))
+def percent_used(assembly: Assembly, forces: FloatArray) -> list[int]:
+    """Friction used at every interface in whole percent: 100 exactly where it is at its limit, -1 without friction."""
+    used = flow.friction_used(assembly, forces)
+    below = np.minimum(99, np.rint(100.0 * np.nan_to_num(used, nan=-0.01)))
+    return [int(percent) for percent in np.where(flow.at_friction_limit(assembly, forces), 100, below)]
 
 
-def _force_scale(frame: Frame, assembly: Assembly, largest: float, unit: str) -> Markup:
+def _arrows(frame: Frame, ends: FloatArray, width: FloatArray) -> FloatArray:
+    """Outlines (p, 7, 2) of arrows of a width (p,) from tails to tips (p, 2, 2), the tips first."""
+    tail, tip = ends[:, 0], ends[:, 1]
+    way = (tip - tail) / np.linalg.norm(tip - tail, axis=1)[:, None]
+    across = np.column_stack([-way[:, 1], way[:, 0]])
+    head = np.maximum(0.2 * frame.block, 1.7 * width)[:, None]
+    neck, wide, half = tip - head * way, 0.4 * head * across, 0.5 * width[:, None] * across
+    return np.stack([tip, neck + wide, neck + half, tail + half, tail - half, neck - half, neck - wide], axis=1)
+
+
+def _through_blocks(frame: Frame, assembly: Assembly, found: shapes.Thrusts) -> list[FloatArray]:
+    """Lines (3, 2) from where the forces of one block meet through each centre of pressure to those of the other."""
+    meet = shapes.junctions(assembly, found)
+    lines = []
+    for point, p in zip(found.point, found.interface, strict=True):
+        ends = [point if assembly.fixed[k] else meet[k] for k in (assembly.block_a[p], assembly.block_b[p])]
+        lines.append(frame.place(np.array([ends[0], point, ends[1]])))
+    return lines
+
+
+def _size(frame: Frame, point: FloatArray, size: float, *, level: bool) -> Text:
+    """The size of a force beside it."""
+    across, up = (0.09, 0.05) if level else (0.0, 0.1)
+    at = (float(point[0]) + across * frame.block, float(point[1]) - up * frame.block)
+    return Text("said", at, numbers.given(size, 3), min(110.0, 0.17 * frame.block), "start" if level else "middle")
+
+
+def _force_scale(frame: Frame, largest: float, unit: str) -> list[Shape]:
     """A line as wide as a round force is drawn, below the wall on the right."""
     force = flow.round_number(largest)
-    x = round(frame.extent.width * frame.scale)
-    y = round(frame.extent.height * frame.scale) + BELOW // 2
-    return Markup(
-        '<g class="forces-scale"><path stroke-width="{:.0f}" d="M{} {}h330"/>'
-        '<text x="{}" y="{}" font-size="110" style="text-anchor:start">{}</text></g>'
-    ).format(_width(frame, assembly, force / largest), x - 330, y, x + 60, y + 38, numbers.quantity(force, unit))
+    x, y = frame.extent.width * frame.scale, frame.extent.height * frame.scale + BELOW // 2
+    line = np.array([(x - 330, y), (x, y)])
+    text = Text("", (x + 60, y + 38), numbers.quantity(force, unit), 110, "start")
+    return [Lines("force-scale", (line,), _width(frame, force / largest)), text]

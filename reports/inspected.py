@@ -21,9 +21,12 @@ from harness.model.inspection import Inspection, Mark
 from harness.model.rings import rings_of
 from harness.model.units import DIMENSIONLESS
 from reports import shapes
-from reports.figures import PAGE, draw_joints, draw_loads, save, style
+from reports.display_list import Arrows, DisplayList, Frame, Polygons
+from reports.figures import PAGE, save, style
 from reports.flow import round_number
-from reports.force_figure import BLUE, GREY, INK, RUST, stones
+from reports.looks import COLOURS, LOOKS
+from reports.plot import plot
+from reports.wall_drawing import joint_lines, load_arrows
 
 
 @dataclass(frozen=True)
@@ -47,12 +50,6 @@ class Sheet:
     tallest: float = 1.4
     listed: int = 14
     line: int = 150
-
-
-STONE = "#f3f0e9"
-"""Colour of stones, so that holes are told from them."""
-TINT = {"fault": RUST, "doubt": "#b07a00"}
-"""Colour of a kind of mark."""
 
 
 def draw_inspected(looked: Inspection, path: Path, *, axes: bool = True, dimensions: bool = False) -> None:
@@ -87,14 +84,9 @@ def inspected_figure(
         ax.set_xlim(extent.left - margin, extent.right + margin)
         ax.set_ylim(extent.bottom - margin, extent.top + margin)
         ax.set_aspect("equal")
+        plot(ax, _drawing(looked, extent, margin, dimensions=dimensions), least=0.0)
         point = width / (72 * min(0.9 * PAGE, tall * width / height))  # length that one point of the page shows
-        _blocks(ax, looked)
         _ids(ax, looked, point, sheet, dimensions=dimensions)
-        if looked.built is not None:
-            assembly = looked.built.assembly
-            draw_joints(ax, assembly)
-            draw_loads(ax, assembly, shapes.extra_dead_load(assembly), RUST, "dead")
-            draw_loads(ax, assembly, assembly.live, BLUE, "live")
         if dimensions:
             _overall(ax, extent, margin, sheet)
         unit = looked.wall.units.length
@@ -104,27 +96,30 @@ def inspected_figure(
             ax.axis("off")
         _marks(ax, looked.marks, sheet)
         words = "\n".join(told)
-        page.text(0.02, 0.1 * sheet.text / 72 / (tall + foot), words, fontsize=sheet.text, color=INK, va="bottom")
+        page.text(
+            0.02, 0.1 * sheet.text / 72 / (tall + foot), words, fontsize=sheet.text, color=COLOURS["ink"], va="bottom"
+        )
     return page
 
 
-def _blocks(ax: Axes, looked: Inspection) -> None:
-    """Outlines as drawn, also those that are no polygons; blocks that a mark concerns are tinted."""
+def _drawing(looked: Inspection, extent: shapes.Extent, margin: float, *, dimensions: bool) -> DisplayList:
+    """Outlines as drawn, also those that are no polygons, those of blocks with a mark tinted; joints, loads, sizes."""
+    assembly = None if looked.built is None else looked.built.assembly
+    drawn = DisplayList(Frame(extent, 0.1 * extent.longest if assembly is None else assembly.length_scale), "")
     concerned = {name: mark.kind for mark in reversed(looked.marks) for name in mark.blocks}
-    for still in (True, False):
-        mine = [k for k, fixed in enumerate(looked.fixed.tolist()) if fixed is still]
-        colours = ["#f6ded2" if concerned.get(looked.names[k]) == "fault" else STONE for k in mine]
-        edges = [TINT.get(concerned.get(looked.names[k], ""), INK) for k in mine]
-        ax.add_collection(
-            stones(
-                [looked.outlines[k] for k in mine],
-                facecolor=colours,
-                edgecolor=edges,
-                linewidth=0.5,
-                alpha=0.85,  # so that an overlap, and an outline drawn twice, shows
-                hatch="/////" if still else None,
-            )
-        )
+    for k in sorted(range(len(looked.names)), key=lambda k: not looked.fixed[k]):
+        role = concerned.get(looked.names[k], "sound") + ("-held" if looked.fixed[k] else "")
+        drawn.parts.append(Polygons(role, (drawn.frame.place(looked.outlines[k]),)))
+    if assembly is not None:
+        drawn.parts.extend(joint_lines(drawn.frame, assembly))
+        drawn.parts.extend(load_arrows(drawn.frame, assembly, head=40.0))
+    if dimensions:
+        right, top = extent.right + 0.6 * margin, extent.top + 0.6 * margin
+        width = np.array([(extent.left, top), (extent.right, top)])
+        height = np.array([(right, extent.bottom), (right, extent.top)])
+        ends = drawn.frame.place(np.stack([width, width[::-1], height, height[::-1]]))
+        drawn.parts.append(Arrows("size", ends[:, 0], ends[:, 1], np.full(4, 35.0)))
+    return drawn
 
 
 def _ids(ax: Axes, looked: Inspection, point: float, sheet: Sheet, *, dimensions: bool) -> None:
@@ -140,7 +135,7 @@ def _ids(ax: Axes, looked: Inspection, point: float, sheet: Sheet, *, dimensions
             continue
         x, y = _inside(outline)
         above = "center" if dimensions else "bottom"  # of the arrow of a load
-        ax.text(x, y, "\n".join(lines), ha="center", va=above, color=INK, fontsize=size, linespacing=1.1)
+        ax.text(x, y, "\n".join(lines), ha="center", va=above, color=COLOURS["ink"], fontsize=size, linespacing=1.1)
 
 
 def _inside(outline: FloatArray) -> tuple[float, float]:
@@ -165,32 +160,36 @@ def _size(outline: FloatArray) -> str:
 
 
 def _overall(ax: Axes, extent: shapes.Extent, margin: float, sheet: Sheet) -> None:
-    """Width and height of the wall as lines of dimension above and on the right."""
-    looks = {"arrowstyle": "<|-|>", "color": GREY, "linewidth": 0.5, "mutation_scale": 5, "shrinkA": 0, "shrinkB": 0}
+    """Width and height of the wall in numbers at its lines of dimension above and on the right."""
     right, top = extent.right + 0.6 * margin, extent.top + 0.6 * margin
-    ax.annotate("", (extent.left, top), xytext=(extent.right, top), arrowprops=looks)
-    ax.annotate("", (right, extent.bottom), xytext=(right, extent.top), arrowprops=looks)
     middle = (0.5 * (extent.left + extent.right), 0.5 * (extent.bottom + extent.top))
-    ax.text(middle[0], top, f"{extent.width:.6g}", ha="center", va="bottom", fontsize=sheet.text, color=INK)
+    ax.text(middle[0], top, f"{extent.width:.6g}", ha="center", va="bottom", fontsize=sheet.text, color=COLOURS["ink"])
     ax.text(
-        right, middle[1], f"{extent.height:.6g}", rotation=90, ha="right", va="center", fontsize=sheet.text, color=INK
+        right,
+        middle[1],
+        f"{extent.height:.6g}",
+        rotation=90,
+        ha="right",
+        va="center",
+        fontsize=sheet.text,
+        color=COLOURS["ink"],
     )
 
 
 def _axes(ax: Axes, extent: shapes.Extent, margin: float, unit: str, sheet: Sheet) -> None:
     """Coordinates of the file along two sides, and a bar of a round length."""
-    ax.tick_params(labelsize=sheet.text, length=2, width=0.4, color=GREY)
+    ax.tick_params(labelsize=sheet.text, length=2, width=0.4, color=COLOURS["grey"])
     for side, line in ax.spines.items():
         line.set_visible(side in ("left", "bottom"))
         line.set_linewidth(0.4)
-        line.set_color(GREY)
+        line.set_color(COLOURS["grey"])
     ax.ticklabel_format(useOffset=False)
     for axis, name in ((ax.xaxis, "x"), (ax.yaxis, "y")):
         axis.set_label_text(f"{name} [{unit}]" if unit else name, fontsize=sheet.text)
     length = round_number(0.25 * extent.width)
     left, low = extent.left, extent.bottom - 0.6 * margin
-    ax.plot([left, left + length], [low, low], color=INK, linewidth=2.0, solid_capstyle="butt")
-    ax.text(left + length, low, f"  {length:g} {unit}", va="center", fontsize=sheet.text, color=INK)
+    ax.plot([left, left + length], [low, low], color=COLOURS["ink"], linewidth=2.0, solid_capstyle="butt")
+    ax.text(left + length, low, f"  {length:g} {unit}", va="center", fontsize=sheet.text, color=COLOURS["ink"])
 
 
 def _marks(ax: Axes, marks: Sequence[Mark], sheet: Sheet) -> None:
@@ -200,7 +199,7 @@ def _marks(ax: Axes, marks: Sequence[Mark], sheet: Sheet) -> None:
         if mark.at is not None:
             there.setdefault(mark.at, []).append(number)
     for at, numbers in there.items():
-        tint = TINT[marks[numbers[0] - 1].kind]
+        tint = COLOURS[LOOKS[marks[numbers[0] - 1].kind].stroke]
         ax.plot(*at, "x", color=tint, markersize=3.5, markeredgewidth=0.8, zorder=8)
         ax.annotate(
             ", ".join(str(number) for number in numbers),

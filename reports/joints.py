@@ -17,8 +17,6 @@ STILL_MEASURED = 1e-3
 CARRIES = 2e-3
 """Share of the largest contact force below which a joint counts as without force, as forces are drawn."""
 SLIDE, ROCK, BOTH, OPEN, DILATANT, STICK = "slide", "rock", "rock and slide", "open", "dilatant slip", "stick"
-LETTER = {STICK: "k", SLIDE: "s", ROCK: "r", BOTH: "b", OPEN: "o", DILATANT: "d"}
-"""Of the states, as static/draw.js reads them."""
 
 
 @dataclass(frozen=True)
@@ -65,7 +63,7 @@ def motion(assembly: Assembly, result: Result) -> Motion | None:
 
 
 def joint_states(assembly: Assembly, result: Result) -> list[str] | None:
-    """What every joint of a mechanism does: a key of `LETTER`; None without a mechanism.
+    """What every joint of a mechanism does: one of the words above; None without a mechanism.
 
     In an associated mechanism a joint that slides widens by tan phi times its slip while it carries force: dilatant
     slip, whether it turns as well or not. Only what opens beyond that at both ends parts.

@@ -12,13 +12,15 @@ from harness.model.comparison import CaseResults, ComparisonRun
 from harness.model.method import Status
 from harness.model.writing import write_whole
 from reports import charts, numbers, words
-from reports.build import script_hash, script_json
+from reports.build import page_style, script_hash, script_json
 from reports.environment import environment
 from reports.facts import friction_text, value_in_words
 from reports.joints import joints_in_words, motion
+from reports.looks import HATCH
 from reports.marks import mark_of
-from reports.mechanism_drawing import mechanism_svg
+from reports.mechanism_drawing import mechanism_drawing
 from reports.paper import printed
+from reports.svg import inline
 
 
 @dataclass(frozen=True)
@@ -117,7 +119,8 @@ def render(run: ComparisonRun) -> str:
             ],
             steps=[Step(friction_text(item.case.assembly), _panels(item)) for item in walls],
             chart=Markup(charts.svg(_chart(walls))),
-            style=Markup(files("reports").joinpath("static/report.css").read_text(encoding="utf-8")),
+            style=page_style(),
+            hatch=Markup(HATCH),
             extra=Markup(files("reports").joinpath("static/learn.css").read_text(encoding="utf-8")),
             script=Markup(script),
             script_hash=Markup(script_hash(script)),
@@ -137,7 +140,7 @@ def _panels(item: CaseResults) -> list[Panel]:
             Panel(
                 result.method,
                 value_in_words(result),
-                mechanism_svg(item.case, result),
+                inline(mechanism_drawing(item.case, result)),
                 joints_in_words(found) if found is not None else "a measured field of velocities",
             )
         )

@@ -1,19 +1,19 @@
-"""Mechanisms as inline SVG: one as blocks with what its joints do, or two over each other with where they part."""
+"""Mechanisms as display lists: one as blocks with what its joints do, or two over each other with where they differ."""
 
 from __future__ import annotations
 
 import numpy as np
-from markupsafe import Markup
 
 from harness.model.assembly import Assembly, FloatArray
 from harness.model.case import Case
-from harness.model.result import Result
+from harness.model.result import Result, relative_velocities
 from reports import joints, shapes
 from reports.agreement import measure_of
-from reports.drawing import DRAWN_INTERFACES, Frame, data_of, length_scale, paths_of, stroke_factor
+from reports.display_list import Circles, DisplayList, Frame, Group, Lines, Polygons, Shape, chosen
 from reports.once import once
+from reports.wall_drawing import DRAWN_INTERFACES, length_scale
 
-MARK_CLASS = {
+ROLE = {
     joints.SLIDE: "slide",
     joints.ROCK: "rock",
     joints.BOTH: "both",
@@ -25,31 +25,39 @@ ELSEWHERE = 0.004
 """Share of the wall's longer side from which a block of the second mechanism stands elsewhere: half a line's width."""
 
 
-def mechanism_svg(case: Case, result: Result, *, measured: bool = False) -> Markup:
-    """The mechanism of a result (n, 3) as displaced blocks, with what its joints do.
-
-    Args:
-        case: the case.
-        result: a result with a mechanism.
-        measured: whether a bar of a length stands below, for a drawing that goes about alone.
-    """
-    bar = length_scale(Frame(case.assembly), case.wall.units.length) if measured else Markup("")
-    return _mechanism(case, result) + bar + Markup("</svg>")
-
-
 @once
-def _mechanism(case: Case, result: Result) -> Markup:
-    """The element without its end."""
-    assembly, frame = case.assembly, Frame(case.assembly)
-    mechanism = np.asarray(result.mechanism, dtype=float)
-    drawn = _opened(case, frame, result.method)
-    drawn += _blocks(frame, assembly, mechanism, shapes.amplitude(assembly, mechanism))
-    if assembly.n_interfaces <= DRAWN_INTERFACES:
-        drawn += _marks(frame, assembly, result)
+def mechanism_drawing(case: Case, result: Result) -> DisplayList:
+    """The mechanism of a result (n, 3) as displaced blocks, with what its joints do."""
+    drawn = moved_wall(case.assembly, result)
+    drawn.parts.extend(length_scale(drawn.frame, case.wall.units.length))
     return drawn
 
 
-def overlay_svg(case: Case, first: Result, second: Result) -> Markup:
+def moved_wall(assembly: Assembly, result: Result, scale: float | None = None) -> DisplayList:
+    """Blocks displaced along a mechanism, over a trace of where they stood.
+
+    Args:
+        assembly: the wall.
+        result: a result with a mechanism (n, 3).
+        scale: displacement of the fastest vertex [length]; one that shows well by default.
+    """
+    mechanism = np.asarray(result.mechanism, dtype=float)
+    scale = shapes.amplitude(assembly, mechanism) if scale is None else scale
+    drawn = DisplayList(Frame.of(assembly), f"Mechanism of {result.case} by {result.method}")
+    moves = shapes.moving(assembly, mechanism) & ~assembly.fixed
+    placed = [drawn.frame.place(polygon) for polygon in assembly.polygons]
+    motions = _motions(drawn.frame, assembly, scale * mechanism)
+    drawn.parts.append(Polygons("ghost", chosen(placed, moves)))
+    for role, members in (("held", assembly.fixed), ("still", ~assembly.fixed & ~moves), ("moves", moves)):
+        for k in np.flatnonzero(members).tolist():
+            motion, values = (motions[k], tuple(mechanism[k].tolist())) if moves[k] else (None, ())
+            drawn.parts.append(Group((Polygons(role, (placed[k],)),), motion, block=k, values=values))
+    if scale > 0.0 and assembly.n_interfaces <= DRAWN_INTERFACES:
+        drawn.parts.extend(_marks(drawn.frame, assembly, result, moves, motions))
+    return drawn
+
+
+def overlay_drawing(case: Case, first: Result, second: Result) -> DisplayList:
     """Two mechanisms of a case: the first as blocks, the second dashed where its blocks stand elsewhere.
 
     The second is scaled to as much motion as the first has. Joints that slide or open in one of them only are drawn
@@ -59,33 +67,30 @@ def overlay_svg(case: Case, first: Result, second: Result) -> Markup:
         case: the case.
         first, second: results with a mechanism (n, 3).
     """
-    assembly, frame = case.assembly, Frame(case.assembly)
+    assembly, frame = case.assembly, Frame.of(case.assembly)
     fields = [np.asarray(result.mechanism, dtype=float) for result in (first, second)]
     scale = shapes.amplitude(assembly, fields[0])
     scales = [scale, scale * _same_size(assembly, *fields)]
-    drawn = _opened(case, frame, f"{first.method}, dashed that by {second.method}")
-    drawn += _blocks(frame, assembly, fields[0], scale)
+    drawn = DisplayList(frame, f"Mechanism of {first.case} by {first.method}, dashed that by {second.method}")
     places = [shapes.displaced(assembly, field, by) for field, by in zip(fields, scales, strict=True)]
+    moves = shapes.moving(assembly, fields[0]) & ~assembly.fixed
+    placed = [frame.place(polygon) for polygon in places[0]]
+    for role, members in (("held", assembly.fixed), ("still", ~assembly.fixed & ~moves), ("moves", moves)):
+        drawn.parts.append(Polygons(role, chosen(placed, members)))
     apart = ELSEWHERE * frame.extent.longest
     elsewhere = [b for a, b in zip(*places, strict=True) if float(np.abs(a - b).max()) > apart]
-    data = "".join(paths_of(frame, elsewhere))
-    drawn += Markup('<path class="other" d="{}"/>').format(data) if data else Markup("")
-    drawn += _joints_of_one(frame, assembly, (first, second), scales)
-    return drawn + length_scale(frame, case.wall.units.length) + Markup("</svg>")
-
-
-def _opened(case: Case, frame: Frame, by: str) -> Markup:
-    return Markup('<svg class="wall" style="--k:{}" viewBox="{}" role="img" aria-label="{}">').format(
-        stroke_factor(case.assembly), frame.view_box, f"Mechanism of {case.id} by {by}"
-    )
-
-
-def _blocks(frame: Frame, assembly: Assembly, mechanism: FloatArray, scale: float) -> Markup:
-    moves = shapes.moving(assembly, mechanism) & ~assembly.fixed
-    paths, drawn = paths_of(frame, shapes.displaced(assembly, mechanism, scale)), Markup("")
-    for name, members in (("held", assembly.fixed), ("still", ~assembly.fixed & ~moves), ("moves", moves)):
-        drawn += Markup('<path class="{}" d="{}"/>').format(name, data_of(paths, members))
+    drawn.parts.append(Polygons("other", tuple(frame.place(polygon) for polygon in elsewhere)))
+    drawn.parts.extend(_joints_of_one(frame, assembly, (first, second), scales))
+    drawn.parts.extend(length_scale(frame, case.wall.units.length))
     return drawn
+
+
+def _motions(frame: Frame, assembly: Assembly, shift: FloatArray) -> list[tuple[float, float, float]]:
+    """Displacements (n, 3) of blocks about their centroids, as those of groups."""
+    centre, turn = frame.place(assembly.centroid), -shift[:, 2]
+    x = shift[:, 0] * frame.scale + turn * centre[:, 1]
+    y = -shift[:, 1] * frame.scale - turn * centre[:, 0]
+    return [(float(a), float(b), float(c)) for a, b, c in zip(turn, x, y, strict=True)]
 
 
 def _same_size(assembly: Assembly, first: FloatArray, second: FloatArray) -> float:
@@ -95,55 +100,48 @@ def _same_size(assembly: Assembly, first: FloatArray, second: FloatArray) -> flo
     return float(np.sqrt(sizes[0] / sizes[1])) if sizes[1] > 0.0 else 1.0
 
 
-def _joints_of_one(frame: Frame, assembly: Assembly, results: tuple[Result, Result], scales: list[float]) -> Markup:
+def _joints_of_one(
+    frame: Frame, assembly: Assembly, results: tuple[Result, Result], scales: list[float]
+) -> list[Shape]:
     """Joints that slide, or open, in one mechanism and not in the other; nothing of a measured field."""
     found = [joints.motion(assembly, result) for result in results]
     if found[0] is None or found[1] is None or assembly.n_interfaces > DRAWN_INTERFACES:
-        return Markup("")
-    size, drawn = mark_size(frame, assembly), Markup("")
+        return []
+    size, drawn = _mark_size(frame), list[Shape]()
     for number, (mine, other) in enumerate(((found[0], found[1]), (found[1], found[0]))):
         mechanism = np.asarray(results[number].mechanism, dtype=float)
         slides = mine.rubs & ~other.rubs
         opens = mine.opens & ~other.opens & ~slides
-        for name, width, members in (("slide", size, slides), ("open", 0.6 * size, opens)):
+        for role, width, members in (("slide", size, slides), ("open", 0.6 * size, opens)):
             ends = shapes.moved_ends(assembly, mechanism, scales[number], np.flatnonzero(members))
-            if len(ends):
-                dashes = Markup(' stroke-dasharray="{0:.0f} {0:.0f}"').format(0.9 * size) if number else ""
-                drawn += Markup('<path class="{}" stroke-width="{:.0f}"{} d="{}"/>').format(
-                    name, width, dashes, _lines(frame, ends)
-                )
+            drawn.append(Lines(role, tuple(frame.place(ends)), width, 0.9 * size if number else None))
     return drawn
 
 
-def mark_size(frame: Frame, assembly: Assembly) -> float:
-    """Width of the line of a joint that slides, in drawing units; as in static/draw.js."""
-    return min(46.0, max(8.0, 0.07 * assembly.length_scale * frame.scale))
+def _mark_size(frame: Frame) -> float:
+    """Width of the line of a joint that slides."""
+    return min(46.0, max(8.0, 0.07 * frame.block))
 
 
-def _lines(frame: Frame, ends: FloatArray) -> str:
-    pairs = zip(frame.places(ends[:, 0]), frame.places(ends[:, 1]), strict=True)
-    return "".join(f"M{x0} {y0}L{x1} {y1}" for (x0, y0), (x1, y1) in pairs)
-
-
-def _marks(frame: Frame, assembly: Assembly, result: Result) -> Markup:
-    """What the joints of a mechanism do, drawn where their block a has moved, as static/draw.js does."""
-    states = np.array(joints.joint_states(assembly, result) or [])
+def _marks(
+    frame: Frame, assembly: Assembly, result: Result, moves: np.ndarray, motions: list[tuple[float, float, float]]
+) -> list[Group]:
+    """What the joints of a mechanism do, each moved with its block a."""
     mechanism = np.asarray(result.mechanism, dtype=float)
-    scale = shapes.amplitude(assembly, mechanism)
-    size = mark_size(frame, assembly)
-    drawn = Markup("")
-    for state, name in ((k, v) for k, v in MARK_CLASS.items() if (states == k).any()):
-        chosen = np.flatnonzero(states == state)
-        ends = shapes.moved_ends(assembly, mechanism, scale, chosen)
-        data = _lines(frame, ends)
-        width = size if state in HEAVY else 0.6 * size
-        dashes = Markup(' stroke-dasharray="{0:.0f} {0:.0f}"').format(0.9 * size) if state == joints.OPEN else ""
-        drawn += Markup('<path class="{}" stroke-width="{:.0f}"{} d="{}"/>').format(name, width, dashes, data)
+    opening, slip = relative_velocities(assembly, mechanism)
+    ends, size = frame.place(np.stack([assembly.end1, assembly.end2], axis=1)), _mark_size(frame)
+    drawn = []
+    for p, state in enumerate(joints.joint_states(assembly, result) or []):
+        if state == joints.STICK:
+            continue
+        line, wide = (ends[p],), size if state in HEAVY else 0.6 * size
+        parts: list[Shape] = [Lines(ROLE[state], line, wide, 0.9 * size if state == joints.OPEN else None)]
         if state == joints.DILATANT:
-            drawn += Markup('<path class="core" stroke-width="{:.0f}" d="{}"/>').format(0.4 * size, data)
+            parts.append(Lines("core", line, 0.4 * size))
         if state in (joints.ROCK, joints.BOTH):
-            hinges = frame.places(shapes.hinges(assembly, mechanism, ends, chosen))
-            drawn += Markup(
-                "".join(f'<circle class="hinge" cx="{x}" cy="{y}" r="{1.1 * size:.0f}"/>' for x, y in hinges)
-            )
+            hinge = int(opening[p, 1] < opening[p, 0])
+            parts.append(Circles("hinge", ends[p, hinge][None], 1.1 * size))
+        a = int(assembly.block_a[p])
+        values = (state, *opening[p].tolist(), float(slip[p]))
+        drawn.append(Group(tuple(parts), motions[a] if moves[a] else None, joint=p, values=values))
     return drawn

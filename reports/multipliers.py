@@ -8,7 +8,7 @@ from harness.model.comparison import ComparisonRun
 from harness.model.result import Result
 from reports import words
 from reports.figures import COLUMN, style
-from reports.force_figure import GREY
+from reports.looks import COLOURS
 from reports.marks import mark_of
 
 TALLEST = 9.2
@@ -42,7 +42,7 @@ def multipliers_figure(run: ComparisonRun) -> Figure:
         axes.set_yticks(range(len(run.cases)), [item.case.id for item in run.cases])
         axes.set_ylim(len(run.cases) - 0.4, -0.6)
         axes.set_xlabel("multiplier of the live load")
-        axes.grid(axis="x", color=GREY, linewidth=0.3)
+        axes.grid(axis="x", color=COLOURS["grey"], linewidth=0.3)
         page.legend(loc="outside upper center", ncols=4, frameon=False)
     return page
 

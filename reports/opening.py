@@ -16,11 +16,13 @@ from harness.model.ranges import percent_text
 from harness.model.result import Result, Verdict
 from reports import numbers, paper, shapes, words
 from reports.agreement import agreement, mains, spread
+from reports.display_list import DisplayList
 from reports.facts import friction_text, value_in_words
 from reports.joints import joints_in_words, motion
-from reports.mechanism_drawing import mechanism_svg, overlay_svg
+from reports.mechanism_drawing import mechanism_drawing, overlay_drawing
 from reports.once import once
 from reports.reasons import SAME_MOTION, mechanism_in_words
+from reports.svg import inline
 from reports.tables import anchor_of
 
 CLOSE = 0.01
@@ -75,12 +77,12 @@ def opening(run: ComparisonRun) -> Opening:
         found.extend(_suite(items))
     found.extend(missed)
     focus = _focus(items, one)
-    figure, caption = (Markup(""), "") if focus is None else figure_of(focus)
+    figure, caption = (None, "") if focus is None else figure_of(focus)
     return Opening(
         findings=[sentence for sentence in found if sentence],
         advice="" if not one or not items else which_number(items[0]),
         red=red_rows(run),
-        figure=figure,
+        figure=Markup("") if figure is None else inline(figure),
         caption=caption,
     )
 
@@ -291,11 +293,11 @@ def _focus(items: list[CaseResults], one: bool) -> CaseResults | None:
 
 
 @once
-def figure_of(item: CaseResults) -> tuple[Markup, str]:
-    """The mechanism of the least state with that of another family dashed over it, and its caption; empty if none."""
+def figure_of(item: CaseResults) -> tuple[DisplayList | None, str]:
+    """The mechanism of the least state, that of another family dashed over it, and its caption; None without one."""
     least = least_known(item)
     if least is None or least.mechanism is None:
-        return Markup(""), ""
+        return None, ""
     apart = [
         r
         for r in mains(item)
@@ -305,8 +307,8 @@ def figure_of(item: CaseResults) -> tuple[Markup, str]:
     friction = f"tan φ {friction_text(item.case.assembly)}"
     caption = f"Mechanism of {item.case.id}, {friction}, by {least.method} at {numbers.multiplier(least.multiplier)}"
     if other is None:
-        drawn = mechanism_svg(item.case, least, measured=True)
+        drawn = mechanism_drawing(item.case, least)
         return drawn, f"{caption}. Velocities drawn as displacements."
     caption += f"; dashed, by {other.method} at {value_in_words(other)}, where its blocks stand elsewhere"
-    drawn = overlay_svg(item.case, least, other)
+    drawn = overlay_drawing(item.case, least, other)
     return drawn, f"{caption}. Velocities drawn as displacements. {JOINTS_OF_ONE}"

@@ -13,13 +13,14 @@ from harness.model.comparison import CaseResults
 from harness.model.result import Result
 from reports import flow, numbers, shapes
 from reports.agreement import Agreement
-from reports.drawing import Frame, stroke_factor
 from reports.facts import facts
-from reports.force_drawing import forces_svg
+from reports.force_drawing import force_drawing
 from reports.joints import joints_in_words, motion, open_with_force
-from reports.mechanism_drawing import mechanism_svg
+from reports.mechanism_drawing import mechanism_drawing
 from reports.opening import figure_of, is_calm
+from reports.page_drawings import PageDrawings
 from reports.reasons import reasons
+from reports.svg import inline
 from reports.tables import RunRow
 
 
@@ -30,26 +31,23 @@ class Panel:
     Attributes:
         row: the run.
         number: its index among the case's results.
-        mechanism, forces: whether there is something to draw.
+        mechanism, forces: their drawings; empty where there is nothing to draw, or too much.
         flow: what the mechanism is, for the caption.
         states: how many interfaces move in which way, in words.
         origin: which source of a search found it, and when; or nothing.
         beside: joints drawn as open that carry force, and why; or nothing.
         forces_are: what the forces are, for the caption.
-        still, still_forces: the mechanism and the forces for pages without scripts; empty for large walls.
     """
 
     row: RunRow
     number: int
-    mechanism: bool
-    forces: bool
+    mechanism: Markup
+    forces: Markup
     flow: str
     states: str
     origin: str
     beside: str
     forces_are: str
-    still: Markup
-    still_forces: Markup
 
 
 @dataclass(frozen=True)
@@ -59,8 +57,6 @@ class CaseSection:
     number: int
     case: Case
     wall: Markup
-    view_box: str
-    stroke: float
     loads_drawn: str
     through: str
     facts: list[tuple[str, str]]
@@ -77,10 +73,11 @@ class CaseSection:
     overlay: Markup = field(default_factory=Markup)
     overlay_caption: str = ""
 
+    @property
+    def packed(self) -> bool:
+        """Whether a reader without scripts misses a drawing."""
+        return any("data-packed" in drawn for panel in self.panels for drawn in (panel.mechanism, panel.forces))
 
-STILL_BLOCKS = 50
-"""Largest wall whose mechanisms stand in the page as still drawings too, about 2 kB each at that size: with 120, a page
-of 50 cases and 8 methods passed 5 MB."""
 
 FLOW = {
     "non-associated": "mechanism without dilatancy",
@@ -96,9 +93,8 @@ def case_section(
     agreements: list[Agreement],
     curves: list[tuple[str, Markup]],
     wall: Markup,
+    drawings: PageDrawings,
     fields: str = "all",
-    *,
-    still_forces: bool = False,
 ) -> CaseSection:
     """The section of one case.
 
@@ -109,15 +105,14 @@ def case_section(
         agreements: of pairs of them.
         curves: captions and charts.
         wall: its drawing.
-        fields: as in `reports.drawing.fields_drawn`.
-        still_forces: whether forces stand in the page as still drawings too.
+        drawings: those of the page so far.
+        fields: as in `reports.page_drawings.fields_drawn`.
     """
     problem = shapes.problem(item.case)
     if problem:
-        return CaseSection(number, item.case, wall, "", 1.0, "", "", [], (), rows, [], rows, [], [], problem)
-    frame = Frame(item.case.assembly)
+        return CaseSection(number, item.case, wall, "", "", [], (), rows, [], rows, [], [], problem)
     calm = is_calm(item)
-    overlay, caption = (Markup(""), "") if calm else figure_of(item)
+    overlay, caption = (None, "") if calm else figure_of(item)
     panels, without = [], []
     for row in rows:
         index = int(row.anchor.rsplit("-", 1)[1])
@@ -129,25 +124,23 @@ def case_section(
             Panel(
                 row=row,
                 number=index,
-                mechanism=result.mechanism is not None and fields != "none",
-                forces=result.forces is not None and fields == "all",
+                mechanism=Markup("")
+                if result.mechanism is None or fields == "none"
+                else drawings.put(mechanism_drawing(item.case, result)),
+                forces=Markup("")
+                if result.forces is None or fields != "all"
+                else drawings.put(force_drawing(item.case, result)),
                 flow=FLOW.get(result.flow, result.flow),
                 states=_states(item.case, result),
                 origin=origin(result),
                 beside=_forces_beside(item.case, result) if fields == "all" else "",
                 forces_are=_forces_are(result),
-                still=_still(item.case, result, fields),
-                still_forces=forces_svg(item.case, result)
-                if still_forces and fields == "all" and result.forces is not None
-                else Markup(""),
             )
         )
     return CaseSection(
         number=number,
         case=item.case,
         wall=wall,
-        view_box=frame.view_box,
-        stroke=stroke_factor(item.case.assembly),
         loads_drawn=_loads_drawn(item.case),
         through=_through(item),
         facts=facts(item.case),
@@ -160,7 +153,7 @@ def case_section(
         cut=fields,
         reasons=tuple(reasons(item)),
         calm=calm,
-        overlay=overlay,
+        overlay=Markup("") if overlay is None else inline(overlay),
         overlay_caption=caption,
     )
 
@@ -198,12 +191,6 @@ def _forces_beside(case: Case, result: Result) -> str:
     if result.flow == "approximate":
         return f"{carry}: the forces are of the state that was held, the mechanism is of the one that moved"
     return carry
-
-
-def _still(case: Case, result: Result, fields: str) -> Markup:
-    if result.mechanism is None or fields == "none" or case.assembly.n_blocks > STILL_BLOCKS:
-        return Markup("")
-    return mechanism_svg(case, result)
 
 
 def origin(result: Result) -> str:

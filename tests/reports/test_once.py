@@ -5,8 +5,10 @@ from __future__ import annotations
 import os
 from pathlib import Path
 
-from reports import build, drawing
+from reports import build
 from reports.once import each_once, once
+from reports.svg import body
+from reports.wall_drawing import wall_drawing
 from tests.reports import samples
 
 made: list[str] = []
@@ -42,7 +44,7 @@ def test_the_page_is_the_same_with_and_without_what_is_kept(tmp_path: Path):
     assert (tmp_path / "r.html").read_text(encoding="utf-8") == build.render(run, data_folder="r-data")
     case = run.cases[0].case
     kept = (tmp_path / "r-data" / case.id / "wall.svg").read_text(encoding="utf-8")
-    assert str(drawing.wall_svg(case)).split(">", 1)[1] in kept
+    assert body(wall_drawing(case)) in kept
 
 
 def test_files_that_would_be_written_as_they_are_stay_untouched(tmp_path: Path):

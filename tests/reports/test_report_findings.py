@@ -8,11 +8,14 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from harness.model.case import Case
 from harness.model.comparison import CaseResults, Certified, ComparisonRun, Gate
 from harness.model.method import Finding, Status
-from harness.model.result import Verdict
-from reports import build, joints, mechanism_drawing, opening, reasons, tables
+from harness.model.result import Result, Verdict
+from reports import build, joints, opening, reasons, tables
 from reports.limits import known_limits
+from reports.mechanism_drawing import overlay_drawing
+from reports.svg import inline
 from tests.reports import samples
 
 
@@ -165,11 +168,15 @@ def test_reason_names_what_moves_in_one_only():
     assert "in la only" in told[1]
 
 
+def overlay_svg(case: Case, first: Result, second: Result) -> str:
+    return inline(overlay_drawing(case, first, second))
+
+
 def test_overlay_draws_both_mechanisms():
     item = of_one_wall()
-    drawn = mechanism_drawing.overlay_svg(item.case, item.results[0], item.results[1])
+    drawn = overlay_svg(item.case, item.results[0], item.results[1])
     assert 'class="other"' in drawn
-    assert drawn != mechanism_drawing.overlay_svg(item.case, item.results[1], item.results[0])
+    assert drawn != overlay_svg(item.case, item.results[1], item.results[0])
 
 
 def test_overlay_of_one_motion_at_two_scales_draws_nothing_twice():
@@ -177,7 +184,7 @@ def test_overlay_of_one_motion_at_two_scales_draws_nothing_twice():
     first = item.results[0]
     assert first.mechanism is not None
     faster = first.model_copy(update={"mechanism": [tuple(3.0 * x for x in row) for row in first.mechanism]})
-    drawn = mechanism_drawing.overlay_svg(item.case, first, faster)
+    drawn = overlay_svg(item.case, first, faster)
     assert 'class="other"' not in drawn
     assert 'class="slide"' not in drawn
 
@@ -191,7 +198,7 @@ def test_overlay_marks_joints_that_slide_in_one_mechanism_only():
     motions[1, free] = (-toe[0, 1], toe[0, 0], -1.0)
     slides = samples.solved(case, "la", 0.4).model_copy(update={"mechanism": motions[0].tolist()})
     turns = slides.model_copy(update={"method": "fe", "mechanism": motions[1].tolist()})
-    drawn = mechanism_drawing.overlay_svg(case, slides, turns)
+    drawn = overlay_svg(case, slides, turns)
     assert drawn.count('class="slide"') == 1
     assert 'class="slide" stroke-width="46" d=' in drawn, "the first one's are whole lines"
     assert re.search('class="open" stroke-width="28" stroke-dasharray="41 41" d=', drawn), "the second one's are dashed"
