@@ -1,7 +1,8 @@
 """The display list: what a drawing shows, as polygons, lines, circles, arrows and texts with a role each.
 
 Coordinates and sizes are drawing units: the longer side of a wall has 4000 of them, x points right and y down. A role
-says what a part stands for; `reports.looks` gives it colours and line widths. `reports.svg` and `reports.plot` draw.
+says what a part stands for; its colours and widths of lines are in `reports.looks`. There are two back-ends,
+`reports.svg` and `reports.plot`.
 """
 
 from __future__ import annotations
