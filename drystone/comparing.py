@@ -46,7 +46,7 @@ class Comparison:
 
     def to_pandas(self) -> pd.DataFrame:
         """One row a wall and method, the columns of results.csv; `attrs["units"]` names the units."""
-        from reports.export import result_frame
+        from reports.page.export import result_frame
 
         return result_frame((result, result.proof) for result in self.results)
 
@@ -62,7 +62,7 @@ class Comparison:
 
     def report(self, path: str | Path) -> Path:
         """Write the HTML report, with its data folder beside it."""
-        from reports.build import write_report
+        from reports.page.build import write_report
 
         target = Path(path)
         target.parent.mkdir(parents=True, exist_ok=True)
@@ -71,7 +71,7 @@ class Comparison:
 
     def plot(self) -> Figure:
         """Multipliers of all methods, one group of points a wall, in the colours and marks that the methods name."""
-        from reports.multipliers import multipliers_figure
+        from reports.charts.multipliers import multipliers_figure
 
         return multipliers_figure(self.run)
 
@@ -112,7 +112,7 @@ def compare(
         fresh: run again what is in the store.
         told: called after each isolated run with the run, its result and whether it was stored.
         title, command: what the report says was compared, and how to repeat it.
-        studies: for the report to draw, as `reports.studies` describes them.
+        studies: for the report to draw, as `reports.charts.studies` describes them.
 
     Raises:
         InputError: an unknown method, two walls of one name, or a store that is damaged.

@@ -11,7 +11,7 @@ from typing import Any
 import pytest
 from playwright.sync_api import Browser, Page
 
-from reports import build
+from reports.page import build
 from tests.reports import samples
 
 pytestmark = pytest.mark.browser

@@ -10,9 +10,9 @@ from harness.model.comparison import CaseResults
 from harness.model.method import Answer, Finding, Status
 from harness.model.proof import Proof
 from harness.model.result import WIDE, result_of
-from reports.export import _result_row
-from reports.facts import value_in_words
-from reports.tables import run_row
+from reports.labels.wall_summary import value_in_words
+from reports.page.export import _result_row
+from reports.page.tables import run_row
 from tests.reports import samples
 from tests.walls import assembly, stack
 

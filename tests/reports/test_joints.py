@@ -8,9 +8,10 @@ import pytest
 from harness.model.case import Case, read_case, shipped_cases
 from harness.model.method import load_method
 from harness.model.result import Result, result_of
-from reports import joints, sections
-from reports.mechanism_drawing import mechanism_drawing
-from reports.svg import inline
+from reports.drawing.mechanism_drawing import mechanism_drawing
+from reports.drawing.svg import inline
+from reports.findings import joints
+from reports.page import sections
 from tests.reports import samples
 
 WALL = read_case(shipped_cases() / "wall-21")

@@ -11,22 +11,14 @@ from harness.model.comparison import CaseResults, ComparisonRun
 from harness.model.displaced import carried, released
 from harness.model.method import Status
 from harness.model.result import Verdict
-from reports import (
-    agreement,
-    charts,
-    curves,
-    families,
-    flow,
-    grid,
-    numbers,
-    paper,
-    sections,
-    shapes,
-    studies,
-)
-from reports.display_list import Circles, DisplayList, Group, Polygons, moved
-from reports.force_drawing import force_drawing, percent_used
-from reports.mechanism_drawing import mechanism_drawing
+from reports.charts import charts, curves, families, grid, studies
+from reports.drawing.display_list import Circles, DisplayList, Group, Polygons, moved
+from reports.drawing.force_drawing import force_drawing, percent_used
+from reports.drawing.mechanism_drawing import mechanism_drawing
+from reports.findings import agreement
+from reports.geometry import shapes, thrust_lines
+from reports.labels import numbers
+from reports.page import paper, sections
 from tests.reports import samples
 
 
@@ -408,7 +400,7 @@ def test_friction_at_its_limit_is_decided_from_the_forces_and_not_from_what_is_s
     assert shown[2].values[3] == 99
     for number, group in shown.items():
         circled = any(isinstance(part, Circles) for part in group.parts)
-        assert circled == flow.at_friction_limit(case.assembly, forces)[number]
+        assert circled == thrust_lines.at_friction_limit(case.assembly, forces)[number]
 
 
 def bracketed_grid(low: float, high: float) -> families.Study:
@@ -440,7 +432,7 @@ def test_what_head_joints_carry_is_said_from_the_forces_of_the_walls_that_differ
         for number, (length, friction) in enumerate(((0.4, 0.5), (0.4, 0.8), (0.6, 0.5), (0.6, 0.8))):
             case = samples.bond(f"wall-{number}", length=length, friction=friction)
             assembly = case.assembly
-            heads = np.flatnonzero(abs(assembly.normal[:, 0]) > flow.HEAD_JOINT)
+            heads = np.flatnonzero(abs(assembly.normal[:, 0]) > thrust_lines.HEAD_JOINT)
             weight = float(assembly.weight[assembly.free].sum())
             rows = []
             for name, value in (("fe", 0.6), ("la", 0.5)):

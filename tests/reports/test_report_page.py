@@ -13,7 +13,7 @@ import pytest
 from harness.model import columns
 from harness.model.comparison import CaseResults, Certified, ComparisonRun
 from harness.model.method import Status
-from reports import build, page_drawings
+from reports.page import build, page_drawings
 from tests.reports import samples
 
 

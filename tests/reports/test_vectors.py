@@ -10,14 +10,15 @@ from xml.etree import ElementTree
 import numpy as np
 import pytest
 
-from reports import flow, shapes, vectors
-from reports.display_list import Frame
-from reports.export import export
-from reports.force_drawing import force_drawing
-from reports.looks import LOOKS, css
-from reports.mechanism_drawing import mechanism_drawing
-from reports.svg import inline
-from reports.wall_drawing import wall_drawing
+from reports.drawing.display_list import Frame
+from reports.drawing.force_drawing import force_drawing
+from reports.drawing.looks import LOOKS, css
+from reports.drawing.mechanism_drawing import mechanism_drawing
+from reports.drawing.svg import inline
+from reports.drawing.wall_drawing import wall_drawing
+from reports.geometry import shapes, thrust_lines
+from reports.page import vectors
+from reports.page.export import export
 from tests.reports import samples
 
 SVG = "{http://www.w3.org/2000/svg}"
@@ -52,9 +53,9 @@ def test_forces_are_drawn_where_they_act_with_their_size_and_a_scale():
     case = samples.bond()
     result = samples.solved(case, "la", 0.5)
     drawn = inline(force_drawing(case, result))
-    found = shapes.thrusts(case.assembly, np.asarray(result.forces), smallest=flow.STYLE.smallest)
+    found = shapes.thrusts(case.assembly, np.asarray(result.forces), smallest=thrust_lines.STYLE.smallest)
     arrows = re.findall(r'class="(?:force|full)" d="M(-?\d+) (-?\d+)', drawn)
-    tips = np.rint(Frame.of(case.assembly).place(flow.drawn_ends(case.assembly, found)[:, 1]))
+    tips = np.rint(Frame.of(case.assembly).place(thrust_lines.drawn_ends(case.assembly, found)[:, 1]))
     assert np.array(arrows, dtype=int).tolist() == tips.tolist()
     assert drawn.count("<text") == len(found.size) + 2, "a size each, and two scales"
     assert " kN</text>" in drawn

@@ -1,0 +1,365 @@
+"""Rows of the report's tables, made from results as they are: failed runs stay in."""
+
+from __future__ import annotations
+
+import json
+from collections import Counter
+from collections.abc import Iterable
+from dataclasses import dataclass
+from typing import Any
+
+from harness.model.case import Case, Reference
+from harness.model.comparison import CaseResults, ComparisonRun
+from harness.model.library import library
+from harness.model.method import Status
+from harness.model.proof import Standing, proof_of
+from harness.model.result import Comparison, Result, Verdict
+from reports.labels import labels, numbers
+
+
+@dataclass(frozen=True)
+class Cell:
+    """A table cell: what is printed, all digits for the hover text, and a number to sort by."""
+
+    text: str
+    title: str = ""
+    sort: float | None = None
+
+
+@dataclass(frozen=True)
+class RunRow:
+    """One run of one method on one case, ready to print."""
+
+    anchor: str
+    case: str
+    case_title: str
+    method: str
+    family: str
+    failed: bool
+    trouble: bool
+    multiplier: Cell
+    proved: bool
+    bracket: Cell
+    bracket_meaning: str
+    reference: Cell
+    verdict: Verdict
+    verdict_glyph: str
+    verdict_word: str
+    status_glyph: str
+    status_word: str
+    finding: str
+    sentence: str
+    cpu: Cell
+    wall: Cell
+    memory: Cell
+    residual: Cell
+    judged: str
+    judge_sentence: str
+    key: str
+    started: str
+    iterations: int
+    unknowns: int | None
+    settings: str
+    limits: str
+    versions: str
+    machine: str
+    command: str
+    blocks: int
+    interfaces: int
+
+
+def anchor_of(case_number: int, result_number: int) -> str:
+    """The id of a run in the page; numbers, so that no name from a file becomes part of it."""
+    return f"run-{case_number}-{result_number}"
+
+
+def reference_of(case: Case, identifier: str) -> Reference | None:
+    """The reference of this id, or None."""
+    return next((reference for reference in case.file.references if reference.id == identifier), None)
+
+
+def expected_text(comparison: Comparison, relation: str) -> str:
+    """A reference's value with its relation, e.g. "≤ 0.641" or "0.47619"."""
+    expected = comparison.expected
+    if isinstance(expected, str):
+        return expected
+    if isinstance(expected, list):
+        return f"in [{numbers.given(expected[0])}, {numbers.given(expected[1])}]"
+    sign = {"at_most": "≤ ", "at_least": "≥ ", "contains": "∋ "}.get(relation, "")
+    return sign + numbers.given(expected)
+
+
+def _reference_cell(case: Case, result: Result) -> Cell:
+    """The reference that matters most: the worst verdict, gated before not, multiplier before others."""
+    severity = [
+        Verdict.VIOLATES_BOUND,
+        Verdict.OUTSIDE_TOLERANCE,
+        Verdict.AGREES,
+        Verdict.NOT_TESTED,
+        Verdict.NO_REFERENCE,
+    ]
+    ranked = sorted(
+        result.comparisons,
+        key=lambda item: (severity.index(item.verdict), item.quantity != "multiplier", not item.gate),
+    )
+    if not ranked:
+        return Cell(numbers.NOTHING)
+    first = ranked[0]
+    reference = reference_of(case, first.reference)
+    text = expected_text(first, reference.relation if reference else "equal")
+    if first.quantity != "multiplier" and not isinstance(first.expected, str):
+        text = f"{first.quantity.removeprefix('details.').replace('_', ' ')} {text}"
+    more = f" +{len(ranked) - 1}" if len(ranked) > 1 else ""
+    source = f"; {reference.source}" if reference else ""
+    title = f"{first.sentence}{source}"
+    return Cell(text + more, title, first.expected if isinstance(first.expected, float) else None)
+
+
+def _multiplier_cell(result: Result) -> Cell:
+    if result.status is not Status.OK and result.multiplier is None:
+        return Cell(labels.STATUS[result.status][1])
+    if result.multiplier is None:
+        return Cell(labels.FINDING[result.finding])
+    if result.flow == "approximate" and result.bracket is not None:
+        text = numbers.interval(result.bracket) + result.width_in_words
+        return Cell(text, numbers.every_digit(result.bracket), result.multiplier)
+    return Cell(
+        numbers.multiplier(result.multiplier, result.judge.decimals), repr(result.multiplier), result.multiplier
+    )
+
+
+def run_row(case_number: int, result_number: int, item: CaseResults) -> RunRow:
+    """The row of one result."""
+    case, result = item.case, item.results[result_number]
+    worst = result.judge.worst
+    accepted = result.judge.accepted
+    failed = result.status is not Status.OK
+    return RunRow(
+        anchor=anchor_of(case_number, result_number),
+        case=result.case,
+        case_title=case.file.title,
+        method=result.method,
+        family=result.family,
+        failed=failed,
+        trouble=failed or not accepted or result.verdict in (Verdict.OUTSIDE_TOLERANCE, Verdict.VIOLATES_BOUND),
+        multiplier=_multiplier_cell(result),
+        proved=proof_of(item, result).standing is Standing.MINIMUM,
+        bracket=Cell(
+            numbers.interval(result.bracket),
+            numbers.every_digit(result.bracket) if result.bracket else "",
+            result.bracket[0] if result.bracket else None,
+        ),
+        bracket_meaning=result.bracket_meaning,
+        reference=_reference_cell(case, result),
+        verdict=result.verdict,
+        verdict_glyph=labels.VERDICT[result.verdict][0],
+        verdict_word=labels.VERDICT[result.verdict][1],
+        status_glyph=labels.STATUS[result.status][0],
+        status_word=labels.STATUS[result.status][1],
+        finding=labels.FINDING[result.finding],
+        sentence=result.sentence,
+        cpu=_number_cell(result.cpu_seconds, numbers.seconds(result.cpu_seconds), "s"),
+        wall=_number_cell(result.wall_seconds, numbers.seconds(result.wall_seconds), "s"),
+        memory=_number_cell(result.peak_memory_bytes, numbers.memory(result.peak_memory_bytes), "bytes"),
+        residual=Cell(numbers.NOTHING)
+        if worst is None
+        else Cell(numbers.residual(worst[1]), f"{worst[0]} {worst[1]!r}", worst[1]),
+        judged={None: "not judged", True: "accepted", False: "rejected"}[accepted],
+        judge_sentence=result.judge.sentence,
+        key=result.key,
+        started=result.started,
+        iterations=result.iterations,
+        unknowns=result.unknowns,
+        settings=_pairs(result.settings),
+        limits=_pairs(result.limits),
+        versions=_pairs(result.versions),
+        machine=_machine(result.machine),
+        command=f"drystone run {result.method} {result.case}",
+        blocks=result.blocks,
+        interfaces=result.interfaces,
+    )
+
+
+def _number_cell(value: float | int | None, text: str, unit: str) -> Cell:
+    return Cell(text) if value is None else Cell(text, f"{value!r} {unit}", float(value))
+
+
+def _pairs(values: dict[str, Any]) -> str:
+    """Names and values in one line."""
+    return ", ".join(
+        f"{name} = {value if isinstance(value, str) else json.dumps(value, default=str, ensure_ascii=False)}"
+        for name, value in values.items()
+    )
+
+
+def _machine(values: dict[str, Any]) -> str:
+    """Where a run was made, its memory in units that people read."""
+    size = values.get("memory_bytes")
+    known = values if not isinstance(size, int) else values | {"memory_bytes": numbers.memory(size)}
+    return ", ".join(f"{name.removesuffix('_bytes')} {value}" for name, value in known.items())
+
+
+def run_rows(run: ComparisonRun) -> list[list[RunRow]]:
+    """The rows of every case, in the order of the cases, methods in the paper's order."""
+    return [
+        [
+            run_row(case_number, number, item)
+            for number in sorted(range(len(item.results)), key=lambda n: labels.order(item.results[n]))
+        ]
+        for case_number, item in enumerate(run.cases)
+    ]
+
+
+@dataclass(frozen=True)
+class Column:
+    """A method as the head of a column."""
+
+    method: str
+    family: str
+    number_is: str
+
+
+def columns(run: ComparisonRun) -> list[Column]:
+    """The methods of a comparison, in the paper's order."""
+    found = {(result.method, result.family): labels.order(result) for item in run.cases for result in item.results}
+    captions = {
+        result.method: result.traits.caption
+        for item in run.cases
+        for result in item.results
+        if result.traits.caption  # a run without an answer of its method tells none
+    }
+    return [
+        Column(method, library().family_title(family, method), captions.get(method, ""))
+        for method, family in sorted(found, key=lambda pair: found[pair])
+    ]
+
+
+def overview_columns(run: ComparisonRun) -> list[Column]:
+    """The methods that were run on at least a third of the cases: the others would be columns of blanks."""
+    runs = Counter(result.method for item in run.cases for result in item.results)
+    return [column for column in columns(run) if 3 * runs[column.method] >= len(run.cases)]
+
+
+@dataclass(frozen=True)
+class ReferenceRow:
+    """One result held against one reference."""
+
+    anchor: str
+    case: str
+    method: str
+    quantity: str
+    type: str
+    value: Cell
+    expected: Cell
+    tolerance: str
+    gate: bool
+    glyph: str
+    word: str
+    verdict: Verdict
+    sentence: str
+    source: str
+    requirement: str
+    reason: str
+    settings: str
+
+
+def reference_rows(run: ComparisonRun) -> dict[str, list[ReferenceRow]]:
+    """Rows of the tables of references, by purpose: verification, benchmark, validation, regression."""
+    tables: dict[str, list[ReferenceRow]] = {purpose: [] for purpose in labels.PURPOSE}
+    for case_number, item in enumerate(run.cases):
+        for number, result in enumerate(item.results):
+            for comparison in result.comparisons:
+                reference = reference_of(item.case, comparison.reference)
+                if reference is None:
+                    continue
+                purpose = next(name for name, entry in labels.PURPOSE.items() if reference.type in entry[1])
+                tables[purpose].append(_reference_row(anchor_of(case_number, number), result, comparison, reference))
+    return tables
+
+
+def _reference_row(anchor: str, result: Result, comparison: Comparison, reference: Reference) -> ReferenceRow:
+    value = comparison.value
+    if value is None:
+        shown = Cell(numbers.NOTHING)
+    elif isinstance(value, str):
+        shown = Cell(value)
+    elif isinstance(value, list):
+        shown = Cell(numbers.interval(value), numbers.every_digit(value))
+    else:
+        shown = Cell(_count_or_number(value, comparison.quantity), repr(value), value)
+    expected = expected_text(comparison, reference.relation)
+    if isinstance(comparison.expected, float) and comparison.quantity in ("blocks", "interfaces", "unknowns"):
+        expected = f"{comparison.expected:.0f}"
+    return ReferenceRow(
+        anchor=anchor,
+        case=result.case,
+        method=result.method,
+        quantity=comparison.quantity.removeprefix("details.").replace("_", " "),
+        type=str(reference.type),
+        value=shown,
+        expected=Cell(expected, numbers.every_digit(comparison.expected)),
+        tolerance=numbers.NOTHING if isinstance(comparison.expected, str) else numbers.given(comparison.tolerance, 2),
+        gate=comparison.gate,
+        glyph=labels.VERDICT[comparison.verdict][0],
+        word=labels.VERDICT[comparison.verdict][1],
+        verdict=comparison.verdict,
+        sentence=comparison.sentence,
+        source=reference.source,
+        requirement=reference.requirement,
+        reason=reference.tolerance_reason,
+        settings=_pairs(reference.settings),
+    )
+
+
+def _count_or_number(value: float, quantity: str) -> str:
+    return f"{value:.0f}" if quantity in ("blocks", "interfaces", "unknowns") else numbers.plain(value)
+
+
+@dataclass(frozen=True)
+class Failure:
+    """Runs of one method that failed in the same way."""
+
+    method: str
+    glyph: str
+    word: str
+    sentence: str
+    runs: list[RunRow]
+
+
+def failures(rows: Iterable[RunRow]) -> list[Failure]:
+    """Failed and rejected runs, those of one method with the same sentence together, in the order they appear."""
+    groups: dict[tuple[str, str, str, str], list[RunRow]] = {}
+    for row in rows:
+        if row.failed:
+            groups.setdefault((row.method, row.status_glyph, row.status_word, row.sentence), []).append(row)
+        elif row.judged == "rejected":
+            groups.setdefault((row.method, "✗", "rejected by the judge", row.judge_sentence), []).append(row)
+    return [Failure(*words_of, runs) for words_of, runs in groups.items()]
+
+
+def findings(run: ComparisonRun) -> str:
+    """What the comparison found, in sentences computed from the results."""
+    results = [result for item in run.cases for result in item.results]
+    ended = [result for result in results if result.status is Status.OK]
+    comparisons = [comparison for result in results for comparison in result.comparisons]
+    gated = [comparison for comparison in comparisons if comparison.gate]
+    held = sum(comparison.verdict is Verdict.AGREES for comparison in gated)
+    rejected = sum(result.judge.accepted is False for result in results)
+    accepted = sum(result.judge.accepted is True for result in results)
+    unjudged = len(ended) - accepted - rejected
+    sentences = [
+        f"Of {numbers.count(len(results), 'run')} on {numbers.count(len(run.cases), 'case')}, "
+        f"{len(ended)} ended with an answer; the judge accepted {accepted} and rejected {rejected}"
+        + (f", and {unjudged} {_are(unjudged)} not judged." if unjudged else ".")
+    ]
+    if gated:
+        sentences.append(f"Of {numbers.count(len(gated), 'gated reference value')}, {held} {_are(held)} met.")
+    gates = [gate for item in run.cases for gate in item.gates if gate.passed is not None]
+    if gates:
+        passed = sum(bool(gate.passed) for gate in gates)
+        sentences.append(f"Of {numbers.count(len(gates), 'statement')} of theory that could be tested, {passed} hold.")
+    return " ".join(sentences)
+
+
+def _are(number: int) -> str:
+    return "is" if number == 1 else "are"
