@@ -60,13 +60,17 @@ class Frame:
 
     def place(self, points: FloatArray) -> FloatArray:
         """Points (..., 2) [length] in drawing units."""
-        away = np.stack([points[..., 0] - self.extent.left, self.extent.top - points[..., 1]], axis=-1)
-        return np.asarray(away * self.scale)
+        return np.asarray((points - [self.extent.left, self.extent.top]) * [self.scale, -self.scale])
+
+    def place_all(self, outlines: Sequence[FloatArray]) -> list[FloatArray]:
+        """Outlines (k, 2) [length] in drawing units."""
+        if not outlines:
+            return []
+        return np.split(self.place(np.concatenate(outlines)), np.cumsum([len(outline) for outline in outlines])[:-1])
 
     def back(self, points: FloatArray) -> FloatArray:
         """Points (..., 2) in drawing units as lengths of the wall."""
-        x, y = points[..., 0] / self.scale, points[..., 1] / self.scale
-        return np.stack([self.extent.left + x, self.extent.top - y], axis=-1)
+        return np.asarray(points / [self.scale, -self.scale] + [self.extent.left, self.extent.top])
 
 
 @dataclass(frozen=True)

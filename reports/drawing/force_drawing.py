@@ -31,7 +31,7 @@ def force_drawing(case: Case, result: Result, layers: Collection[str] = LAYERS) 
     """
     assembly, frame = case.assembly, Frame.of(case.assembly)
     drawn = DisplayList(frame, f"Contact forces of {result.case} by {result.method}")
-    placed = [frame.place(polygon) for polygon in assembly.polygons]
+    placed = frame.place_all(assembly.polygons)
     drawn.parts.append(Polygons("ground", chosen(placed, assembly.fixed)))
     drawn.parts.append(Polygons("outline", chosen(placed, ~assembly.fixed)))
     drawn.parts.extend(length_scale(frame, case.wall.units.length))
@@ -91,14 +91,14 @@ def _arrows(frame: Frame, ends: FloatArray, width: FloatArray) -> FloatArray:
     return np.stack([tip, neck + wide, neck + half, tail + half, tail - half, neck - half, neck - wide], axis=1)
 
 
-def _through_blocks(frame: Frame, assembly: Assembly, found: shapes.Thrusts) -> list[FloatArray]:
-    """Lines (3, 2) from where the forces of one block meet through each centre of pressure to those of the other."""
-    meet = shapes.junctions(assembly, found)
-    lines = []
-    for point, p in zip(found.point, found.interface, strict=True):
-        ends = [point if assembly.fixed[k] else meet[k] for k in (assembly.block_a[p], assembly.block_b[p])]
-        lines.append(frame.place(np.array([ends[0], point, ends[1]])))
-    return lines
+def _through_blocks(frame: Frame, assembly: Assembly, found: shapes.Thrusts) -> FloatArray:
+    """Lines (p, 3, 2) from where the forces of one block meet through each centre of pressure to those of the other."""
+    meet, point = shapes.junctions(assembly, found), found.point
+    first, second = (
+        np.where(assembly.fixed[block][:, None], point, meet[block])
+        for block in (assembly.block_a[found.interface], assembly.block_b[found.interface])
+    )
+    return frame.place(np.stack([first, point, second], axis=1))
 
 
 def _size(frame: Frame, point: FloatArray, size: float, *, level: bool) -> Text:

@@ -46,7 +46,7 @@ def moved_wall(assembly: Assembly, result: Result, scale: float | None = None) -
     scale = shapes.amplitude(assembly, mechanism) if scale is None else scale
     drawn = DisplayList(Frame.of(assembly), f"Mechanism of {result.case} by {result.method}")
     moves = shapes.moving(assembly, mechanism) & ~assembly.fixed
-    placed = [drawn.frame.place(polygon) for polygon in assembly.polygons]
+    placed = drawn.frame.place_all(assembly.polygons)
     motions = _motions(drawn.frame, assembly, scale * mechanism)
     drawn.parts.append(Polygons("ghost", chosen(placed, moves)))
     for role, members in (("held", assembly.fixed), ("still", ~assembly.fixed & ~moves), ("moves", moves)):
@@ -75,12 +75,12 @@ def overlay_drawing(case: Case, first: Result, second: Result) -> DisplayList:
     drawn = DisplayList(frame, f"Mechanism of {first.case} by {first.method}, dashed that by {second.method}")
     places = [shapes.displaced(assembly, field, by) for field, by in zip(fields, scales, strict=True)]
     moves = shapes.moving(assembly, fields[0]) & ~assembly.fixed
-    placed = [frame.place(polygon) for polygon in places[0]]
+    placed = frame.place_all(places[0])
     for role, members in (("held", assembly.fixed), ("still", ~assembly.fixed & ~moves), ("moves", moves)):
         drawn.parts.append(Polygons(role, chosen(placed, members)))
     apart = ELSEWHERE * frame.extent.longest
     elsewhere = [b for a, b in zip(*places, strict=True) if float(np.abs(a - b).max()) > apart]
-    drawn.parts.append(Polygons("other", tuple(frame.place(polygon) for polygon in elsewhere)))
+    drawn.parts.append(Polygons("other", tuple(frame.place_all(elsewhere))))
     drawn.parts.extend(_joints_of_one(frame, assembly, (first, second), scales))
     drawn.parts.extend(length_scale(frame, case.wall.units.length))
     return drawn

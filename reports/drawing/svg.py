@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import itertools
 from collections.abc import Iterable, Sequence
 
 import numpy as np
@@ -109,17 +108,15 @@ def _element(shape: Shape, more: str = "") -> str:
 
 def _data(lines: Iterable[FloatArray], end: str = "") -> str:
     """Path data of lines (k, 2) in whole units, relative after the first point."""
-    lines = list(lines)
-    points = np.rint(np.concatenate(lines)).astype(int).tolist()
-    text, begin = [], 0
+    text = []
     for line in lines:
-        (x, y), *rest = points[begin : begin + len(line)]
-        begin += len(line)
-        text.append(f"M{x} {y}")
-        for (x0, y0), (x1, y1) in itertools.pairwise([(x, y), *rest]):
-            if y0 == y1 and (x0 != x1 or not end):
-                text.append(f"h{x1 - x0}")
-            elif y0 != y1:
-                text.append(f"v{y1 - y0}" if x0 == x1 else f"l{x1 - x0} {y1 - y0}")
+        (x0, y0), *rest = np.rint(line).astype(int).tolist()
+        text.append(f"M{x0} {y0}")
+        for x, y in rest:
+            if y != y0:
+                text.append(f"v{y - y0}" if x == x0 else f"l{x - x0} {y - y0}")
+            elif x != x0 or not end:
+                text.append(f"h{x - x0}")
+            x0, y0 = x, y
         text.append(end)
     return "".join(text)

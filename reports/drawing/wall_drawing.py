@@ -52,7 +52,7 @@ def displaced_drawing(case: Case, polygons: list[FloatArray]) -> DisplayList:
 
 
 def _stones(frame: Frame, assembly: Assembly, polygons: list[FloatArray], free: str) -> list[Shape]:
-    placed = [frame.place(polygon) for polygon in polygons]
+    placed = frame.place_all(polygons)
     return [Polygons("held", chosen(placed, assembly.fixed)), Polygons(free, chosen(placed, ~assembly.fixed))]
 
 

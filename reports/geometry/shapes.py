@@ -10,7 +10,7 @@ import numpy as np
 from harness.model.assembly import Assembly, FloatArray, IntArray
 from harness.model.case import Case
 from harness.model.errors import InputError
-from harness.model.result import relative_velocities, vertex_velocities
+from harness.model.result import vertex_velocities
 
 
 def problem(case: Case) -> str:
@@ -136,13 +136,6 @@ def moved_ends(assembly: Assembly, mechanism: FloatArray, scale: float, chosen: 
     arm = points - assembly.centroid[block][:, None]
     turned = mechanism[block, 2][:, None, None] * np.stack([-arm[..., 1], arm[..., 0]], axis=-1)
     return np.asarray(points + scale * (mechanism[block, :2][:, None] + turned))
-
-
-def hinges(assembly: Assembly, mechanism: FloatArray, ends: FloatArray, chosen: IntArray) -> FloatArray:
-    """That one (p, 2) of the `ends` (p, 2, 2) of each chosen interface which opens less."""
-    opening, _ = relative_velocities(assembly, mechanism)
-    second = opening[chosen, 1] < opening[chosen, 0]
-    return np.asarray(np.where(second[:, None], ends[:, 1], ends[:, 0]))
 
 
 def moving(assembly: Assembly, mechanism: FloatArray, smallest: float = 1e-3) -> np.ndarray:
