@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 
-import numpy as np
 from markupsafe import Markup, escape
 
 from harness.model.assembly import FloatArray
@@ -110,7 +109,7 @@ def _data(lines: Iterable[FloatArray], end: str = "") -> str:
     """Path data of lines (k, 2) in whole units, relative after the first point."""
     text = []
     for line in lines:
-        (x0, y0), *rest = np.rint(line).astype(int).tolist()
+        (x0, y0), *rest = [(round(x), round(y)) for x, y in line.tolist()]
         text.append(f"M{x0} {y0}")
         for x, y in rest:
             if y != y0:
