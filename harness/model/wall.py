@@ -89,19 +89,60 @@ def coefficient_of(value: float | None, angle: float | None) -> float:
     return value if value is not None else math.tan(math.radians(angle or 0.0))
 
 
-def _check_dilatancy(dilatancy: float | None, friction: float) -> None:
-    if dilatancy is not None and dilatancy > friction:
-        raise ValueError(f"the dilatancy {dilatancy:g} is above the friction {friction:g}: give one from 0 to that")
+class JointStrength(Strict):
+    """What a joint has beside its friction; the fields stand wherever a friction is given."""
+
+    cohesion: NonNegative | None = Field(
+        None, description="shear strength without compression [force/length^2 of the file]; none if absent"
+    )
+    tensile_strength: NonNegative | None = Field(
+        None, description="[force/length^2 of the file], from 0 (absent) to cohesion / friction"
+    )
+
+    @property
+    def stresses(self) -> tuple[float, float]:
+        """Cohesion and tensile strength [force/length^2]."""
+        return self.cohesion or 0.0, self.tensile_strength or 0.0
+
+    def check_strength(self, friction: float) -> None:
+        """The joint bears no tension at which its shear strength would be used up already, but for rounding.
+
+        Raises:
+            ValueError: the tensile strength is above cohesion / friction.
+        """
+        cohesion, tension = self.stresses
+        if friction * tension > cohesion * (1.0 + 1e-9):
+            raise ValueError(
+                f"the tensile strength {tension:g} is above cohesion / friction = {cohesion / friction:.6g}, where no "
+                "shear strength is left: give one from 0 to that, or more cohesion"
+            )
 
 
-class FrictionRule(Strict):
+class JointBehaviour(JointStrength):
+    """What a joint has beside its friction, the lift of a slip included."""
+
+    dilatancy: Coefficient | None = Field(
+        None, description="by which a slip lifts, from 0 (absent) to the friction: associated flow"
+    )
+
+    def check_beside(self, friction: float) -> None:
+        """Dilatancy and strength agree with the friction.
+
+        Raises:
+            ValueError: they do not.
+        """
+        if self.dilatancy is not None and self.dilatancy > friction:
+            raise ValueError(
+                f"the dilatancy {self.dilatancy:g} is above the friction {friction:g}: give one from 0 to that"
+            )
+        self.check_strength(friction)
+
+
+class FrictionRule(JointBehaviour):
     """Friction of some interfaces: those between two materials, of a named joint, or between two blocks."""
 
     value: Coefficient | None = Field(None, description="coefficient of friction, tan(phi)")
     friction_angle: Angle | None = Field(None, description="phi [degrees], instead of `value`")
-    dilatancy: Coefficient | None = Field(
-        None, description="by which a slip lifts, from 0 (absent) to the friction: associated flow"
-    )
     materials: tuple[str, str] | None = None
     joint: str | None = Field(None, description='"bed", "head", or a name given in `interfaces`')
     between: tuple[str, str] | None = Field(None, description="ids of the two blocks")
@@ -112,7 +153,7 @@ class FrictionRule(Strict):
             raise ValueError("a friction rule names exactly one of materials, joint, between")
         if (self.value is None) == (self.friction_angle is None):
             raise ValueError("a friction rule gives either value or friction_angle")
-        _check_dilatancy(self.dilatancy, self.coefficient)
+        self.check_beside(self.coefficient)
         return self
 
     @property
@@ -121,21 +162,21 @@ class FrictionRule(Strict):
         return coefficient_of(self.value, self.friction_angle)
 
 
-class Friction(Strict):
-    """Friction by rules. The most particular rule holds: interface, then between, then joint, then materials."""
+class Friction(JointBehaviour):
+    """Friction by rules, with what joints have beside it where none holds.
+
+    The most particular rule holds: interface, then between, then joint, then materials.
+    """
 
     default: Coefficient | None = Field(None, description="coefficient of friction, tan(phi)")
     friction_angle: Angle | None = Field(None, description="phi [degrees], instead of `default`")
-    dilatancy: Coefficient | None = Field(
-        None, description="by which a slip lifts, where no rule holds, from 0 (absent) to the friction: associated flow"
-    )
     rules: list[FrictionRule] = Field(default_factory=list)
 
     @model_validator(mode="after")
     def _one_default(self) -> Friction:
         if (self.default is None) == (self.friction_angle is None):
             raise ValueError("friction by rules gives either default or friction_angle")
-        _check_dilatancy(self.dilatancy, self.coefficient)
+        self.check_beside(self.coefficient)
         return self
 
     @property
@@ -157,7 +198,7 @@ class Inset(Strict):
         return self
 
 
-class Interface(Strict):
+class Interface(JointBehaviour):
     """A contact between two blocks along a segment."""
 
     between: tuple[str, str] = Field(description="ids of the two blocks")
@@ -165,9 +206,6 @@ class Interface(Strict):
     end: Point = Field(alias="to")
     friction: Coefficient | None = None
     friction_angle: Angle | None = Field(None, description="phi [degrees], instead of `friction`")
-    dilatancy: Coefficient | None = Field(
-        None, description="by which a slip lifts, from 0 (absent) to the friction: associated flow"
-    )
     joint: str | None = Field(None, description='a name for friction rules; "bed" or "head" by inclination if absent')
     inset: Inset | None = None
 
@@ -176,9 +214,11 @@ class Interface(Strict):
         if self.friction is not None and self.friction_angle is not None:
             raise ValueError("an interface gives either friction or friction_angle")
         if self.friction is not None or self.friction_angle is not None:
-            _check_dilatancy(self.dilatancy, coefficient_of(self.friction, self.friction_angle))
+            self.check_beside(coefficient_of(self.friction, self.friction_angle))
         elif self.dilatancy is not None:
             raise ValueError("an interface gives dilatancy beside a friction of its own")
+        elif self.cohesion is not None or self.tensile_strength is not None:
+            raise ValueError("an interface gives cohesion and tensile strength beside a friction of its own")
         return self
 
 
@@ -271,8 +311,8 @@ Interfaces = Annotated[
 ]
 
 
-class Wall(Strict):
-    """A wall, format `wall/1`."""
+class Wall(JointStrength):
+    """A wall, format `wall/1`. Its own cohesion and tensile strength are of all joints."""
 
     format: Literal["wall/1"]
     title: str = ""
@@ -298,6 +338,14 @@ class Wall(Strict):
             raise ValueError('it gives no friction: "friction" is tan(phi), "friction_angle" is phi in degrees')
         if self.friction is not None and self.friction_angle is not None:
             raise ValueError("a wall gives either friction or friction_angle")
+        if isinstance(self.friction, Friction):
+            if self.cohesion is not None or self.tensile_strength is not None:
+                raise ValueError(
+                    'friction by rules holds the cohesion and tensile strength too: give them beside "default" or in a '
+                    "rule"
+                )
+        else:
+            self.check_strength(coefficient_of(self.friction, self.friction_angle))
         return self
 
     @property
