@@ -49,6 +49,9 @@ def bound(
         raise InputError("the wall has no live load", 'Give "loads": {"live": ...}', case)
     if found.assembly.dilates:
         raise InputError("some joints lift as they slide", "Leave dilatancy out: certificates are without", case)
+    if found.assembly.strong:
+        remedy = "Leave cohesion and tensile strength out: certificates are of dry joints"
+        raise InputError("some joints have cohesion or tensile strength", remedy, case)
     search = SearchSettings(effort=effort)
     attempt = find_certificate(found.assembly, seconds, search, nodes, lambda sentence: say(sentence, err=True))
     if attempt.document is None:

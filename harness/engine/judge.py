@@ -13,11 +13,11 @@ at its limit         multiplier 0; forces in equilibrium within yield under the 
                      bear more, whatever the flow
 stands               forces in equilibrium within yield under the dead load, where no live load was given; with a live
                      load they show no multiplier, and the answer is not judged
-falls                a dilatant mechanism, at rest on the supports, on which the dead load does positive work, more than
-                     immense forces could do on its closings: no equilibrium exists (Farkas); a measured motion is no
-                     proof and is not judged
-unbounded            forces within yield that balance the live load alone, besides forces under the dead load: their sum
-                     bears any multiplier
+falls                a dilatant mechanism, at rest on the supports, on which the dead load does more work than the
+                     cohesion and tensile strength of the joints take and immense forces could do on its closings: no
+                     equilibrium exists (Farkas); a measured motion is no proof and is not judged
+unbounded            forces within the yield of dry joints that balance the live load alone, besides forces under the
+                     dead load: their sum bears any multiplier
 
 No multiplier that is claimed lies below zero. What proves nothing either way is not judged (`Judgement.accepted` is
 None), which never means accepted.
@@ -37,6 +37,7 @@ from harness.engine.residuals import (
     collapse_residuals,
     displaced_fault,
     displaced_residuals,
+    dissipated_by_strength,
     force_residuals,
     moving_parts,
     power,
@@ -209,7 +210,7 @@ def _judge_unbounded(assembly: Assembly, forces: FloatArray | None, result: Resu
     if ray.shape != forces.shape or not _countable(ray):
         return _said(tolerance, False, f"`live_forces` are not {len(forces)} finite triples.")
     residuals = force_residuals(assembly, forces, 0.0)
-    alone = replace(assembly, dead=np.zeros_like(assembly.dead))
+    alone = replace(assembly, dead=np.zeros_like(assembly.dead), constant=np.zeros_like(assembly.constant))
     residuals |= {f"live_{name}": value for name, value in force_residuals(alone, ray, 1.0).items()}
     what = "Forces under the dead load and forces that balance the live load alone"
     return _decide(residuals, tolerance, what, dict.fromkeys(("live_equilibrium", "live_yield"), WITHOUT_END))
@@ -274,15 +275,17 @@ def _judge_fall(assembly: Assembly, mechanism: FloatArray | None, result: Result
 def _fall_of(part: Assembly, motion: FloatArray, tolerance: float) -> tuple[bool, float, float, float]:
     """Whether the motion (n, 3) of a component proves its fall; its gain, its largest closing, and `closing_work`.
 
-    Were there forces in equilibrium under the dead load, within yield, their work on the motion would be minus the
-    gain: gain <= sum of n c over the contact points, n their normal forces and c their closings beyond dilatant flow.
+    The gain is the dead work less what cohesion and tensile strength take. Were there forces in equilibrium under the
+    dead load, within yield, then gain <= sum of n c over the contact points, n their normal forces and c their closings
+    beyond dilatant flow.
     So the forces of any equilibrium would have to exceed gain / sum of c. Where that is `IMMENSE` times the dead load
     there is none. `closing_work` is what forces so large may do on the closings, in dead loads like the gain.
     """
     opening, slip = relative_velocities(part, motion)
-    closings = np.maximum(0.0, (part.friction * abs(slip))[:, None] - opening)
+    lift = (part.friction * abs(slip))[:, None]
+    closings = np.maximum(0.0, lift - opening)
     closing = float(closings.max(initial=0.0))
-    gain = power(part.dead, motion) / part.force_scale
+    gain = (power(part.dead, motion) - dissipated_by_strength(part, opening - lift, slip)) / part.force_scale
     work = IMMENSE * float(closings.sum())
     return closing <= tolerance < gain and work < gain, gain, closing, work
 

@@ -4,7 +4,8 @@ A method that measures (flow "approximate") proves its multiplier by forces at r
 pictures, joint states and comparisons of mechanisms are made of. It is held against the law of the joints: rigid blocks
 on supports at rest do not penetrate each other; and where the contact forces of the motion itself are given
 (`details["moving_forces"]`, (m, 3)), a contact that opens carries none of them, and a joint slips only where friction
-is at its limit, against it. The forces at rest below are not those: they change before a wall moves.
+is at its limit, against it; strength
+counts as force. The forces at rest below are not those: they change before a wall moves.
 
 All are relative: velocities to the fastest vertex of the component, forces to the loads and contact forces on the
 lighter of the two blocks. A force times nothing and a velocity under no force count for nothing, so of each force and
@@ -99,17 +100,27 @@ def motion_residuals(
         opening, slip = relative_velocities(part, motion)
         found = {"motion_interpenetration": max(0.0, float((-opening).max(initial=0.0)))}
         if forces is not None and scale is not None:
-            found |= _under_force(part, forces[interfaces] / scale[interfaces, None], opening, slip)
+            own = scale[interfaces, None]
+            found |= _under_force(part, forces[interfaces] / own, part.constant / own, opening, slip)
         for name, value in found.items():
             residuals[name] = max(residuals.get(name, 0.0), value)
     return residuals
 
 
-def _under_force(assembly: Assembly, forces: FloatArray, opening: FloatArray, slip: FloatArray) -> dict[str, float]:
-    """What opens under force and what slips within friction, of relative forces (m, 3) and velocities (m, 2), (m,)."""
-    # Friction opposes slip: slip > 0 goes with s = -mu (n1 + n2).
+def _under_force(
+    assembly: Assembly, forces: FloatArray, strength: FloatArray, opening: FloatArray, slip: FloatArray
+) -> dict[str, float]:
+    """What opens under force and what slips within its strength.
+
+    Args:
+        assembly: the wall; forces: (m, 3) and strength: (m, 4) tension and cohesion, relative; opening: (m, 2) and
+            slip: (m,) velocities.
+    """
+    # Friction opposes slip: slip > 0 goes with s = -mu (n1 + n2) - c A.
     slack = assembly.friction * forces[:, :2].sum(axis=1) + np.sign(slip) * forces[:, 2]
+    slack = slack + np.where(slip > 0.0, strength[:, 2], strength[:, 3])
+    pressed = abs(forces[:, :2] + strength[:, :2])
     return {
-        "motion_opening": float(np.minimum(abs(forces[:, :2]), np.maximum(opening, 0.0)).max(initial=0.0)),
+        "motion_opening": float(np.minimum(pressed, np.maximum(opening, 0.0)).max(initial=0.0)),
         "motion_sliding": float(np.minimum(abs(slack), abs(slip)).max(initial=0.0)),
     }

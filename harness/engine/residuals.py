@@ -4,16 +4,18 @@ They are relative to what acts where they arise (F, and what is small beside it,
 r = largest radius of a block; each independent component's mechanism scaled so that its fastest vertex has speed 1, or
 so that its live work is that of the largest live load that does any, along the motion of its block at speed 1,
 whichever makes it larger: a block that moves fast and does no work hides nothing, and the load of one at rest is
-beside the point):
+beside the point). Joints with cohesion c and tensile strength T = f_t A bear T/2 at each end and c A in shear besides
+friction, and dissipate that as they open and slide; in dry joints both are zero:
 
 supports            fastest vertex of a fixed block, to the fastest of the wall
 equilibrium         out-of-balance force or moment/r of a free block / what is small on that block; where its contact
                     forces are immense beside the loads, from sums in fractions
-yield               tension or excess of |s| over mu (n1 + n2) / what is small on either of the two blocks
+yield               tension beyond T/2 at an end, or excess of |s| over mu (n1 + n2) + c A / what is small on either of
+                    the two blocks
 interpenetration    closing velocity at a contact point (beyond what the flow rule asks for)
-dilatancy           opening of a contact point that still carries force: min(force / smaller F, velocity)
-sliding             slip against slack of the friction cone, the same way
-complementarity     work of contact forces where nothing should move, in live work at max(unit, |multiplier|)
+dilatancy           opening of a contact point that is not at its tensile strength: min(slack / smaller F, velocity)
+sliding             slip against slack of the shear strength, the same way
+complementarity     work of these slacks where nothing should move, in live work at max(unit, |multiplier|)
 virtual_work        |multiplier - (dissipation - dead work)/live work|, relative to max(unit, |multiplier|)
 multiplier          |multiplier - that of the forces| / the larger of the two
 live_work           not a residual to be small: live work of the mechanism of a component, must be positive
@@ -82,9 +84,10 @@ def force_residuals(
         balance[block] = exact_sum(assembly, forces, multiplier, block)
     balance[:, 2] /= assembly.radius
     unbalanced = measures.relative(abs(balance).max(axis=1), measures.acting, measures.own)
-    normal = forces[:, :2]
-    excess = abs(forces[:, 2]) - assembly.friction * normal.sum(axis=1)
-    broken = np.maximum(0.0, np.maximum((-normal).max(axis=1), excess))
+    normal, shear = forces[:, :2], forces[:, 2]
+    tension, cohesion = own_strength(assembly)
+    excess = np.maximum(-shear - cohesion[:, 0], shear - cohesion[:, 1]) - assembly.friction * normal.sum(axis=1)
+    broken = np.maximum(0.0, np.maximum((-normal - tension).max(axis=1), excess))
     violation = measures.relative(broken, between(assembly, measures.acting), between(assembly, measures.own))
     return {
         "equilibrium": float(unbalanced[assembly.free].max(initial=0.0)),
@@ -92,10 +95,29 @@ def force_residuals(
     }
 
 
+def own_strength(assembly: Assembly) -> tuple[FloatArray, FloatArray]:
+    """(m, 2) tension T/2 that each end bears, and (m, 2) cohesion c A against negative and against positive shear."""
+    return assembly.constant[:, :2], assembly.constant[:, 2:]
+
+
+def dissipated_by_strength(assembly: Assembly, opening: FloatArray, slip: FloatArray) -> float:
+    """Power that tensile strength and cohesion take [force x velocity].
+
+    Args:
+        assembly: the wall.
+        opening: (m, 2) openings of the ends beyond what the flow lifts; closings count as none.
+        slip: (m,) slips.
+    """
+    tension, cohesion = own_strength(assembly)
+    ways = np.maximum(np.column_stack([slip, -slip]), 0.0)
+    return float((tension * np.maximum(opening, 0.0)).sum() + (cohesion * ways).sum())
+
+
 def displaced_residuals(assembly: Assembly, state: DisplacedState, multiplier: float) -> dict[str, float]:
     """Equilibrium and yield of a wall at rest where its blocks have moved to, under loads that keep their directions.
 
-    These two are relative to the loads of the component: forces at measured places are no better than that.
+    These two are relative to the loads of the component: forces at measured places are no better than that. Cohesion
+    and tensile strength do not count: what is left of them in joints that have moved is not known.
 
     Args:
         assembly: the wall before it moved; state: its contacts and forces; multiplier: of the live load.
@@ -251,15 +273,18 @@ def _mechanism_residuals(
     normal, shear = forces[:, :2], forces[:, 2]
     strength = assembly.friction * normal.sum(axis=1)
     forward, backward = np.maximum(slip, 0.0), np.maximum(-slip, 0.0)
-    slack_forward, slack_backward = strength + shear, strength - shear
+    tension, cohesion = own_strength(assembly)
+    slack_normal = normal + tension
+    slack_forward, slack_backward = strength + shear + cohesion[:, 0], strength - shear + cohesion[:, 1]
     idle_work = float(
-        abs(normal * opening).sum() + abs(slack_forward * forward).sum() + abs(slack_backward * backward).sum()
+        abs(slack_normal * opening).sum() + abs(slack_forward * forward).sum() + abs(slack_backward * backward).sum()
     )
     # Virtual work: contact forces do work r.q on the mechanism; friction dissipates what lifting does not give back.
     dissipation = float((strength * abs(slip) - normal.sum(axis=1) * lift).sum())
+    dissipation += dissipated_by_strength(assembly, opening, slip)
     residuals = {
         "interpenetration": max(0.0, float((-opening).max(initial=0.0))),
-        "dilatancy": float(np.minimum(abs(normal) / scale[:, None], np.maximum(opening, 0.0)).max(initial=0.0)),
+        "dilatancy": float(np.minimum(abs(slack_normal) / scale[:, None], np.maximum(opening, 0.0)).max(initial=0.0)),
         "sliding": float(
             max(
                 np.minimum(abs(slack_forward) / scale, forward).max(initial=0.0),

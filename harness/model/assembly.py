@@ -38,7 +38,7 @@ OF_JOINTS = ("block_a", "block_b", "end1", "end2", "face1", "face2", "normal", "
 
 @dataclass(frozen=True, eq=False)
 class Assembly:
-    """Blocks in dry contact, as arrays. n = number of blocks, m = number of interfaces.
+    """Blocks in contact, as arrays. n = number of blocks, m = number of interfaces.
 
     Attributes:
         name: what the wall is called, for messages.
@@ -113,6 +113,11 @@ class Assembly:
     def dilates(self) -> bool:
         """Whether any joint has a dilatancy."""
         return bool(np.any(self.dilatancy != 0.0))
+
+    @property
+    def strong(self) -> bool:
+        """Whether any joint has cohesion or tensile strength."""
+        return not self.law.is_cone
 
     @property
     def n_blocks(self) -> int:

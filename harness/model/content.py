@@ -28,7 +28,7 @@ def content_of(assembly: Assembly) -> str:
         digest.update(np.asarray(joined, dtype="<i8").tobytes() + b";")
     origin = points.min(axis=0) if len(points) else 0.0
     unit = float(abs(loads).max(initial=0.0)) or 1.0
-    strength = [] if assembly.law.dry.all() else [(assembly.constant, unit)]
+    strength = [(assembly.constant, unit)] if assembly.strong else []
     for values, size in (
         (points - origin, assembly.length_scale),
         (assembly.normal, 1.0),

@@ -297,7 +297,7 @@ def check_takes(method: Method, assembly: Assembly) -> None:
             f"{law.dilatancy[joint]:g}",
             "Take a method of limit analysis (`drystone list methods`), or leave the dilatancy out",
         )
-    if not (method.traits.any_strength or law.dry.all()):
+    if assembly.strong and not method.traits.any_strength:
         raise InputError(
             f"{method.name} takes dry joints only; that between {between(int(np.argmin(law.dry)))} has cohesion or "
             "tensile strength",

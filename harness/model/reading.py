@@ -265,7 +265,7 @@ def _unknown_field(model: type[BaseModel], location: tuple[int | str, ...], plac
     beyond = outside_the_model(name)
     if beyond:
         return InputError(
-            f'"{name}" is outside the model: Drystone has rigid blocks, and joints with friction and constant strength, '
+            f'"{name}" is outside the model: Drystone has rigid blocks, and joints of friction and constant strength, '
             f"in the plane, not {beyond}",
             f"Leave it out; {SCOPE} says what is modelled, and what to use instead",
             place,

@@ -35,7 +35,8 @@ def with_bound(assembly: Assembly, problem: Problem, known: Answer, settings: Bo
     multiplier = known.multiplier
     if known.status is not Status.OK or known.finding is not Finding.COLLAPSES or multiplier is None:
         return known
-    if known.details.get("stopped_by_limit") or assembly.dilates:  # certificates are of walls without dilatancy
+    # Certificates are of dry joints without dilatancy.
+    if known.details.get("stopped_by_limit") or assembly.dilates or assembly.strong:
         return known
     began = time.process_time()
     document = None

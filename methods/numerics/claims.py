@@ -5,11 +5,13 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 
+import numpy as np
+
 from harness.model.assembly import Assembly, FloatArray
 from harness.model.components import analysed_apart
 from harness.model.limit import accuracy, gross_power, least_told, strengthened
 from harness.model.method import Answer, Finding, OutOfTime, Status
-from methods.numerics.statics import admissible_forces, dilatant_mechanism, greatest_multiplier
+from methods.numerics.statics import admissible_forces, dilatant_mechanism, greatest_multiplier, strength_power
 
 SMALL = 1e-3
 """Live load, as a part of the dead load, below which a load that was measured leaves the limit to statics."""
@@ -18,7 +20,7 @@ SMALL = 1e-3
 def bear(assembly: Assembly, answer: Answer, multiplier: float) -> FloatArray | None:
     """Forces (m, 3) with which a component bears its dead load and `multiplier` times the live load; None if none.
 
-    Where the answer holds forces at a higher multiplier, those between it and the dead load do: the cone is convex.
+    Where the answer holds forces at a higher multiplier, those between it and the dead load do: yield is convex.
     """
     highest = answer.forces_multiplier
     if answer.forces is not None and highest is not None and highest > multiplier >= 0.0:
@@ -87,7 +89,7 @@ def _leaves_open(assembly: Assembly, answer: Answer) -> bool:
             return low <= SMALL * assembly.load_unit
         return low <= least_told(assembly, mechanism)
     if answer.finding is Finding.FALLS and answer.flow == "associated" and mechanism is not None:
-        gain = float((assembly.dead * mechanism).sum())
+        gain = float((assembly.dead * mechanism).sum()) - strength_power(assembly, mechanism)
         return gain <= accuracy(assembly) * gross_power(assembly, mechanism)
     stopped = bool(answer.details.get("stopped_by_limit"))
     return answer.finding is Finding.FALLS or (answer.finding is Finding.NONE and not stopped)
@@ -191,7 +193,9 @@ def with_proof(assembly: Assembly, answer: Answer) -> Answer:
 def _proved(assembly: Assembly, answer: Answer) -> Answer:
     """As `with_proof`; raises OutOfTime where the time is over."""
     if answer.finding is Finding.UNBOUNDED:
-        growth = admissible_forces(assembly, assembly.live)
+        # Cohesion and tension do not grow with the load.
+        dry = replace(assembly, constant=np.zeros_like(assembly.constant))
+        growth = admissible_forces(dry, assembly.live)
         forces = answer.forces if answer.forces_multiplier == 0.0 else admissible_forces(assembly, assembly.dead)
         if growth is None or forces is None:
             return answer

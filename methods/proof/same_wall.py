@@ -67,6 +67,8 @@ def _unit_of_loads(blocks: Any, loads: FloatArray) -> Fraction:
 def _compare_interfaces(items: Any, assembly: Assembly) -> None:
     if assembly.dilates:
         raise CertificateError("it is of a wall without dilatancy, and joints of this one lift as they slide")
+    if assembly.strong:
+        raise CertificateError("it is of a wall with dry joints, and joints of this one have cohesion or tension")
     place = {int(block): k for k, block in enumerate(assembly.free)}
     joined = [[place.get(int(a)), place.get(int(b))] for a, b in zip(assembly.block_a, assembly.block_b, strict=True)]
     if [[item["a"], item["b"]] for item in items] != joined:
