@@ -160,7 +160,8 @@ def test_strength_never_lowers_the_associated_maximum_nor_leads_below_the_dry_le
     before = dry
     for cohesion in (0.0, 0.5, 1.0, 2.0, 4.0):
         value = found("la-associated", assembly(pattern, 0.5, cohesion=cohesion, tensile_strength=cohesion)).multiplier
-        assert value is not None and before is not None
+        assert value is not None
+        assert before is not None
         assert value >= before * (1.0 - 1e-9)
         before = value
 
