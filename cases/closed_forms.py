@@ -416,8 +416,8 @@ def bonded_wall() -> Iterator[Recipe]:
         ),
     ]
     summary = (
-        "Dry, the wall collapses at 0.5579978 (least known) and 0.584461 (associated). Cohesion that is as large as the "
-        "weight of a twentieth of a brick length adds 8 and 6 %; real joints are brittle, so rely on the dry values."
+        "Dry, the wall collapses at 0.5579978 (least known) and 0.584461 (associated). Cohesion as large as the weight "
+        "of a twentieth of a brick length adds 8 and 6 %; real joints are brittle, so rely on the dry values."
     )
     remarks = Remarks(BONDED, summary, ("strength",), methods=("la", "la-associated"))
     yield recipe("bonded-wall-21", content, references, remarks)

@@ -31,6 +31,7 @@ from harness.model.wall import (
     Loads,
     Wall,
     coefficient_of,
+    stresses_of,
 )
 
 SMALLEST = float(np.finfo(float).tiny / np.finfo(float).eps)
@@ -295,9 +296,9 @@ def _law(
     """Friction, dilatancy, cohesion and tensile strength, all from the most particular that holds for an interface."""
     if interface.friction is not None or interface.friction_angle is not None:
         friction = coefficient_of(interface.friction, interface.friction_angle)
-        return friction, interface.dilatancy or 0.0, *interface.stresses
+        return friction, interface.dilatancy or 0.0, *stresses_of(interface)
     if not isinstance(wall.friction, Friction):
-        return float(coefficient_of(wall.friction, wall.friction_angle)), 0.0, *wall.stresses
+        return float(coefficient_of(wall.friction, wall.friction_angle)), 0.0, *stresses_of(wall)
     pair = set(interface.between)
     materials = sorted(blocks[index[block_id]].material for block_id in interface.between)
     by_kind: dict[str, FrictionRule] = {}
@@ -311,8 +312,8 @@ def _law(
     for kind in ("between", "joint", "materials"):
         if kind in by_kind:
             rule = by_kind[kind]
-            return rule.coefficient, rule.dilatancy or 0.0, *rule.stresses
-    return float(wall.friction.coefficient), wall.friction.dilatancy or 0.0, *wall.friction.stresses
+            return rule.coefficient, rule.dilatancy or 0.0, *stresses_of(rule)
+    return float(wall.friction.coefficient), wall.friction.dilatancy or 0.0, *stresses_of(wall.friction)
 
 
 def _areas(wall: Wall, blocks: list[Block], assembly: Assembly) -> FloatArray:

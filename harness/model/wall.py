@@ -7,7 +7,7 @@ loads, dead and live apart. `harness.model.reading` reads it, `harness.model.bui
 from __future__ import annotations
 
 import math
-from typing import Annotated, Any, Literal
+from typing import Annotated, Any, Literal, Protocol
 
 from pydantic import BaseModel, Discriminator, Field, StrictBool, Tag, model_validator
 
@@ -89,60 +89,57 @@ def coefficient_of(value: float | None, angle: float | None) -> float:
     return value if value is not None else math.tan(math.radians(angle or 0.0))
 
 
-class JointStrength(Strict):
-    """What a joint has beside its friction; the fields stand wherever a friction is given."""
+Dilatancy = Annotated[
+    Coefficient | None, Field(description="by which a slip lifts, from 0 (absent) to the friction: associated flow")
+]
+Cohesion = Annotated[
+    NonNegative | None, Field(description="shear strength without compression [force/length^2 of the file]; else none")
+]
+TensileStrength = Annotated[
+    NonNegative | None, Field(description="[force/length^2 of the file], from 0 (absent) to cohesion / friction")
+]
 
-    cohesion: NonNegative | None = Field(
-        None, description="shear strength without compression [force/length^2 of the file]; none if absent"
-    )
-    tensile_strength: NonNegative | None = Field(
-        None, description="[force/length^2 of the file], from 0 (absent) to cohesion / friction"
-    )
+
+class JointStrength(Protocol):
+    """Whatever gives the strength of joints beside their friction: a wall, friction, a rule, an interface."""
 
     @property
-    def stresses(self) -> tuple[float, float]:
-        """Cohesion and tensile strength [force/length^2]."""
-        return self.cohesion or 0.0, self.tensile_strength or 0.0
+    def cohesion(self) -> float | None:
+        """Shear strength without compression [force/length^2]."""
 
-    def check_strength(self, friction: float) -> None:
-        """The joint bears no tension at which its shear strength would be used up already, but for rounding.
-
-        Raises:
-            ValueError: the tensile strength is above cohesion / friction.
-        """
-        cohesion, tension = self.stresses
-        if friction * tension > cohesion * (1.0 + 1e-9):
-            raise ValueError(
-                f"the tensile strength {tension:g} is above cohesion / friction = {cohesion / friction:.6g}, where no "
-                "shear strength is left: give one from 0 to that, or more cohesion"
-            )
+    @property
+    def tensile_strength(self) -> float | None:
+        """Tensile strength [force/length^2]."""
 
 
-class JointBehaviour(JointStrength):
-    """What a joint has beside its friction, the lift of a slip included."""
-
-    dilatancy: Coefficient | None = Field(
-        None, description="by which a slip lifts, from 0 (absent) to the friction: associated flow"
-    )
-
-    def check_beside(self, friction: float) -> None:
-        """Dilatancy and strength agree with the friction.
-
-        Raises:
-            ValueError: they do not.
-        """
-        if self.dilatancy is not None and self.dilatancy > friction:
-            raise ValueError(
-                f"the dilatancy {self.dilatancy:g} is above the friction {friction:g}: give one from 0 to that"
-            )
-        self.check_strength(friction)
+def stresses_of(given: JointStrength) -> tuple[float, float]:
+    """Cohesion and tensile strength [force/length^2], zero where none is given."""
+    return given.cohesion or 0.0, given.tensile_strength or 0.0
 
 
-class FrictionRule(JointBehaviour):
+def _check_strength(given: JointStrength, friction: float) -> None:
+    """A joint bears no tension at which its shear strength would be used up already, but for rounding."""
+    cohesion, tension = stresses_of(given)
+    if friction * tension > cohesion * (1.0 + 1e-9):
+        raise ValueError(
+            f"the tensile strength {tension:g} is above cohesion / friction = {cohesion / friction:.6g}, where no "
+            "shear strength is left: give one from 0 to that, or more cohesion"
+        )
+
+
+def _check_dilatancy(dilatancy: float | None, friction: float) -> None:
+    if dilatancy is not None and dilatancy > friction:
+        raise ValueError(f"the dilatancy {dilatancy:g} is above the friction {friction:g}: give one from 0 to that")
+
+
+class FrictionRule(Strict):
     """Friction of some interfaces: those between two materials, of a named joint, or between two blocks."""
 
     value: Coefficient | None = Field(None, description="coefficient of friction, tan(phi)")
     friction_angle: Angle | None = Field(None, description="phi [degrees], instead of `value`")
+    dilatancy: Dilatancy = None
+    cohesion: Cohesion = None
+    tensile_strength: TensileStrength = None
     materials: tuple[str, str] | None = None
     joint: str | None = Field(None, description='"bed", "head", or a name given in `interfaces`')
     between: tuple[str, str] | None = Field(None, description="ids of the two blocks")
@@ -153,7 +150,8 @@ class FrictionRule(JointBehaviour):
             raise ValueError("a friction rule names exactly one of materials, joint, between")
         if (self.value is None) == (self.friction_angle is None):
             raise ValueError("a friction rule gives either value or friction_angle")
-        self.check_beside(self.coefficient)
+        _check_dilatancy(self.dilatancy, self.coefficient)
+        _check_strength(self, self.coefficient)
         return self
 
     @property
@@ -162,7 +160,7 @@ class FrictionRule(JointBehaviour):
         return coefficient_of(self.value, self.friction_angle)
 
 
-class Friction(JointBehaviour):
+class Friction(Strict):
     """Friction by rules, with what joints have beside it where none holds.
 
     The most particular rule holds: interface, then between, then joint, then materials.
@@ -170,13 +168,17 @@ class Friction(JointBehaviour):
 
     default: Coefficient | None = Field(None, description="coefficient of friction, tan(phi)")
     friction_angle: Angle | None = Field(None, description="phi [degrees], instead of `default`")
+    dilatancy: Dilatancy = None
+    cohesion: Cohesion = None
+    tensile_strength: TensileStrength = None
     rules: list[FrictionRule] = Field(default_factory=list)
 
     @model_validator(mode="after")
     def _one_default(self) -> Friction:
         if (self.default is None) == (self.friction_angle is None):
             raise ValueError("friction by rules gives either default or friction_angle")
-        self.check_beside(self.coefficient)
+        _check_dilatancy(self.dilatancy, self.coefficient)
+        _check_strength(self, self.coefficient)
         return self
 
     @property
@@ -198,7 +200,7 @@ class Inset(Strict):
         return self
 
 
-class Interface(JointBehaviour):
+class Interface(Strict):
     """A contact between two blocks along a segment."""
 
     between: tuple[str, str] = Field(description="ids of the two blocks")
@@ -206,6 +208,9 @@ class Interface(JointBehaviour):
     end: Point = Field(alias="to")
     friction: Coefficient | None = None
     friction_angle: Angle | None = Field(None, description="phi [degrees], instead of `friction`")
+    dilatancy: Dilatancy = None
+    cohesion: Cohesion = None
+    tensile_strength: TensileStrength = None
     joint: str | None = Field(None, description='a name for friction rules; "bed" or "head" by inclination if absent')
     inset: Inset | None = None
 
@@ -214,7 +219,9 @@ class Interface(JointBehaviour):
         if self.friction is not None and self.friction_angle is not None:
             raise ValueError("an interface gives either friction or friction_angle")
         if self.friction is not None or self.friction_angle is not None:
-            self.check_beside(coefficient_of(self.friction, self.friction_angle))
+            friction = coefficient_of(self.friction, self.friction_angle)
+            _check_dilatancy(self.dilatancy, friction)
+            _check_strength(self, friction)
         elif self.dilatancy is not None:
             raise ValueError("an interface gives dilatancy beside a friction of its own")
         elif self.cohesion is not None or self.tensile_strength is not None:
@@ -311,7 +318,7 @@ Interfaces = Annotated[
 ]
 
 
-class Wall(JointStrength):
+class Wall(Strict):
     """A wall, format `wall/1`. Its own cohesion and tensile strength are of all joints."""
 
     format: Literal["wall/1"]
@@ -326,6 +333,8 @@ class Wall(JointStrength):
     thickness: Positive | None = Field(None, description="out of plane [length]; one metre if absent")
     friction: FrictionOfWall | None = Field(None, description="coefficient of friction, tan(phi), or rules")
     friction_angle: Angle | None = Field(None, description="phi [degrees], instead of `friction`")
+    cohesion: Cohesion = None
+    tensile_strength: TensileStrength = None
     pattern: Patterns | None = None
     blocks: list[Block] = Field(default_factory=list)
     interfaces: Interfaces = Field(default_factory=Detection)
@@ -345,7 +354,7 @@ class Wall(JointStrength):
                     "rule"
                 )
         else:
-            self.check_strength(coefficient_of(self.friction, self.friction_angle))
+            _check_strength(self, coefficient_of(self.friction, self.friction_angle))
         return self
 
     @property
