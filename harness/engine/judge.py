@@ -19,6 +19,9 @@ falls                a dilatant mechanism, at rest on the supports, on which the
 unbounded            forces within the yield of dry joints that balance the live load alone, besides forces under the
                      dead load: their sum bears any multiplier
 
+A wall with strength of its joints may come with the answer for the same wall without, `details["residual"]`; it is
+judged on that wall by the same rules, and where it is rejected the whole answer is.
+
 No multiplier that is claimed lies below zero. What proves nothing either way is not judged (`Judgement.accepted` is
 None), which never means accepted.
 
@@ -46,7 +49,7 @@ from harness.model.assembly import Assembly, FloatArray
 from harness.model.displaced import DisplacedState
 from harness.model.limit import accuracy, least_told
 from harness.model.method import Finding, Method, Status, check_takes
-from harness.model.result import Judgement, Result, relative_velocities, result_of
+from harness.model.result import Judgement, Result, relative_velocities, residual_of, result_of
 
 
 def judge(assembly: Assembly, result: Result, tolerance: float) -> Judgement:
@@ -67,6 +70,8 @@ def judge(assembly: Assembly, result: Result, tolerance: float) -> Judgement:
         if value is not None and not _countable(value):
             return _said(tolerance, False, f"Its {name}: not finite, or larger than {COUNTABLE:g}.")
     said = _judge_finding(assembly, forces, mechanism, result, tolerance)
+    if assembly.strong and "residual" in result.details:
+        said = _with_residual(said, assembly.without_strength, residual_of(result))
     if result.flow == "approximate" and mechanism is not None and len(mechanism) == assembly.n_blocks:
         return _with_motion(said, *motion_faults(assembly, mechanism, result.multiplier or 0.0, result.details))
     return said
@@ -90,6 +95,24 @@ def _judge_finding(
     if result.flow == "approximate":
         return _judge_bracket(assembly, forces, result, tolerance)
     return _judge_collapse(assembly, forces, mechanism, result, tolerance)
+
+
+def _with_residual(said: Judgement, dry: Assembly, residual: Result | None) -> Judgement:
+    """The judgement of a wall with its strength, no better than that of the same wall without where that claims a thing.
+
+    Args:
+        said: of the wall with its strength; dry: the wall without; residual: what is claimed of it, None if unreadable.
+    """
+    sizes = {"forces": dry.n_interfaces, "mechanism": dry.n_blocks}
+    own = Judgement(accepted=False, sentence="The residual answer is none of this wall.")
+    if residual is not None and all(len(getattr(residual, name) or [()] * n) == n for name, n in sizes.items()):
+        if residual.status is not Status.OK:
+            return said
+        own = judge(dry, residual, said.tolerance)
+    both = (said.accepted, own.accepted)
+    accepted = False if False in both else None if None in both else True
+    sentence = f"{said.sentence} Without cohesion and tensile strength: {own.sentence}"
+    return said.model_copy(update={"accepted": accepted, "sentence": sentence})
 
 
 def _with_motion(said: Judgement, residuals: dict[str, float], fault: str) -> Judgement:

@@ -120,6 +120,11 @@ class Assembly:
         return not self.law.is_cone
 
     @property
+    def without_strength(self) -> Assembly:
+        """The same wall without cohesion and tensile strength: what is left of brittle joints that have moved."""
+        return replace(self, constant=np.zeros_like(self.constant))
+
+    @property
     def n_blocks(self) -> int:
         """Number of blocks, the fixed ones included."""
         return len(self.weight)

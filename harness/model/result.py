@@ -7,7 +7,7 @@ from enum import StrEnum
 from typing import Any
 
 import numpy as np
-from pydantic import BaseModel, ConfigDict, Field
+from pydantic import BaseModel, ConfigDict, Field, ValidationError
 
 from harness.model.assembly import Assembly, FloatArray
 from harness.model.method import Answer, Finding, Status, Traits
@@ -140,6 +140,21 @@ class Result(BaseModel):
     def summary(self) -> dict[str, Any]:
         """The result as JSON values, without fields per block or interface and without the path."""
         return self.model_dump(mode="json", exclude={"forces", "mechanism", "states", "path"})
+
+
+def residual_of(result: Result) -> Result | None:
+    """The answer for the same wall without cohesion and tensile strength that comes with a result, as a result.
+
+    None where none comes, or where what comes is no answer.
+    """
+    own = result.details.get("residual")
+    if not isinstance(own, dict):
+        return None
+    kept = {name: getattr(result, name) for name in ("case", "method", "family", "blocks", "interfaces", "traits")}
+    try:
+        return Result.model_validate(kept | own)
+    except ValidationError:
+        return None
 
 
 def measured_width(answer: Answer) -> float | None:

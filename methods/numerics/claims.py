@@ -5,8 +5,6 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 
-import numpy as np
-
 from harness.model.assembly import Assembly, FloatArray
 from harness.model.components import analysed_apart
 from harness.model.limit import accuracy, gross_power, least_told, strengthened
@@ -194,8 +192,7 @@ def _proved(assembly: Assembly, answer: Answer) -> Answer:
     """As `with_proof`; raises OutOfTime where the time is over."""
     if answer.finding is Finding.UNBOUNDED:
         # Cohesion and tension do not grow with the load.
-        dry = replace(assembly, constant=np.zeros_like(assembly.constant))
-        growth = admissible_forces(dry, assembly.live)
+        growth = admissible_forces(assembly.without_strength, assembly.live)
         forces = answer.forces if answer.forces_multiplier == 0.0 else admissible_forces(assembly, assembly.dead)
         if growth is None or forces is None:
             return answer

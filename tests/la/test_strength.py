@@ -14,11 +14,11 @@ from typing import Any
 import numpy as np
 import pytest
 
-from harness.engine.judge import answered
+from harness.engine.judge import answered, judge
 from harness.model.assembly import Assembly
 from harness.model.build import build
 from harness.model.method import Finding, load_method
-from harness.model.result import Judgement, Result
+from harness.model.result import Judgement, Result, residual_of
 from harness.model.wall import Wall
 from methods.la.core.exact import close_tight
 from methods.la.core.problem import make_problem
@@ -189,3 +189,47 @@ def test_commands_refuse_or_answer_walls_with_strength(tmp_path: Path):
     refused = drystone("bound", path, "-o", tmp_path / "bound.json")
     assert refused.returncode == 2
     assert "cohesion or tensile strength" in refused.stderr
+
+
+@pytest.mark.parametrize("name", TAKE)
+def test_residual_answer_is_that_of_the_wall_without_strength(name: str):
+    wall = assembly(BOND, 0.65, unit_weight=1.0, cohesion=0.05)
+    result, dry = found(name, wall), found(name, assembly(BOND, 0.65, unit_weight=1.0))
+    residual = residual_of(result)
+    assert residual is not None
+    assert residual.multiplier == dry.multiplier
+    assert residual.forces == dry.forces
+    assert f"without cohesion and tensile strength it is {dry.multiplier:.7g}" in result.sentence
+    assert ("Both are upper bounds" in result.sentence) == (name != "la")
+    assert "residual" not in dry.details
+
+
+def test_residual_answer_of_a_wall_that_strength_alone_holds_up_is_that_it_falls():
+    panel = {"type": "panel", "cell_length": 1.0, "cell_height": 0.2, "layout": ["L", "B"], "fixed": "L"}
+    loads = {"live": {"body": [{"per_weight": [0, -1]}]}}
+    result = found("la", assembly(panel, 0.5, cohesion=10.0, tensile_strength=6.0, loads=loads))
+    assert result.multiplier == pytest.approx(0.5, rel=1e-9)
+    residual = residual_of(result)
+    assert residual is not None
+    assert residual.finding is Finding.FALLS
+    assert "without cohesion and tensile strength the answer is: falls" in result.sentence
+
+
+@pytest.mark.parametrize(
+    "change",
+    [
+        {"multiplier": 0.57},
+        {"multiplier": 0.6022028, "forces_multiplier": 0.6022028},
+        {"forces": None},
+        {"forces": [[1.0, 1.0, 0.0]]},
+        {"mechanism": [[1.0, 1.0, 0.0]]},
+        {"status": "nonsense"},
+        {"finding": "unbounded"},
+    ],
+)
+def test_a_residual_answer_that_is_wrong_is_rejected_with_the_whole(change: dict[str, Any]):
+    wall = assembly(BOND, 0.65, unit_weight=1.0, cohesion=0.05)
+    result = found("la", wall)
+    changed = {**result.details, "residual": result.details["residual"] | change}
+    said = judge(wall, result.model_copy(update={"details": changed}), 1e-10)
+    assert said.accepted is (None if change == {"finding": "unbounded"} else False)
