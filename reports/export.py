@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING, Any
 from harness.model import columns
 from harness.model.comparison import CaseResults, ComparisonRun
 from harness.model.proof import Proof, proof_of
-from harness.model.result import Result
+from harness.model.result import Result, residual_of
 from harness.model.writing import cell, write_whole
 from reports import charts, shapes, vectors, words
 from reports.curves import curves
@@ -152,11 +152,13 @@ def _json(data: Any) -> bytes:
 
 
 def _result_row(result: Result, proof: Proof) -> dict[str, Any]:
-    worst = result.judge.worst
+    worst, residual = result.judge.worst, residual_of(result)
     row = result.model_dump(mode="json", include=set(columns.TYPES))
     return row | {
         "bracket_low": result.bracket[0] if result.bracket else None,
         "bracket_high": result.bracket[1] if result.bracket else None,
+        "residual_multiplier": None if residual is None else residual.multiplier,
+        "residual_finding": None if residual is None else str(residual.finding),
         "proof": str(proof.standing),
         "proof_sentence": proof.sentence,
         "proved_bound": proof.bound,

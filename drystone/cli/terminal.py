@@ -27,7 +27,7 @@ from harness.model.fields import LARGEST
 from harness.model.live_load import direction_in_words
 from harness.model.method import Answer, Finding, Status
 from harness.model.proof import LABELS, Proof, Standing, least_known, proof_of
-from harness.model.result import Judgement, Result
+from harness.model.result import Judgement, Result, residual_of
 
 JUDGED = {True: 0, False: 1, None: 3}
 """Exit codes for an answer that is accepted, rejected, or shows nothing that proves or refutes its claim."""
@@ -162,6 +162,9 @@ def print_comparison(compared: ComparisonRun, report: Path | None) -> None:
                 console.print(escape(f"{case.case.id}, {result.method}: {result.sentence}"), highlight=False)
         if case.split_on_dead_load:
             console.print(f"{escape(f'{case.case.id}: {case.split_on_dead_load}')}.", highlight=False)
+    for case in compared.cases:
+        for sentence in _strength(case):
+            console.print(escape(sentence), highlight=False)
     broken = violations(compared)
     gated = sum(item.gate for case in compared.cases for result in case.results for item in result.comparisons)
     gates = sum(gate.passed is not None for case in compared.cases for gate in case.gates)
@@ -176,6 +179,21 @@ def print_comparison(compared: ComparisonRun, report: Path | None) -> None:
         console.print(_all_well(gated, gates))
     if report is not None:
         print(visible(f"Report: {report}"))
+
+
+def _strength(case: CaseResults) -> Iterator[str]:
+    """Plastic and residual values of a wall whose joints have cohesion or tension, and which of them is safe."""
+    found = []
+    for result in case.results:
+        residual = residual_of(result)
+        if residual is not None and result.status is Status.OK:
+            bound = ", an upper bound" if result.traits.bounds_above else ""
+            found.append(f"{result.method} {_value(result)} plastic, {_value(residual)} residual{bound}")
+    if found:
+        yield (
+            f"{case.case.id}, strength of joints: {'; '.join(found)}. Joints of mortar are brittle: rely on the "
+            "residual value of a method that is no upper bound."
+        )
 
 
 def _is_minimum(case: CaseResults, result: Result) -> bool:
@@ -238,6 +256,8 @@ def print_result(result: Result, case: Case, proof: Proof) -> None:
         ("finding", _value(result) if result.finding is Finding.COLLAPSES else str(result.finding)),
         ("", result.sentence),
     ]
+    if (residual := residual_of(result)) is not None:
+        rows.append(("residual", f"{_value(residual)}, without cohesion and tensile strength"))
     if result.bracket is not None:
         rows.append(("bracket", f"[{result.bracket[0]:.7g}, {result.bracket[1]:.7g}] {result.bracket_meaning}"))
     if proof.sentence:

@@ -98,7 +98,7 @@ def _judge_finding(
 
 
 def _with_residual(said: Judgement, dry: Assembly, residual: Result | None) -> Judgement:
-    """The judgement of a wall with its strength, no better than that of the same wall without where that claims a thing.
+    """The judgement of a wall with its strength, no better than that of the same wall without, if that claims a thing.
 
     Args:
         said: of the wall with its strength; dry: the wall without; residual: what is claimed of it, None if unreadable.

@@ -86,7 +86,10 @@ def write_svg(built: Built, result: Result | None, path: Path) -> None:
 
 
 def write_geojson(built: Built, result: Result | None, path: Path) -> None:
-    """A feature a block (id, material, fixed, weight, motion) and one a joint (blocks, friction, forces, state)."""
+    """A feature a block (id, material, fixed, weight, motion) and one a joint (blocks, friction, forces, state).
+
+    Joints with strength have the tension and the cohesion that they bear besides friction too [force].
+    """
     assembly = built.assembly
     features: list[dict[str, Any]] = []
     for number, (name, polygon) in enumerate(zip(assembly.block_ids, assembly.polygons, strict=True)):
@@ -106,6 +109,9 @@ def write_geojson(built: Built, result: Result | None, path: Path) -> None:
             "between": [assembly.block_ids[assembly.block_a[number]], assembly.block_ids[assembly.block_b[number]]],
             "friction": float(assembly.friction[number]),
         }
+        if assembly.strong:
+            joint["tension"] = 2.0 * float(assembly.constant[number, 0])
+            joint["cohesion"] = float(assembly.constant[number, 2])
         if result is not None and result.forces is not None:
             joint["n1"], joint["n2"], joint["s"] = result.forces[number]
         if result is not None and result.states is not None:
@@ -169,6 +175,7 @@ def matrices(built: Built, result: Result | None) -> dict[str, Any]:
 
     Rows of C are (opening 1, opening 2, slip) of every joint, columns (ux, uy, omega) of every free block, so that
     C^T (n1, n2, s) + dead + multiplier x live = 0, with compression positive and |s| <= friction (n1 + n2).
+    Where joints have strength, `constant` holds what is added to n1, n2 and to both limits of s.
     """
     assembly = built.assembly
     dead, live = assembly.free_loads()
@@ -187,6 +194,8 @@ def matrices(built: Built, result: Result | None) -> dict[str, Any]:
         "end2": assembly.end2,
         "normal": assembly.normal,
     }
+    if assembly.strong:
+        arrays["constant"] = assembly.constant
     if result is not None and result.multiplier is not None:
         arrays["multiplier"] = np.array(result.multiplier)
     if result is not None and result.forces is not None:

@@ -56,6 +56,8 @@ RESULTS: tuple[ResultColumn, ...] = (
     _text("bracket_meaning", "what the ends of the bracket are"),
     ResultColumn("bracket_width", "Float64", "1", "of a measured bracket, as a share of its upper end"),
     ResultColumn("bracket_wide", "boolean", "", "whether a measured bracket is so wide that its middle says little"),
+    ResultColumn("residual_multiplier", "Float64", "1", "of the same wall without cohesion and tensile strength"),
+    _text("residual_finding", "what the answer says about the wall without cohesion and tensile strength"),
     _text("proof", "how the multiplier stands to the minimum: minimum, minimum_to_rounding, least_known or none"),
     _text("proof_sentence", "what is known of lower collapse states"),
     ResultColumn("proved_bound", "Float64", "1", "no collapse state lies from zero to below it, proved in fractions"),
