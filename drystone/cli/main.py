@@ -28,6 +28,7 @@ COMMANDS = {
     "judge": ("walls", "judge", "Judge RESULT.json, an answer from anywhere."),
     "bound": ("proof", "bound", "Write a certificate that no collapse state lies lower."),
     "verify-bound": ("proof", "verify_bound", "Check a certificate in fractions."),
+    "reaction": ("reaction", "reaction", "Print the reactions of the supports of CASE that move."),
     "schema": ("walls", "schema", "Print the JSON Schema of the wall format."),
     "validate": (
         "drawings",

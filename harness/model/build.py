@@ -107,6 +107,8 @@ def build(wall: Wall, name: str = "wall") -> Built:
         dead=_dead_load(wall.loads, blocks, index, weight, centroids, fixed),
         live=_load(wall.loads.live or Load(), blocks, index, weight, centroids, fixed),
     )
+    if wall.settlements:
+        assembly = replace(assembly, support_motion=_support_motion(wall, blocks, assembly))
     if laws.strong:
         area = _areas(wall, blocks, assembly)
         assembly = replace(assembly, constant=laws.constant(area))
@@ -314,6 +316,30 @@ def _law(
             rule = by_kind[kind]
             return rule.coefficient, rule.dilatancy or 0.0, *stresses_of(rule)
     return float(wall.friction.coefficient), wall.friction.dilatancy or 0.0, *stresses_of(wall.friction)
+
+
+def _support_motion(wall: Wall, blocks: list[Block], assembly: Assembly) -> FloatArray:
+    """(n, 3) motions of the supports, those of several settlements of a block added up.
+
+    Raises:
+        InputError: a settlement names a block that is not fixed, or a group that there is not.
+    """
+    motion = np.zeros((len(blocks), 3))
+    for number, settlement in enumerate(wall.settlements):
+        place = f"settlements[{number}]"
+        named = set(settlement.blocks or ())
+        chosen = [k for k, block in enumerate(blocks) if block.id in named or settlement.group in block.groups]
+        if not chosen:
+            raise InputError(f'no block is in a group "{settlement.group}"', "Name a group of fixed blocks", place)
+        for k in chosen:
+            if not blocks[k].fixed:
+                raise InputError(
+                    f'block "{blocks[k].id}" is not fixed', "Name supports: only they have a prescribed motion", place
+                )
+            x, y = assembly.centroid[k] - (settlement.about or assembly.centroid[k])
+            turn = settlement.rotation
+            motion[k] += [settlement.translation[0] - turn * y, settlement.translation[1] + turn * x, turn]
+    return motion
 
 
 def _areas(wall: Wall, blocks: list[Block], assembly: Assembly) -> FloatArray:

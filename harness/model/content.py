@@ -13,7 +13,7 @@ STEP = 1.37e-6
 
 
 def content_of(assembly: Assembly) -> str:
-    """A hash of free blocks, interfaces, friction, strength and loads; names, place and the unit of force do not enter.
+    """A hash of free blocks, interfaces, what joints bear, loads and settlements; names, place, unit of force apart.
 
     Walls of one key are equal to a few millionths, and nearly all equal walls have one: it is a way to find a wall,
     and no proof that two are the same.
@@ -28,14 +28,16 @@ def content_of(assembly: Assembly) -> str:
         digest.update(np.asarray(joined, dtype="<i8").tobytes() + b";")
     origin = points.min(axis=0) if len(points) else 0.0
     unit = float(abs(loads).max(initial=0.0)) or 1.0
-    strength = [(assembly.constant, unit)] if assembly.strong else []
+    besides = [(assembly.constant, unit)] if assembly.strong else []
+    if np.any(assembly.support_motion):
+        besides.append((assembly.support_motion, float(abs(assembly.support_motion).max())))
     for values, size in (
         (points - origin, assembly.length_scale),
         (assembly.normal, 1.0),
         (assembly.friction, 1.0),
         (assembly.dilatancy, 1.0),
         (loads, unit),
-        *strength,
+        *besides,
     ):
         digest.update(np.rint(values / (STEP * size)).astype("<i8").tobytes() + b";")
     return digest.hexdigest()

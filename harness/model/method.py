@@ -308,7 +308,7 @@ def check_takes(method: Method, assembly: Assembly) -> None:
         block = int(np.argmax(np.any(assembly.support_motion, axis=1)))
         raise InputError(
             f"{method.name} takes supports at rest only; {assembly.block_ids[block]} moves",
-            "Leave the motion of the support out",
+            "Ask `drystone reaction`, or leave the settlements out",
         )
 
 

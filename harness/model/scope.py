@@ -16,8 +16,8 @@ _OUTSIDE = {
         "young", "youngs_modulus", "young_modulus", "elastic_modulus", "modulus", "poisson", "poisson_ratio",
         "shear_modulus", "stiffness", "normal_stiffness", "shear_stiffness", "kn", "ks", "creep",
     ),
-    "supports that settle or move": (
-        "settlement", "settlements", "displacement", "displacements", "prescribed_displacement", "support_movement",
+    "displacements that grow (settlements are a field, for reactions alone)": (
+        "displacement", "displacements", "prescribed_displacement", "support_movement",
         "spread", "spreading", "rotation",
     ),
     "ties, reinforcement and props": (

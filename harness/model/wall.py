@@ -11,7 +11,7 @@ from typing import Annotated, Any, Literal, Protocol
 
 from pydantic import BaseModel, Discriminator, Field, StrictBool, Tag, model_validator
 
-from harness.model.fields import Angle, Coefficient, Name, NonNegative, Point, Positive, Strict
+from harness.model.fields import Angle, Coefficient, Name, NonNegative, Number, Point, Positive, Strict
 from harness.model.pattern_fields import Pattern
 from harness.model.units import DIMENSIONLESS, KILONEWTONS, METRES, ForceUnit, LengthUnit, unit_weight_in_kn_m3
 
@@ -285,6 +285,24 @@ class Load(Strict):
     points: list[PointForce] = Field(default_factory=list)
 
 
+class Settlement(Strict):
+    """A prescribed motion of fixed blocks, by which the reaction along it is asked for."""
+
+    blocks: list[Name] | None = Field(None, description="ids of fixed blocks")
+    group: Name | None = Field(None, description="a group of fixed blocks")
+    translation: Point = Field((0.0, 0.0), description="(x, y); a vector of length 1 makes the reaction a force")
+    rotation: Number = Field(0.0, description="counter-clockwise [radian]; of length 1 it makes the reaction a moment")
+    about: Point | None = Field(None, description="centre of the rotation [length]; else the centroid of each block")
+
+    @model_validator(mode="after")
+    def _moves_something(self) -> Settlement:
+        if (self.blocks is None) == (self.group is None):
+            raise ValueError("a settlement names either blocks or a group")
+        if self.translation == (0.0, 0.0) and self.rotation == 0.0:
+            raise ValueError("a settlement that moves nothing: give a translation or a rotation")
+        return self
+
+
 def _vector_or_switch(value: Any) -> str:
     return MANY if isinstance(value, list | tuple) else OTHER
 
@@ -340,6 +358,9 @@ class Wall(Strict):
     interfaces: Interfaces = Field(default_factory=Detection)
     contact_inset: Inset | None = None
     loads: Loads = Field(default_factory=Loads)
+    settlements: list[Settlement] = Field(
+        default_factory=list, description="supports that move; asked about by `drystone reaction` alone"
+    )
 
     @model_validator(mode="after")
     def _one_friction(self) -> Wall:
