@@ -19,8 +19,8 @@ falls                a dilatant mechanism, at rest on the supports, on which the
 unbounded            forces within the yield of dry joints that balance the live load alone, besides forces under the
                      dead load: their sum bears any multiplier
 
-A wall with strength of its joints may come with the answer for the same wall without, `details["residual"]`; it is
-judged on that wall by the same rules, and where it is rejected the whole answer is.
+A wall with strength of its joints may come with the answer for the same wall without, in the detail
+`without_strength`; it is judged on that wall by the same rules, and where it is rejected the whole answer is.
 
 No multiplier that is claimed lies below zero. What proves nothing either way is not judged (`Judgement.accepted` is
 None), which never means accepted.
@@ -70,7 +70,7 @@ def judge(assembly: Assembly, result: Result, tolerance: float) -> Judgement:
         if value is not None and not _countable(value):
             return _said(tolerance, False, f"Its {name}: not finite, or larger than {COUNTABLE:g}.")
     said = _judge_finding(assembly, forces, mechanism, result, tolerance)
-    if assembly.strong and "residual" in result.details:
+    if assembly.strong and "without_strength" in result.details:
         said = _with_residual(said, assembly.without_strength, residual_of(result))
     if result.flow == "approximate" and mechanism is not None and len(mechanism) == assembly.n_blocks:
         return _with_motion(said, *motion_faults(assembly, mechanism, result.multiplier or 0.0, result.details))

@@ -99,7 +99,7 @@ class _KnownDetails(BaseModel, defer_build=True):
     displaced_state: _Displaced | None = None
     load_steps: _Steps | None = None
     release: _Release | None = None
-    residual: _Residual | None = None
+    without_strength: _Residual | None = None
 
 
 def checked(answer: Any, assembly: Assembly) -> Answer:

@@ -93,7 +93,7 @@ def with_residual(plastic: Answer, residual: Answer) -> Answer:
     """The answer of a wall whose joints keep their strength, with that of the same wall without.
 
     Joints of mortar are brittle: what is left of them once they have moved is friction, the residual strength. Its
-    whole answer goes along as `details["residual"]`, so that the judge can tell whether it is right.
+    whole answer goes along as `details["without_strength"]`, so that the judge can tell whether it is right.
     """
     own = {
         "status": str(residual.status),
@@ -123,7 +123,7 @@ def with_residual(plastic: Answer, residual: Answer) -> Answer:
         f"{plastic.sentence} That is with plastic strength of the joints; {said}. {rely}, because joints of mortar are "
         "brittle."
     )
-    return replace(plastic, sentence=sentence, details=plastic.details | {"residual": own})
+    return replace(plastic, sentence=sentence, details=plastic.details | {"without_strength": own})
 
 
 def dead_load_answer(problem: Problem, newton: NewtonMatrix, has_live_load: bool) -> Answer | None:

@@ -201,7 +201,7 @@ def test_residual_answer_is_that_of_the_wall_without_strength(name: str):
     assert residual.forces == dry.forces
     assert f"without cohesion and tensile strength it is {dry.multiplier:.7g}" in result.sentence
     assert ("Both are upper bounds" in result.sentence) == (name != "la")
-    assert "residual" not in dry.details
+    assert "without_strength" not in dry.details
 
 
 def test_residual_answer_of_a_wall_that_strength_alone_holds_up_is_that_it_falls():
@@ -230,6 +230,6 @@ def test_residual_answer_of_a_wall_that_strength_alone_holds_up_is_that_it_falls
 def test_a_residual_answer_that_is_wrong_is_rejected_with_the_whole(change: dict[str, Any]):
     wall = assembly(BOND, 0.65, unit_weight=1.0, cohesion=0.05)
     result = found("la", wall)
-    changed = {**result.details, "residual": result.details["residual"] | change}
+    changed = {**result.details, "without_strength": result.details["without_strength"] | change}
     said = judge(wall, result.model_copy(update={"details": changed}), 1e-10)
     assert said.accepted is (None if change == {"finding": "unbounded"} else False)
