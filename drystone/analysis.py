@@ -11,8 +11,9 @@ from pydantic import PrivateAttr
 from drystone.walls import Wall
 from harness.engine import compare as engine
 from harness.engine.judge import judge as judge_result
-from harness.engine.plan import Limits, Run, check_methods, check_shares
+from harness.engine.plan import check_methods, check_shares
 from harness.engine.provenance import machine, versions
+from harness.engine.run import Limits, Run
 from harness.model.answer_check import checked
 from harness.model.comparison import CaseResults
 from harness.model.errors import InputError

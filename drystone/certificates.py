@@ -14,7 +14,7 @@ from typing import Any
 
 import numpy as np
 
-from harness.engine.plan import Limits, Run
+from harness.engine.run import Limits, Run
 from harness.model.assembly import Assembly
 from harness.model.case import Case, read_case, shipped_cases
 from harness.model.comparison import CaseResults, Certified, ComparisonRun, Gate

@@ -12,7 +12,8 @@ from drystone.certificates import certificate_line, certificate_runs
 from drystone.walls import Wall, library_wall, library_walls
 from harness.engine import compare as engine
 from harness.engine import regression
-from harness.engine.plan import Limits, Run, check_methods, gated_runs
+from harness.engine.plan import check_methods, gated_runs
+from harness.engine.run import Limits, Run
 from harness.engine.store import open_store
 from harness.model.case import Case
 from harness.model.result import Result as Record

@@ -13,8 +13,9 @@ from drystone.certificates import with_certificates
 from drystone.walls import Wall
 from harness.engine import compare as engine
 from harness.engine.isolate import announce
-from harness.engine.plan import Limits, Run, check_methods, plan_case
+from harness.engine.plan import check_methods, plan_case
 from harness.engine.regression import violations
+from harness.engine.run import Limits, Run
 from harness.engine.store import open_store
 from harness.model.comparison import ComparisonRun
 from harness.model.errors import InputError

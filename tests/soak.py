@@ -25,7 +25,7 @@ import psutil
 
 from cases.useful import irregular_stones
 from harness.engine import compare as comparing
-from harness.engine.plan import Limits, Run
+from harness.engine.run import Limits, Run
 from harness.engine.store import Store, open_store
 from harness.model.case import Case, CaseFile
 from harness.model.errors import InputError

@@ -26,7 +26,8 @@ from drystone.cli.options import (
 )
 from harness.engine import baseline as recording
 from harness.engine import compare as comparing
-from harness.engine.plan import Limits, find_cases, plan_case
+from harness.engine.plan import find_cases, plan_case
+from harness.engine.run import Limits
 from harness.engine.store import open_store
 from harness.model.case import shipped_cases
 from harness.model.errors import InputError

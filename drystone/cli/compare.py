@@ -35,7 +35,8 @@ from drystone.walls import Wall
 from harness.engine import compare as comparing
 from harness.engine import regression
 from harness.engine.isolate import announce
-from harness.engine.plan import Limits, check_methods, find_cases, plan_case
+from harness.engine.plan import check_methods, find_cases, plan_case
+from harness.engine.run import Limits
 from harness.engine.store import open_store
 from harness.model.comparison import ComparisonRun
 from harness.model.errors import InputError

@@ -24,7 +24,8 @@ from drystone.cli.options import (
 )
 from drystone.cli.settings import settings_of
 from harness.engine import compare as comparing
-from harness.engine.plan import Limits, Run, check_methods, find_cases
+from harness.engine.plan import check_methods, find_cases
+from harness.engine.run import Limits, Run
 from harness.engine.sensitivity import advised
 from harness.engine.store import open_store
 from harness.model import inspection

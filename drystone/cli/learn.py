@@ -12,7 +12,8 @@ from drystone.cli import terminal
 from drystone.cli.options import OUTPUT, catching, jobs_option, say, store_option
 from harness.engine import compare as comparing
 from harness.engine.isolate import announce
-from harness.engine.plan import Limits, find_cases, plan_case
+from harness.engine.plan import find_cases, plan_case
+from harness.engine.run import Limits
 from harness.engine.store import open_store
 from harness.model.library import library
 

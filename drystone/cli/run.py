@@ -21,7 +21,8 @@ from drystone.cli.options import (
 )
 from drystone.cli.settings import settings_of
 from drystone.walls import Wall
-from harness.engine.plan import Limits, check_methods, find_cases
+from harness.engine.plan import check_methods, find_cases
+from harness.engine.run import Limits
 from harness.model.method import Status
 
 

@@ -15,8 +15,8 @@ from typing import Any
 import numpy as np
 
 from harness.engine.compare import Told
-from harness.engine.plan import Run
 from harness.engine.regression import violations
+from harness.engine.run import Run
 from harness.model.assembly import Assembly
 from harness.model.case import Case
 from harness.model.columns import BY_NAME, PRINTED

@@ -23,7 +23,8 @@ from drystone.cli.options import (
 )
 from drystone.walls import read_wall as wall_of_file
 from harness.engine import compare as comparing
-from harness.engine.plan import Limits, Run, check_methods, find_cases
+from harness.engine.plan import check_methods, find_cases
+from harness.engine.run import Limits, Run
 from harness.engine.store import open_store
 from harness.model.case import Case, case_folders, read_case, shipped_cases
 from harness.model.errors import InputError

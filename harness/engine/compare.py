@@ -11,8 +11,8 @@ from pydantic import BaseModel
 
 from harness.engine.executors import Executor, LocalExecutor
 from harness.engine.judge import judge
-from harness.engine.plan import Run
 from harness.engine.provenance import machine, versions
+from harness.engine.run import Run
 from harness.engine.verdict import compare, overall, theory_gates
 from harness.model.case import Case, CaseFile, Reference
 from harness.model.comparison import CaseResults, ComparisonRun
@@ -220,7 +220,7 @@ def recall(store: Store) -> ComparisonRun | None:
     Raises:
         InputError: the store or what it keeps is damaged, or a run of the comparison is not in it any more.
     """
-    from harness.engine.plan import Limits
+    from harness.engine.run import Limits
 
     content = store.last_comparison()
     if content is None:

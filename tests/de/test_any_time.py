@@ -8,7 +8,7 @@ import pytest
 
 from harness.engine.compare import execute
 from harness.engine.judge import judge
-from harness.engine.plan import Limits, Run
+from harness.engine.run import Limits, Run
 from harness.model.assembly import Assembly
 from harness.model.case import Case, CaseFile
 from harness.model.components import analysed_apart

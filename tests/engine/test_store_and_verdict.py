@@ -16,8 +16,9 @@ import psutil
 import pytest
 
 from harness.engine.compare import comparison_run, execute, recall, remember
-from harness.engine.plan import Limits, Run, plan_case
+from harness.engine.plan import plan_case
 from harness.engine.regression import violations
+from harness.engine.run import Limits, Run
 from harness.engine.store import Store, open_store
 from harness.engine.verdict import compare, theory_gates
 from harness.model.case import Reference

@@ -16,7 +16,8 @@ from typing import Any
 import pytest
 
 from harness.engine.compare import comparison_run, execute, judged, recall, remember
-from harness.engine.plan import Limits, plan_case
+from harness.engine.plan import plan_case
+from harness.engine.run import Limits
 from harness.engine.store import SCHEMA_VERSION, open_store
 from harness.model.errors import InputError
 from tests.commands import drystone

@@ -14,8 +14,9 @@ from typing import Any
 
 import numpy as np
 
-from harness.engine.plan import Limits, check_methods, find_cases
+from harness.engine.plan import check_methods, find_cases
 from harness.engine.provenance import code_version, judge_version, run_key
+from harness.engine.run import Limits
 from harness.engine.sweep.paths import setting_of, with_values
 from harness.engine.sweep.study import MOST_RUNS, Distribution, Study
 from harness.engine.worker import Task
