@@ -12,7 +12,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from harness.engine.compare import execute
+from harness.engine.pipeline import execute
 from harness.engine.run import Limits, Run
 from harness.model.case import Case, CaseFile
 from harness.model.method import Status

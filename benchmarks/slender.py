@@ -16,7 +16,7 @@ from typing import Any
 
 import numpy as np
 
-from harness.engine.compare import execute
+from harness.engine.pipeline import execute
 from harness.engine.run import Limits, Run
 from harness.engine.threads import pin
 from harness.model.assembly import Assembly, FloatArray

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 from pydantic import PrivateAttr
 
 from drystone.walls import Wall
-from harness.engine import compare as engine
+from harness.engine import pipeline
 from harness.engine.judge import judge as judge_result
 from harness.engine.plan import check_methods, check_shares
 from harness.engine.provenance import machine, versions
@@ -180,7 +180,7 @@ def analyse_by(
     fitting = tuple(item for item in references if item.settings == settings)
     run = Run(wall.case, loaded.name, settings, limits, fitting, processes)
     if isolated:
-        (record,) = engine.execute([run], None, 1)
+        (record,) = pipeline.execute([run], None, 1)
         return Result.on(wall, record)
     check_takes(prepared(loaded), wall.assembly)
     started, clock, work = datetime.now(UTC), time.perf_counter(), time.process_time()
@@ -198,7 +198,7 @@ def analyse_by(
             "started": started.isoformat(timespec="seconds"),
         }
     )
-    return Result.on(wall, engine.judged(run, record, loaded.tolerance))
+    return Result.on(wall, pipeline.judged(run, record, loaded.tolerance))
 
 
 def judge(wall: Wall, answer: Answer | Record, tolerance: float = 1e-9) -> Judgement:

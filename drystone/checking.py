@@ -10,8 +10,7 @@ from typing import TYPE_CHECKING, Any, Literal
 
 from drystone.certificates import certificate_line, certificate_runs
 from drystone.walls import Wall, library_wall, library_walls
-from harness.engine import compare as engine
-from harness.engine import regression
+from harness.engine import pipeline, regression
 from harness.engine.plan import check_methods, gated_runs
 from harness.engine.run import Limits, Run
 from harness.engine.store import open_store
@@ -63,7 +62,7 @@ def check(
     jobs: int = 1,
     store: str | Path | None = None,
     fresh: bool = False,
-    told: engine.Told | None = None,
+    told: pipeline.Told | None = None,
 ) -> Check:
     """Hold the methods to the gated references of walls.
 
@@ -85,7 +84,7 @@ def check(
     chosen = map(library_wall, library_walls()) if walls is None else [walls] if isinstance(walls, Wall) else walls
     plan = planned([wall.case for wall in chosen], tier)
     with nullcontext() if store is None else open_store(Path(store)) as opened:
-        return held(plan, engine.execute(plan.runs, opened, jobs, fresh=fresh, told=told))
+        return held(plan, pipeline.execute(plan.runs, opened, jobs, fresh=fresh, told=told))
 
 
 @dataclass(frozen=True)

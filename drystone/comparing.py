@@ -12,6 +12,7 @@ from drystone.analysis import Result, analyse_by
 from drystone.certificates import with_certificates
 from drystone.walls import Wall
 from harness.engine import compare as engine
+from harness.engine import pipeline
 from harness.engine.isolate import announce
 from harness.engine.plan import check_methods, plan_case
 from harness.engine.regression import violations
@@ -93,7 +94,7 @@ def compare(
     store: str | Path | None = None,
     settings: Mapping[str, dict[str, Any]] | None = None,
     fresh: bool = False,
-    told: engine.Told | None = None,
+    told: pipeline.Told | None = None,
     title: str = "",
     command: str = "drystone.compare",
     studies: Sequence[dict[str, Any]] = (),
@@ -131,7 +132,7 @@ def compare(
     with nullcontext() if store is None else open_store(Path(store)) as opened:
         if isolated:
             announce(run.method for run in planned)
-            results = engine.execute(planned, opened, jobs, fresh=fresh, told=told)
+            results = pipeline.execute(planned, opened, jobs, fresh=fresh, told=told)
         else:
             results = _here(chosen, planned)
         run = engine.comparison_run(title or ", ".join(names), command, cases, planned, results)

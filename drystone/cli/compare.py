@@ -33,7 +33,7 @@ from drystone.cli.studies import curve_of_shipped
 from drystone.comparing import compare as make_comparison
 from drystone.walls import Wall
 from harness.engine import compare as comparing
-from harness.engine import regression
+from harness.engine import pipeline, regression
 from harness.engine.isolate import announce
 from harness.engine.plan import check_methods, find_cases, plan_case
 from harness.engine.run import Limits
@@ -186,7 +186,7 @@ def _appendix(wall: str, folder: Path, store: Path) -> None:
     runs = [planned for case in chosen for planned in plan_case(case, None, Limits())]
     announce(planned.method for planned in runs)
     with open_store(store) as opened, terminal.progress(len(runs), quiet=False) as told:
-        results = comparing.execute(runs, opened, os.cpu_count() or 1, told=told)
+        results = pipeline.execute(runs, opened, os.cpu_count() or 1, told=told)
     compared = with_certificates(comparing.comparison_run(title, _command_line(), chosen, runs, results))
     page = folder / f"{title}-appendix.html"
     write_appendix(compared, page)

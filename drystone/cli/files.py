@@ -23,7 +23,7 @@ from drystone.cli.options import (
     warn,
 )
 from drystone.cli.settings import settings_of
-from harness.engine import compare as comparing
+from harness.engine import pipeline
 from harness.engine.plan import check_methods, find_cases
 from harness.engine.run import Limits, Run
 from harness.engine.sensitivity import advised
@@ -125,7 +125,7 @@ def export(
     result = None
     if method is not None:
         with open_store(store) as opened, terminal.progress(1, quiet=True) as told:
-            (result,) = comparing.execute([Run(found, method, chosen, Limits())], opened, 1, told=told)
+            (result,) = pipeline.execute([Run(found, method, chosen, Limits())], opened, 1, told=told)
         if result.status is not Status.OK or result.finding is Finding.NONE:
             raise InputError(f"{result.method} has no answer to write: {result.sentence}", element=found.id)
         say(f"drystone: {found.id}: {result.sentence}", err=True)

@@ -11,6 +11,7 @@ import click
 from drystone.cli import terminal
 from drystone.cli.options import OUTPUT, catching, jobs_option, say, store_option
 from harness.engine import compare as comparing
+from harness.engine import pipeline
 from harness.engine.isolate import announce
 from harness.engine.plan import find_cases, plan_case
 from harness.engine.run import Limits
@@ -37,7 +38,7 @@ def learn(output: Path, jobs: int, store: Path) -> None:
     runs = [planned for case in chosen for planned in plan_case(case, list(library().methods.compare), Limits())]
     announce(planned.method for planned in runs)
     with open_store(store) as opened, terminal.progress(len(runs), quiet=False) as told:
-        results = comparing.execute(runs, opened, jobs, told=told)
+        results = pipeline.execute(runs, opened, jobs, told=told)
     command = shlex.join(["drystone", *sys.argv[1:]])
     write_learn(comparing.comparison_run("Why three methods differ", command, chosen, runs, results), output)
     say(f"Page: {output}")

@@ -14,7 +14,7 @@ from typing import Any
 
 import numpy as np
 
-from harness.engine.compare import Told
+from harness.engine.pipeline import Told
 from harness.engine.regression import violations
 from harness.engine.run import Run
 from harness.model.assembly import Assembly

@@ -22,7 +22,7 @@ from drystone.cli.options import (
     warn,
 )
 from drystone.walls import read_wall as wall_of_file
-from harness.engine import compare as comparing
+from harness.engine import pipeline
 from harness.engine.plan import check_methods, find_cases
 from harness.engine.run import Limits, Run
 from harness.engine.store import open_store
@@ -184,7 +184,7 @@ def _answers(case: str, methods: tuple[str, ...], store: Path, folders: tuple[Pa
     (found,) = find_cases([case], None, folders)
     warn(found)
     with open_store(store) as opened, terminal.progress(len(methods), quiet=True) as told:
-        results = comparing.execute([Run(found, name, {}, Limits()) for name in methods], opened, 1, told=told)
+        results = pipeline.execute([Run(found, name, {}, Limits()) for name in methods], opened, 1, told=told)
     for result in results:
         if result.status is not Status.OK or result.finding in (Finding.NONE,):
             raise InputError(f"{result.method} has no answer to draw: {result.sentence}", element=found.id)

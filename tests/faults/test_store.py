@@ -15,7 +15,8 @@ from typing import Any
 
 import pytest
 
-from harness.engine.compare import comparison_run, execute, judged, recall, remember
+from harness.engine.compare import comparison_run, recall, remember
+from harness.engine.pipeline import execute, judged
 from harness.engine.plan import plan_case
 from harness.engine.run import Limits
 from harness.engine.store import SCHEMA_VERSION, open_store
