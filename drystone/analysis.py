@@ -2,30 +2,24 @@
 
 from __future__ import annotations
 
-import time
-from datetime import UTC, datetime
 from typing import TYPE_CHECKING, Any
 
 from pydantic import PrivateAttr
 
 from drystone.walls import Wall
 from harness.engine import pipeline
+from harness.engine.executors import InProcess, LocalExecutor
 from harness.engine.judge import judge as judge_result
 from harness.engine.plan import check_methods, check_shares
-from harness.engine.provenance import machine, versions
 from harness.engine.run import Limits, Run
-from harness.model.answer_check import checked
 from harness.model.comparison import CaseResults
 from harness.model.errors import InputError
 from harness.model.method import (
     Answer,
     Method,
-    allowing,
-    check_takes,
     checked_method,
     load_method,
     method_names,
-    prepared,
 )
 from harness.model.proof import Proof, proof_of
 from harness.model.reading import validate
@@ -175,30 +169,21 @@ def analyse_by(
     else:
         loaded = checked_method(method)
     check_shares(loaded, processes)
-    chosen = validate(loaded.Settings, settings, "settings")
-    references = tuple(item for item in wall.case.file.references if loaded.name in item.applies_to)
-    fitting = tuple(item for item in references if item.settings == settings)
-    run = Run(wall.case, loaded.name, settings, limits, fitting, processes)
-    if isolated:
-        (record,) = pipeline.execute([run], None, 1)
-        return Result.on(wall, record)
-    check_takes(prepared(loaded), wall.assembly)
-    started, clock, work = datetime.now(UTC), time.perf_counter(), time.process_time()
-    with allowing(processes):
-        answer = checked(loaded.solve(wall.assembly, chosen), wall.assembly)
-    cost = {"cpu_seconds": time.process_time() - work, "wall_seconds": time.perf_counter() - clock}
-    record = result_of(
-        answer, wall.assembly, case=wall.name, method=loaded.name, family=loaded.family, traits=loaded.traits
-    ).model_copy(
-        update={
-            **cost,
-            "settings": chosen.model_dump(mode="json"),
-            "versions": versions(),
-            "machine": machine(),
-            "started": started.isoformat(timespec="seconds"),
-        }
+    validate(loaded.Settings, settings, "settings")
+    run = Run(
+        wall.case,
+        loaded.name,
+        settings,
+        limits if isolated else None,
+        tuple(
+            item for item in wall.case.file.references if loaded.name in item.applies_to and item.settings == settings
+        ),
+        processes=processes,
+        kept=isinstance(method, str),
     )
-    return Result.on(wall, pipeline.judged(run, record, loaded.tolerance))
+    executor = LocalExecutor(1) if isolated else InProcess(loaded)
+    (record,) = pipeline.execute([run], None, 1, executor=executor)
+    return Result.on(wall, record)
 
 
 def judge(wall: Wall, answer: Answer | Record, tolerance: float = 1e-9) -> Judgement:

@@ -156,6 +156,7 @@ def certificate_line(run: Run, result: Result) -> dict[str, Any]:
         run: one of `certificate_runs`.
         result: of the run.
     """
+    assert isinstance(run.case, Case)
     path = certificate_of(run.case)
     assert path is not None
     lower: float | None = None

@@ -8,19 +8,19 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from drystone.analysis import Result, analyse_by
+from drystone.analysis import Result
 from drystone.certificates import with_certificates
 from drystone.walls import Wall
 from harness.engine import compare as engine
 from harness.engine import pipeline
+from harness.engine.executors import InProcess, LocalExecutor
 from harness.engine.isolate import announce
 from harness.engine.plan import check_methods, plan_case
 from harness.engine.regression import violations
-from harness.engine.run import Limits, Run
+from harness.engine.run import Limits
 from harness.engine.store import open_store
 from harness.model.comparison import ComparisonRun
 from harness.model.errors import InputError
-from harness.model.result import Result as Record
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -112,7 +112,7 @@ def compare(
         store: file in which results and what the comparison consisted of are kept and looked for; None: nowhere.
         settings: of methods, by name, where not the defaults.
         fresh: run again what is in the store.
-        told: called after each isolated run with the run, its result and whether it was stored.
+        told: called after each run with the run, its result and whether it was stored.
         title, command: what the report says was compared, and how to repeat it.
         studies: for the report to draw, as `reports.studies` describes them.
 
@@ -126,15 +126,14 @@ def compare(
         raise InputError(f'two walls are called "{twice}"', 'Give one another name: wall.called("...")', "walls")
     if methods is not None:
         check_methods(methods, "methods")
-    limits = Limits(seconds, memory_bytes)
+    limits = Limits(seconds, memory_bytes) if isolated else None
     planned = [run for wall in chosen for run in plan_case(wall.case, methods, limits, settings=settings)]
     cases = [wall.case for wall in chosen]
     with nullcontext() if store is None else open_store(Path(store)) as opened:
         if isolated:
             announce(run.method for run in planned)
-            results = pipeline.execute(planned, opened, jobs, fresh=fresh, told=told)
-        else:
-            results = _here(chosen, planned)
+        executor = LocalExecutor(jobs) if isolated else InProcess()
+        results = pipeline.execute(planned, opened, jobs, fresh=fresh, told=told, executor=executor)
         run = engine.comparison_run(title or ", ".join(names), command, cases, planned, results)
         run = with_certificates(run)
         if studies:
@@ -144,13 +143,3 @@ def compare(
     by_name = {wall.name: wall for wall in chosen}
     rows = [Result.on(by_name[item.case.id], each, item) for item in run.cases for each in item.results]
     return Comparison(chosen, rows, run)
-
-
-def _here(walls: list[Wall], planned: list[Run]) -> list[Record]:
-    by_case = {id(wall.case): wall for wall in walls}
-    return [
-        analyse_by(
-            by_case[id(run.case)], run.method, run.settings, isolated=False, limits=run.limits, processes=run.processes
-        )
-        for run in planned
-    ]

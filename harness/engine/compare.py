@@ -69,12 +69,12 @@ def comparison_run(
 def remember(store: Store, compared: ComparisonRun, runs: Sequence[Run]) -> None:
     """Keep in the store what a comparison consisted of, so that `drystone report` can build its report again."""
     cases = {
-        run.case.id: {
-            "file": run.case.file.model_dump(mode="json"),
-            "wall": run.case.wall.document(),
-            "origin": run.case.origin,
+        item.case.id: {
+            "file": item.case.file.model_dump(mode="json"),
+            "wall": item.case.wall.document(),
+            "origin": item.case.origin,
         }
-        for run in runs
+        for item in compared.cases
     }
     store.remember(
         compared.created,

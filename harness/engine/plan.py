@@ -19,7 +19,7 @@ from harness.model.reading import DRAWINGS
 def plan_case(
     case: Case,
     methods: Sequence[str] | None,
-    limits: Limits,
+    limits: Limits | None,
     tier: str = "quick",
     settings: Mapping[str, dict[str, Any]] | None = None,
 ) -> list[Run]:
@@ -28,7 +28,7 @@ def plan_case(
     Args:
         case: the case.
         methods: names given by the user, or None for the case's own choice.
-        limits: of each run.
+        limits: of each run; None: none, in this process.
         tier: "quick" leaves out references of the full tier.
         settings: of methods by name, where they are not the defaults; references to other settings do not apply.
     """

@@ -5,7 +5,6 @@ from __future__ import annotations
 import functools
 import hashlib
 import importlib.util
-import json
 import os
 import platform
 import subprocess
@@ -102,12 +101,6 @@ def sources_version(*packages: str, others: Sequence[str] = ()) -> str:
     for text in others:
         digest.update(text.encode())
     return digest.hexdigest()[:16]
-
-
-def run_key(wall: str, method: str, settings: dict[str, Any], limits: dict[str, float], code: str, *given: str) -> str:
-    """Content hash that stands for one run: explicit wall, method, settings, limits, code version, what was given."""
-    text = json.dumps([wall, method, settings, limits, code, *given], sort_keys=True, allow_nan=False)
-    return hashlib.sha256(text.encode()).hexdigest()[:32]
 
 
 @functools.cache

@@ -170,7 +170,8 @@ class Store:
         except UnicodeDecodeError:  # of a name in the schema, or of an error that quotes one
             raise InputError("it is damaged (a name in it is no text)", OTHER_FILE, source=str(self.path)) from None
 
-    def _damaged(self, element: str, error: Exception) -> InputError:
+    def damaged(self, element: str, error: Exception) -> InputError:
+        """The fault of something in it that another hand has changed."""
         reason = str(error).splitlines()[0] if str(error) else type(error).__name__
         return InputError(
             f"it is damaged ({reason})", f"Run with --fresh to make it again; the rest is whole. {OTHER_FILE}, or that",
@@ -201,7 +202,7 @@ class Store:
                 raise ValueError(f"it is nested more than {MOST_NESTED} deep")
             return Result.model_validate(whole, strict=False), float(tolerance)
         except DAMAGE as error:
-            raise self._damaged(element, error) from None
+            raise self.damaged(element, error) from None
 
     def missing(self, element: str) -> InputError:
         """The fault of a result that ought to be here: an index of the file is damaged, or the run was taken out."""
@@ -235,23 +236,29 @@ class Store:
             )
 
     def summaries(self, keys: Collection[str]) -> dict[str, dict[str, Any]]:
-        """Results under keys as JSON values, without `FIELDS` and `ENVIRONMENT`; keys that are not there left out.
+        """Results under keys as JSON values, without `FIELDS`; keys that are not there left out.
 
         Raises:
             InputError: the store or one of the results is damaged.
         """
         found: dict[str, dict[str, Any]] = {}
+        environments: dict[str, dict[str, Any]] = {}
         with self._told():
             some = sorted(keys) if len(keys) <= SOME_KEYS else None
-            query = "SELECT key, method, case_id, result FROM run"
+            query = (
+                "SELECT key, method, case_id, result, run.environment, environment.content "
+                "FROM run LEFT JOIN environment ON environment.id = run.environment"
+            )
             marks = f" WHERE key IN ({', '.join('?' * len(some))})" if some is not None else ""
-            for key, method, case, text in self._open.execute(query + marks, some or ()):
+            for key, method, case, text, shared, content in self._open.execute(query + marks, some or ()):
                 if key not in keys:
                     continue
                 try:
-                    found[key] = json.loads(text)
+                    if shared not in environments:
+                        environments[shared] = json.loads(content or "{}")
+                    found[key] = json.loads(text) | environments[shared]
                 except (ValueError, TypeError, RecursionError) as error:
-                    raise self._damaged(f"the result of {method} on {case} in it", error) from None
+                    raise self.damaged(f"the result of {method} on {case} in it", error) from None
         return found
 
     def table(self) -> list[tuple[str, str, str, str, str, str, float | None, float | None]]:
@@ -309,10 +316,10 @@ class Store:
         if row is None:
             return None
         if not isinstance(row[0], str) or len(row[0]) > LARGEST_FILE:
-            raise self._damaged("the last comparison in it", ValueError("it is no text of a usual size"))
+            raise self.damaged("the last comparison in it", ValueError("it is no text of a usual size"))
         content = json_of(row[0], f"{self.path}: the last comparison in it")
         if not isinstance(content, dict):
-            raise self._damaged("the last comparison in it", ValueError("it is no object"))
+            raise self.damaged("the last comparison in it", ValueError("it is no object"))
         return content
 
     def close(self) -> None:

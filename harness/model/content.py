@@ -1,12 +1,14 @@
-"""A key of what decides the mechanics of a wall, equal for walls that are written differently."""
+"""Hashes of walls: of what is written, and of what decides the mechanics however it is written."""
 
 from __future__ import annotations
 
 import hashlib
+import json
 
 import numpy as np
 
 from harness.model.assembly import Assembly
+from harness.model.wall import Wall
 
 STEP = 1.37e-6
 """Values are rounded to this part of their size. No round number of a drawing lies on the edge between two steps."""
@@ -36,3 +38,9 @@ def content_of(assembly: Assembly) -> str:
     ):
         digest.update(np.rint(values / (STEP * size)).astype("<i8").tobytes() + b";")
     return digest.hexdigest()
+
+
+def hash_of(wall: Wall) -> str:
+    """A hash of all that is written of a wall and decides an answer: title, metadata and doubts do not enter."""
+    written = {name: value for name, value in wall.document().items() if name not in ("title", "metadata", "doubts")}
+    return hashlib.sha256(json.dumps(written, sort_keys=True, allow_nan=False).encode()).hexdigest()

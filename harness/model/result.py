@@ -38,6 +38,7 @@ class Judgement(BaseModel):
         sentence: what was judged, and what failed if anything did.
         multiplier_error: how far, by virtual work, the multiplier of the mechanism can be from the reported one; None
             where that was not shown.
+        code: hash of the judge's code, where the result is kept; another judge judges it again.
     """
 
     model_config = ConfigDict(defer_build=True, extra="forbid")
@@ -46,6 +47,7 @@ class Judgement(BaseModel):
     accepted: bool | None = None
     sentence: str = ""
     multiplier_error: float | None = None
+    code: str = ""
 
     @property
     def worst(self) -> tuple[str, float] | None:
