@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from pydantic import PrivateAttr
@@ -12,6 +13,7 @@ from harness.engine.executors import InProcess, LocalExecutor
 from harness.engine.judge import judge as judge_result
 from harness.engine.plan import check_methods, check_shares
 from harness.engine.run import Limits, Run
+from harness.engine.store import opened_at
 from harness.model.comparison import CaseResults
 from harness.model.errors import InputError
 from harness.model.method import (
@@ -131,6 +133,7 @@ def analyse(
     seconds: float = Limits().seconds,
     memory_bytes: int = Limits().memory_bytes,
     processes: int = 1,
+    store: str | Path | None = None,
     **settings: Any,
 ) -> Result:
     """What a method finds on a wall, judged; in this process and without limits unless it is isolated.
@@ -142,21 +145,34 @@ def analyse(
         seconds: wall-clock limit of an isolated run [s].
         memory_bytes: memory limit of an isolated run [bytes].
         processes: that the run may use side by side, where the method can (`de`); the answer is the same.
+        store: file in which the result is kept and looked for; None: nowhere. An isolated run is found there by
+            `compare`, `check` and `sweep` under the same limits, and theirs by it.
         settings: of the method, by name; what is not given has its default.
 
     Raises:
         InputError: an unknown method or setting, a wall that the method refuses (isolated: the result says so), or one
-            of your own is to be isolated.
+            of your own is to be isolated or kept.
     """
-    return analyse_by(
-        wall, method, settings, isolated=isolated, limits=Limits(seconds, memory_bytes), processes=processes
-    )
+    limits = Limits(seconds, memory_bytes)
+    return analyse_by(wall, method, settings, isolated=isolated, limits=limits, processes=processes, store=store)
 
 
 def analyse_by(
-    wall: Wall, method: str | Method, settings: dict[str, Any], *, isolated: bool, limits: Limits, processes: int
+    wall: Wall,
+    method: str | Method,
+    settings: dict[str, Any],
+    *,
+    isolated: bool,
+    limits: Limits,
+    processes: int = 1,
+    store: str | Path | None = None,
+    fresh: bool = False,
 ) -> Result:
     """As `analyse`, with settings that may have any name, `seconds` among them.
+
+    Args:
+        wall, method, settings, isolated, limits, processes, store: see `analyse`.
+        fresh: run what is in the store as well.
 
     Raises:
         InputError: as `analyse`.
@@ -166,6 +182,8 @@ def analyse_by(
         loaded = load_method(method)
     elif isolated:
         raise InputError("an isolated method is called by its name", "Give it an entry point, or run it here", "method")
+    elif store is not None:
+        raise InputError("a method that is not installed keeps no results", "Give it an entry point", "store")
     else:
         loaded = checked_method(method)
     check_shares(loaded, processes)
@@ -182,7 +200,8 @@ def analyse_by(
         kept=isinstance(method, str),
     )
     executor = LocalExecutor(1) if isolated else InProcess(loaded)
-    (record,) = pipeline.execute([run], None, 1, executor=executor)
+    with opened_at(store) as opened:
+        (record,) = pipeline.execute([run], opened, 1, fresh=fresh, executor=executor)
     return Result.on(wall, record)
 
 

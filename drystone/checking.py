@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
-from contextlib import nullcontext
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal
@@ -13,7 +12,7 @@ from drystone.walls import Wall, library_wall, library_walls
 from harness.engine import pipeline, regression
 from harness.engine.plan import check_methods, gated_runs
 from harness.engine.run import Limits, Run
-from harness.engine.store import open_store
+from harness.engine.store import opened_at
 from harness.model.case import Case
 from harness.model.result import Result as Record
 
@@ -83,7 +82,7 @@ def check(
     """
     chosen = map(library_wall, library_walls()) if walls is None else [walls] if isinstance(walls, Wall) else walls
     plan = planned([wall.case for wall in chosen], tier)
-    with nullcontext() if store is None else open_store(Path(store)) as opened:
+    with opened_at(store) as opened:
         return held(plan, pipeline.execute(plan.runs, opened, jobs, fresh=fresh, told=told))
 
 

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
-from contextlib import nullcontext
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -18,7 +17,7 @@ from harness.engine.isolate import announce
 from harness.engine.plan import check_methods, plan_case
 from harness.engine.regression import violations
 from harness.engine.run import Limits
-from harness.engine.store import open_store
+from harness.engine.store import opened_at
 from harness.model.comparison import ComparisonRun
 from harness.model.errors import InputError
 
@@ -129,7 +128,7 @@ def compare(
     limits = Limits(seconds, memory_bytes) if isolated else None
     planned = [run for wall in chosen for run in plan_case(wall.case, methods, limits, settings=settings)]
     cases = [wall.case for wall in chosen]
-    with nullcontext() if store is None else open_store(Path(store)) as opened:
+    with opened_at(store) as opened:
         if isolated:
             announce(run.method for run in planned)
         executor = LocalExecutor(jobs) if isolated else InProcess()
