@@ -12,12 +12,12 @@ from drystone.certificates import with_certificates
 from drystone.walls import Wall
 from harness.engine import compare as engine
 from harness.engine import pipeline
-from harness.engine.executors import InProcess, LocalExecutor
-from harness.engine.isolate import announce
+from harness.engine.executors import Executor, InProcess, LocalExecutor
 from harness.engine.plan import check_methods, plan_case
 from harness.engine.regression import violations
-from harness.engine.run import Limits
-from harness.engine.store import opened_at
+from harness.engine.run import Limits, Run
+from harness.engine.store import Store, open_store, opened_at
+from harness.model.case import Case
 from harness.model.comparison import ComparisonRun
 from harness.model.errors import InputError
 
@@ -126,19 +126,62 @@ def compare(
     if methods is not None:
         check_methods(methods, "methods")
     limits = Limits(seconds, memory_bytes) if isolated else None
-    planned = [run for wall in chosen for run in plan_case(wall.case, methods, limits, settings=settings)]
+    runs = [run for wall in chosen for run in plan_case(wall.case, methods, limits, settings=settings)]
+    executor = LocalExecutor(jobs) if isolated else InProcess()
     cases = [wall.case for wall in chosen]
     with opened_at(store) as opened:
-        if isolated:
-            announce(run.method for run in planned)
-        executor = LocalExecutor(jobs) if isolated else InProcess()
-        results = pipeline.execute(planned, opened, jobs, fresh=fresh, told=told, executor=executor)
-        run = engine.comparison_run(title or ", ".join(names), command, cases, planned, results)
-        run = with_certificates(run)
-        if studies:
-            run.provenance["studies"] = list(studies)
+        run = compared(
+            title or ", ".join(names), command, cases, runs, opened, executor, fresh=fresh, told=told, studies=studies
+        )
         if opened is not None:
-            engine.remember(opened, run, planned)
+            engine.remember(opened, run, runs)
     by_name = {wall.name: wall for wall in chosen}
     rows = [Result.on(by_name[item.case.id], each, item) for item in run.cases for each in item.results]
     return Comparison(chosen, rows, run)
+
+
+def compared(
+    title: str,
+    command: str,
+    cases: Sequence[Case],
+    runs: Sequence[Run],
+    store: Store | None,
+    executor: Executor,
+    *,
+    fresh: bool = False,
+    told: pipeline.Told | None = None,
+    studies: Sequence[dict[str, Any]] = (),
+    certified: bool = True,
+) -> ComparisonRun:
+    """The comparison that runs make, found or made, and judged, with what the certificates of their walls prove.
+
+    Args:
+        title, command: what the report says was compared, and how to repeat it.
+        cases: in the order of the report.
+        runs: of these cases.
+        store: where results are looked for and kept; None: nowhere.
+        executor: where runs are made.
+        fresh, told: as of `compare`.
+        studies: for the report to draw.
+        certified: whether certificates are looked at; a page that shows nothing of them can leave it.
+    """
+    results = pipeline.execute(runs, store, 1, fresh=fresh, told=told, executor=executor)
+    run = engine.comparison_run(title, command, cases, runs, results)
+    if studies:
+        run.provenance["studies"] = list(studies)
+    return with_certificates(run) if certified else run
+
+
+def recalled(store: str | Path) -> ComparisonRun:
+    """The comparison that a store remembers last, judged and with certificates checked anew; nothing is run.
+
+    Raises:
+        InputError: there is no such store, none in it, or it is damaged.
+    """
+    if not Path(store).exists():
+        raise InputError("there is no such store", "Run `drystone compare` first", source=str(store))
+    with open_store(Path(store), read_only=True) as opened:
+        found = engine.recall(opened)
+    if found is None:
+        raise InputError("no comparison is in the store", "Run `drystone compare` first", source=str(store))
+    return with_certificates(found)

@@ -64,7 +64,7 @@ def check(
         warn(case)
     plan = planned(chosen, tier)
     with open_store(store) as opened, terminal.progress(len(plan.runs), quiet=as_json) as told:
-        checked = held(plan, pipeline.execute(plan.runs, opened, jobs, fresh=fresh, told=told))
+        checked = held(plan, opened, jobs, fresh=fresh, told=told)
     lines = checked.lines
     if junit is not None:
         write_junit(f"drystone check, {tier} tier", tests_of_check(lines), junit)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from datetime import UTC, datetime
 from typing import TYPE_CHECKING, Any
 
@@ -10,7 +10,7 @@ from pydantic import BaseModel
 
 from harness.engine.pipeline import judged
 from harness.engine.provenance import machine, versions
-from harness.engine.run import Run
+from harness.engine.run import Limits, Run
 from harness.engine.verdict import overall, theory_gates
 from harness.model.case import Case, CaseFile, Reference
 from harness.model.comparison import CaseResults, ComparisonRun
@@ -55,14 +55,25 @@ def comparison_run(
     cases: Sequence[Case],
     runs: Sequence[Run],
     results: Sequence[Result],
+    *,
+    created: str = "",
+    provenance: Mapping[str, Any] | None = None,
 ) -> ComparisonRun:
-    """What the report is made of."""
+    """What the report is made of, before certificates are looked at: `drystone.comparing` does both.
+
+    Args:
+        title, command: what was compared, and how to repeat it.
+        cases: in the order of the report.
+        runs, results: in one order.
+        created: ISO time [UTC]; empty: now.
+        provenance: of the comparison; None: that of this process.
+    """
     return ComparisonRun(
         title=title,
         command=command,
-        created=datetime.now(UTC).isoformat(timespec="seconds"),
+        created=created or datetime.now(UTC).isoformat(timespec="seconds"),
         cases=gather(cases, runs, results),
-        provenance={"versions": versions(), "machine": machine()},
+        provenance={"versions": versions(), "machine": machine()} if provenance is None else dict(provenance),
     )
 
 
@@ -131,8 +142,6 @@ def recall(store: Store) -> ComparisonRun | None:
     Raises:
         InputError: the store or what it keeps is damaged, or a run of the comparison is not in it any more.
     """
-    from harness.engine.run import Limits
-
     content = store.last_comparison()
     if content is None:
         return None
@@ -151,10 +160,5 @@ def recall(store: Store) -> ComparisonRun | None:
         run = Run(cases[item.case], item.method, item.settings, Limits(), tuple(item.references))
         runs.append(run)
         results.append(judged(run, found[0].model_copy(update={"case": run.case.id}), found[1]))
-    return ComparisonRun(
-        title=kept.title,
-        command=kept.command,
-        created=kept.created,
-        cases=gather(list(cases.values()), runs, results),
-        provenance=kept.provenance,
-    )
+    head = kept.title, kept.command, list(cases.values())
+    return comparison_run(*head, runs, results, created=kept.created, provenance=kept.provenance)
