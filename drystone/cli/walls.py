@@ -26,6 +26,7 @@ from harness.engine import pipeline
 from harness.engine.plan import check_methods, find_cases
 from harness.engine.run import Limits, Run
 from harness.engine.store import open_store
+from harness.formats.registry import FORMATS
 from harness.model.case import Case, case_folders, read_case, shipped_cases
 from harness.model.errors import InputError
 from harness.model.library import library
@@ -37,14 +38,16 @@ from harness.model.writing import write_whole
 
 
 @click.command(name="list")
-@click.argument("what", type=click.Choice(["cases", "methods", "suites"]))
+@click.argument("what", type=click.Choice(["cases", "methods", "suites", "formats"]))
 @json_flag
 @cases_option
 @catching
 def list_(what: str, as_json: bool, folders: tuple[Path, ...]) -> None:
-    """List the cases, the methods or the suites there are."""
+    """List the cases, the methods, the suites or the file formats there are."""
     if what == "methods":
         rows = [_method_row(name) for name in method_names()]
+    elif what == "formats":
+        rows = [item.row() for item in FORMATS]
     else:
         cases = [read_case(folder) for folder in case_folders([shipped_cases(), *folders]).values()]
         if what == "cases":
