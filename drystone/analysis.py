@@ -13,7 +13,6 @@ from harness.engine.executors import InProcess, LocalExecutor
 from harness.engine.judge import judge as judge_result
 from harness.engine.plan import check_methods, check_shares
 from harness.engine.run import Limits, Run
-from harness.engine.store import opened_at
 from harness.model.comparison import CaseResults
 from harness.model.errors import InputError
 from harness.model.method import (
@@ -200,7 +199,7 @@ def analyse_by(
         kept=isinstance(method, str),
     )
     executor = LocalExecutor(1) if isolated else InProcess(loaded)
-    with opened_at(store) as opened:
+    with pipeline.opened_at(store) as opened:
         (record,) = pipeline.execute([run], opened, 1, fresh=fresh, executor=executor)
     return Result.on(wall, record)
 

@@ -12,7 +12,7 @@ from drystone.walls import Wall, library_wall, library_walls
 from harness.engine import pipeline, regression
 from harness.engine.plan import check_methods, gated_runs
 from harness.engine.run import Limits, Run
-from harness.engine.store import Store, opened_at
+from harness.engine.store import Store
 from harness.model.case import Case
 
 if TYPE_CHECKING:
@@ -81,7 +81,7 @@ def check(
     """
     chosen = map(library_wall, library_walls()) if walls is None else [walls] if isinstance(walls, Wall) else walls
     plan = planned([wall.case for wall in chosen], tier)
-    with opened_at(store) as opened:
+    with pipeline.opened_at(store) as opened:
         return held(plan, opened, jobs, fresh=fresh, told=told)
 
 

@@ -16,7 +16,7 @@ from harness.engine.executors import Executor, InProcess, LocalExecutor
 from harness.engine.plan import check_methods, plan_case
 from harness.engine.regression import violations
 from harness.engine.run import Limits, Run
-from harness.engine.store import Store, open_store, opened_at
+from harness.engine.store import Store, open_store
 from harness.model.case import Case
 from harness.model.comparison import ComparisonRun
 from harness.model.errors import InputError
@@ -129,7 +129,7 @@ def compare(
     runs = [run for wall in chosen for run in plan_case(wall.case, methods, limits, settings=settings)]
     executor = LocalExecutor(jobs) if isolated else InProcess()
     cases = [wall.case for wall in chosen]
-    with opened_at(store) as opened:
+    with pipeline.opened_at(store) as opened:
         run = compared(
             title or ", ".join(names), command, cases, runs, opened, executor, fresh=fresh, told=told, studies=studies
         )

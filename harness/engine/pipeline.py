@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Generator, Iterator, Mapping, Sequence
-from contextlib import closing
+from contextlib import AbstractContextManager, closing, nullcontext
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from harness.engine.executors import Executor, Job, LocalExecutor
@@ -20,6 +21,19 @@ if TYPE_CHECKING:
 
 Told = Callable[[Run, Result, bool], None]
 """Called after every run with the run, its result and whether it came from the store."""
+
+
+def opened_at(path: str | Path | None) -> AbstractContextManager[Store | None]:
+    """The store of a file, closed at the end; None where there is no path.
+
+    Raises:
+        InputError: as of `harness.engine.store.open_store`.
+    """
+    if path is None:
+        return nullcontext()
+    from harness.engine.store import open_store
+
+    return open_store(Path(path))
 
 
 def execute(

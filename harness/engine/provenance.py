@@ -103,10 +103,14 @@ def sources_version(*packages: str, others: Sequence[str] = ()) -> str:
     return digest.hexdigest()[:16]
 
 
+JUDGE = tuple(f"harness.engine.{name}" for name in ("judge", "measured_motion", "measures", "residuals"))
+"""The modules that judge, besides `harness.model`."""
+
+
 @functools.cache
 def judge_version() -> str:
     """Hash over the sources of the judge, for results that are kept with its word."""
-    return sources_version("harness.engine.judge", "harness.engine.measured_motion", "harness.engine.residuals")
+    return sources_version(*JUDGE)
 
 
 def _sources(package: str) -> list[Path]:

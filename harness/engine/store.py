@@ -11,7 +11,7 @@ import tempfile
 import time
 import zlib
 from collections.abc import Collection, Iterator
-from contextlib import AbstractContextManager, contextmanager, nullcontext
+from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
@@ -388,8 +388,3 @@ def open_store(path: Path, *, read_only: bool = False) -> Iterator[Store]:
         yield store
     finally:
         store.close()
-
-
-def opened_at(path: str | Path | None) -> AbstractContextManager[Store | None]:
-    """The store of a file, closed at the end; None where there is no path. Raises as `open_store`."""
-    return nullcontext() if path is None else open_store(Path(path))

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import importlib
 import json
+import re
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
@@ -12,6 +14,7 @@ import pytest
 import drystone
 from harness.engine import pipeline
 from harness.engine.executors import InProcess, LocalExecutor
+from harness.engine.provenance import JUDGE
 from harness.engine.run import Limits, Run
 from harness.engine.store import open_store
 from harness.engine.sweep.expand import expand, sources_of
@@ -106,3 +109,9 @@ def test_runs_in_this_process_are_kept_and_found(tmp_path: Path):
         ends = [list(pipeline.executed([run, run], store, InProcess())) for _ in range(2)]
     assert [[stored for _, _, stored in end] for end in ends] == [[False, False], [True, True]]
     assert ends[0][0][1].model_dump() == ends[1][0][1].model_dump()
+
+
+def test_the_hash_of_the_judge_is_over_all_that_judges():
+    for module in JUDGE:
+        source = Path(str(importlib.import_module(module).__file__)).read_text(encoding="utf-8")
+        assert set(re.findall(r"^from (harness\.engine\.\w+) import", source, re.MULTILINE)) <= set(JUDGE)
