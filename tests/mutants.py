@@ -49,8 +49,8 @@ PACKAGES = {
     "contacts": (
         "harness/model/contacts.py harness/model/interfaces.py harness/model/joint_law.py harness/model/geometry.py "
         "harness/model/assembly.py",
-        "tests/model/test_assembly.py tests/model/test_[cf]*.py tests/model/test_[g-hj]*.py tests/model/test_slips.py "
-        "tests/model/test_wall_format.py",
+        "tests/model/test_assembly.py tests/model/test_[cf]*.py tests/model/test_[g-hj]*.py "
+        "tests/model/test_input_checks.py tests/model/test_wall_format.py",
     ),
     "model": ("harness/model/*.py", "tests/model"),
     "formats": ("harness/formats/*.py", "tests/formats"),
@@ -64,6 +64,8 @@ PACKAGES = {
 """Patterns of the sources of each package and of the tests that are its own."""
 SECONDS = 300
 """After which a mutant counts as found: its tests take no more than half of this without it."""
+CANNOT_START = (3, 4, 5)
+"""Exit codes of pytest that say nothing of the tests: an internal error, wrong words, no test found."""
 COMPARED = {
     ast.Lt: "<=", ast.LtE: "<", ast.Gt: ">=", ast.GtE: ">", ast.Eq: "!=", ast.NotEq: "==",
     ast.Is: "is not", ast.IsNot: "is", ast.In: "not in", ast.NotIn: "in",
@@ -162,6 +164,7 @@ def pytest(folder: Path, tests: list[str], *words: str, seconds: float | None = 
     """Exit code of tests in a copy of the checkout; 99 where the time was over."""
     command = [sys.executable, "-m", "pytest", "-q", "-p", "no:cacheprovider", "-m", "not slow and not browser", *words]
     environment = os.environ | {"PYTHONPATH": str(folder), "OMP_NUM_THREADS": "1", "OPENBLAS_NUM_THREADS": "1"}
+    environment.pop("PYTHONDONTWRITEBYTECODE", None)  # most of the time of a mutant would be that of compiling others
     process = subprocess.Popen(
         [*command, *tests], cwd=folder, env=environment, start_new_session=True,
         stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL,
@@ -183,7 +186,8 @@ def make_map(package: str) -> None:
     data = KEPT / f"{package}.coverage"
     settings.write_text(f"[run]\ndata_file = {data}\ndynamic_context = test_function\nsource = .\nomit = tests/*\n")
     words = ["-m", "coverage", "run", f"--rcfile={settings}", "-m", "pytest", "-q", "-m", "not slow and not browser"]
-    subprocess.run([sys.executable, *words, *own_tests(package)], cwd=ROOT, check=False)
+    if subprocess.run([sys.executable, *words, *own_tests(package)], cwd=ROOT, check=False).returncode != 0:
+        raise click.ClickException(f"the tests of {package} fail without any mutant: mend them, then make its map")
 
 
 def tests_by_line(package: str) -> dict[str, dict[int, list[str]]]:
@@ -216,17 +220,30 @@ def survives(
     """Whether a mutant passes the tests that run its line, and then, unless those are enough, all of its package."""
     place = folder / mutant.path
     source = place.read_text("utf-8")
-    place.write_text(mutant.applied(source), "utf-8")
-    if "@compiled" in source:  # numba keeps callers of a changed loop too
-        for kept in folder.rglob("*.nb[ic]"):
-            kept.unlink()
+
+    def passes(tests: list[str]) -> bool:
+        """Whether the mutant passes these tests."""
+        put(mutant.applied(source))
+        code = pytest(folder, tests, "-x", seconds=SECONDS)
+        put(source)
+        # Tests that cannot be started tell of the mutant only if they can be without it.
+        if code in CANNOT_START and pytest(folder, tests, "--collect-only") != 0:
+            raise click.ClickException(f"pytest cannot start {' '.join(tests)} without any mutant")
+        return code == 0
+
+    def put(text: str) -> None:
+        place.write_text(text, "utf-8")
+        if "@compiled" in source:  # numba keeps callers of a changed loop too
+            for kept in folder.rglob("*.nb[ic]"):
+                kept.unlink()
+
     try:
         near = [name for test in lines.get(mutant.path, {}).get(mutant.line, [])[:40] for name in node(test, folder)]
         own = own_tests(package, folder)
         rounds = [near, *([] if near_only else [own])] if near else [own]
-        return all(pytest(folder, tests, "-x", seconds=SECONDS) == 0 for tests in rounds)
+        return all(passes(tests) for tests in rounds)
     finally:
-        place.write_text(source, "utf-8")
+        put(source)
 
 
 @click.command()

@@ -34,7 +34,7 @@ from drystone.comparing import compared, recalled
 from drystone.walls import Wall
 from harness.engine import regression
 from harness.engine.executors import LocalExecutor
-from harness.engine.isolate import announce
+from harness.engine.isolate import preload_methods
 from harness.engine.plan import check_methods, find_cases, plan_case
 from harness.engine.run import Limits
 from harness.engine.store import open_store
@@ -103,7 +103,7 @@ def compare(
     asked = method_settings(settings)
     written = None if no_report else report
     planned = [run for case in chosen for run in plan_case(case, names, limits, settings=asked)]
-    announce(run.method for run in planned)
+    preload_methods(run.method for run in planned)
     study = [] if studied is None else [curve_of_shipped(studied, jobs, store, fresh=fresh, quiet=as_json)]
     with terminal.progress(len(planned), quiet=as_json) as told:
         made = make_comparison(

@@ -18,7 +18,7 @@ from typing import Any
 from harness.engine.executors import Job, Slots
 from harness.engine.isolate import LOOK_SECONDS, ended_run, start_context
 from harness.engine.provenance import code_version, versions
-from harness.engine.run import Measured
+from harness.engine.run import TimedResult
 from harness.engine.worker import Task
 from harness.model.errors import InputError
 
@@ -67,7 +67,7 @@ class ClusterExecutor:
         self._address = address
         self._connect(CONNECT_SECONDS).close()
 
-    def map(self, jobs: Iterable[Job], methods: Collection[str]) -> Generator[tuple[int, Measured]]:
+    def map(self, jobs: Iterable[Job], methods: Collection[str]) -> Generator[tuple[int, TimedResult]]:
         """See `harness.engine.executors.Executor`."""
         ours = identity(methods)
         coming, left = iter(jobs), dict[int, Job]()
@@ -87,7 +87,7 @@ class ClusterExecutor:
 
     def _through(
         self, client: Any, coming: Iterator[Job], left: dict[int, Job], ours: Identity
-    ) -> Generator[tuple[int, Measured]]:
+    ) -> Generator[tuple[int, TimedResult]]:
         """Results through one client; `left` holds the jobs whose results have not been given."""
         under_way: dict[Any, int] = {}
 
@@ -161,7 +161,7 @@ REMEDY = "Install the same release, with the same versions, on every machine"
 _slots: dict[str, Slots] = {}
 
 
-def make_run(task: Task, case: str, theirs: Identity) -> Measured:
+def make_run(task: Task, case: str, theirs: Identity) -> TimedResult:
     """Make one run in a child process of this worker.
 
     Args:

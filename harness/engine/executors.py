@@ -12,8 +12,8 @@ from multiprocessing.context import BaseContext
 from typing import Protocol
 
 from harness.engine import preload
-from harness.engine.isolate import LOOK_SECONDS, Again, Child, own_context, start_context
-from harness.engine.run import Measured, measured_result
+from harness.engine.isolate import LOOK_SECONDS, Child, Retry, own_context, start_context
+from harness.engine.run import TimedResult, measured_result
 from harness.engine.worker import Task, solved
 from harness.model.answer_check import checked
 from harness.model.method import Method, allowing, check_takes, load_method, prepared
@@ -38,7 +38,7 @@ class Job:
 class Executor(Protocol):
     """A place where runs are made."""
 
-    def map(self, jobs: Iterable[Job], methods: Collection[str]) -> Generator[tuple[int, Measured]]:
+    def map(self, jobs: Iterable[Job], methods: Collection[str]) -> Generator[tuple[int, TimedResult]]:
         """Numbers and results of jobs, in the order in which they end.
 
         Args:
@@ -56,7 +56,7 @@ class LocalExecutor:
     def __init__(self, processes: int) -> None:
         self.processes = max(1, processes)
 
-    def map(self, jobs: Iterable[Job], methods: Collection[str]) -> Generator[tuple[int, Measured]]:
+    def map(self, jobs: Iterable[Job], methods: Collection[str]) -> Generator[tuple[int, TimedResult]]:
         """See `Executor`."""
         coming = iter(jobs)
         first = list(itertools.islice(coming, 2))
@@ -75,11 +75,11 @@ class LocalExecutor:
                 for child, job, found in ended:
                     del busy[child]
                     slots.give_back(child)
-                    if found is Again.FRESH:
+                    if found is Retry.FRESH:
                         busy[slots.begin(job.task, job.case, last=True)] = job
                 occupy()  # before the caller is given results, so that the children work while it does
                 for _, job, found in ended:
-                    if isinstance(found, Measured):
+                    if isinstance(found, TimedResult):
                         yield job.number, found
         finally:
             for child in busy:
@@ -97,12 +97,12 @@ class InProcess:
     def __init__(self, method: Method | None = None) -> None:
         self._method = method
 
-    def map(self, jobs: Iterable[Job], methods: Collection[str]) -> Generator[tuple[int, Measured]]:
+    def map(self, jobs: Iterable[Job], methods: Collection[str]) -> Generator[tuple[int, TimedResult]]:
         """See `Executor`."""
         for job in jobs:
             yield job.number, self._measured(job)
 
-    def _measured(self, job: Job) -> Measured:
+    def _measured(self, job: Job) -> TimedResult:
         task = job.task
         method = prepared(self._method or load_method(task.method))
         settings = validate(method.Settings, task.settings, "settings")

@@ -116,7 +116,7 @@ class Run:
 
 
 @dataclass(frozen=True)
-class Measured:
+class TimedResult:
     """A result with the tolerance its method asks the judge for."""
 
     result: Result
@@ -125,7 +125,7 @@ class Measured:
 
 def measured_result(
     record: Mapping[str, Any], task: Task, case: str, begun: str, limits: Mapping[str, float]
-) -> Measured:
+) -> TimedResult:
     """The result of a run, with where, when and under which limits it was made.
 
     Args:
@@ -153,4 +153,4 @@ def measured_result(
         "machine": machine(),
         "started": begun,
     }
-    return Measured(result.model_copy(update=update), float(record.get("tolerance") or 0.0))
+    return TimedResult(result.model_copy(update=update), float(record.get("tolerance") or 0.0))
