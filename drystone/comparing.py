@@ -96,6 +96,7 @@ def compare(
     title: str = "",
     command: str = "drystone.compare",
     studies: Sequence[dict[str, Any]] = (),
+    proof_seconds: float = 60.0,
 ) -> Comparison:
     """Run methods on walls, judge every answer, and hold them against references and theory.
 
@@ -113,6 +114,7 @@ def compare(
         told: called after each isolated run with the run, its result and whether it was stored.
         title, command: what the report says was compared, and how to repeat it.
         studies: for the report to draw, as `reports.studies` describes them.
+        proof_seconds: of CPU time, by wall, for checking certificates that methods hand on [s].
 
     Raises:
         InputError: an unknown method, two walls of one name, or a store that is damaged.
@@ -134,7 +136,7 @@ def compare(
         else:
             results = _here(chosen, planned)
         run = engine.comparison_run(title or ", ".join(names), command, cases, planned, results)
-        run = with_certificates(run)
+        run = with_certificates(run, proof_seconds)
         if studies:
             run.provenance["studies"] = list(studies)
         if opened is not None:

@@ -151,7 +151,7 @@ def case_section(
         loads_drawn=_loads_drawn(item.case),
         through=_through(item),
         facts=facts(item.case),
-        warnings=(*item.case.warnings, *filter(None, [item.split_on_dead_load])),
+        warnings=(*item.case.warnings, *item.refusals, *filter(None, [item.split_on_dead_load])),
         rows=rows,
         panels=panels,
         without_drawing=without,

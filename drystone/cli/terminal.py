@@ -9,6 +9,7 @@ import textwrap
 from collections import Counter
 from collections.abc import Iterator
 from contextlib import contextmanager
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -148,7 +149,8 @@ def print_comparison(compared: ComparisonRun, report: Path | None) -> None:
                 end_section=number == len(case.results) - 1,
             )
     console.print(table)
-    for sentence in _proofs(compared):
+    refusals = [f"{case.case.id}: {sentence}" for case in compared.cases for sentence in case.refusals]
+    for sentence in (*_proofs(compared), *refusals):
         console.print(escape(sentence), highlight=False)
     units: dict[str, list[str]] = {}
     for case in compared.cases:
@@ -188,7 +190,7 @@ def _proofs(compared: ComparisonRun) -> Iterator[str]:
         (case,) = compared.cases
         least = least_known(case)
         if least is not None:
-            yield f"{least.method}: {proof_of(case, least).sentence}"
+            yield f"{least.method}: {replace(proof_of(case, least), refused='').sentence}"
     elif any(_is_minimum(case, result) for case in compared.cases for result in case.results):
         yield f"{PROVED} {LABELS[Standing.MINIMUM]}: an exact certificate proves that no collapse state lies lower."
 

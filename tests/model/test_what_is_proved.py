@@ -53,7 +53,7 @@ def test_a_bound_in_floating_point_counts_only_above_the_exact_one():
     assert (proof.bound, proof.lower_bound) == (0.4375, 0.46875)
     assert proof.sentence == (
         "Least known: a lower collapse state is not excluded; none lies below 0.4375, by an exact certificate; "
-        "none lies below 0.46875, to rounding."
+        "la finds none below 0.46875, to rounding."
     )
     item = certified(answers(lower_bound=0.3), 0.4)
     assert proof_of(item, item.results[1]).lower_bound is None
