@@ -28,7 +28,7 @@ from harness.model.result import Result, Verdict
 from harness.model.writing import write_whole
 from methods.proof.same_wall import require_same_wall
 from methods.proof.verify.checker import SECONDS, verify
-from methods.proof.verify.document import MOST_BYTES, unpacked
+from methods.proof.verify.document import MOST_BYTES, MOST_VALUES, unpacked
 from methods.proof.verify.exact_wall import CertificateError, number
 from methods.proof.words import in_words
 
@@ -87,7 +87,7 @@ def read_certificate(path: Path) -> Any:
         raise InputError(str(error), "Give the whole file, as `drystone bound` wrote it", source=str(path)) from None
     except UnicodeDecodeError as error:
         raise InputError(f"it cannot be read ({error})", "Give a UTF-8 text file", source=str(path)) from None
-    return json_of(text, str(path))
+    return json_of(text, str(path), MOST_VALUES)
 
 
 def write_certificate(path: Path, document: dict[str, Any]) -> None:
