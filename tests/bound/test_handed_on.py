@@ -15,10 +15,15 @@ import drystone
 from drystone.certificates import certified_results, with_certificates
 from drystone.cli.terminal import comparison_json, print_comparison, print_result
 from drystone.walls import Wall
+from harness.model.answer_check import DEEPEST, checked
 from harness.model.comparison import CaseResults, ComparisonRun
+from harness.model.method import Answer, Finding, Status
 from harness.model.proof import Standing, proof_of
+from harness.model.reading import MOST_NESTED, nested_deeper
 from harness.model.result import Result
+from methods.la.bounded import BoundedLimitAnalysis
 from methods.la.certify.tree_certificate import certificate
+from methods.la.settings import BoundSettings
 from methods.proof.verify.document import digest
 from reports.build import write_report
 from tests.walls import case, stack
@@ -136,3 +141,22 @@ def test_a_bound_above_a_state_of_another_method_is_no_bound_of_any() -> None:
     lower = item.results[0].model_copy(update={"method": "lower", "multiplier": 0.3})
     both = replace(item, results=[*item.results, lower])
     assert {proof_of(both, result).standing for result in both.results} == {Standing.NONE, Standing.KNOWN}
+
+
+def nested(levels: int) -> Any:
+    return [] if levels == 1 else [nested(levels - 1)]
+
+
+def test_a_certificate_of_as_many_divisions_as_those_of_the_library_fits_into_an_answer_and_its_files() -> None:
+    """That of wall-21-friction-075 is nested 23 deep; a document with results adds six levels."""
+    answer = Answer(Status.OK, Finding.NONE, "", details={"certificate": {"cases": nested(22)}})
+    assert checked(answer, WALL.assembly).details == answer.details
+    deepest = {"cases": [{"results": [{"details": {"certificate": nested(DEEPEST)}}]}]}
+    assert not nested_deeper(deepest, MOST_NESTED)
+
+
+def test_a_bound_that_is_not_sought_because_joints_dilate_is_said() -> None:
+    wall = case(stack(2), {"default": 0.5, "dilatancy": 0.1}).assembly
+    answer = BoundedLimitAnalysis().solve(wall, BoundSettings(bound_seconds=5.0, effort="quick"))
+    assert answer.sentence.endswith("No bound below it is sought: some joints lift as they slide.")
+    assert "certificate" not in answer.details
