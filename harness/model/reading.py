@@ -60,7 +60,7 @@ PLAIN = {
     "int_type": "it should be a whole number",
     "string_type": "it should be text, in quotes",
     "bool_type": "it should be true or false",
-    "too_long": "it has too many entries",
+    "too_long": "it has {actual_length} entries, and may have {max_length} at most",
     "too_short": "it has {actual_length} entries, and should have at least {min_length}",
     "union_tag_not_found": 'it needs a "type"',
     "union_tag_invalid": 'its type is "{tag}", and should be one of {expected_tags}',
@@ -373,7 +373,10 @@ def parse_wall(data: Any, source: str) -> Wall:
         given = data.get(name)
         if isinstance(given, list) and len(given) > MOST_ENTRIES[name]:
             raise InputError(
-                f"it has {len(given):,} {name}, and at most {MOST_ENTRIES[name]:,} are read", "Model a part", name, source
+                f"it has {len(given):,} {name}, and at most {MOST_ENTRIES[name]:,} are read",
+                "Model a part",
+                name,
+                source,
             )
     return validate(Wall, data, source, faults_of_data)
 

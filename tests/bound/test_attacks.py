@@ -345,9 +345,9 @@ def _turned(normal: Any, angle: float) -> Any:
 
 
 NOT_DESCRIBED: dict[str, tuple[Callable[[Assembly], Assembly], str]] = {
-    "cohesion": (lambda a: replace(a, constant=a.constant + [0.0, 0.0, 0.1, 0.1]), "strength of their own"),
+    "cohesion": (lambda a: replace(a, constant=a.constant + np.array([0.0, 0.0, 0.1, 0.1])), "strength of their own"),
     "tensile strength of one joint": (
-        lambda a: replace(a, constant=np.vstack([a.constant[:1] + [1e-9, 0.0, 0.0, 0.0], a.constant[1:]])),
+        lambda a: replace(a, constant=a.constant + np.outer([1.0, 0.0], [1e-9, 0.0, 0.0, 0.0])),
         "strength of their own",
     ),
     "dilatancy": (lambda a: replace(a, dilatancy=np.array([0.0, 1e-12])), "lift as they slide"),
@@ -440,9 +440,7 @@ def beyond_floats() -> dict[str, Any]:
     return document | {"digest": digest(document)}
 
 
-def test_a_multiplier_beyond_all_floats_is_shown_in_digits(
-    tmp_path: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
+def test_a_multiplier_beyond_all_floats_is_shown_in_digits(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     file = tmp_path / "certificate.json"
     file.write_text(json.dumps(beyond_floats()))
     assert main([str(file)]) == 0

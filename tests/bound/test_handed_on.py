@@ -1,4 +1,4 @@
-"""Certificates that methods hand on: each is checked here, the highest counts, and what is refused is said everywhere."""
+"""Certificates that methods hand on: each is checked here, the highest counts, and every output says what is refused."""
 
 from __future__ import annotations
 

@@ -92,7 +92,9 @@ def test_what_a_method_says_in_floating_point_is_said_in_its_name():
     item = answers(lower_bound=0.25)
     least = item.results[1]
     other = item.results[0].model_copy(update={"method": "other", "details": {"lower_bound": 0.375}})
-    assert "other finds none below 0.375, to rounding" in proof_of(replace(item, results=[other, least]), least).sentence
+    assert (
+        "other finds none below 0.375, to rounding" in proof_of(replace(item, results=[other, least]), least).sentence
+    )
 
 
 @pytest.mark.parametrize("said", ["0.4", "x", [0.4], {"value": 0.4}, True, float("nan"), float("inf"), None])
