@@ -237,7 +237,7 @@ def _meeting(kept: list[int], starts: FloatArray, ends: FloatArray, k: int, tole
         return []
     index = np.array(kept)
     apart = np.minimum(np.hypot(*(ends[index] - starts[k]).T), np.hypot(*(starts[index] - ends[k]).T))
-    return index[apart <= tolerance * (1.0 + 1e-9)][::-1].tolist()
+    return [int(kept) for kept in index[apart <= tolerance * (1.0 + 1e-9)][::-1]]
 
 
 def _corner_pairs(edges: Edges, fixed: BoolArray, a: IntArray, b: IntArray, tolerance: float) -> IntArray:

@@ -159,4 +159,5 @@ def _certified_bound(item: CaseResults, value: float, least: float) -> float | N
 def _said(result: Result) -> float:
     """The lower bound that a method says it found in floating point; zero where it says none, or no number."""
     value = result.details.get("lower_bound")
-    return float(value) if type(value) in (int, float) and math.isfinite(value) else 0.0
+    number = isinstance(value, int | float) and not isinstance(value, bool)
+    return float(value) if number and value is not None and math.isfinite(value) else 0.0

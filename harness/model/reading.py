@@ -369,15 +369,11 @@ def parse_wall(data: Any, source: str) -> Wall:
     if data.get("format") != "wall/1":
         given = f"format is {data['format']!r}" if "format" in data else "it has no format"
         raise InputError(given, 'This release reads "format": "wall/1"', "format", source)
-    for name in ("blocks", "interfaces"):
-        given = data.get(name)
-        if isinstance(given, list) and len(given) > MOST_ENTRIES[name]:
-            raise InputError(
-                f"it has {len(given):,} {name}, and at most {MOST_ENTRIES[name]:,} are read",
-                "Model a part",
-                name,
-                source,
-            )
+    for entries, most in MOST_ENTRIES.items():
+        given = data.get(entries)
+        if isinstance(given, list) and len(given) > most:
+            problem = f"it has {len(given):,} {entries}, and at most {most:,} are read"
+            raise InputError(problem, "Model a part", entries, source)
     return validate(Wall, data, source, faults_of_data)
 
 

@@ -1,4 +1,4 @@
-"""Certificates that methods hand on: each is checked here, the highest counts, and every output says what is refused."""
+"""Certificates that methods hand on: each is checked here, the highest counts, and outputs say what is refused."""
 
 from __future__ import annotations
 
