@@ -370,9 +370,9 @@ def parse_wall(data: Any, source: str) -> Wall:
         given = f"format is {data['format']!r}" if "format" in data else "it has no format"
         raise InputError(given, 'This release reads "format": "wall/1"', "format", source)
     for entries, most in MOST_ENTRIES.items():
-        given = data.get(entries)
-        if isinstance(given, list) and len(given) > most:
-            problem = f"it has {len(given):,} {entries}, and at most {most:,} are read"
+        listed = data.get(entries)
+        if isinstance(listed, list) and len(listed) > most:
+            problem = f"it has {len(listed):,} {entries}, and at most {most:,} are read"
             raise InputError(problem, "Model a part", entries, source)
     return validate(Wall, data, source, faults_of_data)
 

@@ -88,6 +88,14 @@ class Block(Strict):
     fixed: bool = Field(False, description="cannot move: a support")
     groups: list[Name] = Field(default_factory=list, description="groups a load may name")
 
+    @model_validator(mode="after")
+    def _holes_that_can_be_cut(self) -> Block:
+        """Cuts from outline to holes are sought among all pairs of their vertices, once for every hole."""
+        inside = sum(map(len, self.holes))
+        if len(self.holes) * inside * (len(self.polygon) + inside) > 500_000:
+            raise ValueError(f"its {len(self.holes)} holes have {inside} vertices, too many to be cut: simplify them")
+        return self
+
 
 def coefficient_of(value: float | None, angle: float | None) -> float:
     """A coefficient of friction from whichever is given, itself or the angle phi [degrees]."""
