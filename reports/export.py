@@ -7,12 +7,12 @@ import io
 import json
 import re
 import tempfile
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from importlib.util import find_spec
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from harness.model import columns
+from harness.model.columns import RESULTS, ResultColumn, ResultRow, types, units, values
 from harness.model.comparison import CaseResults, ComparisonRun
 from harness.model.proof import Proof, proof_of
 from harness.model.result import Result
@@ -47,22 +47,25 @@ COMPARISON_COLUMNS = (
 )
 
 
-def export(run: ComparisonRun, folder: Path, *, drawn: bool = False) -> None:
+def export(
+    run: ComparisonRun, folder: Path, *, drawn: bool = False, columns: Sequence[ResultColumn] = RESULTS
+) -> None:
     """Write the data of a comparison. Files of an earlier export that are no longer made are removed.
 
     Args:
         run: the comparison.
         folder: `<stem>-data`; only files named in its own index.json are ever removed from it.
         drawn: whether each case gets a figure as PDF too; a figure takes longer than all the rest of its case.
+        columns: of the tables of results.
     """
     folder.mkdir(parents=True, exist_ok=True)
-    rows = [_result_row(result, proof_of(item, result)) for item in run.cases for result in item.results]
+    rows = [values(columns, ResultRow(result, proof_of(item, result))) for item in run.cases for result in item.results]
     contents: dict[str, bytes] = {
-        "results.csv": _csv(tuple(columns.TYPES), rows),
+        "results.csv": _csv(types(columns), rows),
         "comparisons.csv": _csv(COMPARISON_COLUMNS, _comparison_rows(run)),
     }
     if find_spec("pyarrow") is not None:
-        contents["results.parquet"] = _parquet(rows)
+        contents["results.parquet"] = _parquet(rows, types(columns))
     for item in run.cases:
         for result in item.results:
             name = f"{_safe(item.case.id)}/{_safe(result.method)}.json"
@@ -151,31 +154,6 @@ def _json(data: Any) -> bytes:
     return (json.dumps(data, indent=1, ensure_ascii=False, default=str) + "\n").encode()
 
 
-def _result_row(result: Result, proof: Proof) -> dict[str, Any]:
-    worst = result.judge.worst
-    row = result.model_dump(mode="json", include=set(columns.TYPES))
-    return row | {
-        "bracket_low": result.bracket[0] if result.bracket else None,
-        "bracket_high": result.bracket[1] if result.bracket else None,
-        "proof": str(proof.standing),
-        "proof_sentence": proof.sentence,
-        "proved_bound": proof.bound,
-        "judge_accepted": result.judge.accepted,
-        "judge_tolerance": result.judge.tolerance,
-        "judge_worst_residual": worst[1] if worst else None,
-        "judge_worst_residual_name": worst[0] if worst else None,
-        "judge_sentence": result.judge.sentence,
-        "settings": _compact(result.settings),
-        "limits": _compact(result.limits),
-        "versions": _compact(result.versions),
-        "machine": _compact(result.machine),
-    }
-
-
-def _compact(values: dict[str, Any]) -> str:
-    return json.dumps(values, sort_keys=True, ensure_ascii=False, default=str)
-
-
 def _comparison_rows(run: ComparisonRun) -> list[dict[str, Any]]:
     rows = []
     for item in run.cases:
@@ -195,10 +173,11 @@ def _comparison_rows(run: ComparisonRun) -> list[dict[str, Any]]:
     return rows
 
 
-def _csv(names: tuple[str, ...], rows: list[dict[str, Any]]) -> bytes:
+def _csv(names: Iterable[str], rows: list[dict[str, Any]]) -> bytes:
     """CSV with texts quoted and numbers not, so that a reader does not turn an id of digits into a number."""
     stream = io.StringIO()
     writer = csv.writer(stream, quoting=csv.QUOTE_NONNUMERIC, lineterminator="\n")
+    names = list(names)
     writer.writerow(names)
     for row in rows:
         writer.writerow([cell(_field(row.get(name))) for name in names])
@@ -217,7 +196,7 @@ ARROW = {"string": "large_string", "Float64": "float64", "Int64": "int64", "bool
 """Types of columns in Parquet, by those in pandas."""
 
 
-def _parquet(rows: list[dict[str, Any]]) -> bytes:
+def _parquet(rows: list[dict[str, Any]], columns: dict[str, str]) -> bytes:
     """The results as Parquet, with the types of their columns; what is missing is null.
 
     The file is as pandas writes it, and tells pandas its types, but pandas is not loaded, which takes longer than all
@@ -226,26 +205,25 @@ def _parquet(rows: list[dict[str, Any]]) -> bytes:
     import pyarrow as pa
     from pyarrow import parquet
 
-    arrays = [pa.array([row[name] for row in rows], getattr(pa, ARROW[t])()) for name, t in columns.TYPES.items()]
+    arrays = [pa.array([row[name] for row in rows], getattr(pa, ARROW[t])()) for name, t in columns.items()]
     told = [
         {"name": name, "field_name": name, "pandas_type": "object", "numpy_type": dtype, "metadata": None}
-        for name, dtype in columns.TYPES.items()
+        for name, dtype in columns.items()
     ]
     about = {"index_columns": [], "column_indexes": [], "columns": told, "pandas_version": "3.0"}
-    table = pa.table(arrays, names=list(columns.TYPES), metadata={"pandas": json.dumps(about)})
+    table = pa.table(arrays, names=list(columns), metadata={"pandas": json.dumps(about)})
     sink = io.BytesIO()
     parquet.write_table(table, sink)
     return sink.getvalue()
 
 
-def result_frame(results: Iterable[tuple[Result, Proof]]) -> pd.DataFrame:
+def result_frame(
+    results: Iterable[tuple[Result, Proof]], columns: Sequence[ResultColumn] = RESULTS
+) -> pd.DataFrame:
     """Results, each with what is proved of it, with the columns of results.csv; units in `attrs["units"]`."""
-    table = _frame([_result_row(result, proof) for result, proof in results])
-    table.attrs["units"] = dict(columns.UNITS)
-    return table
-
-
-def _frame(rows: list[dict[str, Any]]) -> pd.DataFrame:
     import pandas as pd
 
-    return pd.DataFrame(rows, columns=list(columns.TYPES)).astype(columns.TYPES)
+    rows = [values(columns, ResultRow(result, proof)) for result, proof in results]
+    table = pd.DataFrame(rows, columns=list(types(columns))).astype(types(columns))
+    table.attrs["units"] = units(columns)
+    return table
