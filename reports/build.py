@@ -126,7 +126,10 @@ def _matrix(
 ) -> list[tuple[tables.RunRow, list[tables.RunRow | None]]]:
     """Rows of the overview: one a case, with the run of every method or None."""
     return [
-        (case_rows[0], [next((row for row in case_rows if row.result.method == column.method), None) for column in columns])
+        (
+            case_rows[0],
+            [next((row for row in case_rows if row.result.method == column.method), None) for column in columns],
+        )
         for case_rows in rows
         if case_rows
     ]

@@ -47,9 +47,7 @@ COMPARISON_COLUMNS = (
 )
 
 
-def export(
-    run: ComparisonRun, folder: Path, *, drawn: bool = False, columns: Sequence[ResultColumn] = RESULTS
-) -> None:
+def export(run: ComparisonRun, folder: Path, *, drawn: bool = False, columns: Sequence[ResultColumn] = RESULTS) -> None:
     """Write the data of a comparison. Files of an earlier export that are no longer made are removed.
 
     Args:
@@ -217,9 +215,7 @@ def _parquet(rows: list[dict[str, Any]], columns: dict[str, str]) -> bytes:
     return sink.getvalue()
 
 
-def result_frame(
-    results: Iterable[tuple[Result, Proof]], columns: Sequence[ResultColumn] = RESULTS
-) -> pd.DataFrame:
+def result_frame(results: Iterable[tuple[Result, Proof]], columns: Sequence[ResultColumn] = RESULTS) -> pd.DataFrame:
     """Results, each with what is proved of it, with the columns of results.csv; units in `attrs["units"]`."""
     import pandas as pd
 

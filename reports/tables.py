@@ -180,7 +180,10 @@ CELLS: dict[str, Callable[[RunRow], Cell]] = {
 }
 """Cells of columns whose text in the report is not that of the value alone, by the name of the column."""
 
-QUANTITIES: dict[str, tuple[Callable[[float], str], str]] = {"s": (numbers.seconds, "s"), "B": (numbers.memory, "bytes")}
+QUANTITIES: dict[str, tuple[Callable[[float], str], str]] = {
+    "s": (numbers.seconds, "s"),
+    "B": (numbers.memory, "bytes"),
+}
 """How numbers of a unit are written, and the unit in full."""
 
 

@@ -32,6 +32,7 @@ from harness.model.result_texts import PROVED, VERDICT_TEXTS, answer_text
 JUDGED = {True: 0, False: 1, None: 3}
 """Exit codes for an answer that is accepted, rejected, or shows nothing that proves or refutes its claim."""
 
+
 def escape(text: str) -> str:
     """Text of any origin for a table or a line: control characters made visible, brackets no markup."""
     from rich.markup import escape as literal
@@ -67,9 +68,7 @@ def progress(total: int, *, quiet: bool = False) -> Iterator[Told]:
         yield advance
 
 
-def print_comparison(
-    compared: ComparisonRun, report: Path | None, columns: Sequence[ResultColumn] = PRINTED
-) -> None:
+def print_comparison(compared: ComparisonRun, report: Path | None, columns: Sequence[ResultColumn] = PRINTED) -> None:
     """The table of a comparison, what does not hold, and where the report is."""
     from rich.console import Console
     from rich.table import Table
@@ -186,7 +185,9 @@ def print_result(result: Result, case: Case, proof: Proof) -> None:
     rows += [("status", str(result.status)), ("judge", result.judge.sentence)]
     rows += [("", f"{name} {value:.2e}") for name, value in result.judge.residuals.items()]
     for comparison in result.comparisons:
-        rows.append(("reference", f"{VERDICT_TEXTS[comparison.verdict]}: {comparison.reference}: {comparison.sentence}"))
+        rows.append(
+            ("reference", f"{VERDICT_TEXTS[comparison.verdict]}: {comparison.reference}: {comparison.sentence}")
+        )
     if result.cpu_seconds is not None:
         memory = (result.peak_memory_bytes or 0) / 2**20
         rows.append(("cost", f"{result.cpu_seconds:.3f} s of CPU, {memory:.0f} MiB"))

@@ -1,10 +1,10 @@
-"""The columns of results, each with its value and text: for CSV, Parquet, pandas, studies, terminal, report and docs."""
+"""The columns of results, each with its value and text: for files, pandas, studies, terminal, report and docs."""
 
 from __future__ import annotations
 
 import json
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from operator import attrgetter
 from typing import Any, Generic, TypeVar
 
@@ -71,7 +71,7 @@ class ResultRow:
     """What a column of results is a function of: a result, and what is proved of it."""
 
     result: Result
-    proof: Proof = Proof()
+    proof: Proof = field(default_factory=Proof)
 
 
 ResultColumn = TableColumn[ResultRow]

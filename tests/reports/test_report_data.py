@@ -53,7 +53,7 @@ def test_parquet_is_read_by_pandas_as_the_table_of_the_results(folder: Path):
     results = [(result, proof_of(item, result)) for item in samples.typical().cases for result in item.results]
     read = pd.read_parquet(folder / "results.parquet")
     pd.testing.assert_frame_equal(read, result_frame(results), check_column_type=False)
-    assert dict(read.dtypes.astype(str)) == columns.TYPES
+    assert dict(read.dtypes.astype(str)) == columns.types(columns.RESULTS)
 
 
 def test_comparisons_name_type_and_source(folder: Path):
