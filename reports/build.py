@@ -13,7 +13,7 @@ from typing import Any
 
 from markupsafe import Markup
 
-from harness.model.columns import LISTED, REPEATED, ResultColumn
+from harness.model.columns import COMPARED, LISTED, REPEATED, ResultColumn
 from harness.model.comparison import CaseResults, ComparisonRun
 from harness.model.result_texts import settings_text
 from harness.model.writing import write_whole
@@ -80,6 +80,7 @@ def render(run: ComparisonRun, *, data_folder: str, listed: Sequence[ResultColum
         failures=tables.failures(row for case_rows in rows for row in case_rows),
         failed_runs=sum(row.failed or row.judged == "rejected" for case_rows in rows for row in case_rows),
         references=tables.reference_rows(run),
+        compared=COMPARED,
         purposes=words.PURPOSE,
         gates=[(number, item.case.id, gate) for number, item in enumerate(run.cases) for gate in item.gates],
         paper=paper.paper_comparison(run),

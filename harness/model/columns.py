@@ -1,69 +1,18 @@
-"""The columns of results, each with its value and text: for files, pandas, studies, terminal, report and docs."""
+"""The columns of results and of comparisons with references: for files, pandas, studies, terminal, report and docs."""
 
 from __future__ import annotations
 
 import json
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from dataclasses import dataclass, field
 from operator import attrgetter
-from typing import Any, Generic, TypeVar
+from typing import Any
 
+from harness.model.case import Reference
 from harness.model.proof import Proof
-from harness.model.result import Result, exceeds_accuracy
+from harness.model.result import Comparison, Result, exceeds_accuracy
 from harness.model.result_texts import VERDICT_TEXTS, multiplier_text, references_text, residual_text, settings_text
-
-Row = TypeVar("Row")
-
-
-@dataclass(frozen=True)
-class TableColumn(Generic[Row]):
-    """One column of a table.
-
-    Attributes:
-        name: in files.
-        dtype: in pandas: string, Float64, Int64 or boolean.
-        unit: "1" where it is dimensionless, empty where it is no quantity.
-        meaning: what it holds.
-        value: of a row, as a JSON value; None where it is missing.
-        title: how people read its name, where that is more than its words.
-        words: the text of a row for people; None: that of the value.
-    """
-
-    name: str
-    dtype: str
-    unit: str
-    meaning: str
-    value: Callable[[Row], Any]
-    title: str = ""
-    words: Callable[[Row], str] | None = None
-
-    @property
-    def label(self) -> str:
-        """The head of the column for people."""
-        return self.title or self.name.replace("_", " ")
-
-    @property
-    def head(self) -> str:
-        """The head with the unit, where there is one to tell."""
-        return self.label if self.unit in ("", "1") else f"{self.label} [{self.unit}]"
-
-    @property
-    def numeric(self) -> bool:
-        """Whether its values are numbers, which stand on the right."""
-        return self.dtype in ("Float64", "Int64")
-
-    def text(self, row: Row) -> str:
-        """What people read in plain text: seconds to hundredths, other numbers to six digits, "-" for no value."""
-        if self.words is not None:
-            return self.words(row)
-        value = self.value(row)
-        if value is None:
-            return "-"
-        if isinstance(value, bool):
-            return "yes" if value else "no"
-        if isinstance(value, float):
-            return f"{value:.2f}" if self.unit == "s" else f"{value:.6g}"
-        return str(value)
+from harness.model.table import TableColumn
 
 
 @dataclass(frozen=True)
@@ -237,24 +186,57 @@ def chosen(*names: str) -> tuple[ResultColumn, ...]:
     return tuple(by_name[name] for name in names)
 
 
-def types(columns: Sequence[TableColumn[Any]]) -> dict[str, str]:
-    """The pandas type of each column by its name."""
-    return {column.name: column.dtype for column in columns}
-
-
-def units(columns: Sequence[TableColumn[Any]]) -> dict[str, str]:
-    """The unit of each column that is a quantity, by its name."""
-    return {column.name: column.unit for column in columns if column.unit}
-
-
-def values(columns: Sequence[TableColumn[Row]], row: Row) -> dict[str, Any]:
-    """A row of a table of data: the value of each column by its name."""
-    return {column.name: column.value(row) for column in columns}
-
-
 PRINTED = chosen("case", "method", "multiplier", "reference", "verdict", "judge_worst_residual", "cpu_seconds")
 """Columns of a comparison in a terminal, and in the report."""
 LISTED = (*PRINTED[:3], *chosen("bracket"), *PRINTED[3:5], *chosen("finding"), *PRINTED[5:])
 """Columns of every run in the report: those of the terminal and two more."""
 REPEATED = chosen("settings", "limits", "started", "peak_memory_bytes", "iterations", "unknowns", "key")
 """Columns beside the command that repeats a run, in the report."""
+
+
+@dataclass(frozen=True)
+class ComparedRow:
+    """A result with one of its comparisons, and the reference; None where the case has it no more."""
+
+    result: Result
+    comparison: Comparison
+    reference: Reference | None
+
+
+ComparisonColumn = TableColumn[ComparedRow]
+
+
+def _of_reference(name: str, meaning: str, title: str = "") -> ComparisonColumn:
+    def value(row: ComparedRow) -> str | None:
+        return None if row.reference is None else str(getattr(row.reference, name))
+
+    return ComparisonColumn(name, "string", "", meaning, value, title)
+
+
+COMPARISONS: tuple[ComparisonColumn, ...] = (
+    ComparisonColumn("case", "string", "", "id of the wall", attrgetter("result.case")),
+    ComparisonColumn("method", "string", "", "name of the method", attrgetter("result.method")),
+    ComparisonColumn("reference", "string", "", "id of the reference in its case", attrgetter("comparison.reference")),
+    _of_reference("type", "exact, bound, published, measured or regression"),
+    ComparisonColumn("quantity", "string", "", "what is compared", attrgetter("comparison.quantity")),
+    _of_reference("relation", "how the value has to stand to the reference"),
+    ComparisonColumn("value", "object", "of the quantity", "of the result", attrgetter("comparison.value")),
+    ComparisonColumn(
+        "expected", "object", "of the quantity", "of the reference", attrgetter("comparison.expected"), "reference"
+    ),
+    ComparisonColumn("tolerance", "Float64", "1", "relative difference allowed", attrgetter("comparison.tolerance")),
+    ComparisonColumn(
+        "gate", "boolean", "", "whether `drystone check` fails where it is not met", attrgetter("comparison.gate")
+    ),
+    ComparisonColumn(
+        "verdict", "string", "", "how the value stands to the reference", lambda row: str(row.comparison.verdict)
+    ),
+    ComparisonColumn("sentence", "string", "", "the difference in a sentence", attrgetter("comparison.sentence")),
+    _of_reference("requirement", "what the reference asks for", "source and requirement"),
+    _of_reference("source", "of the reference"),
+)
+"""Columns of comparisons.csv, in their order."""
+
+_COMPARED = ("case", "method", "quantity", "value", "expected", "tolerance", "verdict", "requirement")
+COMPARED = tuple(column for column in COMPARISONS if column.name in _COMPARED)
+"""Columns of the tables of references in the report."""

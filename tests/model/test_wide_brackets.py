@@ -9,6 +9,7 @@ from harness.model.comparison import CaseResults
 from harness.model.method import Answer, Finding, Status
 from harness.model.result import WIDE, result_of
 from harness.model.result_texts import answer_text
+from harness.model.table import types, values
 from reports.facts import value_in_words
 from reports.tables import run_row
 from tests.reports import samples
@@ -45,8 +46,8 @@ def test_every_output_says_that_a_bracket_is_wide():
     assert "11 % wide" in answer_text(found)
     assert "11 % wide" in value_in_words(found)
     assert "11 % wide" in run_row(0, 0, CaseResults(samples.bond(), [found])).cell("multiplier").text
-    row = columns.values(columns.RESULTS, columns.ResultRow(found))
+    row = values(columns.RESULTS, columns.ResultRow(found))
     assert row["bracket_width"] == pytest.approx(0.11)
     assert row["bracket_wide"] is True
-    assert {"bracket_width", "bracket_wide"} <= set(columns.types(columns.RESULTS))
+    assert {"bracket_width", "bracket_wide"} <= set(types(columns.RESULTS))
     assert found.summary()["bracket_wide"] is True

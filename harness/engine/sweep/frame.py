@@ -10,7 +10,7 @@ from pathlib import Path
 import pandas as pd
 
 from harness.engine.sweep.running import STUDY, Row, StudyColumn
-from harness.model.columns import types
+from harness.model.table import types
 from harness.model.writing import cell, replacing
 
 UNITS = {

@@ -13,11 +13,12 @@ from harness.engine.judge import judge
 from harness.engine.store import Store
 from harness.engine.sweep.expand import SweepRun, Walls
 from harness.model.assembly import Assembly
-from harness.model.columns import ResultColumn, ResultRow, TableColumn, chosen, values
+from harness.model.columns import ResultColumn, ResultRow, chosen
 from harness.model.errors import InputError
 from harness.model.method import Finding, Status
 from harness.model.reading import validate
 from harness.model.result import Result
+from harness.model.table import TableColumn, values
 
 Row = dict[str, Any]
 """A run as a row of the study's table: the columns of `STUDY` and what varied."""
