@@ -6,8 +6,9 @@ collapses at lambda  forces in equilibrium with dead + lambda x live at the mult
                      a mechanism at rest on the supports, without interpenetration, of the stated flow rule,
                      complementary to the forces, on which the live load does positive work
 bracket              (flow "approximate") a live load; forces in equilibrium within yield at its lower end or above;
-                     the upper end is measured and is not judged; nor is it shown that the motion is the one at
-                     collapse, but it must be one that the joints allow (`harness.engine.measured_motion`)
+                     the upper end is measured and is not judged, but it lies no lower than what these forces bear;
+                     nor is it shown that the motion is the one at collapse, but it must be one that the joints allow
+                     and the loads drive (`harness.engine.measured_motion`); without a bracket, not judged
 at its limit         multiplier 0; forces in equilibrium within yield under the dead load, and a dilatant mechanism of a
                      multiplier that the numbers of the wall do not tell from zero (`harness.model.limit`): no forces
                      bear more, whatever the flow
@@ -19,7 +20,8 @@ falls                a dilatant mechanism, at rest on the supports, on which the
 unbounded            forces within yield that balance the live load alone, besides forces under the dead load: their sum
                      bears any multiplier
 
-No multiplier that is claimed lies below zero. What proves nothing either way is not judged (`Judgement.accepted` is
+No multiplier that is claimed lies below zero, and none is claimed beside a finding that has none or outside its
+bracket. A tolerance above `COARSEST` shows nothing. What proves nothing either way is not judged (`Judgement.accepted` is
 None), which never means accepted.
 
 The residuals are those of `harness.engine.residuals`.
@@ -43,7 +45,7 @@ from harness.engine.residuals import (
 )
 from harness.model.assembly import Assembly, FloatArray
 from harness.model.displaced import DisplacedState
-from harness.model.limit import accuracy, least_told
+from harness.model.limit import accuracy, gross_power, least_told
 from harness.model.method import Finding, Method, Status, check_takes
 from harness.model.result import Judgement, Result, relative_velocities, result_of
 
@@ -65,7 +67,12 @@ def judge(assembly: Assembly, result: Result, tolerance: float) -> Judgement:
     for name, value in numbers.items():
         if value is not None and not _countable(value):
             return _said(tolerance, False, f"Its {name}: not finite, or larger than {COUNTABLE:g}.")
+    if fault := _contradiction(assembly, result, tolerance):
+        return _said(tolerance, False, fault)
     said = _judge_finding(assembly, forces, mechanism, result, tolerance)
+    if said.accepted and tolerance > COARSEST:
+        said.accepted = None
+        said.sentence += f" A tolerance above {COARSEST:g} shows nothing."
     if result.flow == "approximate" and mechanism is not None and len(mechanism) == assembly.n_blocks:
         return _with_motion(said, *motion_faults(assembly, mechanism, result.multiplier or 0.0, result.details))
     return said
@@ -84,11 +91,30 @@ def _judge_finding(
             return _judge_unbounded(assembly, forces, result, tolerance)
         case Finding.AT_LIMIT:
             return _judge_limit(assembly, forces, mechanism, result, tolerance)
-    if result.multiplier is not None and result.multiplier < 0.0:
-        return _said(tolerance, False, "Its multiplier lies below zero: the live load brings no such collapse about.")
     if result.flow == "approximate":
         return _judge_bracket(assembly, forces, result, tolerance)
     return _judge_collapse(assembly, forces, mechanism, result, tolerance)
+
+
+def _contradiction(assembly: Assembly, result: Result, tolerance: float) -> str:
+    """What parts of a result say against each other or against the question, in words; empty where nothing does."""
+    multiplier, bracket = result.multiplier, result.bracket
+    if not result.finding.has_multiplier:
+        if result.finding is Finding.UNBOUNDED and not assembly.has_live_load:
+            return "It speaks of a live load that the wall does not have."
+        if multiplier is not None or bracket is not None:
+            return f'It gives a multiplier or a bracket beside the finding "{result.finding}", which has none.'
+        return ""
+    if not assembly.has_live_load:
+        return "It gives a multiplier of a live load that the wall does not have."
+    lowest = min(0.0 if multiplier is None else multiplier, 0.0 if bracket is None else bracket[0])
+    if lowest < 0.0:
+        return "Its multiplier or the lower end of its bracket lies below zero: no live load brings such a collapse about."
+    if bracket is not None and multiplier is not None:
+        slack = tolerance * max(abs(bracket[0]), abs(bracket[1]))
+        if not bracket[0] - slack <= multiplier <= bracket[1] + slack:
+            return f"Its multiplier {multiplier:.6g} lies outside its bracket [{bracket[0]:.6g}, {bracket[1]:.6g}]."
+    return ""
 
 
 def _with_motion(said: Judgement, residuals: dict[str, float], fault: str) -> Judgement:
@@ -127,6 +153,10 @@ WITHOUT_END = 1e-12
 """Largest residual of forces that balance the live load alone: what is violated by more ends, if far away."""
 COUNTABLE = 1e100
 """Largest number of an answer: sums of products of such numbers are finite, so that no residual is lost in them."""
+COARSEST = 1e-2
+"""Largest tolerance that shows something: a hundredth of the loads. Ten times the coarsest of the library's methods."""
+GAIN = 1e-12
+"""Share of the power that the dead load would have if nothing cancelled, up to which its power is rounding."""
 NO_FORCES = "It gives no contact forces, so it cannot be checked."
 
 
@@ -158,8 +188,8 @@ def _judge_bracket(assembly: Assembly, forces: FloatArray | None, result: Result
     at = result.multiplier if result.forces_multiplier is None else result.forces_multiplier
     if lower is None or at is None:
         return _said(tolerance, False, "It gives no multiplier.")
-    if not assembly.has_live_load:
-        return _said(tolerance, False, "It gives a multiplier of a live load that the wall does not have.")
+    if result.bracket is not None and at > result.bracket[1] + tolerance * abs(at):
+        return _said(tolerance, False, f"Its forces bear {at:.6g}, above the upper end of its bracket.")
     if forces is not None:
         residuals = force_residuals(assembly, forces, at)
         what = f"Equilibrium and yield of the contact forces at multiplier {at:.6g}"
@@ -173,7 +203,10 @@ def _judge_bracket(assembly: Assembly, forces: FloatArray | None, result: Result
         what = f"Equilibrium and yield of the contact forces where the blocks have moved to, at multiplier {at:.6g},"
     residuals["multiplier"] = apart(lower, at) if lower > at else 0.0
     said = _decide(residuals, tolerance, what)
-    if said.accepted:
+    if said.accepted and result.bracket is None:
+        said.accepted = None
+        said.sentence += " It gives no bracket: how far above them the wall collapses was not measured."
+    elif said.accepted:
         said.sentence += " They show the lower end; that the wall collapses above it is measured and not judged."
     return said
 
@@ -284,7 +317,8 @@ def _fall_of(part: Assembly, motion: FloatArray, tolerance: float) -> tuple[bool
     closing = float(closings.max(initial=0.0))
     gain = power(part.dead, motion) / part.force_scale
     work = IMMENSE * float(closings.sum())
-    return closing <= tolerance < gain and work < gain, gain, closing, work
+    beyond_rounding = gain * part.force_scale > GAIN * gross_power(part, motion)
+    return closing <= tolerance and beyond_rounding and work < gain, gain, closing, work
 
 
 def apart(multiplier: float, other: float) -> float:
