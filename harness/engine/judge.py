@@ -40,6 +40,7 @@ from harness.engine.residuals import (
     displaced_fault,
     displaced_residuals,
     force_residuals,
+    moved_far,
     moving_parts,
     power,
 )
@@ -74,7 +75,7 @@ def judge(assembly: Assembly, result: Result, tolerance: float) -> Judgement:
         said.accepted = None
         said.sentence += f" A tolerance above {COARSEST:g} shows nothing."
     if result.flow == "approximate" and mechanism is not None and len(mechanism) == assembly.n_blocks:
-        return _with_motion(said, *motion_faults(assembly, mechanism, result.multiplier or 0.0, result.details))
+        return _with_motion(said, *motion_faults(assembly, mechanism, _driving(result), result.details))
     return said
 
 
@@ -109,12 +110,19 @@ def _contradiction(assembly: Assembly, result: Result, tolerance: float) -> str:
         return "It gives a multiplier of a live load that the wall does not have."
     lowest = min(0.0 if multiplier is None else multiplier, 0.0 if bracket is None else bracket[0])
     if lowest < 0.0:
-        return "Its multiplier or the lower end of its bracket lies below zero: no live load brings such a collapse about."
+        return (
+            "Its multiplier or the lower end of its bracket lies below zero: no live load brings such a collapse about."
+        )
     if bracket is not None and multiplier is not None:
         slack = tolerance * max(abs(bracket[0]), abs(bracket[1]))
         if not bracket[0] - slack <= multiplier <= bracket[1] + slack:
             return f"Its multiplier {multiplier:.6g} lies outside its bracket [{bracket[0]:.6g}, {bracket[1]:.6g}]."
     return ""
+
+
+def _driving(result: Result) -> float:
+    """The multiplier under which the motion of a result was measured: the upper end of its bracket."""
+    return (result.multiplier or 0.0) if result.bracket is None else result.bracket[1]
 
 
 def _with_motion(said: Judgement, residuals: dict[str, float], fault: str) -> Judgement:
@@ -129,7 +137,7 @@ def _with_motion(said: Judgement, residuals: dict[str, float], fault: str) -> Ju
 def answered(method: Method, assembly: Assembly, **settings: Any) -> tuple[Result, Judgement]:
     """What a method answers in this process, and what the judge says of it."""
     check_takes(method, assembly)
-    answer = method.solve(assembly, method.Settings.model_validate(settings))
+    answer = method.solve(assembly.copied(), method.Settings.model_validate(settings))
     result = result_of(
         answer, assembly, case=assembly.name, method=method.name, family=method.family, traits=method.traits
     )
@@ -155,8 +163,13 @@ COUNTABLE = 1e100
 """Largest number of an answer: sums of products of such numbers are finite, so that no residual is lost in them."""
 COARSEST = 1e-2
 """Largest tolerance that shows something: a hundredth of the loads. Ten times the coarsest of the library's methods."""
+MOST_OPEN = 4.0
+"""Largest multiplier that a wall at its limit can have, in load units times the accuracy of its numbers.
+
+A block that turns about its corner loses three times its weight if nothing cancels; more is a motion beside the point."""
 GAIN = 1e-12
 """Share of the power that the dead load would have if nothing cancelled, up to which its power is rounding."""
+MOVED_FAR = "Its blocks rest so far from where they were drawn that this shows nothing of the wall as drawn."
 NO_FORCES = "It gives no contact forces, so it cannot be checked."
 
 
@@ -199,6 +212,8 @@ def _judge_bracket(assembly: Assembly, forces: FloatArray | None, result: Result
             return _said(tolerance, None, NO_FORCES)
         if fault := displaced_fault(assembly, moved):
             return _said(tolerance, False, f"The state of rest proves nothing: {fault}.")
+        if moved_far(assembly, moved):
+            return _said(tolerance, None, MOVED_FAR)
         residuals = displaced_residuals(assembly, moved, at)
         what = f"Equilibrium and yield of the contact forces where the blocks have moved to, at multiplier {at:.6g},"
     residuals["multiplier"] = apart(lower, at) if lower > at else 0.0
@@ -219,6 +234,8 @@ def _judge_standing(assembly: Assembly, forces: FloatArray | None, result: Resul
     elif (moved := DisplacedState.of(result.details)) is not None:
         if fault := displaced_fault(assembly, moved):
             return _said(tolerance, False, f"The state of rest proves nothing: {fault}.")
+        if moved_far(assembly, moved):
+            return _said(tolerance, None, MOVED_FAR)
         residuals = displaced_residuals(assembly, moved, 0.0)
         what += ", where the blocks have moved to,"
     elif assembly.n_free == 0:
@@ -255,7 +272,8 @@ def _judge_limit(
 
     No forces bear a multiplier above that of such a mechanism. Both may be those of statics, beside the forces and the
     motion of the method: `details["dead_forces"]` and `details["dilatant_mechanism"]`. What is tolerated is what the
-    numbers of the wall leave open, whatever the tolerance of the method.
+    numbers of the wall leave open, whatever the tolerance of the method; so the forces may be those of the multiplier of
+    the mechanism instead of zero, if it is as small as that.
     """
     if result.multiplier != 0.0:
         return _said(tolerance, False, "A wall at its limit has the multiplier 0.")
@@ -270,10 +288,23 @@ def _judge_limit(
     if [forces.shape, mechanism.shape] != sizes or not (np.isfinite(forces).all() and np.isfinite(mechanism).all()):
         return _said(tolerance, False, "Its forces or its mechanism are not finite triples of all joints and blocks.")
     within, told = accuracy(assembly), least_told(assembly, mechanism)
+    what = "The collapse state (associated flow) under the dead load"
     residuals = collapse_residuals(assembly, forces, 0.0, mechanism, "associated")
     if told > 0.0:
         residuals["virtual_work"] *= within * assembly.load_unit / told
-    return _decide(residuals, within, "The collapse state (associated flow) under the dead load")
+    said = _decide(residuals, within, what)
+    at = _multiplier_of(assembly, mechanism)
+    if said.accepted or not 0.0 < abs(at) <= min(told, MOST_OPEN * within * assembly.load_unit):
+        return said
+    return _decide(
+        collapse_residuals(assembly, forces, at, mechanism, "associated"), within, f"{what}, but for {at:.1g}"
+    )
+
+
+def _multiplier_of(assembly: Assembly, mechanism: FloatArray) -> float:
+    """The multiplier of a dilatant mechanism (n, 3) of dry joints, which dissipate nothing; zero without live work."""
+    live = power(assembly.live, mechanism)
+    return -power(assembly.dead, mechanism) / live if live > 0.0 else 0.0
 
 
 def _judge_fall(assembly: Assembly, mechanism: FloatArray | None, result: Result, tolerance: float) -> Judgement:
