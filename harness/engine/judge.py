@@ -21,8 +21,8 @@ unbounded            forces within yield that balance the live load alone, besid
                      bears any multiplier
 
 No multiplier that is claimed lies below zero, and none is claimed beside a finding that has none or outside its
-bracket. A tolerance above `COARSEST` shows nothing. What proves nothing either way is not judged (`Judgement.accepted` is
-None), which never means accepted.
+bracket. A tolerance above `COARSEST` shows nothing. What proves nothing either way is not judged
+(`Judgement.accepted` is None), which never means accepted.
 
 The residuals are those of `harness.engine.residuals`.
 """
@@ -166,7 +166,7 @@ COARSEST = 1e-2
 MOST_OPEN = 4.0
 """Largest multiplier that a wall at its limit can have, in load units times the accuracy of its numbers.
 
-A block that turns about its corner loses three times its weight if nothing cancels; more is a motion beside the point."""
+A block that turns about its corner leaves three times its weight open; more is a motion beside the point."""
 GAIN = 1e-12
 """Share of the power that the dead load would have if nothing cancelled, up to which its power is rounding."""
 MOVED_FAR = "Its blocks rest so far from where they were drawn that this shows nothing of the wall as drawn."
@@ -272,8 +272,8 @@ def _judge_limit(
 
     No forces bear a multiplier above that of such a mechanism. Both may be those of statics, beside the forces and the
     motion of the method: `details["dead_forces"]` and `details["dilatant_mechanism"]`. What is tolerated is what the
-    numbers of the wall leave open, whatever the tolerance of the method; so the forces may be those of the multiplier of
-    the mechanism instead of zero, if it is as small as that.
+    numbers of the wall leave open, whatever the tolerance of the method; so the forces may be those of the multiplier
+    of the mechanism instead of zero, if it is as small as that.
     """
     if result.multiplier != 0.0:
         return _said(tolerance, False, "A wall at its limit has the multiplier 0.")

@@ -42,7 +42,7 @@ TOLERANCE_ALONE = 0.1
 turn and slide seem to close by the product of both."""
 
 NOISE = 1e-4
-"""Speed of a component beside the fastest of the wall up to which its measured velocities are those of a body at rest."""
+"""Speed of a component, beside the fastest of the wall, up to which its measured motion is the noise of rest."""
 
 
 class NotOfThisWall(ValueError):

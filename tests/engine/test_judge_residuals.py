@@ -17,8 +17,8 @@ from harness.engine.residuals import (
     collapse_residuals,
     displaced_fault,
     displaced_residuals,
-    moved_far,
     force_residuals,
+    moved_far,
 )
 from harness.model.assembly import Assembly
 from harness.model.displaced import DisplacedState
