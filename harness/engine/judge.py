@@ -169,7 +169,7 @@ MOST_OPEN = 4.0
 A block that turns about its corner leaves three times its weight open; more is a motion beside the point."""
 GAIN = 1e-12
 """Share of the power that the dead load would have if nothing cancelled, up to which its power is rounding."""
-MOVED_FAR = "Its blocks rest so far from where they were drawn that this shows nothing of the wall as drawn."
+MOVED_FAR = " Its blocks rest so far from where they were drawn that this shows nothing of the wall as drawn."
 NO_FORCES = "It gives no contact forces, so it cannot be checked."
 
 
@@ -203,6 +203,7 @@ def _judge_bracket(assembly: Assembly, forces: FloatArray | None, result: Result
         return _said(tolerance, False, "It gives no multiplier.")
     if result.bracket is not None and at > result.bracket[1] + tolerance * abs(at):
         return _said(tolerance, False, f"Its forces bear {at:.6g}, above the upper end of its bracket.")
+    far = False
     if forces is not None:
         residuals = force_residuals(assembly, forces, at)
         what = f"Equilibrium and yield of the contact forces at multiplier {at:.6g}"
@@ -212,13 +213,13 @@ def _judge_bracket(assembly: Assembly, forces: FloatArray | None, result: Result
             return _said(tolerance, None, NO_FORCES)
         if fault := displaced_fault(assembly, moved):
             return _said(tolerance, False, f"The state of rest proves nothing: {fault}.")
-        if moved_far(assembly, moved):
-            return _said(tolerance, None, MOVED_FAR)
-        residuals = displaced_residuals(assembly, moved, at)
+        residuals, far = displaced_residuals(assembly, moved, at), moved_far(assembly, moved)
         what = f"Equilibrium and yield of the contact forces where the blocks have moved to, at multiplier {at:.6g},"
     residuals["multiplier"] = apart(lower, at) if lower > at else 0.0
     said = _decide(residuals, tolerance, what)
-    if said.accepted and result.bracket is None:
+    if said.accepted and far:
+        said.accepted, said.sentence = None, said.sentence + MOVED_FAR
+    elif said.accepted and result.bracket is None:
         said.accepted = None
         said.sentence += " It gives no bracket: how far above them the wall collapses was not measured."
     elif said.accepted:
@@ -228,22 +229,22 @@ def _judge_bracket(assembly: Assembly, forces: FloatArray | None, result: Result
 
 def _judge_standing(assembly: Assembly, forces: FloatArray | None, result: Result, tolerance: float) -> Judgement:
     """Stands under its dead load, where nothing more was asked."""
-    what = "Equilibrium and yield of the contact forces under the dead load"
+    what, far = "Equilibrium and yield of the contact forces under the dead load", False
     if forces is not None:
         residuals = force_residuals(assembly, forces, 0.0)
     elif (moved := DisplacedState.of(result.details)) is not None:
         if fault := displaced_fault(assembly, moved):
             return _said(tolerance, False, f"The state of rest proves nothing: {fault}.")
-        if moved_far(assembly, moved):
-            return _said(tolerance, None, MOVED_FAR)
-        residuals = displaced_residuals(assembly, moved, 0.0)
+        residuals, far = displaced_residuals(assembly, moved, 0.0), moved_far(assembly, moved)
         what += ", where the blocks have moved to,"
     elif assembly.n_free == 0:
         return _said(tolerance, True, "Every block is fixed: nothing can move.")
     else:
         return _said(tolerance, False, NO_FORCES)
     said = _decide(residuals, tolerance, what)
-    if said.accepted and assembly.has_live_load:
+    if said.accepted and far:
+        said.accepted, said.sentence = None, said.sentence + MOVED_FAR
+    elif said.accepted and assembly.has_live_load:
         said.accepted = None
         said.sentence = "The wall stands under its dead load; no multiplier of the live load was shown."
     return said

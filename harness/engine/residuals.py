@@ -46,9 +46,9 @@ MOVED = 5e-3
 
 Loads shift against the joints by as much, which changes a multiplier by a share of about this size: the accuracy that
 methods state. The library's soft joints give by a thousandth at most."""
-TURNED = 2.0 * MOVED
-"""Difference of a unit normal from that of its joint: by the rotations of two blocks."""
-OVERLAP = 0.01
+TURNED = 0.5
+"""Difference of a unit normal from that of its joint from on which it is that of another face."""
+OVERLAP = 0.1
 """Depth, in sizes of a block, up to which soft blocks overlap at a contact point."""
 GAP = 1e-3
 """Distance, in sizes of a block, within which a contact point outside a block is at its outline."""
@@ -155,8 +155,14 @@ def displaced_fault(assembly: Assembly, state: DisplacedState) -> str:
 
 
 def moved_far(assembly: Assembly, state: DisplacedState) -> bool:
-    """Whether a block has moved or turned by more than `MOVED`, so that the state shows another wall than the drawn."""
-    return bool(max(abs(state.places[:, :2]).max() / assembly.length_scale, abs(state.places[:, 2]).max()) > MOVED)
+    """Whether a state shows another wall than the one drawn: `MOVED` is exceeded.
+
+    By the displacement or the rotation of a block; or twice, by the rotations of two, by the normal of a joint.
+    """
+    sense = np.where(state.onto == assembly.block_b[state.interface], 1.0, -1.0)[:, None]
+    turned = abs(state.normal - sense * assembly.normal[state.interface]).max(initial=0.0)
+    shifted = abs(state.places[:, :2]).max(initial=0.0) / assembly.length_scale
+    return bool(max(shifted, abs(state.places[:, 2]).max(initial=0.0), 0.5 * turned) > MOVED)
 
 
 def _touches(assembly: Assembly, state: DisplacedState, block: int, point: FloatArray) -> bool:
