@@ -121,7 +121,7 @@ def _at_limit(assembly: Assembly, answer: Answer) -> Answer:
 def _stands_though_joints_give(answer: Answer, bears: float) -> Answer:
     """The answer where a fall was measured of a wall that stands by theory, as every slip lifts by the whole friction.
 
-    By normality of the flow (Drucker 1954) rigid blocks stand wherever some equilibrium exists: frictionless joints too.
+    By normality of the flow (Drucker 1954) rigid blocks stand wherever some equilibrium exists; so do smooth ones.
     """
     own = answer.sentence.rstrip(".")
     return replace(
