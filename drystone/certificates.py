@@ -19,6 +19,7 @@ from harness.model.assembly import Assembly
 from harness.model.case import Case, read_case, shipped_cases
 from harness.model.comparison import CaseResults, Certified, ComparisonRun, Gate
 from harness.model.content import content_of
+from harness.model.details import AnswerDetails
 from harness.model.errors import InputError
 from harness.model.library import library
 from harness.model.proof import is_collapse_state
@@ -128,9 +129,9 @@ def _of_results(item: CaseResults) -> list[Certified]:
     """What certificates that methods handed on prove, each checked here: a method's word for its bound is none."""
     found = []
     for result in item.results:
-        if isinstance(result.details.get("certificate"), dict):
+        certificate = AnswerDetails(result.details).certificate
+        if certificate is not None:
             try:
-                certificate = result.details["certificate"]
                 found.append(_checked(certificate, item.case.assembly, f"certificate of {result.method}"))
             except (CertificateError, InputError):
                 continue  # it proves nothing of this wall

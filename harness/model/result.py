@@ -10,6 +10,7 @@ import numpy as np
 from pydantic import BaseModel, ConfigDict, Field
 
 from harness.model.assembly import Assembly, FloatArray
+from harness.model.details import AnswerDetails
 from harness.model.method import Answer, Finding, Status, Traits
 
 
@@ -226,7 +227,6 @@ def result_of(
         None if answer.mechanism is None else normalised_mechanism(assembly, np.asarray(answer.mechanism, float))
     )
     width = measured_width(answer)
-    unknowns = answer.details.get("unknowns")
     return Result(
         case=case,
         method=method,
@@ -242,7 +242,7 @@ def result_of(
         blocks=assembly.n_free,
         interfaces=assembly.n_interfaces,
         iterations=int(answer.iterations),
-        unknowns=int(unknowns) if unknowns is not None else None,
+        unknowns=AnswerDetails(answer.details).unknowns,
         flow=answer.flow,
         traits=traits or Traits(),
         forces_multiplier=answer.multiplier if answer.forces_multiplier is None else answer.forces_multiplier,

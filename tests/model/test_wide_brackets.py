@@ -4,13 +4,12 @@ from __future__ import annotations
 
 import pytest
 
-from drystone.cli.terminal import _value
 from harness.model import columns
 from harness.model.comparison import CaseResults
 from harness.model.method import Answer, Finding, Status
-from harness.model.proof import Proof
 from harness.model.result import exceeds_accuracy, result_of
-from reports.export import _result_row
+from harness.model.result_texts import answer_text
+from harness.model.table import types, values
 from reports.facts import value_in_words
 from reports.tables import run_row
 from tests.reports import samples
@@ -44,11 +43,11 @@ def test_a_measured_bracket_is_wide_beyond_the_stated_accuracy_in_results_as_in_
 def test_every_output_says_that_a_bracket_is_wide():
     found = result(0.445, 0.5)
     found.traits = found.traits.model_copy(update={"brackets": True})
-    assert "11 % wide" in _value(found)
+    assert "11 % wide" in answer_text(found)
     assert "11 % wide" in value_in_words(found)
-    assert "11 % wide" in run_row(0, 0, CaseResults(samples.bond(), [found])).multiplier.text
-    row = _result_row(found, Proof())
+    assert "11 % wide" in run_row(0, 0, CaseResults(samples.bond(), [found])).cell("multiplier").text
+    row = values(columns.RESULTS, columns.ResultRow(found))
     assert row["bracket_width"] == pytest.approx(0.11)
     assert row["bracket_wide"] is True
-    assert {"bracket_width", "bracket_wide"} <= set(columns.TYPES)
+    assert {"bracket_width", "bracket_wide"} <= set(types(columns.RESULTS))
     assert found.summary()["bracket_wide"] is True

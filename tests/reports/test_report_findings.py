@@ -211,7 +211,9 @@ def test_own_walls_come_first_then_the_papers_then_those_that_part():
 
 def test_measured_value_is_its_bracket_in_every_table():
     rows = tables.run_rows(ComparisonRun("mine", "", "", [of_one_wall()]))[0]
-    assert [row.multiplier.text for row in rows if row.method == "de"] == ["[0.45000, 0.61000] (26 % wide)"]
+    assert [row.cell("multiplier").text for row in rows if row.result.method == "de"] == [
+        "[0.45000, 0.61000] (26 % wide)"
+    ]
 
 
 def test_methods_run_on_few_cases_take_no_column():
