@@ -184,7 +184,7 @@ def analyse_by(
     check_takes(prepared(loaded), wall.assembly)
     started, clock, work = datetime.now(UTC), time.perf_counter(), time.process_time()
     with allowing(processes):
-        answer = checked(loaded.solve(wall.assembly, chosen), wall.assembly)
+        answer = checked(loaded.solve(wall.assembly.copied(), chosen), wall.assembly)
     cost = {"cpu_seconds": time.process_time() - work, "wall_seconds": time.perf_counter() - clock}
     record = result_of(
         answer, wall.assembly, case=wall.name, method=loaded.name, family=loaded.family, traits=loaded.traits

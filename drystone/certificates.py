@@ -20,7 +20,6 @@ from harness.model.assembly import Assembly
 from harness.model.case import Case, read_case, shipped_cases
 from harness.model.comparison import CaseResults, Certified, ComparisonRun, Gate
 from harness.model.content import content_of
-from harness.model.details import AnswerDetails
 from harness.model.errors import InputError
 from harness.model.library import library
 from harness.model.proof import is_collapse_state
