@@ -97,6 +97,7 @@ def compare(
     title: str = "",
     command: str = "drystone.compare",
     studies: Sequence[dict[str, Any]] = (),
+    proof_seconds: float = 60.0,
 ) -> Comparison:
     """Run methods on walls, judge every answer, and hold them against references and theory.
 
@@ -114,6 +115,7 @@ def compare(
         told: called after each run with the run, its result and whether it was stored.
         title, command: what the report says was compared, and how to repeat it.
         studies: for the report to draw, as `reports.studies` describes them.
+        proof_seconds: of CPU time, by wall, for checking certificates that methods hand on [s].
 
     Raises:
         InputError: an unknown method, two walls of one name, or a store that is damaged.
@@ -131,7 +133,16 @@ def compare(
     cases = [wall.case for wall in chosen]
     with pipeline.opened_at(store) as opened:
         run = compared(
-            title or ", ".join(names), command, cases, runs, opened, executor, fresh=fresh, told=told, studies=studies
+            title or ", ".join(names),
+            command,
+            cases,
+            runs,
+            opened,
+            executor,
+            fresh=fresh,
+            told=told,
+            studies=studies,
+            proof_seconds=proof_seconds,
         )
         if opened is not None:
             engine.remember(opened, run, runs)
@@ -152,6 +163,7 @@ def compared(
     told: pipeline.Told | None = None,
     studies: Sequence[dict[str, Any]] = (),
     certified: bool = True,
+    proof_seconds: float = 60.0,
 ) -> ComparisonRun:
     """The comparison that runs make, found or made, and judged, with what the certificates of their walls prove.
 
@@ -164,12 +176,13 @@ def compared(
         fresh, told: as of `compare`.
         studies: for the report to draw.
         certified: whether certificates are looked at; a page that shows nothing of them can leave it.
+        proof_seconds: as of `compare`.
     """
     results = pipeline.execute(runs, store, 1, fresh=fresh, told=told, executor=executor)
     run = engine.comparison_run(title, command, cases, runs, results)
     if studies:
         run.provenance["studies"] = list(studies)
-    return with_certificates(run) if certified else run
+    return with_certificates(run, proof_seconds) if certified else run
 
 
 def recalled(store: str | Path) -> ComparisonRun:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import itertools
 import time
 from collections.abc import Collection, Generator, Iterable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from datetime import UTC, datetime
 from multiprocessing.connection import wait
 from multiprocessing.context import BaseContext
@@ -107,9 +107,10 @@ class InProcess:
         method = prepared(self._method or load_method(task.method))
         settings = validate(method.Settings, task.settings, "settings")
         check_takes(method, task.assembly)
+        own = replace(task, assembly=task.assembly.copied())  # what a method does to its wall is its own
         begun, clock, work = datetime.now(UTC), time.perf_counter(), time.process_time()
         with allowing(task.processes):
-            answer = checked(solved(method, task, settings), task.assembly)
+            answer = checked(solved(method, own, settings), task.assembly)
         record = {
             "answer": answer,
             "cpu_seconds": time.process_time() - work,

@@ -15,8 +15,9 @@ STEP = 1.37e-6
 
 
 def content_of(assembly: Assembly) -> str:
-    """A hash of free blocks, interfaces, friction and loads; names, place and the unit of force do not enter.
+    """A hash of free blocks, interfaces, joint law and loads; names, place and the units do not enter.
 
+    The order of blocks and interfaces does: walls that differ in it have different keys.
     Walls of one key are equal to a few millionths, and nearly all equal walls have one: it is a way to find a wall,
     and no proof that two are the same.
     """
@@ -25,6 +26,7 @@ def content_of(assembly: Assembly) -> str:
     number[free] = np.arange(len(free))
     points = np.vstack([assembly.centroid[free], assembly.end1, assembly.end2])
     loads = np.hstack([assembly.dead[free, :2], assembly.live[free, :2]])
+    load = float(abs(loads).max(initial=0.0)) or 1.0
     digest = hashlib.sha256()
     for joined in (number[assembly.block_a], number[assembly.block_b]):
         digest.update(np.asarray(joined, dtype="<i8").tobytes() + b";")
@@ -34,7 +36,9 @@ def content_of(assembly: Assembly) -> str:
         (assembly.normal, 1.0),
         (assembly.friction, 1.0),
         (assembly.dilatancy, 1.0),
-        (loads, float(abs(loads).max(initial=0.0)) or 1.0),
+        (assembly.constant, load),
+        (np.sign(assembly.support_motion), 1.0),
+        (loads, load),
     ):
         digest.update(np.rint(values / (STEP * size)).astype("<i8").tobytes() + b";")
     return digest.hexdigest()
