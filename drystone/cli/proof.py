@@ -8,7 +8,7 @@ from typing import Literal
 
 import click
 
-from drystone.certificates import proved, read_certificate, write_certificate
+from drystone.certificates import nearest, proved, read_certificate, write_certificate
 from drystone.cli.options import OUTPUT, cases_option, catching, json_flag, print_json, say, warn
 from harness.engine.plan import find_cases
 from harness.model.errors import InputError
@@ -87,7 +87,7 @@ def verify_bound(certificate: Path, wall: str | None, as_json: bool, folders: tu
             say(f"Refused: {error}.")
         sys.exit(1)
     if as_json:
-        at = {} if upper is None else {"multiplier": str(upper), "value": float(upper)}
+        at = {} if upper is None else {"multiplier": str(upper), "value": nearest(upper)}
         print_json({"holds": True, "bound": str(lower)} | at)
     else:
         say(f"{proved(document).capitalize()}.")

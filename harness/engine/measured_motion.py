@@ -15,6 +15,7 @@ motion_supports         fastest vertex of a fixed block
 motion_interpenetration closing velocity at a contact point
 motion_opening          opening of a contact point that carries force: min(force, velocity)
 motion_sliding          slip of a joint whose friction is not at its limit against it: min(slack, velocity)
+motion_against_loads    power that the loads lose, to what they would have if nothing cancelled: only they drive a wall
 
 Source: the conditions of Signorini and Coulomb in velocities; J. J. Moreau, Unilateral contact and dry friction in
 finite freedom dynamics, 1988.
@@ -22,13 +23,15 @@ finite freedom dynamics, 1988.
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
 
 from harness.engine.measures import Measures, between
-from harness.engine.residuals import moving_parts
+from harness.engine.residuals import moving_parts, power
 from harness.model.assembly import Assembly, FloatArray
+from harness.model.limit import gross_power
 from harness.model.method import MOVING_FORCES
 from harness.model.result import relative_velocities
 
@@ -38,6 +41,9 @@ chatter in between. A block that rocks with its rotation wrong by a quarter exce
 TOLERANCE_ALONE = 0.1
 """Of a field without: it may stand for a displacement of a quarter of a block, in which contacts of blocks that
 turn and slide seem to close by the product of both."""
+
+NOISE = 1e-4
+"""Speed of a component, beside the fastest of the wall, up to which its measured motion is the noise of rest."""
 
 
 class NotOfThisWall(ValueError):
@@ -60,6 +66,8 @@ def motion_faults(
         forces = None if given is None else _forces(assembly, given)
     except NotOfThisWall as error:
         return {}, str(error)
+    if not mechanism.any():
+        return {}, "Its measured motion moves no block."
     residuals = motion_residuals(assembly, mechanism, multiplier, forces)
     tolerance = TOLERANCE_ALONE if forces is None else TOLERANCE
     failed = [f"{name} {value:.3g}" for name, value in residuals.items() if not value <= tolerance]
@@ -93,8 +101,11 @@ def motion_residuals(
         assembly: the wall; mechanism, multiplier: as for `motion_faults`.
         forces: (m, 3) contact forces (n1, n2, s) measured with the motion [force], or None.
     """
-    supports, parts = moving_parts(assembly, mechanism)
-    residuals = {"motion_supports": supports, "motion_interpenetration": 0.0}
+    supports, parts = moving_parts(assembly, mechanism, NOISE)
+    loaded = replace(assembly, dead=assembly.dead + multiplier * assembly.live)
+    gross = gross_power(loaded, mechanism)
+    lost = max(0.0, -power(loaded.dead, mechanism)) / gross if gross > 0.0 else 0.0
+    residuals = {"motion_supports": supports, "motion_interpenetration": 0.0, "motion_against_loads": lost}
     scale = None if forces is None else between(assembly, Measures.of(assembly, forces, multiplier).acting)
     for part, interfaces, motion in parts:
         opening, slip = relative_velocities(part, motion)

@@ -1,19 +1,17 @@
-"""A wall and its answer for other programs: VTU, DXF, SVG, GeoJSON, CSV, COMPAS JSON, NumPy and MATLAB matrices."""
+"""A wall and its answer for other programs: DXF, SVG, GeoJSON, CSV, COMPAS JSON, NumPy and MATLAB matrices."""
 
 from __future__ import annotations
 
 import csv
 import io
 import json
-from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
-from harness.formats.paraview import moved, write_pvd, write_vtu
+from harness.formats.paraview import moved
 from harness.model.build import Built
-from harness.model.errors import InputError, did_you_mean
 from harness.model.result import Result, vertex_velocities
 from harness.model.rings import rings_of
 from harness.model.writing import cell, replacing, write_whole
@@ -223,30 +221,3 @@ def write_mat(built: Built, result: Result | None, path: Path) -> None:
     arrays["block_ids"] = arrays["block_ids"].astype(object)
     with replacing(path) as draft:
         savemat(draft, arrays, oned_as="column", do_compression=True)
-
-
-WRITERS: dict[str, Callable[[Built, Result | None, Path], None]] = {
-    ".vtu": write_vtu,
-    ".pvd": write_pvd,
-    ".dxf": write_dxf,
-    ".svg": write_svg,
-    ".geojson": write_geojson,
-    ".csv": write_csv,
-    ".json": write_compas,
-    ".npz": write_npz,
-    ".mat": write_mat,
-}
-"""Writers by the ending of the file's name."""
-
-
-def writer_of(path: Path) -> Callable[[Built, Result | None, Path], None]:
-    """The writer that the ending of a name asks for.
-
-    Raises:
-        InputError: none, naming those there are.
-    """
-    suffix = path.suffix.lower()
-    if suffix not in WRITERS:
-        hint = f"{did_you_mean(suffix, WRITERS)} There are: {', '.join(WRITERS)}".strip()
-        raise InputError(f'a file that ends in "{suffix}" is not written', hint, source=str(path))
-    return WRITERS[suffix]

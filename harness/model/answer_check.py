@@ -18,7 +18,7 @@ from harness.model.assembly import Assembly
 from harness.model.errors import InputError
 from harness.model.method import Answer, Finding, Status
 
-DEEPEST = 20
+DEEPEST = 33
 """Depth to which details may be nested. A document that holds a result may have `reading.MOST_NESTED` levels in all."""
 FLOWS = ("non-associated", "associated", "approximate")
 """Flow rules that an answer may name."""

@@ -109,6 +109,12 @@ class Assembly:
         arrays = {name: getattr(self, name)[index] for name in OF_JOINTS}
         return replace(self, joint=tuple(self.joint[p] for p in index), **arrays)
 
+    def copied(self) -> Assembly:
+        """The same wall in arrays of its own: what a method does to them changes no other."""
+        names = (*OF_BLOCKS, *OF_JOINTS)
+        arrays = {name: getattr(self, name).copy() for name in names if name != "polygons"}
+        return replace(self, polygons=tuple(polygon.copy() for polygon in self.polygons), **arrays)
+
     @property
     def dilates(self) -> bool:
         """Whether any joint has a dilatancy."""

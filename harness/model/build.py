@@ -13,13 +13,13 @@ from harness.model import geometry
 from harness.model.assembly import Assembly, BoolArray, FloatArray, polygon_area
 from harness.model.errors import InputError, Spot, of_each, raise_faults
 from harness.model.fields import MOST_BLOCKS
+from harness.model.input_checks import input_warnings, thickness_of
 from harness.model.interfaces import check_held, faces_of, find_joints, normals_of
 from harness.model.names import faults_of_wall
 from harness.model.pattern import blocks_of, count_of
 from harness.model.pattern_fields import PatternBase
 from harness.model.plausibility import contact_warnings, force_warnings, interface_warnings, near_misses
 from harness.model.rings import hole_faults, ringed
-from harness.model.slips import slip_warnings, thickness_of
 from harness.model.wall import (
     Block,
     BodyForce,
@@ -124,7 +124,7 @@ def build(wall: Wall, name: str = "wall") -> Built:
         *contact_warnings(assembly, joints_found.corners, size),
         *near_misses(names, joints_found.missed, joints_found.missed_gap, joints_found.gap),
         *force_warnings(assembly, wall.loads, size),
-        *slip_warnings(wall, blocks, assembly),
+        *input_warnings(wall, blocks, assembly),
     ]
     if trusted < len(interfaces):
         warnings += interface_warnings(assembly, size, trusted)

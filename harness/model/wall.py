@@ -15,6 +15,8 @@ from harness.model.fields import Angle, Coefficient, Name, NonNegative, Number, 
 from harness.model.pattern_fields import Pattern
 from harness.model.units import DIMENSIONLESS, KILONEWTONS, METRES, ForceUnit, LengthUnit, unit_weight_in_kn_m3
 
+MOST_VERTICES = 5_000
+"""Of one outline: joints of two faces are found in time that grows with the square of their vertices."""
 TAGS = ONE, MANY, OBJECT, OTHER = "(one)", "(many)", "(object)", "(other)"
 """Alternatives of a field, told apart by what is given, so that only the faults of the one meant are found.
 
@@ -72,8 +74,11 @@ class Block(Strict):
     """A rigid block, with holes or without. Its weight is given, or unit_weight x area x thickness."""
 
     id: Name
-    polygon: Annotated[list[Point], Field(min_length=3, description="vertices in order round the block, either way")]
-    holes: list[Annotated[list[Point], Field(min_length=3)]] = Field(
+    polygon: Annotated[
+        list[Point],
+        Field(min_length=3, max_length=MOST_VERTICES, description="vertices in order round the block, either way"),
+    ]
+    holes: list[Annotated[list[Point], Field(min_length=3, max_length=MOST_VERTICES)]] = Field(
         default_factory=list, description="polygons within it that are not stone, as of a frame"
     )
     weight: NonNegative | None = Field(None, description="weight [force]; else unit_weight x area x thickness")
@@ -82,6 +87,14 @@ class Block(Strict):
     material: str = "stone"
     fixed: bool = Field(False, description="cannot move: a support")
     groups: list[Name] = Field(default_factory=list, description="groups a load may name")
+
+    @model_validator(mode="after")
+    def _holes_that_can_be_cut(self) -> Block:
+        """Cuts from outline to holes are sought among all pairs of their vertices, once for every hole."""
+        inside = sum(map(len, self.holes))
+        if len(self.holes) * inside * (len(self.polygon) + inside) > 500_000:
+            raise ValueError(f"its {len(self.holes)} holes have {inside} vertices, too many to be cut: simplify them")
+        return self
 
 
 def coefficient_of(value: float | None, angle: float | None) -> float:

@@ -105,6 +105,10 @@ def _at_limit(assembly: Assembly, answer: Answer) -> Answer:
     if answer.multiplier is not None and answer.multiplier < 0.0:
         return _below_zero(assembly, answer)
     if answer.finding is Finding.FALLS and bears > 0.0:
+        if admissible_forces(assembly, assembly.dead) is None:
+            return answer  # the live load holds it up
+        if (assembly.dilatancy >= assembly.friction).all():
+            return _stands_though_joints_give(answer, bears)
         reason = "it falls for want of self-stress in its joints, or because they give"
     elif answer.multiplier == 0.0 and answer.bracket is None and bears > 0.0:
         reason = "what the wall bears hangs on the self-stress in its joints, of which fe and de start without any"
@@ -112,6 +116,26 @@ def _at_limit(assembly: Assembly, answer: Answer) -> Answer:
         return answer
     own = answer.sentence.rstrip(".")
     return replace(answer, sentence=f"{own}. Statics alone would bear up to {bears:.7g}: {reason}.")
+
+
+def _stands_though_joints_give(answer: Answer, bears: float) -> Answer:
+    """The answer where a fall was measured of a wall that stands by theory, as every slip lifts by the whole friction.
+
+    By normality of the flow (Drucker 1954) rigid blocks stand wherever some equilibrium exists; so do smooth ones.
+    """
+    own = answer.sentence.rstrip(".")
+    return replace(
+        answer,
+        status=Status.NOT_CONVERGED,
+        finding=Finding.NONE,
+        sentence=f"Rigid blocks stand under the dead load and bear up to {bears:.7g}, since equilibrium exists and no "
+        f"slip works against friction; only with joints that give does the wall not come to rest: {own}.",
+        multiplier=None,
+        bracket=None,
+        forces=None,
+        forces_multiplier=None,
+        mechanism=None,
+    )
 
 
 def _with_limit(answer: Answer, statics: Statics) -> Answer:
