@@ -153,7 +153,7 @@ def case_section(
         stroke=stroke_factor(item.case.assembly),
         loads_drawn=_loads_drawn(item.case),
         through=_through(item),
-        facts=facts(item.case),
+        facts=_facts(item.case),
         strength=strength_rows(item),
         warnings=(*item.case.warnings, *item.refusals, *filter(None, [item.split_on_dead_load])),
         rows=rows,
