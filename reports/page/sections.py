@@ -10,6 +10,7 @@ from markupsafe import Markup
 
 from harness.model.case import Case
 from harness.model.comparison import CaseResults
+from harness.model.details import AnswerDetails
 from harness.model.result import Result
 from reports.drawing.force_drawing import force_drawing
 from reports.drawing.mechanism_drawing import mechanism_drawing
@@ -17,6 +18,7 @@ from reports.drawing.svg import inline
 from reports.findings.agreement import Agreement
 from reports.findings.joints import joints_in_words, motion, open_with_force
 from reports.findings.reasons import reasons
+from reports.findings.strength import StrengthRow, strength_rows, strength_text
 from reports.geometry import shapes, thrust_lines
 from reports.labels import numbers
 from reports.labels.wall_summary import wall_summary
@@ -73,6 +75,7 @@ class CaseSection:
     calm: bool = False
     overlay: Markup = field(default_factory=Markup)
     overlay_caption: str = ""
+    strength: list[StrengthRow] = field(default_factory=list)
 
     @property
     def packed(self) -> bool:
@@ -144,8 +147,9 @@ def case_section(
         wall=wall,
         loads_drawn=_loads_drawn(item.case),
         through=_through(item),
-        facts=wall_summary(item.case),
-        warnings=(*item.case.warnings, *filter(None, [item.split_on_dead_load])),
+        facts=_facts(item.case),
+        strength=strength_rows(item),
+        warnings=(*item.case.warnings, *item.refusals, *filter(None, [item.split_on_dead_load])),
         rows=rows,
         panels=panels,
         without_drawing=without,
@@ -157,6 +161,12 @@ def case_section(
         overlay=Markup("") if overlay is None else inline(overlay),
         overlay_caption=caption,
     )
+
+
+def _facts(case: Case) -> list[tuple[str, str]]:
+    """The facts of a case, with the strength of its joints where they have any."""
+    strength = strength_text(case.assembly, case.wall.units.force)
+    return wall_summary(case) + ([("Strength of joints", strength)] if strength else [])
 
 
 def _loads_drawn(case: Case) -> str:
@@ -195,19 +205,17 @@ def _forces_beside(case: Case, result: Result) -> str:
 
 
 def origin(result: Result) -> str:
-    """Which source of a search found the state, and when, of methods whose details keep their `improvements`.
+    """Which source of a search found the state, and when, of methods that keep their improvements.
 
     Nothing of a state that is lower than the last of these, as one that a proof came across.
     """
-    improvements = result.details.get("improvements")
-    last = improvements[-1] if isinstance(improvements, list) and improvements else None
-    if not isinstance(last, dict) or not isinstance(last.get("source"), str) or result.multiplier is None:
+    last = AnswerDetails(result.details).last_improvement
+    if last is None or last.multiplier is None or result.multiplier is None:
         return ""
-    value, spent = last.get("multiplier"), last.get("cpu_seconds")
-    if not isinstance(value, int | float) or not math.isclose(value, result.multiplier, rel_tol=1e-7, abs_tol=1e-9):
+    if not math.isclose(last.multiplier, result.multiplier, rel_tol=1e-7, abs_tol=1e-9):
         return ""
-    after = f" after {numbers.seconds(float(spent))} of CPU time" if isinstance(spent, int | float) else ""
-    return f"found by “{last['source']}”{after}"
+    after = "" if last.cpu_seconds is None else f" after {numbers.seconds(last.cpu_seconds)} of CPU time"
+    return f"found by “{last.source}”{after}"
 
 
 def _forces_are(result: Result) -> str:
