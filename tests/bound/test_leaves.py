@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+import copy
+from collections.abc import Callable
 from fractions import Fraction
 from typing import Any
 
 import pytest
 
+from methods.proof.verify.cases import States, states_of
 from methods.proof.verify.checker import _Leaf
 from methods.proof.verify.exact_wall import CertificateError, ExactWall
 from methods.proof.verify.force_limits import known_of
@@ -96,3 +99,103 @@ def test_without_velocities_a_normal_force_is_at_least_zero_and_no_more(least: s
         return
     with pytest.raises(CertificateError, match="less than is said"):
         known_of(forces, said)
+
+
+def limits_of(window: dict[str, Any]) -> list[Any]:
+    """All that a window of the incline says, in numbers."""
+    limits = WindowLimits(ExactWall(windows()), window)
+    size = limits.greatest_size(window["size"])
+    bound = limits.bound(window["multiplier"], size)
+    columns = limits.columns
+    return [limits.forces.total, limits.forces.normal, columns.weights, columns.lift_weight, limits.motions.limits,
+            size, bound]  # fmt: skip
+
+
+def times(value: Any, factor: int) -> Any:
+    return [times(v, factor) for v in value] if isinstance(value, list) else factor * value
+
+
+EXPONENTS: dict[str, tuple[Callable[[Any], Any], str, tuple[str, ...], int]] = {
+    "weights": (lambda w: w, "weight_exponent", ("weights", "lift_weight"), 200),
+    "forces": (lambda w: w["forces"], "exponent", ("total", "greatest"), 200),
+    "motions": (lambda w: w["motions"], "exponent", ("inverse",), 200),
+    "size": (lambda w: w["size"], "exponent", ("columns", "signed", "still", "balance"), 400),
+    "multiplier": (lambda w: w["multiplier"], "exponent", ("columns", "signed", "still", "balance"), 400),
+}
+"""(place, name of the exponent, numbers that are times a power of two, greatest exponent)."""
+
+
+@pytest.mark.parametrize("name", EXPONENTS)
+def test_numbers_may_be_given_in_smaller_parts_down_to_a_least_one(name: str):
+    """The same numbers in parts of another size say the same; parts below the least are refused."""
+    place, key, names, most = EXPONENTS[name]
+    window = windows()["windows"][0]
+    assert not window["motions"]["courses"]
+    said = limits_of(window)
+    for exponent in (most, most + 1):
+        finer = copy.deepcopy(window)
+        part = place(finer)
+        factor = 2 ** (exponent - part[key])
+        part.update({key: exponent} | {each: times(part[each], factor) for each in names})
+        if name == "forces":  # velocities of contacts have its parts too
+            finer |= {each: times(finer[each], factor) for each in ("still_velocities", "least_velocities")}
+        if exponent == most:
+            assert limits_of(finer) == said
+            continue
+        with pytest.raises(CertificateError, match="may stand here"):
+            limits_of(finer)
+
+
+def zeros(value: Any) -> Any:
+    return times(value, 0)
+
+
+FALSE_WINDOWS: dict[str, tuple[Callable[[Any], Any], str]] = {
+    "no bound of all forces": (lambda w: w["forces"].update(total=zeros(w["forces"]["total"])), "are not bounded"),
+    "a weight of nothing": (lambda w: w["weights"].__setitem__(0, 0), "a weight is above zero"),
+    "no weight of the lift": (lambda w: w.update(lift_weight=0), "may stand here"),
+    "a width of nothing": (lambda w: w.update(high=w["low"]), "no width"),
+    "no bound of a mechanism": (lambda w: w["size"].update(columns=zeros(w["size"]["columns"])), ""),
+    "an interface that is not there": (
+        lambda w: w.update(loaded=[len(w["weights"])], least=["0"], least_velocities=[[0] * 3]),
+        "may stand here",
+    ),
+    "a strain that is not there": (
+        lambda w: w["motions"]["strains"].__setitem__(0, 3 * len(w["weights"])),
+        "may stand here",
+    ),
+    "velocities of one block more": (lambda w: w["motions"]["inverse"].append([0] * 3), "not all there"),
+}
+
+
+@pytest.mark.parametrize("name", FALSE_WINDOWS)
+def test_why_a_window_is_refused_is_said(name: str):
+    change, reason = FALSE_WINDOWS[name]
+    window = windows()["windows"][0]
+    change(window)
+    with pytest.raises(CertificateError) as told:
+        limits_of(window)
+    assert reason in str(told.value)
+
+
+def all_states() -> States:
+    """Of the window of the incline."""
+    window = windows()["windows"][0]
+    limits = WindowLimits(ExactWall(windows()), window)
+    size = limits.greatest_size(window["size"])
+    return states_of(limits, size, limits.bound(window["multiplier"], size))
+
+
+def test_states_may_be_divided_at_a_normal_force_of_zero_and_none_below():
+    states = all_states()
+    few, many = states.halves({"interface": 0, "normal": "0"})
+    assert (few.forces.sides[0], many.forces.sides[0]) == ((0, 0), (0, None))
+    with pytest.raises(CertificateError, match="not below zero"):
+        states.halves({"interface": 0, "normal": "-1/1000000"})
+
+
+def test_forces_that_are_zero_exclude_no_mechanism():
+    states = all_states()
+    step = {"shows": "no mechanism", "exponent": 0, "strains": [0] * 3 * states.wall.n_interfaces}
+    with pytest.raises(CertificateError, match="do not exclude"):
+        states.after(step | {"lift": 0, "work": 0})
