@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import copy
+import math
 from collections.abc import Callable
 from fractions import Fraction
 from typing import Any
@@ -199,3 +200,50 @@ def test_forces_that_are_zero_exclude_no_mechanism():
     step = {"shows": "no mechanism", "exponent": 0, "strains": [0] * 3 * states.wall.n_interfaces}
     with pytest.raises(CertificateError, match="do not exclude"):
         states.after(step | {"lift": 0, "work": 0})
+
+
+@pytest.mark.parametrize(("beyond", "holds"), [(-1, True), (1, False)])
+def test_a_normal_force_is_at_least_what_bears_the_weight_with_all_friction(beyond: int, holds: bool):
+    """A block of weight one bears on an incline: N (x + mu y) >= 1, where x and y are the sides of its joint."""
+    document = windows()
+    window, (joint,) = document["windows"][0], document["interfaces"]
+    x1, y1, x2, y2 = map(Fraction, joint["ends"])
+    least = 1 / (abs(x2 - x1) + Fraction(joint["friction"]) * abs(y2 - y1))
+    forces = WindowLimits(ExactWall(document), window).forces
+    claim = least + Fraction(2 * beyond, forces.unit)
+    down = [0, -math.floor(least * forces.unit), 0]
+    said = window | {"loaded": [0], "least": [str(claim)], "least_velocities": [down]}
+    if holds:
+        assert known_of(forces, said).least == {0: claim}
+        return
+    with pytest.raises(CertificateError, match="less than is said"):
+        known_of(forces, said)
+
+
+def test_sums_of_velocities_by_hand_where_nothing_else_is_said():
+    """Live work is one, openings are not negative, a contact that is still has no rate, and all else is within reach.
+
+    The block is supported at its only joint, whose first three contacts are still: it may slip backwards alone.
+    """
+    states = all_states()
+    wall, reach = states.wall, states.reach
+    assert states.known.still == {0, 1, 2}
+    size = [min(abs(v) for v in reach if v), max(reach)]
+    assert size[0] < 1 < size[1]  # so that a product is no quotient
+    nothing = {"exponent": 0, "strains": [0, 0, 0], "lift": 0, "work": 0}
+    for d, most in enumerate(reach):
+        assert states.greatest({d: Fraction(-2)}, nothing) == 2 * most
+    live = {d: value for d, value in enumerate(wall.live) if value}
+    assert states.greatest(live, nothing | {"work": 1}) == 1
+    assert states.greatest({}, nothing | {"work": -1}) == -1 + sum(abs(wall.live[d]) * reach[d] for d in live)
+    for k in (0, 1):
+        opening = dict(wall.sparse[k])
+        unit = [int(j == k) for j in range(3)]
+        assert states.greatest(opening, nothing | {"strains": unit}) == 0
+        assert states.greatest({d: -v for d, v in opening.items()}, nothing | {"strains": times(unit, -1)}) == 0
+    slip = dict(wall.sparse[2])
+    assert states.greatest(slip, nothing | {"strains": [0, 0, 1]}) == 0
+    backwards = states.greatest({d: -v for d, v in slip.items()}, nothing | {"strains": [0, 0, -1]})
+    assert backwards == sum(abs(v) * reach[d] for d, v in slip.items())
+    with pytest.raises(CertificateError, match="lift is below zero"):
+        states.greatest({}, nothing | {"lift": -1})
