@@ -72,6 +72,28 @@ def test_the_joints_of_a_course_bear_the_weight_above_whatever_their_lengths() -
     assert float(course.least) == pytest.approx(float(weight / abs(x2 - x1)), rel=1e-6)  # velocities have 40 places
 
 
+def test_a_slip_of_a_course_is_the_lift_over_the_least_friction_and_what_is_left_over_by_rounding():
+    """Friction on a slip s of the first joint takes mu N s, no more than the lift, which is 1 / weight in size one."""
+    document = of_slab()
+    wall, window = ExactWall(document), document["windows"][0]
+    columns, unit = WindowLimits(wall, window).columns, Fraction(1, 2 ** window["motions"]["exponent"])
+    strains = window["motions"]["strains"]
+    rows = [{k: unit * v for k, v in zip(strains, row, strict=True) if v} for row in window["motions"]["inverse"]]
+    course = Course(columns, window["motions"]["courses"][0], rows)
+    first, still = course.joints[0], dict.fromkeys(columns.strain_limits(), Fraction(0))
+    exact = [Fraction(0)] * columns.n
+    slip, part = course.slip(still, exact, {first: course})
+    assert slip == 1 / (wall.friction[first] * columns.lift_weight * course.least)
+    assert part == 0
+    left_over = [Fraction(1, 7), Fraction(1, 3), Fraction(1, 5)]
+    _, part = course.slip(still, left_over, {first: course})
+    lost = [
+        wall.friction[p] * columns.forces.normal[p] * sum(abs(v) * left_over[d] for d, v in wall.sparse[3 * p + 2])
+        for p in course.joints
+    ]
+    assert part == sum(lost) / (wall.friction[first] * course.least)
+
+
 CHANGES: dict[str, Callable[[dict[str, Any]], Any]] = {
     "a joint that may be unloaded alone": lambda course: course["joints"].pop(),
     "a joint counted twice": lambda course: course["joints"].append(course["joints"][0]),

@@ -67,3 +67,11 @@ def test_what_may_stand_there_is_read(name: str) -> None:
 def test_what_is_beyond_is_refused(name: str) -> None:
     with pytest.raises(CertificateError):
         BEYOND[name]()
+
+
+def test_how_many_digits_a_number_may_have_is_said_in_the_refusal():
+    for name, words in (("digits", "at most 1000 digits"), ("bits", "more than 3000 bits")):
+        with pytest.raises(CertificateError, match=words):
+            BEYOND[name]()
+    with pytest.raises(CertificateError, match="more than 100,000 bits"):
+        BEYOND["many bits"]()
