@@ -278,6 +278,23 @@ def test_contact_points_set_in_by_half_leave_no_joint(inset: dict[str, float], l
         assembly_of(two_blocks(contact_inset=inset))
 
 
+def test_a_joint_that_lifts_as_it_slides_gives_its_friction_beside():
+    interface = {"between": ["base", "a"], "from": [0, 0], "to": [2, 0]}
+
+    def lift(**given: Any) -> list[float]:
+        return assembly_of(two_blocks(interfaces=[interface | given])).dilatancy.tolist()
+
+    assert lift(friction=0.7, dilatancy=0.3) == [0.3]
+    assert lift(friction_angle=45.0, dilatancy=0.9) == [0.9]
+    for given, words in (
+        ({"dilatancy": 0.1}, "beside a friction of its own"),
+        ({"friction": 0.7, "friction_angle": 35.0}, "either friction or friction_angle"),
+        ({"friction": 0.7, "dilatancy": 0.8}, "dilatancy"),
+    ):
+        with pytest.raises(ValueError, match=words):
+            lift(**given)
+
+
 def test_a_wall_of_another_format_is_refused_with_what_it_gives():
     for data, words in ((two_blocks(format="wall/2"), "format is 'wall/2'"), ({"blocks": []}, "it has no format")):
         with pytest.raises(InputError, match=words):
