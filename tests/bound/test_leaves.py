@@ -202,8 +202,8 @@ def test_forces_that_are_zero_exclude_no_mechanism():
         states.after(step | {"lift": 0, "work": 0})
 
 
-@pytest.mark.parametrize(("beyond", "holds"), [(-1, True), (1, False)])
-def test_a_normal_force_is_at_least_what_bears_the_weight_with_all_friction(beyond: int, holds: bool):
+@pytest.mark.parametrize(("beyond", "speed", "holds"), [(-1, 1, True), (1, 1, False), (1, 2, False)])
+def test_a_normal_force_is_at_least_what_bears_the_weight_with_all_friction(beyond: int, speed: int, holds: bool):
     """A block of weight one bears on an incline: N (x + mu y) >= 1, where x and y are the sides of its joint."""
     document = windows()
     window, (joint,) = document["windows"][0], document["interfaces"]
@@ -211,7 +211,7 @@ def test_a_normal_force_is_at_least_what_bears_the_weight_with_all_friction(beyo
     least = 1 / (abs(x2 - x1) + Fraction(joint["friction"]) * abs(y2 - y1))
     forces = WindowLimits(ExactWall(document), window).forces
     claim = least + Fraction(2 * beyond, forces.unit)
-    down = [0, -math.floor(least * forces.unit), 0]
+    down = [0, -speed * math.floor(least * forces.unit), 0]
     said = window | {"loaded": [0], "least": [str(claim)], "least_velocities": [down]}
     if holds:
         assert known_of(forces, said).least == {0: claim}
