@@ -2,6 +2,7 @@
 
     python -m tests.mutants map PACKAGE...      find which tests run which lines; again after tests change
     python -m tests.mutants PACKAGE --count 60  a sample of mutants; survivors are printed
+    python -m tests.mutants PACKAGE --ask TESTS --uncompiled  the same by these tests alone, which needs no map
 
 A mutant changes one operator or doubles one number. It is held against the tests that run the changed line, quick ones
 first, and a survivor of those against all tests of the package. Each is made in a copy of the checkout, never here.
@@ -242,8 +243,14 @@ def node(test: str, folder: Path) -> list[str]:
     return [f"{path.relative_to(folder)}::{function}" for path in found]
 
 
-def survives(package: str, mutant: Mutant, folder: Path, tests: Map, near_only: bool) -> bool:
-    """Whether a mutant passes the tests that run its line, and then, unless those are enough, all of its package."""
+def survives(package: str, mutant: Mutant, folder: Path, tests: Map | list[str], near_only: bool) -> bool:
+    """Whether a mutant passes the tests that run its line, and then, unless those are enough, all of its package.
+
+    Args:
+        package: of the mutant; folder: a copy of the checkout.
+        tests: the map of the package, or tests that are asked instead of those near the line.
+        near_only: they are enough.
+    """
     place = folder / mutant.path
     source = place.read_text("utf-8")
 
@@ -272,7 +279,7 @@ def survives(package: str, mutant: Mutant, folder: Path, tests: Map, near_only: 
             copy_loops(folder)
 
     try:
-        near = [name for test in tests.near(mutant) for name in node(test, folder)]
+        near = [name for test in tests.near(mutant) for name in node(test, folder)] if isinstance(tests, Map) else tests
         return passes(near) and (near_only or passes(own_tests(package, folder)))
     finally:
         restore()
@@ -284,27 +291,36 @@ def survives(package: str, mutant: Mutant, folder: Path, tests: Map, near_only: 
 @click.option("--seed", default=1, show_default=True, help="Of the sample.")
 @click.option("--jobs", default=1, show_default=True, help="Mutants tried at a time.")
 @click.option("--near", is_flag=True, help="Ask only the tests that run the changed line, where there are any.")
-def main(words: tuple[str, ...], count: int, seed: int, jobs: int, near: bool) -> None:
+@click.option("--ask", multiple=True, metavar="FILE", help="Ask these tests alone.")
+@click.option(
+    "--uncompiled", is_flag=True, help="Run compiled loops as Python: for tests that call them on few numbers."
+)
+def main(
+    words: tuple[str, ...], count: int, seed: int, jobs: int, near: bool, ask: tuple[str, ...], uncompiled: bool
+) -> None:
     """Make the map of PACKAGES (`map PACKAGE...`), or try mutants of them."""
     if words[0] == "map":
         for package in words[1:]:
             make_map(package)
         return
+    if uncompiled:
+        os.environ["NUMBA_DISABLE_JIT"] = "1"
     for package in words:
-        tests, drawn = Map(package), sample(package, count, seed)
+        tests, drawn = list(ask) or Map(package), sample(package, count, seed)
         with tempfile.TemporaryDirectory() as room, ThreadPoolExecutor(jobs) as pool:
             free: Queue[Path] = Queue()
             for number in range(jobs):
                 folder = copy_of_checkout(Path(room, str(number)))
-                if (
-                    not near and pytest(folder, own_tests(package, folder), "-x") != 0
-                ):  # compiles the loops of the copy, too
+                first = list(ask) if ask else [] if near else own_tests(package, folder)
+                if first and pytest(folder, first, "-x") != 0:  # compiles the loops of the copy, too
                     raise click.ClickException(f"the tests of {package} fail without any mutant")
                 free.put(folder)
 
-            def tried(mutant: Mutant, package: str = package, tests: Map = tests, free: Queue[Path] = free) -> bool:
+            def tried(
+                mutant: Mutant, package: str = package, tests: Map | list[str] = tests, free: Queue[Path] = free
+            ) -> bool:
                 folder = free.get()
-                alive = survives(package, mutant, folder, tests, near)
+                alive = survives(package, mutant, folder, tests, near or bool(ask))
                 free.put(folder)
                 click.echo("." if not alive else "", nl=alive, err=True)
                 if alive:

@@ -296,3 +296,14 @@ def test_fe_point_load_at_the_end_of_a_beam_has_the_multiplier_of_limit_analysis
 @pytest.mark.parametrize("friction", [3.0, 10.0, 1000.0])
 def test_fe_very_rough_bricks_rock_alike(friction: float) -> None:
     assert solve(running_bond(6, 3, friction)).multiplier == pytest.approx(13 / 23, rel=EXACT)
+
+
+def test_fe_path_counts_the_points_that_slip_whichever_way_they_do() -> None:
+    """A block on two joints of two points each, far too low to rock: when the fourth slips too, it collapses."""
+    wall = block_on_halves((0.5, 0.5))
+    paths = [solve(replace(wall, live=way * wall.live)).path for way in (1.0, -1.0)]
+    for path in paths:
+        assert (path["slipping_points"][0], path["slipping_points"][-1]) == (0.0, 3.0)
+        assert set(path["open_points"]) == {0.0}
+    np.testing.assert_allclose(paths[0]["multiplier"], paths[1]["multiplier"], atol=1e-12)
+    np.testing.assert_allclose(paths[0]["live_displacement"], paths[1]["live_displacement"], atol=1e-12)
