@@ -66,7 +66,9 @@ PACKAGES = {
 }
 """Patterns of the sources of each package and of the tests that are its own."""
 SECONDS = 300
-"""After which a mutant counts as found: its tests take no more than half of this without it."""
+"""After which a mutant counts as found, and is printed as such: on a busy machine it need not be."""
+TIME_OVER = 99
+"""What stands for the exit code of pytest where the time was over."""
 NEAR_SECONDS = 60
 """Of the tests that run the changed line: the quickest that take no longer than this together."""
 CANNOT_START = (3, 4, 5)
@@ -175,7 +177,7 @@ def copy_loops(folder: Path) -> None:
 
 
 def pytest(folder: Path, tests: list[str], *words: str, seconds: float | None = None) -> int:
-    """Exit code of tests in a copy of the checkout; 99 where the time was over."""
+    """Exit code of tests in a copy of the checkout; `TIME_OVER` where the time was over."""
     command = [sys.executable, "-m", "pytest", "-q", "-p", "no:cacheprovider", "-m", "not slow and not browser", *words]
     environment = os.environ | {"PYTHONPATH": str(folder), "OMP_NUM_THREADS": "1", "OPENBLAS_NUM_THREADS": "1"}
     environment.pop("PYTHONDONTWRITEBYTECODE", None)  # most of the time of a mutant would be that of compiling others
@@ -186,7 +188,7 @@ def pytest(folder: Path, tests: list[str], *words: str, seconds: float | None = 
     try:
         return process.wait(seconds)
     except subprocess.TimeoutExpired:
-        return 99
+        return TIME_OVER
     finally:
         with contextlib.suppress(ProcessLookupError):
             os.killpg(process.pid, signal.SIGKILL)
@@ -260,6 +262,8 @@ def survives(package: str, mutant: Mutant, folder: Path, tests: Map | list[str],
         forget()
         code = pytest(folder, asked, "-x", seconds=SECONDS)
         restore()
+        if code == TIME_OVER:
+            print("TIME OVER", mutant.shown(source), flush=True)
         # Tests that cannot be started tell of the mutant only if they can be without it.
         if code in CANNOT_START and pytest(folder, asked, "--collect-only") != 0:
             raise click.ClickException(f"pytest cannot start {' '.join(asked)} without any mutant")
