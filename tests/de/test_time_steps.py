@@ -11,11 +11,11 @@ import pytest
 
 from harness.model.assembly import Assembly, FloatArray
 from methods.de.answers import describe, reporting
-from methods.de.engines.courses import courses, insertion_orders, masses, tunings
+from methods.de.engines.mass_scaling import courses, insertion_orders, masses, tunings
+from methods.de.engines.pymunk_joints import polygon_gyration
+from methods.de.engines.sequential_impulses import SequentialImpulses
 from methods.de.engines.soft_wall import SoftWall
-from methods.de.engines.space import polygon_gyration
-from methods.de.engines.sweeps import SweptWall
-from methods.de.holds.hold import Watch, hold_limit, least_motion, residuals_told
+from methods.de.holds.load_step import ConvergenceMonitor, hold_limit, least_motion, reported_residuals
 from methods.de.holds.motion import MotionProof, Trend, by_power, by_travel
 from methods.de.holds.order_bracket import BRACKET, OrderBracket
 from methods.de.holds.release import even_frames, separated
@@ -26,10 +26,10 @@ ARCH = {"type": "ring", "inner_radius": 1.0, "outer_radius": 1.15, "count": 11, 
 WALLS = {"bond": assembly(running_bond(3, 2), 0.65), "arch": assembly(ARCH, 0.75)}
 
 
-def swept(wall: Assembly, order: int = 2) -> SweptWall:
+def swept(wall: Assembly, order: int = 2) -> SequentialImpulses:
     course = courses(wall)
     _, blocks, joints = insertion_orders(wall, course, 3, 0)[order]
-    return SweptWall(wall, blocks, joints, 5, tunings(course, None)[0])
+    return SequentialImpulses(wall, blocks, joints, 5, tunings(course, None)[0])
 
 
 @pytest.mark.parametrize("name", WALLS)
@@ -65,7 +65,7 @@ def test_swept_contacts_close_and_do_not_slip_where_friction_holds_them(name: st
     wall = WALLS[name]
     course = courses(wall)
     _, blocks, joints = insertion_orders(wall, course, 1, 0)[0]
-    engine = SweptWall(wall, blocks, joints, 3000, tunings(course, None)[0])
+    engine = SequentialImpulses(wall, blocks, joints, 3000, tunings(course, None)[0])
     engine.load(2.0)
     engine.advance(1)
     motion = engine.velocity()
@@ -150,8 +150,8 @@ def test_a_block_pressed_into_the_ground_is_borne_by_half_the_joint_at_each_end(
     np.testing.assert_array_equal(soft.places[block], [right, -down, 0.0])
 
 
-def watch(residuals: Any = (), fields: Any = (), held: float = 1e-3, moving: float = 2e-3) -> Watch:
-    found = Watch(held, moving, np.array([2.0, 2.0, 1.0]))
+def watch(residuals: Any = (), fields: Any = (), held: float = 1e-3, moving: float = 2e-3) -> ConvergenceMonitor:
+    found = ConvergenceMonitor(held, moving, np.array([2.0, 2.0, 1.0]))
     for k, residual in enumerate(residuals):
         found.note(np.full((1, 3), float(fields[k]) if len(fields) else 1.0), float(residual))
     return found
@@ -310,7 +310,7 @@ def test_residuals_that_are_told_are_shares_of_a_small_live_load():
     wall = WALLS["bond"]
 
     def told(live: float) -> tuple[float, float]:
-        return residuals_told(_Loaded(wall, live * wall.load_unit), settings)
+        return reported_residuals(_Loaded(wall, live * wall.load_unit), settings)
 
     assert told(0.0) == (1e-3, 2e-3)
     assert told(0.01) == told(5.0) == told(-5.0) == (1e-3, 4e-3)

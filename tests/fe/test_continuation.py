@@ -24,7 +24,7 @@ from methods.fe.settings import GapSpringsSettings
 from methods.springs.model.factor import make_factor
 from methods.springs.model.gap_law import SLIP_MINUS, SLIP_PLUS
 from methods.springs.model.wall_model import build_model
-from methods.springs.path.continuation import Tracer
+from methods.springs.path.continuation import PathFollower
 from methods.springs.path.plateau import check
 from methods.springs.patterns import block_on_halves, running_bond
 from methods.springs.rest.equilibrium import gravity_state
@@ -260,14 +260,14 @@ def test_fe_990_bricks_end_in_an_exact_collapse_state_on_soft_pieces() -> None:
 
 
 def test_fe_400_irregular_blocks_come_to_one_plateau_under_three_histories() -> None:
-    """They ended 102 % apart, the first after 60,000 kinks, while jumps kept the friction history from before them."""
+    """They ended 102 % apart, the first after 60,000 breakpoints, while jumps kept the friction history from before them."""
     answer = solve(irregular_wall(1, 20, 20, 1.0))
     plateaus = [history["plateau"] for history in answer.details["histories"]]
     assert plateaus == pytest.approx([0.1599892] * 3, rel=1e-6)
 
 
-def test_fe_path_of_too_many_kinks_is_begun_where_the_load_can_be_raised_to() -> None:
-    """55 bricks, whose exact path has 376 kinks: 94 are left, to a state that the history of the motion differs by.
+def test_fe_path_of_too_many_breakpoints_is_begun_where_the_load_can_be_raised_to() -> None:
+    """55 bricks, whose exact path has 376 breakpoints: 94 are left, to a state that the history of the motion differs by.
 
     The histories after it begin at the same rest.
     """
@@ -320,8 +320,8 @@ def test_fe_path_that_begins_loaded_counts_the_points_that_slip_there(way: float
     rest = gravity_state(model, factor)
     loaded = newton(model, factor, rest.u, 0.25, rest.history)
     assert loaded.found
-    tracer = Tracer.from_rest(model, factor, loaded)
+    follower = PathFollower.from_rest(model, factor, loaded)
     slips = np.isin(loaded.state, [SLIP_PLUS, SLIP_MINUS])
     assert model.interface[slips].tolist() == [1, 1]
-    assert (tracer.n_slip, tracer.n_open) == (2, 0)
-    assert tracer.may_commit()
+    assert (follower.n_slip, follower.n_open) == (2, 0)
+    assert follower.may_commit()

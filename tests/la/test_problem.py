@@ -236,15 +236,15 @@ def test_settings_take_the_place_of_limits_and_deep_searches_begin_with_a_normal
 
 
 def test_a_budget_ends_where_it_is_spent_and_lasts_longer_while_nothing_is_known() -> None:
-    budget = Budget(Limits(programmes=10, block_steps=100.0, kinks=50))
+    budget = Budget(Limits(programmes=10, block_steps=100.0, breakpoints=50))
     budget.stepped(5, 20)
     assert (budget.spent.newton_steps, budget.spent.block_steps) == (5, 100.0)
     assert (budget.steps_left(True), budget.steps_left(False)) == (False, True)
     budget.spent.block_steps = 99.0
     assert budget.steps_left(True)
     for spent, known, unknown in ((49, True, True), (50, False, True), (99, False, True), (100, False, False)):
-        budget.spent.kinks = spent
-        assert (budget.kinks_left(True), budget.kinks_left(False)) == (known, unknown)
+        budget.spent.breakpoints = spent
+        assert (budget.breakpoints_left(True), budget.breakpoints_left(False)) == (known, unknown)
     budget.spent.programmes = 4
     assert budget.programmes == 6
     budget.spent.programmes = 11

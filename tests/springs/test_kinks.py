@@ -1,4 +1,4 @@
-"""The kinks of gap points by hand: where they are met, which is taken, and what lies behind."""
+"""The breakpoints of gap points by hand: where they are met, which is taken, and what lies behind."""
 
 from __future__ import annotations
 
@@ -17,19 +17,19 @@ from methods.springs.model.gap_law import (
     point_forces,
     same_forces,
 )
-from methods.springs.path.kinks import (
+from methods.springs.path.breakpoints import (
     advance,
-    coming_kinks,
-    kink_functions,
+    breakpoint_functions,
+    coming_breakpoints,
     live_rate,
-    next_kink,
+    next_breakpoint,
     strain_rates,
     target_state,
 )
 
 KN, MU = 2.0, 0.5
 NONE = (1.0, 1.0)
-"""A second kink function that is never met."""
+"""A second breakpoint function that is never met."""
 
 
 @pytest.mark.parametrize(
@@ -41,22 +41,22 @@ NONE = (1.0, 1.0)
         (SLIP_MINUS, -1.0, -1.5, (2.0, 0.5)),
     ],
 )
-def test_kink_functions_and_their_rates_by_hand(
+def test_breakpoint_functions_and_their_rates_by_hand(
     state: int, opening: float, trial: float, values: tuple[float, float]
 ) -> None:
-    v0, _, v1, _ = kink_functions(opening, trial, 0.0, 0.0, KN, MU, state)
+    v0, _, v1, _ = breakpoint_functions(opening, trial, 0.0, 0.0, KN, MU, state)
     assert (v0, v1) == values
     # They are linear in opening and trial shear: their rates are what they change by.
     for change, shift in ((0.125, 0.0), (0.0, 0.25), (-0.5, 0.75)):
-        _, r0, _, r1 = kink_functions(opening, trial, change, shift, KN, MU, state)
-        w0, _, w1, _ = kink_functions(opening + change, trial + shift, 0.0, 0.0, KN, MU, state)
+        _, r0, _, r1 = breakpoint_functions(opening, trial, change, shift, KN, MU, state)
+        w0, _, w1, _ = breakpoint_functions(opening + change, trial + shift, 0.0, 0.0, KN, MU, state)
         assert r0 == w0 - v0
         assert r1 == (w1 - v1 if state != OPEN else 1.0)
 
 
 @pytest.mark.parametrize("state", [SLIP_PLUS, SLIP_MINUS])
 def test_a_smooth_point_that_slips_can_only_open(state: int) -> None:
-    assert kink_functions(-1.0, 0.75, 0.25, 0.5, KN, 0.0, state) == (2.0, -0.5, *NONE)
+    assert breakpoint_functions(-1.0, 0.75, 0.25, 0.5, KN, 0.0, state) == (2.0, -0.5, *NONE)
 
 
 @pytest.mark.parametrize(
@@ -73,7 +73,7 @@ def test_a_smooth_point_that_slips_can_only_open(state: int) -> None:
         (SLIP_MINUS, 1, 1.0, STICK),
     ],
 )
-def test_states_behind_kinks(state: int, which: int, trial: float, behind: int) -> None:
+def test_states_behind_breakpoints(state: int, which: int, trial: float, behind: int) -> None:
     assert target_state(state, which, trial) == behind
     assert behind in neighbour_states(state)
 
@@ -94,7 +94,7 @@ def arrays(points: Points) -> list[Any]:
 
 def following(points: Points, **limits: Any) -> tuple[float, int, int]:
     given = {"tolerance": 0.0, "noise": 0.0, "floor": np.inf, "barred_point": -1, "barred_state": OPEN} | limits
-    return next_kink(*arrays(points), *given.values())
+    return next_breakpoint(*arrays(points), *given.values())
 
 
 CLOSING = (OPEN, 0.5, -1.0, -0.25, 0.0)
@@ -103,7 +103,7 @@ SLIPPING = (STICK, -1.0, 0.0, 0.0, 0.25)
 """Slips after four steps."""
 
 
-def test_the_first_kink_is_taken_whatever_the_order_of_points() -> None:
+def test_the_first_breakpoint_is_taken_whatever_the_order_of_points() -> None:
     assert following([CLOSING, SLIPPING]) == (2.0, 0, SLIP_MINUS)
     assert following([SLIPPING, CLOSING]) == (2.0, 1, SLIP_MINUS)
     assert following([SLIPPING]) == (4.0, 0, SLIP_PLUS)
@@ -121,19 +121,19 @@ def test_the_first_kink_is_taken_whatever_the_order_of_points() -> None:
         ((OPEN, 0.0, 1.0, -0.25, 0.0), 0.0, SLIP_PLUS),
     ],
 )
-def test_step_to_the_kink_of_one_point(point: Any, step: float, behind: int) -> None:
+def test_step_to_the_breakpoint_of_one_point(point: Any, step: float, behind: int) -> None:
     assert following([point]) == (step, 0, behind)
 
 
 @pytest.mark.parametrize(
     "point", [(OPEN, 0.5, 1.0, 0.25, 9.0), (STICK, -1.0, 0.5, -1.0, 0.0), (SLIP_PLUS, -1.0, 1.5, -1.0, 2.0)]
 )
-def test_a_point_that_moves_away_from_its_kinks_meets_none(point: Any) -> None:
+def test_a_point_that_moves_away_from_its_breakpoints_meets_none(point: Any) -> None:
     step, number, _ = following([point])
     assert (step, number) == (np.inf, -1)
 
 
-def test_of_kinks_within_the_tolerance_the_one_crossed_fastest_is_taken() -> None:
+def test_of_breakpoints_within_the_tolerance_the_one_crossed_fastest_is_taken() -> None:
     """The slow point would be met at 2; the fast one, at 2.25, is passed by less than the tolerance."""
     slow, fast = CLOSING, (OPEN, 2.25, -1.0, -1.0, 0.0)
     assert following([slow, fast]) == (2.0, 0, SLIP_MINUS)
@@ -153,7 +153,7 @@ def test_a_change_just_made_is_not_taken_back_and_any_other_is() -> None:
     assert following([sticking, SLIPPING], barred_point=0, barred_state=OPEN) == (2.0, 0, STICK)
 
 
-def test_rates_below_the_noise_meet_no_kink_unless_they_are_above_the_floor() -> None:
+def test_rates_below_the_noise_meet_no_breakpoint_unless_they_are_above_the_floor() -> None:
     points = [CLOSING, (STICK, -1.0, 0.0, -4.0, 0.0)]  # the fastest rate is 4; CLOSING changes its function by .5
     assert following(points, noise=0.1)[1] == 0
     assert following(points, noise=0.2)[1] == -1
@@ -162,24 +162,24 @@ def test_rates_below_the_noise_meet_no_kink_unless_they_are_above_the_floor() ->
     assert following(shear, noise=0.2)[1] == -1
 
 
-def test_coming_kinks_are_listed_nearest_first_as_many_as_there_is_room_for() -> None:
+def test_coming_breakpoints_are_listed_nearest_first_as_many_as_there_is_room_for() -> None:
     late, away = (OPEN, 2.0, 1.0, -0.25, 0.0), (OPEN, 0.5, 1.0, 0.25, 0.0)
     order = [late, SLIPPING, away, CLOSING]
     for room, expected in ((1, [3]), (2, [3, 1]), (3, [3, 1, 0]), (4, [3, 1, 0])):
         points, targets = np.full(room, -1), np.full(room, -1)
-        assert coming_kinks(*arrays(order), points, targets) == len(expected)
+        assert coming_breakpoints(*arrays(order), points, targets) == len(expected)
         assert points[: len(expected)].tolist() == expected
         states = {3: SLIP_MINUS, 1: SLIP_PLUS, 0: SLIP_PLUS}
         assert targets[: len(expected)].tolist() == [states[k] for k in expected]
 
 
-def test_of_both_kinks_of_a_point_the_nearer_is_coming() -> None:
+def test_of_both_breakpoints_of_a_point_the_nearer_is_coming() -> None:
     point = (STICK, -1.0, 0.5, 0.0, -0.75)  # mu N = 1: backwards after 1.5 / .75
     points, targets = np.full(2, -1), np.full(2, -1)
-    assert coming_kinks(*arrays([point]), points, targets) == 1
+    assert coming_breakpoints(*arrays([point]), points, targets) == 1
     assert (points[0], targets[0]) == (0, SLIP_MINUS)
     both = (SLIP_PLUS, -1.0, 1.5, 0.25, -0.125)  # opens after 4; shear 1.5 - t/8 meets 1 - t/4 nowhere
-    assert coming_kinks(*arrays([both]), points, targets) == 1
+    assert coming_breakpoints(*arrays([both]), points, targets) == 1
     assert targets[0] == OPEN
 
 
@@ -197,7 +197,7 @@ def test_a_point_at_the_limit_of_friction_sticks() -> None:
     assert state.tolist() == [STICK, STICK, SLIP_PLUS]
 
 
-def test_states_give_the_same_forces_at_their_kink_only() -> None:
+def test_states_give_the_same_forces_at_their_breakpoint_only() -> None:
     def same(state: int, other: int, opening: float, trial: float, tolerance: float = 1e-9) -> bool:
         one = [np.array([value]) for value in (opening, trial, KN, MU)]
         return same_forces(*one, np.array([state]), np.array([other]), tolerance)

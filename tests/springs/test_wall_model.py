@@ -15,7 +15,7 @@ from methods.springs.model.exact_rates import add_product, exact_gap_rates
 from methods.springs.model.gap_law import OPEN, SLIP_MINUS, SLIP_PLUS, STICK, neighbour_states
 from methods.springs.model.settings import GapSettings
 from methods.springs.model.wall_model import WallModel, build_model, load_scale
-from methods.springs.path.path_record import LoadStep, PathRecord
+from methods.springs.path.path_record import PathRecord, PathStep
 from methods.springs.path.plateau import check
 from methods.springs.patterns import block_on_halves, running_bond
 from tests.known_walls import box, of_blocks
@@ -86,8 +86,8 @@ def test_the_tangent_is_what_forces_change_by_in_given_states(model: WallModel) 
     tangent = model.tangent(state)
     change = model.residual(u + step, 0.0, history, state) - model.residual(u, 0.0, history, state)
     np.testing.assert_allclose(tangent @ step, -change, atol=1e-11)
-    shifted = model.tangent(state, 0.25, footing=True) - tangent
-    np.testing.assert_allclose(shifted.toarray(), np.diag(0.25 * model.inertia + model.footing), atol=1e-12)
+    shifted = model.tangent(state, 0.25, regularised=True) - tangent
+    np.testing.assert_allclose(shifted.toarray(), np.diag(0.25 * model.inertia + model.regularised), atol=1e-12)
 
 
 def test_a_change_of_state_changes_the_tangent_by_its_vectors(model: WallModel) -> None:
@@ -122,8 +122,8 @@ def test_units_stiffness_and_masses_of_bricks_by_hand() -> None:
     by_length = build_model(wall, GapSettings(weighting="length", points=4))
     assert np.bincount(by_length.interface, by_length.kn) == pytest.approx(wall.length / length)
     assert build_model(wall, GapSettings(), friction_cap=0.25).mu.tolist() == [0.25] * model.n_points
-    inertia, footing = model.inertia.reshape(-1, 3), model.footing.reshape(-1, 3)
-    for block, masses, springs in zip(model.order, inertia, footing, strict=True):
+    inertia, regularised = model.inertia.reshape(-1, 3), model.regularised.reshape(-1, 3)
+    for block, masses, springs in zip(model.order, inertia, regularised, strict=True):
         width, height = np.ptp(wall.polygons[block], axis=0)
         mass, turning = wall.weight[block] / force, (width**2 + height**2) / 12.0 / length**2
         assert masses == pytest.approx([mass, mass, mass * turning])
@@ -220,9 +220,9 @@ def test_residuals_of_a_false_collapse_state_by_hand(force: Any, velocity: Any, 
 def test_points_of_a_path_are_kept_whole_evenly_and_no_more_than_asked_for(most: int, kept: list[int]) -> None:
     record, none = PathRecord(most=most), np.zeros(0)
     for number in range(11):
-        record.keep(lambda number=number: LoadStep(number, none, none, none, none))  # type: ignore[misc]
+        record.keep(lambda number=number: PathStep(number, none, none, none, none))  # type: ignore[misc]
     assert [step.multiplier for step in record.steps] == kept
-    record.keep(lambda: LoadStep(11, none, none, none, none), always=True)
+    record.keep(lambda: PathStep(11, none, none, none, none), always=True)
     assert [step.multiplier for step in record.steps][-1:] == ([11] if most else [])
 
 
