@@ -52,8 +52,8 @@ PACKAGES = {
     "contacts": (
         "harness/model/contacts.py harness/model/interfaces.py harness/model/joint_law.py harness/model/geometry.py "
         "harness/model/assembly.py",
-        "tests/model/test_assembly.py tests/model/test_[cf]*.py tests/model/test_[g-hj]*.py tests/model/test_slips.py "
-        "tests/model/test_wall_format.py",
+        "tests/model/test_assembly.py tests/model/test_[cf]*.py tests/model/test_[g-hj]*.py "
+        "tests/model/test_input_checks.py tests/model/test_wall_format.py",
     ),
     "model": ("harness/model/*.py", "tests/model"),
     "formats": ("harness/formats/*.py", "tests/formats"),

@@ -14,7 +14,6 @@ from methods.proof.verify.exact_wall import (
     CertificateError,
     common_denominator,
     contacts,
-    dot,
     fractions_of,
     integers,
     number,
@@ -36,7 +35,6 @@ WITHIN: dict[str, tuple[Callable[[], Any], Any]] = {
     "denominators": (lambda: common_denominator([HALF, Fraction(1, 6), Fraction(1, 4)]), 12),
     "least denominators": (lambda: [common_denominator(v) for v in ([], [THIRD], [Fraction(5)])], [1, 3, 1]),
     "many bits": (lambda: common_denominator([Fraction(1, 2 ** (MOST_BITS - 1))]), 2 ** (MOST_BITS - 1)),
-    "inner product": (lambda: dot([HALF, THIRD, Fraction(0)], [Fraction(4), Fraction(6), Fraction(9)]), 4),
     "forms": (lambda: integers([{0: HALF, 5: Fraction(0)}, {3: -THIRD}]), ([{0: 3}, {3: -2}], 6)),
 }
 BEYOND: dict[str, Callable[[], Any]] = {
