@@ -21,6 +21,7 @@ from reports.joints import joints_in_words, motion, open_with_force
 from reports.mechanism_drawing import mechanism_svg
 from reports.opening import figure_of, is_calm
 from reports.reasons import reasons
+from reports.strength import StrengthRow, strength_rows, strength_text
 from reports.tables import RunRow
 
 
@@ -77,6 +78,7 @@ class CaseSection:
     calm: bool = False
     overlay: Markup = field(default_factory=Markup)
     overlay_caption: str = ""
+    strength: list[StrengthRow] = field(default_factory=list)
 
 
 STILL_BLOCKS = 50
@@ -151,8 +153,9 @@ def case_section(
         stroke=stroke_factor(item.case.assembly),
         loads_drawn=_loads_drawn(item.case),
         through=_through(item),
-        facts=facts(item.case),
-        warnings=(*item.case.warnings, *filter(None, [item.split_on_dead_load])),
+        facts=_facts(item.case),
+        strength=strength_rows(item),
+        warnings=(*item.case.warnings, *item.refusals, *filter(None, [item.split_on_dead_load])),
         rows=rows,
         panels=panels,
         without_drawing=without,
@@ -164,6 +167,12 @@ def case_section(
         overlay=overlay,
         overlay_caption=caption,
     )
+
+
+def _facts(case: Case) -> list[tuple[str, str]]:
+    """The facts of a case, with the strength of its joints where they have any."""
+    strength = strength_text(case.assembly, case.wall.units.force)
+    return facts(case) + ([("Strength of joints", strength)] if strength else [])
 
 
 def _loads_drawn(case: Case) -> str:

@@ -8,14 +8,15 @@ import textwrap
 from collections import Counter
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
-from harness.engine.compare import Told
-from harness.engine.plan import Run
+from harness.engine.pipeline import Told
 from harness.engine.regression import violations
+from harness.engine.run import Run
 from harness.model.assembly import Assembly
 from harness.model.case import Case
 from harness.model.columns import PRINTED, ResultColumn, ResultRow
@@ -26,7 +27,7 @@ from harness.model.fields import LARGEST
 from harness.model.live_load import direction_in_words
 from harness.model.method import Answer, Finding, Status
 from harness.model.proof import LABELS, Proof, Standing, least_known, proof_of
-from harness.model.result import Judgement, Result, Verdict
+from harness.model.result import Judgement, Result, Verdict, residual_of
 from harness.model.result_texts import PROVED, VERDICT_TEXTS, answer_text
 
 JUDGED = {True: 0, False: 1, None: 3}
@@ -88,7 +89,8 @@ def print_comparison(compared: ComparisonRun, report: Path | None, columns: Sequ
                 end_section=number == len(case.results) - 1,
             )
     console.print(table)
-    for sentence in _proofs(compared):
+    refusals = [f"{case.case.id}: {sentence}" for case in compared.cases for sentence in case.refusals]
+    for sentence in (*_proofs(compared), *refusals):
         console.print(escape(sentence), highlight=False)
     units: dict[str, list[str]] = {}
     for case in compared.cases:
@@ -102,6 +104,9 @@ def print_comparison(compared: ComparisonRun, report: Path | None, columns: Sequ
                 console.print(escape(f"{case.case.id}, {result.method}: {result.sentence}"), highlight=False)
         if case.split_on_dead_load:
             console.print(f"{escape(f'{case.case.id}: {case.split_on_dead_load}')}.", highlight=False)
+    for case in compared.cases:
+        for sentence in _strength(case):
+            console.print(escape(sentence), highlight=False)
     broken = violations(compared)
     gated = sum(item.gate for case in compared.cases for result in case.results for item in result.comparisons)
     gates = sum(gate.passed is not None for case in compared.cases for gate in case.gates)
@@ -118,6 +123,21 @@ def print_comparison(compared: ComparisonRun, report: Path | None, columns: Sequ
         print(visible(f"Report: {report}"))
 
 
+def _strength(case: CaseResults) -> Iterator[str]:
+    """Plastic and residual values of a wall whose joints have cohesion or tension, and which of them is safe."""
+    found = []
+    for result in case.results:
+        residual = residual_of(result)
+        if residual is not None and result.status is Status.OK:
+            bound = ", an upper bound" if result.traits.bounds_above else ""
+            found.append(f"{result.method} {answer_text(result)} plastic, {answer_text(residual)} residual{bound}")
+    if found:
+        yield (
+            f"{case.case.id}, strength of joints: {'; '.join(found)}. Joints of mortar are brittle: rely on the "
+            "residual value of a method that is no upper bound."
+        )
+
+
 def _is_minimum(case: CaseResults, result: Result) -> bool:
     return proof_of(case, result).standing is Standing.MINIMUM
 
@@ -128,7 +148,7 @@ def _proofs(compared: ComparisonRun) -> Iterator[str]:
         (case,) = compared.cases
         least = least_known(case)
         if least is not None:
-            yield f"{least.method}: {proof_of(case, least).sentence}"
+            yield f"{least.method}: {replace(proof_of(case, least), refused='').sentence}"
     elif any(_is_minimum(case, result) for case in compared.cases for result in case.results):
         yield f"{PROVED} {LABELS[Standing.MINIMUM]}: an exact certificate proves that no collapse state lies lower."
 
@@ -178,6 +198,8 @@ def print_result(result: Result, case: Case, proof: Proof) -> None:
         ("finding", answer_text(result) if result.finding is Finding.COLLAPSES else str(result.finding)),
         ("", result.sentence),
     ]
+    if (residual := residual_of(result)) is not None:
+        rows.append(("residual", f"{answer_text(residual)}, without cohesion and tensile strength"))
     if result.bracket is not None:
         rows.append(("bracket", f"[{result.bracket[0]:.7g}, {result.bracket[1]:.7g}] {result.bracket_meaning}"))
     if proof.sentence:

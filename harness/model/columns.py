@@ -10,7 +10,7 @@ from typing import Any
 
 from harness.model.case import Reference
 from harness.model.proof import Proof
-from harness.model.result import Comparison, Result, exceeds_accuracy
+from harness.model.result import Comparison, Result, exceeds_accuracy, residual_of
 from harness.model.result_texts import VERDICT_TEXTS, multiplier_text, references_text, residual_text, settings_text
 from harness.model.table import TableColumn
 
@@ -92,6 +92,18 @@ RESULTS: tuple[ResultColumn, ...] = (
     _text("bracket_meaning", "what the ends of the bracket are"),
     _field("bracket_width", "Float64", "1", "of a measured bracket, as a share of its upper end"),
     _field("bracket_wide", "boolean", "", "whether a measured bracket is so wide that its middle says little"),
+    ResultColumn(
+        "residual_multiplier",
+        "Float64",
+        "1",
+        "of the same wall without cohesion and tensile strength",
+        lambda row: None if (residual := residual_of(row.result)) is None else residual.multiplier,
+    ),
+    _text(
+        "residual_finding",
+        "what the answer says about the wall without cohesion and tensile strength",
+        lambda row: None if (residual := residual_of(row.result)) is None else str(residual.finding),
+    ),
     _text(
         "proof",
         "how the multiplier stands to the minimum: minimum, minimum_to_rounding, least_known or none",

@@ -14,7 +14,6 @@ from methods.proof.verify.exact_wall import (
     CertificateError,
     common_denominator,
     contacts,
-    dot,
     fractions_of,
     integers,
     number,
@@ -35,7 +34,6 @@ WITHIN: dict[str, tuple[Callable[[], Any], Any]] = {
     "fractions": (lambda: fractions_of(["1/2", 3], 2), [HALF, Fraction(3)]),
     "denominators": (lambda: common_denominator([HALF, Fraction(1, 6), Fraction(1, 4)]), 12),
     "many bits": (lambda: common_denominator([Fraction(1, 2 ** (MOST_BITS - 1))]), 2 ** (MOST_BITS - 1)),
-    "inner product": (lambda: dot([HALF, THIRD, Fraction(0)], [Fraction(4), Fraction(6), Fraction(9)]), 4),
     "forms": (lambda: integers([{0: HALF, 5: Fraction(0)}, {3: -THIRD}]), ([{0: 3}, {3: -2}], 6)),
 }
 BEYOND: dict[str, Callable[[], Any]] = {

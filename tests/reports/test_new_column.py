@@ -78,7 +78,7 @@ def test_a_study_has_a_new_column(run: ComparisonRun):
     )
     columns = (*STUDY, joints)
     result = run.cases[0].results[0]
-    rows = [row_of(first, result.summary(), columns), refused_row(second, "It cannot be built.", columns)]
+    rows = [row_of(first, result, columns), refused_row(second, "It cannot be built.", columns)]
     table = tidy(rows, ["friction"], columns)
     assert table["joints"].tolist() == [result.interfaces, pd.NA]
     assert table["status"].tolist() == ["ok", "refused"]

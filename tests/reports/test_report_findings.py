@@ -47,7 +47,7 @@ def test_one_wall_opens_with_its_multipliers_and_the_number_to_use():
 
 def test_least_is_the_minimum_only_where_it_is_proved():
     proved = opening.which_number(of_one_wall(proved_least=True))
-    assert "(la), least, to rounding: branch and bound in floating point leaves no collapse state below it." in proved
+    assert "(la), least, to rounding: la finds in floating point that no collapse state lies below it." in proved
     assert "minimum" not in opening.wall_findings(of_one_wall())
     assert "(LA, least, to rounding)" in opening.wall_findings(of_one_wall(proved_least=True))
 

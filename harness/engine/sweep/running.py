@@ -2,21 +2,19 @@
 
 from __future__ import annotations
 
-from collections.abc import Generator, Iterator, Mapping, Sequence
+from collections.abc import Generator, Sequence
 from contextlib import closing
 from dataclasses import dataclass
 from operator import attrgetter
 from typing import Any
 
-from harness.engine.executors import Executor, Job
-from harness.engine.judge import judge
+from harness.engine.executors import Executor
+from harness.engine.pipeline import executed
 from harness.engine.store import Store
-from harness.engine.sweep.expand import SweepRun, Walls
-from harness.model.assembly import Assembly
+from harness.engine.sweep.expand import SweepRun
 from harness.model.columns import ResultColumn, ResultRow, chosen
 from harness.model.errors import InputError
 from harness.model.method import Finding, Status
-from harness.model.reading import validate
 from harness.model.result import Result
 from harness.model.table import TableColumn, values
 
@@ -37,42 +35,12 @@ def sweep(
 
     Closing the generator stops what is under way; what has ended is in the store.
     """
-    waiting: dict[str, list[SweepRun]] = {}
-    stored = {} if fresh else store.summaries({run.key for run in runs})
-    for run in runs:
-        if run.key in stored:
-            yield run, row_of(run, stored[run.key]), True
-        else:
-            waiting.setdefault(run.key, []).append(run)
-    firsts = {same[0].number: same[0] for same in waiting.values()}
-    walls, assemblies, refused = Walls(), dict[int, Assembly](), list[tuple[SweepRun, InputError]]()
-
-    def jobs() -> Iterator[Job]:
-        for run in firsts.values():
-            try:
-                assemblies[run.number] = walls.assembly(run.variant)
-            except InputError as error:
-                refused.append((run, error))
-                continue
-            yield Job(run.number, run.variant.source.name, run.task(assemblies[run.number]))
-
-    with closing(executor.map(jobs(), {run.method for run in firsts.values()})) as made:
-        for number, measured in made:
-            run, assembly = firsts[number], assemblies.pop(number)
-            result = measured.result.model_copy(
-                update={
-                    "key": run.key,
-                    "judge": judge(assembly, measured.result, measured.tolerance),
-                    "given": [motion.found_by for motion in run.given],
-                }
-            )
-            store.put(run.key, result, measured.tolerance)
-            summary = result.summary()
-            for same in waiting[run.key]:
-                yield same, row_of(same, summary), False
-    for run, error in refused:
-        for same in waiting[run.key]:
-            yield same, refused_row(same, str(error)), False
+    refused: list[tuple[int, InputError]] = []
+    with closing(executed(runs, store, executor, fresh=fresh, whole=False, refused=refused)) as ended:
+        for place, result, stored in ended:
+            yield runs[place], row_of(runs[place], result), stored
+    for place, error in refused:
+        yield runs[place], refused_row(runs[place], str(error)), False
 
 
 @dataclass(frozen=True)
@@ -137,14 +105,9 @@ STUDY: tuple[StudyColumn, ...] = (
 """Columns of every study. What the study varies comes after `case`."""
 
 
-def row_of(run: SweepRun, summary: Mapping[str, Any], columns: Sequence[StudyColumn] = STUDY) -> Row:
-    """The row of a result, given as JSON values.
-
-    Raises:
-        InputError: the result is damaged.
-    """
-    source = f"the result of {run.method} on {run.variant.source.name}"
-    return _varied(run) | values(columns, StudyRow(run, validate(Result, dict(summary), source)))
+def row_of(run: SweepRun, result: Result, columns: Sequence[StudyColumn] = STUDY) -> Row:
+    """The row of a result, as JSON values."""
+    return _varied(run) | values(columns, StudyRow(run, result))
 
 
 def refused_row(run: SweepRun, sentence: str, columns: Sequence[StudyColumn] = STUDY) -> Row:

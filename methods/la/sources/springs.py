@@ -141,8 +141,8 @@ class LowPrestress:
     heavy: int = 3
 
     def applies(self, problem: Problem) -> bool:
-        """On joints that slide without lifting, as springs do."""
-        return problem.n_interfaces <= self.most and not problem.dilates
+        """On dry joints that slide without lifting, as springs do."""
+        return problem.n_interfaces <= self.most and not problem.dilates and problem.law.is_cone
 
     def states(self, search: Search) -> Iterator[CollapseState]:
         """One state a path that ends, until the breakpoints are spent."""
@@ -211,8 +211,8 @@ class ShiftedAssociated:
     left: PathSettings = field(default_factory=lambda: PathSettings(dilatancy=1.0, gap=0.1, residual=1e-7))
 
     def applies(self, problem: Problem) -> bool:
-        """On joints that slide without lifting, as springs do."""
-        return self.least <= problem.n_interfaces <= self.most and not problem.dilates
+        """On dry joints that slide without lifting, as springs do."""
+        return self.least <= problem.n_interfaces <= self.most and not problem.dilates and problem.law.is_cone
 
     def states(self, search: Search) -> Iterator[CollapseState]:
         """One state at most; none where statics allows any load."""
@@ -245,8 +245,8 @@ class AnalyticCentre:
     committed: CommittedHistories = CommittedHistories()
 
     def applies(self, problem: Problem) -> bool:
-        """On joints that slide without lifting, as springs do."""
-        return not problem.dilates
+        """On dry joints that slide without lifting, as springs do."""
+        return not problem.dilates and problem.law.is_cone
 
     def states(self, search: Search) -> Iterator[CollapseState]:
         """One state a path that ends; none where statics allows any load."""
