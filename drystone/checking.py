@@ -49,7 +49,7 @@ class Check:
         from drystone.pictures import html
 
         shown = self.to_pandas()[["case", "reference", "method", "value", "relation", "expected", "verdict"]]
-        title = f"{sum(line['verdict'] == 'agrees' for line in self.lines)} of {len(self.lines)} references hold"
+        title = f"{sum(line['verdict'] == 'agrees' for line in self.lines)} of {len(self.lines)} references are met"
         return html(title, None, str(shown.to_html(index=False, na_rep="-", float_format="{:.6g}".format)))
 
 

@@ -147,14 +147,14 @@ FORMATS = (
     Format(
         (".ifc",),
         "IFC",
-        refusal="IFC describes walls as wholes, not their stones; export the stones as DXF, or as COMPAS JSON",
+        refusal="IFC describes whole walls, not their stones; export the stones as DXF, or as COMPAS JSON",
     ),
     Format((".dwg",), "DWG", refusal="DWG is a closed format; save the drawing as DXF"),
     Format((".step", ".stp"), "STEP", refusal="STEP describes solids; export their outlines as DXF"),
     Format(
         (".pdf",),
         "PDF",
-        refusal="a PDF holds no outlines that can be told from its lettering; open it in Inkscape and save it as SVG",
+        refusal="outlines of a PDF cannot be distinguished from its lettering; open it in Inkscape and save it as SVG",
     ),
 )
 """Every format, in the order in which they are listed."""

@@ -106,8 +106,6 @@ class ReleasedCollapse(Solver):
             "frames": (np.round(collapse.places / motion_units(assembly), 6) * motion_units(assembly)).tolist(),
             "time_unit": "sqrt(length scale / gravity)",
         }
-        end = (
-            "until a block had moved as far as asked" if collapse.reached else "without a block moving as far as asked"
-        )
-        answer.sentence += f"; released at {multiplier:.6g} and followed {end}: {len(pairs)} interfaces came apart"
+        end = "until a block had moved far enough" if collapse.reached else "without such a displacement"
+        answer.sentence += f"; released at {multiplier:.6g} and followed {end}: {len(pairs)} interfaces separated"
         return answer

@@ -50,7 +50,7 @@ def associated_answer(problem: Problem, result: AssociatedResult, tolerance: flo
     return collapse_answer(
         problem,
         result.state,
-        f"The greatest multiplier that statics and yield allow is {multiplier:.7g}.",
+        f"The greatest multiplier within statics and yield is {multiplier:.7g}.",
         tolerance,
         result.iterations,
         {"duality_gap": result.gap, "unknowns": 3 * problem.n_interfaces + 1},

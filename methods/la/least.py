@@ -30,7 +30,7 @@ from methods.la.sources.budget import Budget, rounds_of
 from methods.la.sources.search import CHOICES, Search
 from methods.numerics.failures import NumericalFailure
 
-NOT_EXACT = "No state was found that holds beside the lightest blocks too: weights differ too much within the wall"
+NOT_EXACT = "No state is in equilibrium at the lightest blocks too: weights differ too much within the wall"
 SAME_MULTIPLIER = 1e-9
 """Relative difference of two multipliers below which the state with the smaller residuals is the better one."""
 
@@ -136,7 +136,7 @@ def _stopped_before_the_first(search: Search, associated: CollapseState, toleran
     )
     details = _details(search, None, None) | {"stopped_by_limit": True}
     return collapse_answer(
-        problem, associated, sentence, tolerance, 0, details, (0.0, greatest), "nothing is known but the upper bound"
+        problem, associated, sentence, tolerance, 0, details, (0.0, greatest), "only the upper bound is known"
     )
 
 
@@ -231,9 +231,8 @@ def _sentence(search: Search, best: CollapseState, proof: Proof) -> str:
     least = search.problem.to_multiplier(best.multiplier)
     if proof.complete:
         nodes = f"{proof.nodes} node{'s' if proof.nodes != 1 else ''}"
-        return (
-            f"The least collapse multiplier is {least:.7g}: branch and bound ({nodes}) leaves none below, to rounding."
-        )
+        lower = f"branch and bound ({nodes}) excludes lower ones to rounding"
+        return f"The least collapse multiplier is {least:.7g}: {lower}."
     source = search.record.improvements[-1].source
     descent = "" if search.budget.limits.descents else ", without descent because of the size of the wall"
-    return f"The least collapse multiplier known is {least:.7g}{descent}; it was found by way of {source}."
+    return f"The least collapse multiplier known is {least:.7g}{descent}; found from: {source}."

@@ -188,7 +188,7 @@ def test_fe_goes_on_beside_a_block_without_weight_that_comes_loose() -> None:
     answer = solve(panel)
     assert answer.multiplier == pytest.approx(32 / 3, rel=1e-9)
     assert answer.multiplier == pytest.approx(answered(load_method("la-associated"), panel)[0].multiplier, rel=1e-9)
-    assert "blocks without weight or load came loose (a)" in str(answer.details["histories"])
+    assert "blocks without weight or load move freely (a)" in str(answer.details["histories"])
 
 
 def test_fe_path_columns_have_equal_length_and_end_at_the_plateau() -> None:

@@ -21,8 +21,8 @@ def out_of_time(*_: Any, **__: Any) -> Any:
 
 STEPS = {
     "later": ("sources.paths.CentralPath.states", "central path"),
-    "ladder": ("sources.ladder.FrictionLadder.states", "friction ladder"),
-    "springs": ("sources.search.gravity_of", "springs with little self-stress"),
+    "ladder": ("sources.ladder.FrictionLadder.states", "friction continuation"),
+    "springs": ("sources.search.gravity_of", "springs with low prestress"),
     "proof": ("least.prove", "moving blocks joined"),
 }
 

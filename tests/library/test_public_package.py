@@ -149,4 +149,4 @@ def test_a_check_holds_methods_to_gated_references():
     table = checked.to_pandas()
     assert set(table["case"]) == {"slide", "topple"}
     assert set(table["verdict"]) == {"agrees"}
-    assert "references hold" in checked._repr_html_()
+    assert "references are met" in checked._repr_html_()

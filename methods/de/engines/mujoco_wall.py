@@ -246,14 +246,14 @@ class MujocoWall:
         """Make time steps.
 
         Raises:
-            SolverFailed: the blocks were thrown apart.
+            SolverFailed: the the blocks separated.
         """
         # One call a step, so that the alarm of a time limit is heard between them: walls take 5 ms for each.
         for _ in range(steps):
             self._mujoco.mj_step(self._model, self._data)
         self.steps += steps
         if self._was_reset() or not float(np.abs(self._data.qvel).max(initial=0.0)) * self._drag < MUJOCO.exploded:
-            raise SolverFailed("MuJoCo's contact solver did not converge: blocks were thrown apart")
+            raise SolverFailed("MuJoCo's contact solver did not converge: the blocks separated")
 
     def _was_reset(self) -> bool:
         """Whether MuJoCo met numbers it cannot go on from: it then starts again at rest, without an error."""

@@ -28,7 +28,7 @@ class FrictionContinuation:
         rough_rungs: friction of the rungs added for joints that are rougher still.
     """
 
-    name: ClassVar[str] = "friction ladder"
+    name: ClassVar[str] = "friction continuation"
     pool: int = 24
     rough: float = 1.0
     rough_rungs: tuple[float, ...] = (1.0, 1.5, 2.25)

@@ -125,7 +125,7 @@ class LowPrestress:
         heavy: power of the exponential weights on compression: a few joints are to carry next to nothing.
     """
 
-    name: ClassVar[str] = "springs with little self-stress"
+    name: ClassVar[str] = "springs with low prestress"
     most: int = 6000
     vertices_up_to: int = 200
     rubs: float = 1e-6
@@ -205,7 +205,7 @@ class ShiftedAssociated:
         left: where the associated path is left; full steps meet the equilibrium at a gap of half a percent or so.
     """
 
-    name: ClassVar[str] = "springs from safe forces"
+    name: ClassVar[str] = "springs from shifted associated forces"
     least: int = 0
     most: float = np.inf
     left: PathSettings = field(default_factory=lambda: PathSettings(dilatancy=1.0, gap=0.1, residual=1e-7))
@@ -239,7 +239,7 @@ class AnalyticCentre:
         gravity_above: interfaces above which gravity's committed histories are tried here, as nowhere else.
     """
 
-    name: ClassVar[str] = "springs from central forces"
+    name: ClassVar[str] = "springs from the analytic centre"
     shares: tuple[float, ...] = (3e-3, 1e-3)
     gravity_above: int = 2000
     committed: CommittedHistories = CommittedHistories()
