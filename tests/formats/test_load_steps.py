@@ -22,7 +22,7 @@ from harness.model.method import Answer, load_method
 from harness.model.reading import parse_wall
 from harness.model.result import Result, result_of
 from methods.fe.settings import GapSpringsSettings
-from methods.springs.path.path_record import PathStep, PathRecord
+from methods.springs.path.path_record import PathRecord, PathStep
 from tests.walls import running_bond, wall_data
 
 STEPS = 12
