@@ -33,8 +33,7 @@ class SoftContacts:
 
     Attributes:
         time_step: in units of sqrt(length scale / gravity).
-        stiffness, damping: as above. With a stiffness of 0.25 walls of more than 50 bricks shook for ever under their
-            dead load, with 0.1 those of more than 200.
+        stiffness, damping: as above. Stiffer contacts let large walls vibrate under their dead load.
         wall_impedance, chain_impedance: for walls, and for chains of blocks, whose slow modes want stiffer contacts.
         radius: of a contact sphere, in unit lengths. It does not matter: the sphere touches a flat face at one point.
         overlap: by which a sphere starts inside its face, in unit lengths, so that rounding does not decide which
