@@ -1,8 +1,8 @@
 """`de-soft`: distinct elements with deformable joints and rounded corners, at large displacements.
 
-This is the kind of distinct elements that UDEC made common: joints have a stiffness, blocks that lean add to the load
-(P-Delta), and corners roll. With stiff joints and small rounds it comes to the multiplier of the other methods; what
-softer joints and larger rounds take from it is the finding.
+The model is that of UDEC (Cundall 1987): joints have a stiffness, leaning blocks add to the load (P-Delta), and corners
+roll. `methods.de.engines.soft_wall` has the equations of motion. With stiff joints and small radii the multiplier is
+that of the other methods; the reduction by softer joints and larger radii is the result of interest.
 """
 
 from __future__ import annotations

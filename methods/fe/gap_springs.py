@@ -1,4 +1,4 @@
-"""The gap-spring methods as the harness knows them: `fe`, `fe-newton` and `fe-qp`."""
+"""The gap-spring methods `fe`, `fe-newton` and `fe-qp`."""
 
 from __future__ import annotations
 

@@ -1,4 +1,12 @@
-"""The run of `la`: the sources of states in order, one budget and one record, and the answer they lead to."""
+"""The run of `la`: starting-point strategies in order, one budget and one record, and the answer.
+
+The least multiplier under zero dilatancy is a mathematical programme with equilibrium constraints:
+
+    min lambda   s.t.  C' r + f0 + lambda fL = 0,   C u = E g,   fL.u = 1,   0 <= y = S r + s0,   g >= 0,   y.g = 0
+
+Source: Baggio and Trovalusci (1995), equations 1 to 11; Ferris and Tin-Loi (2001). It is not convex: the search returns
+the least state that it finds, and `methods.la.certify` and `methods.proof` prove bounds.
+"""
 
 from __future__ import annotations
 
