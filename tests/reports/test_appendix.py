@@ -13,8 +13,8 @@ import pytest
 from drystone.cli import printing
 from harness.model.comparison import CaseResults
 from harness.model.live_load import reversed_live
-from reports.appendix import render, write_appendix
-from reports.reactions import out_of_balance, reactions
+from reports.findings.reactions import out_of_balance, reactions
+from reports.page.appendix import render, write_appendix
 from tests.commands import drystone
 from tests.reports import samples
 from tests.walls import assembly, stack
