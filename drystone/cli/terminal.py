@@ -133,7 +133,7 @@ def _strength(case: CaseResults) -> Iterator[str]:
     if found:
         yield (
             f"{case.case.id}, strength of joints: {'; '.join(found)}. Joints of mortar are brittle: rely on the "
-            "residual value of a method that is no upper bound."
+            "residual value of a method that is not an upper bound."
         )
 
 

@@ -25,7 +25,7 @@ from methods.proof.search.window_search import Bracket
 
 @dataclass(frozen=True)
 class Attempt:
-    """What came of the attempt to certify a wall.
+    """Results of the attempt to certify a wall.
 
     Attributes:
         document: the certificate; None where nothing is proved in fractions.

@@ -122,7 +122,7 @@ def red_rows(run: ComparisonRun) -> list[RedRow]:
             RedRow(
                 f"case-{number}",
                 f"{item.case.id}, {'search' if gate.of_search else 'theory'}",
-                f"{gate.statement}: does not hold ({gate.sentence})",
+                f"{gate.statement}: not met ({gate.sentence})",
             )
             for gate in item.gates
             if gate.passed is False
@@ -149,7 +149,7 @@ def _broken_theory(run: ComparisonRun) -> tuple[list[str], list[str]]:
     wrong = ", ".join(dict.fromkeys(name for name, gate in failed if not gate.of_search))
     missed = "; ".join(f"{name} ({gate.sentence})" for name, gate in failed if gate.of_search)
     return (
-        [f"Theory is violated on {wrong}: at least one method is wrong there."] if wrong else [],
+        [f"A statement of theory is violated on {wrong}: at least one method is wrong there."] if wrong else [],
         [f"The search for the least state missed one that another method reached: {missed}."] if missed else [],
     )
 
@@ -240,7 +240,7 @@ def which_number(item: CaseResults) -> str:
         )
     if associated is not None and _above(associated, least):
         sentences.append(
-            f"Do not rely on {_height(associated, least)} ({associated.method}): it lets joints widen as they slide."
+            f"Do not rely on {_height(associated, least)} ({associated.method}): its joints open as they slide."
         )
     return " ".join(sentences)
 

@@ -239,9 +239,7 @@ def test_joints_are_told_by_what_they_do_and_forces_by_the_state_they_are_of():
     item = of_one_wall()
     page = build.render(ComparisonRun("mine", "", "", [item]), data_folder="x")
     assert "of the joints" in page
-    assert (
-        page.count("contact forces of the last state that was held; the mechanism above is of the one that moved") == 1
-    )
+    assert page.count("contact forces of the last held state; the mechanism above belongs to the moving state") == 1
     assert page.count("contact forces at collapse") == 3
     assert "No result of this comparison stands beside a value of others" in page
 
