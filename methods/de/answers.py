@@ -188,7 +188,7 @@ def _at_zero(assembly: Assembly, brackets: list[OrderBracket], fallen: list[Orde
         return answer
     sentence = (
         f"whether the dead load is held is not decided: of {len(brackets)} sweep orders {len(brackets) - len(fallen)} "
-        f"held it, {len(moved)} moved and {len(fallen) - len(moved)} could not be told"
+        f"held it, {len(moved)} moved and {len(fallen) - len(moved)} are undecided"
     )
     return Answer(Status.NOT_CONVERGED, Finding.NONE, sentence)
 

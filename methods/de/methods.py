@@ -31,7 +31,7 @@ DE = Listed(
         marker="d",
     ),
 )
-"""Damped holds of a wall at frozen geometry, bracketed over body orders."""
+"""Damped holds of a wall at frozen geometry, bracketed over sweep orders."""
 
 DE_MUJOCO = Listed(
     name="de-mujoco",

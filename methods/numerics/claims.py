@@ -129,7 +129,7 @@ def _stands_though_joints_give(answer: Answer, bears: float) -> Answer:
         status=Status.NOT_CONVERGED,
         finding=Finding.NONE,
         sentence=f"Rigid blocks stand under the dead load and bear up to {bears:.7g}, since equilibrium exists and no "
-        f"slip works against friction; only with joints that give does the wall not come to rest: {own}.",
+        f"slip works against friction; only with deformable joints does the wall not come to rest: {own}.",
         multiplier=None,
         bracket=None,
         forces=None,

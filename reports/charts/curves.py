@@ -140,13 +140,13 @@ def _holds(result: Result) -> tuple[str, Markup]:
     orders = details.orders
     count = "" if orders is None else f" ({numbers.count(len(orders), 'sweep order')} tried)"
     return (
-        f"{result.method}: the load steps of the reported sweep order, which narrow the bracket from both sides{count}.",
+        f"{result.method}: the load steps of the reported sweep order narrow the bracket from both sides{count}.",
         charts.svg(chart),
     )
 
 
 def _orders(result: Result) -> list[tuple[str, Markup]]:
-    """The bracket of every body order, which shows the spread that rigid contacts leave."""
+    """The bracket of every sweep order, which shows the spread that rigid contacts leave."""
     orders = AnswerDetails(result.details).orders or ()
     ends = [
         (float(number), order.held, order.moving)
@@ -167,7 +167,7 @@ def _orders(result: Result) -> list[tuple[str, Markup]]:
     )
     chart = charts.Chart(
         title=f"Brackets of {result.method} over sweep orders",
-        x_label="body order",
+        x_label="sweep order",
         y_label="multiplier",
         series=[held, moving],
         whole=True,

@@ -1,4 +1,4 @@
-"""Continuation in friction: mechanisms found at lower friction are carried up a ladder to the friction of the wall.
+"""Continuation in friction: mechanisms found at lower friction are carried in steps to the friction of the wall.
 
 The mechanisms of zero-dilatancy flow do not depend on friction, only the forces that fit them do. At high friction
 the low collapse states have small basins; at lower friction the same mechanisms are found at once.
