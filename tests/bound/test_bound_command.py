@@ -70,7 +70,7 @@ def test_what_is_known_to_be_loose_is_said_before_the_search(tmp_path: Path, mon
 STOPPED = {
     "the time": (Bracket(0.25, 0.5, stopped=Stop.TIME), Stop.TIME.value),
     "a window that exact arithmetic refuses": (Bracket(0.25, 0.25, refused="a weight is above zero"), "above zero"),
-    "parts without a certificate": (Bracket(0.25, 0.25), "exact arithmetic leaves less"),
+    "parts without a certificate": (Bracket(0.25, 0.25), "exact arithmetic gives a lower bound"),
 }
 
 

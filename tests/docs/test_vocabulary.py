@@ -66,8 +66,7 @@ def _sentences(path: Path) -> Iterator[str]:
     docstrings = {id(node.value) for node in ast.walk(tree) if isinstance(node, ast.Expr)}
     for node in ast.walk(tree):
         if isinstance(node, ast.Constant) and isinstance(node.value, str) and id(node) not in docstrings:
-            if " " in node.value.strip():
-                yield node.value
+            yield from [node.value] if " " in node.value.strip() else []
 
 
 def _found(text: str) -> list[str]:

@@ -139,7 +139,7 @@ def test_a_sweep_takes_a_shipped_study_with_changes_and_refuses_what_varies_noth
         drystone.sweep(WALL)
     with pytest.raises(drystone.InputError, match='no study is called "frictoin"'):
         drystone.sweep("frictoin")
-    with pytest.raises(drystone.InputError, match="says itself what varies"):
+    with pytest.raises(drystone.InputError, match="defines what varies"):
         drystone.sweep("friction", {"friction": [0.5]})
 
 

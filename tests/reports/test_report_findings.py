@@ -241,7 +241,7 @@ def test_joints_are_told_by_what_they_do_and_forces_by_the_state_they_are_of():
     assert "of the joints" in page
     assert page.count("contact forces of the last held state; the mechanism above belongs to the moving state") == 1
     assert page.count("contact forces at collapse") == 3
-    assert "No result of this comparison stands beside a value of others" in page
+    assert "No result of this comparison has a value of others" in page
 
 
 def test_joint_that_rocks_and_slides_counts_as_both():
