@@ -50,7 +50,7 @@ def animate(case: Case, result: Result, path: Path) -> None:
         )
     if result.mechanism is None and released(result, case.assembly.n_blocks) is None:
         raise InputError(
-            f"{result.method} has no mechanism to animate ({labels.STATUS[result.status][1]}: {result.sentence})",
+            f"{result.method} gave no mechanism to animate ({labels.STATUS[result.status][1]}: {result.sentence})",
             "Choose a method that ended with a collapse state",
             source=case.id,
         )

@@ -82,7 +82,7 @@ def results_figure(case: Case, results: list[Result], kind: str) -> Figure:
     if not usable:
         methods = ", ".join(result.method for result in results) or "no method"
         raise InputError(
-            f"{methods} left no {' and no '.join(needed)} to draw",
+            f"{methods} gave no {' and no '.join(needed)} to draw",
             "Choose a method that ended with a collapse state",
             source=case.id,
         )

@@ -39,7 +39,7 @@ LIMITS: tuple[tuple[str, str, tuple[str, ...]], ...] = (
         "seeks_least",
         (
             "With friction the problem has many local minima. The report gives the least collapse state known: "
-            "a checked collapse state, below which a longer search may find another. It is called the minimum "
+            "a checked collapse state, below which a longer search may find another. It is called the least "
             "only if a proved lower bound reaches it: branch and bound achieves this on single blocks, columns,"
             " rings of up to 30 joints and most walls of up to six blocks.",
         ),

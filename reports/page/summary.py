@@ -149,7 +149,7 @@ def _broken_theory(run: ComparisonRun) -> tuple[list[str], list[str]]:
     wrong = ", ".join(dict.fromkeys(name for name, gate in failed if not gate.of_search))
     missed = "; ".join(f"{name} ({gate.sentence})" for name, gate in failed if gate.of_search)
     return (
-        [f"A statement of theory is violated on {wrong}: at least one method is wrong there."] if wrong else [],
+        [f"Theory is violated on {wrong}: at least one method is wrong there."] if wrong else [],
         [f"The search for the least state missed one that another method reached: {missed}."] if missed else [],
     )
 

@@ -139,7 +139,7 @@ def test_self_stress_that_loading_does_not_build_up_is_told_with_its_size():
         result.forces = forces.tolist()
     told = reasons.reasons(item)
     (associated,) = (sentence for sentence in told if "la-associated" in sentence)
-    assert "Head joints press with 0.20 of the wall’s weight in la and 0.50 in la-associated" in associated
+    assert "Head joints carry 0.20 of the wall’s weight in la and 0.50 in la-associated" in associated
     assert "loading does not build up: fe ends with 0.10" in associated
 
 
