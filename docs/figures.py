@@ -116,7 +116,7 @@ def block_figure(folder: Path) -> None:
         chart.plot(share, LOWEST + (HIGHEST - LOWEST) * share, color=GREY, linewidth=1)
         if bracket is not None:
             chart.axhspan(*bracket, facecolor="#e6efe6")
-            chart.text(0.98, bracket[0] + 0.004, "de: bracket over body orders", ha="right", color="#2e6b34")
+            chart.text(0.98, bracket[0] + 0.004, "de: bracket over sweep orders", ha="right", color="#2e6b34")
         for answer in answers:
             forces = np.asarray(answer.forces)[:, :2].sum(axis=1)
             of_rough, value = forces[0] / forces.sum(), float(answer.multiplier or np.nan)

@@ -41,7 +41,7 @@ def gallery_page(folder: Path) -> None:
         raise GalleryError(f"kinds of `drystone new` and of the gallery differ: {set(SHOWN) ^ set(STARTS)}")
     pictures = folder / "gallery"
     pictures.mkdir(exist_ok=True)
-    parts = ["# Gallery", "", "Walls of a few numbers: each made and drawn by the two commands above it.", ""]
+    parts = ["# Gallery", "", "Parametric walls, each made and drawn by the two commands above it.", ""]
     for kind, numbers in SHOWN.items():
         make = f"drystone new {kind} {numbers}".strip() + f" -o {kind}.json"
         draw = f"drystone show {kind}.json -o {kind}.svg --dimensions"

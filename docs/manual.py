@@ -12,7 +12,7 @@ from reports.labels import numbers
 
 KINDS = {
     ReferenceType.EXACT: "Verification: a closed form, or proved",
-    ReferenceType.BOUND: "Verification: a bound no right answer may pass",
+    ReferenceType.BOUND: "Verification: a bound that no correct answer may pass",
     ReferenceType.PUBLISHED: "Benchmark: computed by others",
     ReferenceType.MEASURED: "Validation: an experiment",
     ReferenceType.REGRESSION: "Regression: our own value of an earlier release",
@@ -39,13 +39,12 @@ def _head(cases: list[Case], baseline: Baseline) -> list[str]:
     rows = [line for case in cases for line in _held(case, baseline.values.get(case.id, {}))]
     count = {sign: sum(line[2] == sign for line in rows) for sign in SIGNS.values()}
     return [
-        f"{len(cases)} cases with what is known of each, where it comes from, and what every method found when the",
-        f"values were last recorded ({last.date}, release {last.release}). Only answers that the judge",
-        "accepted are recorded.",
+        f"{len(cases)} cases with their reference values, their sources, and the values of every method as last",
+        f"recorded ({last.date}, release {last.release}). Only accepted answers are recorded.",
         "",
-        f"Of {len(rows)} values held against a reference here, {count['✓']} agree (✓), {count['≠']} lie outside the",
-        f"tolerance (≠) and {count['▲']} pass a bound (▲). References that ask for settings of their own, and counts",
-        "of blocks or unknowns, are not in the record; `drystone check --tier full` runs them as well.",
+        f"Of {len(rows)} values compared with a reference, {count['✓']} agree (✓), {count['≠']} lie outside the",
+        f"tolerance (≠) and {count['▲']} violate a bound (▲). References with their own settings, and counts",
+        "of blocks or unknowns, are not in the record; `drystone check --tier full` runs them too.",
         "",
         "Repeat one case with `drystone compare CASE`, all of them with `drystone compare --suite all`.",
         "",
@@ -59,7 +58,7 @@ def _section(case: Case, values: dict[str, Value]) -> list[str]:
     parts += [f"Wall: {_plain(file.source)}.", ""]
     if file.references:
         parts += [
-            "| kind | requirement | reference | tolerance, and why | source | found |",
+            "| kind | requirement | reference | tolerance and reason | source | found |",
             "|---|---|---|---|---|---|",
         ]
         parts += [_row(case, reference, values) for reference in file.references]

@@ -15,7 +15,7 @@ def command_pages(folder: Path) -> None:
     from drystone.cli.main import COMMANDS, main
 
     context = Context(main, info_name="drystone")
-    parts = ["# The command", "", "Written from the command itself.", ""]
+    parts = ["# The command", "", "Generated from the command.", ""]
     for name in sorted(COMMANDS):
         command = main.get_command(context, name)
         assert command is not None
@@ -33,7 +33,7 @@ def columns_page(folder: Path) -> None:
     for sentence, columns in (
         ("Of results.csv, results.parquet and `to_pandas()`.", RESULTS),
         ("Of comparisons.csv.", COMPARISONS),
-        ("Of the runs.csv of a study; what the study varies comes after `case`.", STUDY),
+        ("Of the runs.csv of a study; the varied quantities follow `case`.", STUDY),
     ):
         parts += ["", sentence, "", "| column | type | unit | meaning |", "|---|---|---|---|"]
         parts += [f"| `{item.name}` | {item.dtype} | {item.unit} | {item.meaning} |" for item in columns]
@@ -52,7 +52,7 @@ def settings_page(folder: Path) -> None:
         except InputError as error:
             parts += [f"## {name}", "", f"{error}", ""]
             continue
-        parts += [f"## {name}", "", f"{method.title}. Its number: {method.traits.caption or 'not said'}.", ""]
+        parts += [f"## {name}", "", f"{method.title}. Its value: {method.traits.caption or 'not stated'}.", ""]
         fields = method.Settings.model_fields
         if fields:
             meanings = _attributes(method.Settings)

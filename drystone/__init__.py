@@ -8,7 +8,7 @@
 
 `read_wall`, `build_wall`, `new_wall` and `library_wall` give a `Wall`; `analyse` runs one method in this process,
 `compare` many, each run in a process of its own; `judge` holds an answer against equilibrium, yield and flow. `sweep`
-varies friction, proportions or seeds over many walls, and `check` holds methods to gated references.
+varies friction, proportions or seeds over many walls, and `check` compares methods with checked references.
 """
 
 from __future__ import annotations

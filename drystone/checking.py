@@ -1,4 +1,4 @@
-"""Methods held to what is known of walls: gated references and, in the full tier, certificates in fractions."""
+"""Methods held to what is known of walls: checked references and, in the full tier, certificates in fractions."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ class Check:
     """What was held to what. In a notebook it shows its table.
 
     Attributes:
-        lines: one a gated reference or certificate: case, reference, method, value, relation, expected, tolerance,
+        lines: one a checked reference or certificate: case, reference, method, value, relation, expected, tolerance,
             source, requirement, verdict, sentence.
     """
 
@@ -49,7 +49,7 @@ class Check:
         from drystone.pictures import html
 
         shown = self.to_pandas()[["case", "reference", "method", "value", "relation", "expected", "verdict"]]
-        title = f"{sum(line['verdict'] == 'agrees' for line in self.lines)} of {len(self.lines)} references hold"
+        title = f"{sum(line['verdict'] == 'agrees' for line in self.lines)} of {len(self.lines)} references are met"
         return html(title, None, str(shown.to_html(index=False, na_rep="-", float_format="{:.6g}".format)))
 
 
@@ -62,7 +62,7 @@ def check(
     fresh: bool = False,
     told: pipeline.Told | None = None,
 ) -> Check:
-    """Hold the methods to the gated references of walls.
+    """Hold the methods to the checked references of walls.
 
     Args:
         walls: of the library, or with references of their own; None: all of the library.
@@ -87,7 +87,7 @@ def check(
 
 @dataclass(frozen=True)
 class Plan:
-    """The runs of a check: those that gated references need, and those that certificates are held to."""
+    """The runs of a check: those that checked references need, and those that certificates are held to."""
 
     gated: list[Run]
     certified: list[Run]
@@ -116,5 +116,5 @@ def planned(cases: Sequence[Case], tier: Tier) -> Plan:
     """
     limits = Limits(seconds=SECONDS[tier])
     runs = [run for case in cases for run in gated_runs(case, limits, tier)]
-    check_methods(sorted({run.method for run in runs}), "applies_to of a gated reference")
+    check_methods(sorted({run.method for run in runs}), "applies_to of a checked reference")
     return Plan(runs, certificate_runs(cases, limits) if tier == "full" else [])

@@ -134,7 +134,7 @@ def sweep(
             `settings.METHOD.NAME`): a list, or a mapping as in a study file; every one with every other.
         methods: names; None: those of the study, or of the library.
         settings: of methods, by name, where not the defaults.
-        multipliers: at which the probability of failure is asked.
+        multipliers: for the probability of failure.
         neighbours: whether runs take up the motions that their neighbours found; None: as the study says, else not.
         jobs: runs at a time.
         seconds, memory_bytes: limits of a run of a wall; a study has its own.
@@ -227,7 +227,7 @@ def _asked(
         study = varied(what.name, dict(vary), methods, dict(settings or {}), limits, list(multipliers))
         return study, [Source(what.name, json.loads(wall_json(what.case.wall)))]
     if vary:
-        raise InputError("a study says itself what varies", "Leave vary out, or give a wall", "vary")
+        raise InputError("a study defines what varies", "Leave vary out, or give a wall", "vary")
     study, place = (what, None) if isinstance(what, Study) else _read(what)
     study = changed(study, methods, settings or {}, multipliers)
     return study, sources_of(study, folders, place)

@@ -136,7 +136,7 @@ def new_wall(kind: str, **numbers: Any) -> Wall:
     try:
         return build_wall(STARTS[kind](**numbers), kind)
     except (TypeError, ValueError) as error:
-        raise InputError(f"no such wall can be made ({error})", "Give other numbers", kind) from None
+        raise InputError(f"the wall cannot be made ({error})", "Give other numbers", kind) from None
 
 
 def library_wall(name: str) -> Wall:

@@ -1,6 +1,6 @@
 """How much more of its vault does a Matera wall carry when its three bonding stones are well placed?
 
-The multipliers are the gated references of the cases `matera-poor` and `matera-good`; a tenth of the weight of the
+The multipliers are the checked references of the cases `matera-poor` and `matera-good`; a tenth of the weight of the
 vault is dead, so a wall carries 0.1 + lambda. Baggio and Trovalusci (1995) report 0.30 and 1.35 for such walls.
 
 Expected:

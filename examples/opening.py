@@ -1,6 +1,6 @@
 """What does a window under a lintel cost a wall?
 
-The values of the wall with a window are the gated references of the case `opening-lintel`: the associated maximum
+The values of the wall with a window are the checked references of the case `opening-lintel`: the associated maximum
 0.497757 and a collapse state at 0.475101.
 
 Expected:

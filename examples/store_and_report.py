@@ -6,7 +6,7 @@ Expected:
 
     la-associated 0.300000
     from the store: 1 of 1
-    references and gates that do not hold: 0
+    references and statements of theory not met: 0
     report written: True
 """
 
@@ -21,7 +21,7 @@ def main() -> None:
         compared = drystone.compare(wall, ["la-associated"], store="results.sqlite", told=told)
     print(f"la-associated {compared.results[0].multiplier:.6f}")
     print(f"from the store: {sum(stored)} of {len(stored)}")
-    print(f"references and gates that do not hold: {len(compared.violations)}")
+    print(f"references and statements of theory not met: {len(compared.violations)}")
     print(f"report written: {compared.report('report.html').is_file()}")
 
 

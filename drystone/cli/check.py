@@ -86,7 +86,7 @@ def check(
 @click.argument("action", type=click.Choice(["show", "update"]), default="show")
 @click.argument("cases", nargs=-1)
 @click.option("--suite", help="A suite of cases.  [default: all cases]")
-@click.option("--reason", default="", help="Why the recorded values change; an update needs it.")
+@click.option("--reason", default="", help="The reason for an update; required.")
 @click.option("--file", "path", type=OUTPUT, help="The baseline.  [default: the one shipped]")
 @jobs_option
 @store_option

@@ -55,7 +55,7 @@ from harness.model.live_load import is_horizontal, reversed_live
     "--study",
     "studied",
     metavar="NAME[:AMOUNT]",
-    help="Also make a study that comes with Drystone and draw its curve in the report; AMOUNT is a number of seeds "
+    help="Also run a study of Drystone and draw its curve in the report; AMOUNT is a number of seeds "
     "(12) or a time that takes as many as fit (60s).",
 )
 @click.option(

@@ -26,7 +26,7 @@ from harness.model.table import values
     type=click.FloatRange(min=0.0),
     default=Slower().share,
     show_default=True,
-    help="A run is slower if it takes so much of its old CPU time more.",
+    help="Share of the old CPU time by which a slower run exceeds it.",
 )
 @click.option("--html", type=OUTPUT, help="Also write the comparison as a page.")
 @junit_option

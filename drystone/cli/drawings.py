@@ -51,7 +51,7 @@ def validate(wall: Path, method: str, as_json: bool) -> None:
             | {"tolerances": [asdict(plateau) for plateau in plateaus]}
         )
     else:
-        say(f"{joints} joints are found" if joints is not None else f"it cannot be built; faults: {len(looked.faults)}")
+        say(f"{joints} joints are found" if joints is not None else f"it cannot be built; errors: {len(looked.faults)}")
         _list_marks(looked, advice[0] if advice else None)
         if plateaus:
             terminal.print_rows(
@@ -81,7 +81,7 @@ def _looked_at(path: Path) -> Inspection:
     wall, before = salvaged(read_document(path), str(path))
     if wall is None:
         raise_faults(before, str(path))
-        raise AssertionError("a wall that is not read has a fault")
+        raise AssertionError("a wall that is not read has an error")
     return inspect(wall, path.stem, before)
 
 
@@ -117,8 +117,10 @@ def _plateaus(looked: Inspection, method: str) -> list[Plateau]:
 
 @click.command()
 @click.argument("wall", type=click.Path(path_type=Path))
-@click.option("-o", "--output", type=OUTPUT, required=True, help="The file of the mended wall.")
-@click.option("--snap", type=click.FloatRange(min=0.0, min_open=True), required=True, help="A vertex moves no further.")
+@click.option("-o", "--output", type=OUTPUT, required=True, help="The file of the repaired wall.")
+@click.option(
+    "--snap", type=click.FloatRange(min=0.0, min_open=True), required=True, help="Greatest displacement of a vertex."
+)
 @json_flag
 @catching
 def repair(wall: Path, output: Path, snap: float, as_json: bool) -> None:
@@ -147,7 +149,7 @@ def repair(wall: Path, output: Path, snap: float, as_json: bool) -> None:
     for left, kept in mended.doubles:
         say(f'left out: block "{left}", which repeats the outline of "{kept}"')
     for block, count in mended.splits:
-        say(f'block "{block}": {count} vertices put into its faces, where others end')
+        say(f'block "{block}": {count} vertices added to its faces at the ends of others')
     say(f"{len(mended.moves)} vertices moved, {furthest:.3g} at most; {built.assembly.n_interfaces} joints are found")
     for warning in built.warnings:
         say(f"doubtful: {warning}")

@@ -52,7 +52,7 @@ def _endings(use: str, told: str) -> str:
 @click.argument("drawing", type=click.Path(path_type=Path))
 @click.option("-o", "--output", type=OUTPUT, help="A file instead of standard output.")
 @click.option(
-    "--mapping", type=click.Path(path_type=Path), help="What the drawing does not say.  [default: DRAWING.toml]"
+    "--mapping", type=click.Path(path_type=Path), help="Data that the drawing lacks.  [default: DRAWING.toml]"
 )
 @click.option("--units", type=click.Choice(get_args(LengthUnit)), help="Of the drawing, whatever it declares.")
 @click.option("--scale", metavar="1:N", help="Lengths of the wall in lengths of the drawing, as 1:50 or 50.")
@@ -103,8 +103,8 @@ def _write(text: str, output: Path | None) -> None:
 
 @click.command(epilog=_endings("writer", "holds"))
 @click.argument("case")
-@click.option("--method", help="Whose answer goes along; the wall alone if absent.")
-@click.option("-o", "--output", type=OUTPUT, required=True, help="Its ending says the format.")
+@click.option("--method", help="Method whose answer is written too; the wall alone if absent.")
+@click.option("-o", "--output", type=OUTPUT, required=True, help="Its ending determines the format.")
 @settings_option
 @store_option
 @cases_option
@@ -177,7 +177,7 @@ def _kind(name: str, maker: Callable[..., Wall]) -> click.Command:
         try:
             made = maker(**given)
         except ValueError as error:
-            raise InputError(f"no such wall can be made ({error})", "Give other numbers", name) from None
+            raise InputError(f"the wall cannot be made ({error})", "Give other numbers", name) from None
         _write(wall_json(made), output)
 
     options: list[click.Parameter] = [

@@ -25,7 +25,7 @@ REPORT = Path("out/report.html")
 
 REMEDIES = {
     errno.EMFILE: "Raise the limit on open files of this process (ulimit -n) to 64 or more",
-    errno.ENFILE: "End other programs: the machine has as many files open as it can",
+    errno.ENFILE: "End other programs: the machine has reached its limit of open files",
     errno.ENOSPC: "Free room on the disk and repeat the command: finished runs are kept",
     errno.EDQUOT: "Free room in your quota and repeat the command: finished runs are kept",
     errno.EFBIG: "Raise the limit on file sizes (ulimit -f) and repeat the command: finished runs are kept",
@@ -143,7 +143,7 @@ report_option = click.option(
     "--report", type=OUTPUT, default=REPORT, show_default=True, help="Where the report is written."
 )
 junit_option = click.option("--junit", type=OUTPUT, help="Also write the outcomes as JUnit XML to this file.")
-fresh_flag = click.option("--fresh", is_flag=True, help="Run again what is in the store.")
+fresh_flag = click.option("--fresh", is_flag=True, help="Repeat runs that are in the store.")
 
 
 def warn(case: Case) -> None:

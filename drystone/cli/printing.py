@@ -41,7 +41,7 @@ def print_pdf(page: Path, pdf: Path, browsers: Browsers | None = None) -> None:
     asked = browsers or Browsers()
     found = next((path for name in asked.names if (path := shutil.which(name))), None)
     if found is None:
-        raise PrintError(f"no browser prints it as PDF: install chromium, or open {page} and print it")
+        raise PrintError(f"no browser is installed to print it as PDF: install chromium, or open {page} and print it")
     part = pdf.absolute().with_name(f".{pdf.name}.part")
     with tempfile.TemporaryDirectory(prefix="drystone-print-", ignore_cleanup_errors=True) as profile:
         command = [
@@ -55,7 +55,7 @@ def print_pdf(page: Path, pdf: Path, browsers: Browsers | None = None) -> None:
             part.unlink(missing_ok=True)
             raise PrintError(f"{found} did not print within {asked.seconds:.0f} s: open {page} and print it") from None
     if done.returncode or not part.exists():
-        reason = (done.stderr.strip().splitlines() or ["without a word"])[-1]
+        reason = (done.stderr.strip().splitlines() or ["without a message"])[-1]
         part.unlink(missing_ok=True)
         raise PrintError(f"{found} did not print ({reason}): open {page} and print it")
     os.replace(part, pdf)

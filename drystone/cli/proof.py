@@ -20,8 +20,16 @@ from methods.proof.verify.exact_wall import CertificateError
 @click.command()
 @click.argument("case")
 @click.option("-o", "--output", type=OUTPUT, required=True, help="The certificate to write.")
-@click.option("--nodes", type=click.IntRange(min=1), help="Of the tree at most; by default by the size of CASE.")
-@click.option("--seconds", type=click.FloatRange(min=0.0), default=120.0, show_default=True, help="For the windows.")
+@click.option(
+    "--nodes", type=click.IntRange(min=1), help="Limit for the tree; the default depends on the size of CASE."
+)
+@click.option(
+    "--seconds",
+    type=click.FloatRange(min=0.0),
+    default=120.0,
+    show_default=True,
+    help="Limit for the multiplier intervals.",
+)
 @click.option("--effort", type=click.Choice(["quick", "normal", "deep"]), default="normal", help="Of the search.")
 @cases_option
 @catching
@@ -48,7 +56,7 @@ def bound(
     if not found.assembly.has_live_load:
         raise InputError("the wall has no live load", 'Give "loads": {"live": ...}', case)
     if found.assembly.dilates:
-        raise InputError("some joints lift as they slide", "Leave dilatancy out: certificates are without", case)
+        raise InputError("some joints have dilatancy", "Leave dilatancy out: certificates assume none", case)
     if found.assembly.strong:
         remedy = "Leave cohesion and tensile strength out: certificates are of dry joints"
         raise InputError("some joints have cohesion or tensile strength", remedy, case)
@@ -65,7 +73,7 @@ def bound(
 
 @click.command(name="verify-bound")
 @click.argument("certificate", type=click.Path(path_type=Path))
-@click.option("--wall", help="The wall it must be of: an id, a case folder or a WALL.json.")
+@click.option("--wall", help="The wall of the certificate: an id, a case folder or a WALL.json.")
 @json_flag
 @cases_option
 @catching
@@ -92,4 +100,4 @@ def verify_bound(certificate: Path, wall: str | None, as_json: bool, folders: tu
     else:
         say(f"{proved(document).capitalize()}.")
         if wall is not None:
-            say(f"It is of the wall in {wall}.")
+            say(f"It is for the wall in {wall}.")

@@ -36,7 +36,7 @@ from harness.model.method import Status
     type=click.IntRange(1),
     default=1,
     show_default=True,
-    help="Processes for the parts of this one run, where its method can make them side by side; others refuse.",
+    help="Processes for this run, if its method supports several; other methods refuse.",
 )
 @click.option(
     "--store",

@@ -56,14 +56,16 @@ OUT = Path("out")
     help=f"Names of methods, separated by commas.  [default: {','.join(library().methods.sweep)}, or the study's]",
 )
 @click.option("--set", "settings", multiple=True, metavar="METHOD.NAME=VALUE", help="A setting; may be repeated.")
-@click.option("--at", "multipliers", type=float, multiple=True, help="Tell the probability of failure at a multiplier.")
+@click.option(
+    "--at", "multipliers", type=float, multiple=True, help="Report the probability of failure at a multiplier."
+)
 @click.option(
     "--neighbours/--alone",
     default=None,
-    help="Whether runs take up the mechanisms found on walls of the same joints.  [default: as the study says; alone]",
+    help="Use the mechanisms found on walls with the same joints.  [default: as the study says; alone]",
 )
-@click.option("--dry-run", is_flag=True, help="Tell how many runs there are and what they may take; run nothing.")
-@click.option("--scheduler", metavar="tcp://HOST:PORT", help="A Dask scheduler whose workers make the runs.")
+@click.option("--dry-run", is_flag=True, help="Report the number of runs and their estimated time; run nothing.")
+@click.option("--scheduler", metavar="tcp://HOST:PORT", help="A Dask scheduler for the runs.")
 @click.option("-o", "--output", type=click.Path(path_type=Path), help="Folder of the tables.  [default: out/NAME]")
 @click.option("--no-report", is_flag=True, help="Tables only, no page.")
 @seconds_option
@@ -180,12 +182,12 @@ def _tell_plan(asked: Study, runs: list[SweepRun], store: Path, jobs: int, as_js
     say(f"{asked.title}: {len(runs):,} runs, {sum(left.values()):,} of them not in {store}")
     for method, count in wanted.items():
         cost = f"{mean[method]:.3g} s a run, the mean of {len(costs[method]):,} in the store" if method in mean else (
-            "no run of it is in the store to tell its cost")  # fmt: skip
+            "no stored run gives its cost")  # fmt: skip
         say(f"  {method}: {count:,} runs, {left[method]:,} to make; {cost}")
     if not unknown:
         say(f"About {duration(seconds)} with {jobs} at a time, walls alike.")
     if asked.neighbours:
-        say("Then runs take up what their neighbours found, which is quick beside a search.")
+        say("Then runs use the mechanisms of their neighbours, which takes little time.")
 
 
 @click.command(name="study")
@@ -221,7 +223,7 @@ def merge(into: Path, others: tuple[Path, ...]) -> None:
             if other.exists() and into.exists() and other.samefile(into):
                 raise InputError("it is the store itself", "Name another store", source=str(other))
             taken, there = opened.merge(other)
-            say(f"{other}: {taken:,} runs taken over, {there:,} were there")
+            say(f"{other}: {taken:,} runs copied, {there:,} were there already")
 
 
 __all__ = ["STORE", "store_", "study", "sweep_"]

@@ -111,10 +111,9 @@ def print_comparison(compared: ComparisonRun, report: Path | None, columns: Sequ
     gated = sum(item.gate for case in compared.cases for result in case.results for item in result.comparisons)
     gates = sum(gate.passed is not None for case in compared.cases for gate in case.gates)
     if broken:
-        known = [(gated, "gated references"), (gates, "statements of theory")]
+        known = [(gated, "checked references"), (gates, "statements of theory")]
         held = ", ".join(f"{number} {what}" for number, what in known if number)
-        verb = "does" if len(broken) == 1 else "do"
-        console.print(f"Of {held}{' and ' if held else ''}the answers, {len(broken)} {verb} not hold:")
+        console.print(f"Not met, of {held}{' and ' if held else ''}the answers: {len(broken)}")
         for sentence in broken:
             console.print(f"  ✗ {escape(sentence)}", highlight=False)
     else:
@@ -134,7 +133,7 @@ def _strength(case: CaseResults) -> Iterator[str]:
     if found:
         yield (
             f"{case.case.id}, strength of joints: {'; '.join(found)}. Joints of mortar are brittle: rely on the "
-            "residual value of a method that is no upper bound."
+            "residual value of a method that is not an upper bound."
         )
 
 
@@ -155,8 +154,8 @@ def _proofs(compared: ComparisonRun) -> Iterator[str]:
 
 def _all_well(gated: int, gates: int) -> str:
     """What was held against what, where all of it holds; a wall of one's own has no references."""
-    known = f"All {gated} gated references hold" if gated else "Nothing is known beforehand to hold the answers against"
-    theory = f"all {gates} statements of theory that could be tested hold" if gates else "no theory could be tested"
+    known = f"All {gated} checked references are met" if gated else "There are no reference values"
+    theory = f"all {gates} tested statements of theory are met" if gates else "no statement of theory could be tested"
     return f"{known}; {theory}; the judge rejects no answer."
 
 
@@ -242,8 +241,8 @@ def print_check(lines: list[dict[str, Any]]) -> None:
         print(visible(told))
     count = Counter(line["verdict"] for line in lines)
     tested = len(lines) - count["not_tested"]
-    left = f"; {count['not_tested']} not tested, for want of a package" if count["not_tested"] else ""
-    print(f"{count['agrees']} of {tested} gated references hold{left}.")
+    left = f"; {count['not_tested']} not tested, because a package is missing" if count["not_tested"] else ""
+    print(f"{count['agrees']} of {tested} checked references are met{left}.")
 
 
 def print_changes(rows: list[dict[str, Any]]) -> None:
@@ -267,7 +266,7 @@ def print_difference(found: Difference) -> None:
     for sentence in found.remarks:
         print(visible(sentence))
     counts = ", ".join(f"{number} {kind}" for kind, number in found.counts.items() if number) or "nothing compared"
-    left = f"; {found.not_run} answers of the baseline were not asked for" if found.not_run else ""
+    left = f"; {found.not_run} answers of the baseline were not requested" if found.not_run else ""
     print(f"{counts}{left}.")
 
 

@@ -236,9 +236,9 @@ def _judge_bracket(assembly: Assembly, forces: FloatArray | None, result: Result
         if moved is None:
             return _said(tolerance, None, NO_FORCES)
         if fault := displaced_fault(assembly, moved):
-            return _said(tolerance, False, f"The state of rest proves nothing: {fault}.")
+            return _said(tolerance, False, f"The state of rest is no proof: {fault}.")
         residuals, far = displaced_residuals(assembly, moved, at), moved_far(assembly, moved)
-        what = f"Equilibrium and yield of the contact forces where the blocks have moved to, at multiplier {at:.6g},"
+        what = f"Equilibrium and yield of the contact forces on the displaced blocks, at multiplier {at:.6g},"
     residuals["multiplier"] = apart(lower, at) if lower > at else 0.0
     said = _decide(residuals, tolerance, what)
     if said.accepted and far:
@@ -247,7 +247,7 @@ def _judge_bracket(assembly: Assembly, forces: FloatArray | None, result: Result
         said.accepted = None
         said.sentence += " It gives no bracket: how far above them the wall collapses was not measured."
     elif said.accepted:
-        said.sentence += " They show the lower end; that the wall collapses above it is measured and not judged."
+        said.sentence += " They prove the lower end; the collapse above it is measured and not judged."
     return said
 
 
@@ -258,9 +258,9 @@ def _judge_standing(assembly: Assembly, forces: FloatArray | None, result: Resul
         residuals = force_residuals(assembly, forces, 0.0)
     elif (moved := DisplacedState.of(result.details)) is not None:
         if fault := displaced_fault(assembly, moved):
-            return _said(tolerance, False, f"The state of rest proves nothing: {fault}.")
+            return _said(tolerance, False, f"The state of rest is no proof: {fault}.")
         residuals, far = displaced_residuals(assembly, moved, 0.0), moved_far(assembly, moved)
-        what += ", where the blocks have moved to,"
+        what += ", in the displaced position of the blocks,"
     elif assembly.n_free == 0:
         return _said(tolerance, True, "Every block is fixed: nothing can move.")
     else:
@@ -270,7 +270,7 @@ def _judge_standing(assembly: Assembly, forces: FloatArray | None, result: Resul
         said.accepted, said.sentence = None, said.sentence + MOVED_FAR
     elif said.accepted and assembly.has_live_load:
         said.accepted = None
-        said.sentence = "The wall stands under its dead load; no multiplier of the live load was shown."
+        said.sentence = "The wall stands under its dead load; the answer proves no multiplier of the live load."
     return said
 
 
@@ -279,7 +279,9 @@ def _judge_unbounded(assembly: Assembly, forces: FloatArray | None, result: Resu
     growth = result.details.get("live_forces")
     if forces is None or result.forces_multiplier or growth is None:
         lacking = "forces that balance the live load alone" if growth is None else "forces under the dead load"
-        return _said(tolerance, None, f"That no multiplier is too high was not shown: it gives no {lacking}.")
+        return _said(
+            tolerance, None, f"There is no proof that every live load is borne: the answer gives no {lacking}."
+        )
     ray = np.asarray(growth, dtype=float).reshape(-1, 3)
     if ray.shape != forces.shape or not _countable(ray):
         return _said(tolerance, False, f"`live_forces` are not {len(forces)} finite triples.")
@@ -308,7 +310,7 @@ def _judge_limit(
         for own, shown in zip((forces, mechanism), by_statics, strict=True)
     )
     if forces is None or mechanism is None:
-        return _said(tolerance, None, "That it is at its limit was not shown: it gives no forces or no mechanism.")
+        return _said(tolerance, None, "There is no proof of the limit: the answer gives no forces or no mechanism.")
     sizes = [(assembly.n_interfaces, 3), (assembly.n_blocks, 3)]
     if [forces.shape, mechanism.shape] != sizes or not (np.isfinite(forces).all() and np.isfinite(mechanism).all()):
         return _said(tolerance, False, "Its forces or its mechanism are not finite triples of all joints and blocks.")
@@ -349,17 +351,17 @@ def _judge_fall(assembly: Assembly, mechanism: FloatArray | None, result: Result
             return _said(tolerance, False, f"`dilatant_mechanism` is not {assembly.n_blocks} finite triples.")
     elif result.flow == "approximate" or mechanism is None:
         told = "The motion was measured, which is no proof" if mechanism is not None else "It gives no mechanism"
-        return _said(tolerance, None, f"{told}; that no equilibrium exists was not shown.")
+        return _said(tolerance, None, f"{told}; there is no proof that no equilibrium exists.")
     supports, parts = moving_parts(assembly, mechanism)
     shown_by = [_fall_of(part, motion, tolerance) for part, _, motion in parts]
     proves, gain, closing, work = max(shown_by, default=(False, 0.0, 0.0, 0.0))
     proved = proves and supports <= tolerance
     sentence = (
-        "The mechanism gains dead work with dilatant flow and supports at rest: no equilibrium exists, which proves "
-        "the fall."
+        "The dead load does positive work on the mechanism, with dilatant flow and supports at rest: no equilibrium "
+        "exists, which proves the fall."
         if proved
-        else "The mechanism proves no fall: it gains no dead work beyond what its closings may do, is not dilatant, or "
-        "moves the supports."
+        else "The mechanism proves no fall: the work of the dead load does not exceed the possible work of its "
+        "closings, or it is not dilatant, or it moves the supports."
     )
     residuals = {"supports": supports, "interpenetration": closing, "dead_work": gain, "closing_work": work}
     return Judgement(residuals=residuals, tolerance=tolerance, accepted=proved, sentence=sentence)
@@ -401,7 +403,7 @@ def _decide(
     ]
     if "live_work" in residuals and not residuals["live_work"] > 0.0:
         failed.append("the live load does no work on the mechanism")
-    sentence = f"{what} was checked from block sums"
+    sentence = f"{what} was recomputed from the equilibrium of the blocks"
     sentence += (
         f"; not within {tolerance:.3g}: {', '.join(failed)}." if failed else f" and holds within {tolerance:.3g}."
     )

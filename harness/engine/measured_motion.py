@@ -73,7 +73,7 @@ def motion_faults(
     failed = [f"{name} {value:.3g}" for name, value in residuals.items() if not value <= tolerance]
     if not failed:
         return residuals, ""
-    return residuals, f"Its measured motion is none of this wall within {tolerance:g}: {', '.join(failed)}."
+    return residuals, f"Its measured motion does not fit this wall within {tolerance:g}: {', '.join(failed)}."
 
 
 def _forces(assembly: Assembly, given: Any) -> FloatArray:

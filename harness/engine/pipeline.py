@@ -184,6 +184,6 @@ def _fits(run: Run, result: Result) -> None:
         if listed is not None and len(listed) != rows:
             raise InputError(
                 f"its {name} have {len(listed)} entries and its wall needs {rows}: it was not made for this wall",
-                "Run with --fresh to make it again",
+                "Repeat the run with --fresh",
                 f"the stored result of {run.method} on {run.case.id}",
             )

@@ -135,12 +135,12 @@ def _find_case(word: str, library: dict[str, Path]) -> Case:
         if not beside or beside[0].resolve().is_relative_to(library[word].resolve()):
             return case
         here = f"./{beside[0] if beside[0].suffix == '.json' else path}"
-        return replace(case, notes=(f'"{word}" is the case of the library, not what lies here: for that say {here}',))
+        return replace(case, notes=(f'"{word}" is the case of the library, not the file here: use {here}',))
     if path.is_dir():
         return read_case(path)
     if path.exists() or path.suffix.lower() in (".json", *DRAWINGS):
         return case_of_wall(path)
-    lists = "`drystone list cases` shows the cases; a wall of your own is named by its file, WALL.json"
+    lists = "`drystone list cases` shows the cases; name your own wall by its file, WALL.json"
     raise InputError(
         f'no case is called "{word}", and there is no such file', f"{did_you_mean(word, library)} {lists}".strip()
     )

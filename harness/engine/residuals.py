@@ -163,12 +163,12 @@ def displaced_fault(assembly: Assembly, state: DisplacedState) -> str:
         return "it moves the supports"
     a, b = assembly.block_a[state.interface], assembly.block_b[state.interface]
     if not ((state.onto == a) | (state.onto == b)).all():
-        return "a force acts on a block that is none of its joint"
+        return "a force acts on a block that does not belong to its joint"
     if (abs(np.hypot(*state.normal.T) - 1.0) > AT_REST).any():
-        return "a normal is no unit vector"
+        return "a normal is not a unit vector"
     onto_b = np.where(state.onto == b, 1.0, -1.0)[:, None]
     if (abs(state.normal - onto_b * assembly.normal[state.interface]).max(axis=1, initial=0.0) > TURNED).any():
-        return "a force acts across a face that is not its joint"
+        return "a force acts across a face that does not belong to its joint"
     for p, point, force in zip(state.interface, state.point, state.force, strict=True):
         for block in (int(assembly.block_a[p]), int(assembly.block_b[p])):
             if force.any() and not _touches(assembly, state, block, point):

@@ -178,7 +178,7 @@ class Store:
         """The fault of something in it that another hand has changed."""
         reason = str(error).splitlines()[0] if str(error) else type(error).__name__
         return InputError(
-            f"it is damaged ({reason})", f"Run with --fresh to make it again; the rest is whole. {OTHER_FILE}, or that",
+            f"it is damaged ({reason})", f"Repeat the run with --fresh; the rest is whole. {OTHER_FILE}, or that",
             element, str(self.path),
         )  # fmt: skip
 

@@ -206,7 +206,7 @@ def solved(method: Method, task: Task, settings: Settings) -> Answer:
     if not task.motions:
         return method.solve(task.assembly, settings)
     if not method.follows_motions:
-        raise InputError(f"{method.name} takes up no mechanisms of other walls", "Let it answer by itself", "method")
+        raise InputError(f"{method.name} uses no mechanisms of other walls", "Let it answer by itself", "method")
     return method.solve_from(task.assembly, settings, task.motions)
 
 

@@ -288,7 +288,7 @@ def _check_pairs(parts: np.ndarray, what: str) -> None:
         found += tree.query(parts[start : start + step]).shape[1]
         if found > most:
             raise InputError(
-                f"{what} lie over each other in more than {most:,} pairs, and no more are looked into",
+                f"{what} lie over each other in more than {most:,} pairs, the limit",
                 "Leave out hatching, and what is drawn many times over",
             )
 

@@ -50,7 +50,7 @@ def read_dxf(path: Path, asked: Asked) -> Drawing:
     reading = _Reading(document, drawing, PLANES[asked.plane or "xy"], asked.chord(drawing.unit))
     if reading.count(document.modelspace()) > MOST_COPIES + len(document.modelspace()):
         raise InputError(
-            f"its blocks stand for more than {MOST_COPIES:,} entities, and no more are read",
+            f"its blocks stand for more than {MOST_COPIES:,} entities",
             "Leave out what is no stone, or write the blocks out (EXPLODE)",
         )
     for entity, layer in reading.entities(document.modelspace()):

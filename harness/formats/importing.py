@@ -149,13 +149,13 @@ def _imported(path: Path, chosen: Mapping, drawing: Drawing) -> Imported:
     if not unit:
         refuse_degrees(drawing.outlines)
         unit = "m"
-        doubts.append("the drawing declares no unit of length: metres are taken (--units says otherwise)")
+        doubts.append("the drawing declares no unit of length: metres are assumed (--units gives another)")
     drawing = drawing.scaled(chosen.scale or 1.0)
     closed = sum(count for what, count in drawing.read.items() if what.startswith(LINES))
     if closed:
         doubts.append(
-            f"{closed} stones are areas that lines close: an opening that stones enclose counts as one too; draw them "
-            "as closed polylines where there are openings"
+            f"{closed} stones are areas that lines close: an opening between stones counts as a stone too; draw "
+            "stones as closed polylines if there are openings"
         )
     _known_layers(chosen, drawing, path)
     drawing.cut_out(name for name, layer in chosen.layers.items() if layer.use == "hole")
@@ -175,7 +175,7 @@ def _imported(path: Path, chosen: Mapping, drawing: Drawing) -> Imported:
     down = down_of(chosen.gravity or (0.0, -1.0))
     held, how, guessed = _supports(kept, chosen, down)
     supports = f"{sum(held)} of {len(kept)} stones, {how}"
-    supports = f"the drawing marks no supports: {supports}, are taken" if guessed else f"supports: {supports}"
+    supports = f"the drawing marks no supports: {supports}, are assumed" if guessed else f"supports: {supports}"
     doubts += [supports] if guessed else []
     live = chosen.live or across(down)
     names = _names(kept)
@@ -206,7 +206,7 @@ def _imported(path: Path, chosen: Mapping, drawing: Drawing) -> Imported:
         ("live load", f"{_in_words(live)},", chosen.live),
     ):
         if said is None:
-            doubts.append(f"no {name} is given for the drawing: {value} is taken")
+            doubts.append(f"no {name} is given for the drawing: {value} is assumed")
     account = [
         *(f"read {count} x {what}" for what, count in drawing.read.items()),
         *left_out,
@@ -373,7 +373,7 @@ def _supports(outlines: list[Outline], mapping: Mapping, down: FloatArray) -> tu
         held, how = [item.layer == value for item in outlines], f'on layer "{value}"'
     else:
         raise InputError(
-            f'"{word}" is no way to find supports', 'Say lowest-course, "ground-line Y" or "layer NAME"', "supports"
+            f'"{word}" is no rule for supports', 'Say lowest-course, "ground-line Y" or "layer NAME"', "supports"
         )
     held = [one or other for one, other in zip(held, drawn, strict=True)]
     if not any(held):

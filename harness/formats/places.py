@@ -40,7 +40,7 @@ def reference_system(name: str, drawing: Drawing) -> None:
     said = (
         ""
         if text.upper().startswith(("PROJCS", "PROJCRS"))
-        else ", which is taken to be in it (--units says otherwise)"
+        else ", which is assumed for the drawing (--units gives another)"
     )
     drawing.notes.append(f'unit of length: {drawing.unit}, of the system of coordinates "{text[:60]}"{said}')
 

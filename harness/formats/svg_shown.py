@@ -105,7 +105,7 @@ class _Viewer:
         state = state | {name: value for name, value in own.items() if name in INHERITED and value != "inherit"}
         for name in ("clip-path", "mask"):
             if element.get(name, "none") != "none" or f"{name}:" in element.get("style", "").replace(" ", ""):
-                self.drawing.notes.append(f"a {name} is not followed: what it cuts off is read as shown")
+                self.drawing.notes.append(f"a {name} is not evaluated: parts that it hides are read as shown")
         hidden = _hidden(tag, own, state)
         if hidden:
             number = sum(_tag(item) in SHAPES | {"use"} for item in element.iter())
@@ -156,7 +156,7 @@ class _Viewer:
         self.copies += 1
         if self.copies > MOST_COPIES:
             raise InputError(
-                f"its clones stand for more than {MOST_COPIES:,} elements, and no more are read",
+                f"its clones stand for more than {MOST_COPIES:,} elements",
                 "Leave out what is no stone, or unlink the clones",
             )
 
@@ -258,13 +258,13 @@ def _rules(text: str, drawing: Drawing) -> list[tuple[Selector, Style]]:
     found: list[tuple[tuple[int, int, int], Selector, Style]] = []
     rules, conditions = _blocks(without_comments(text))
     for condition in conditions:
-        drawing.notes.append(f'the style of "{condition[:40]}" is not followed: it may hide or show shapes')
+        drawing.notes.append(f'the style of "{condition[:40]}" is ignored: it may hide or show shapes')
     for selectors, body in rules:
         said = _declared(body)
         for words in selectors.split(",") if said else ():
             parts = [_COMPOUND.fullmatch(word) for word in words.split()]
             if not parts or not all(parts):
-                drawing.notes.append(f'the style of "{words.strip()[:40]}" is not followed: it may hide or show shapes')
+                drawing.notes.append(f'the style of "{words.strip()[:40]}" is ignored: it may hide or show shapes')
                 continue
             selector = [(part[1] or "*", re.findall(r"[.#][\w-]+", part[2])) for part in parts if part is not None]
             marks = [mark for _, these in selector for mark in these]

@@ -52,17 +52,17 @@ class Reference(Strict):
         str, Field(description='"multiplier", "finding", "blocks", "interfaces", "unknowns", a detail')
     ] = "multiplier"
     relation: Literal["equal", "at_most", "at_least", "inside", "contains"] = Field(
-        "equal", description="how an answer must stand to the value; inside: a pair; contains: the bracket must"
+        "equal", description="relation of an answer to the value; inside: a pair; contains: the bracket must"
     )
     value: float | tuple[float, float] | str = Field(description="a number, a pair for inside, or a finding")
     tolerance: Annotated[float, Field(ge=0.0, description="absolute")] = 0.0
-    tolerance_reason: str = Field("", description="why the tolerance is what it is")
+    tolerance_reason: str = Field("", description="the reason for the tolerance")
     applies_to: Annotated[list[str], Field(min_length=1, description="names of methods")]
     gate: bool = Field(False, description="a violation makes `drystone check` fail")
     tier: Literal["quick", "full"] = Field("quick", description="the tier of `drystone check` that runs it")
-    settings: dict[str, Any] = Field(default_factory=dict, description="method settings the reference asks for")
+    settings: dict[str, Any] = Field(default_factory=dict, description="method settings for the reference")
     source: Annotated[str, Field(min_length=1, description="author, year, and where in it")]
-    requirement: Annotated[str, Field(min_length=1, description="one sentence a reader can hold us to")]
+    requirement: Annotated[str, Field(min_length=1, description="one sentence for readers")]
 
     @model_validator(mode="after")
     def _fitting_value(self) -> Reference:
@@ -85,13 +85,13 @@ class CaseFile(Strict):
     id: Annotated[str, Field(pattern=r"^[a-z0-9][a-z0-9-]*$", description="the name of its folder, which users type")]
     title: Annotated[str, Field(min_length=1, description="a few words for headings")]
     summary: str = Field("", description="what it shows, for the report")
-    kind: Literal["multiplier", "stability"] = Field("multiplier", description="whether a live load is asked about")
+    kind: Literal["multiplier", "stability"] = Field("multiplier", description="multiplier or stability")
     wall: str = Field("wall.json", description="file of the wall, in the folder")
     suites: list[str] = Field(default_factory=list, description='suites it belongs to, as "small"')
     source: Annotated[str, Field(min_length=1, description="where the wall comes from")]
     methods: list[str] | None = Field(None, description="methods that are run on it; the suite's otherwise")
-    errata: list[Erratum] = Field(default_factory=list, description="what the source leaves open or has wrong")
-    references: list[Reference] = Field(default_factory=list, description="values it is held against")
+    errata: list[Erratum] = Field(default_factory=list, description="gaps and errors of the source")
+    references: list[Reference] = Field(default_factory=list, description="reference values")
 
 
 @dataclass(frozen=True)
@@ -139,7 +139,7 @@ class Case:
         """What a person should hear about the wall, and about references that no installed method can be held to."""
         known = method_names()
         unknown = [
-            f'reference "{item.id}" applies to "{name}", and no installed method is called so: it is not held to it'
+            f'reference "{item.id}" applies to "{name}", which is not installed: it is not compared'
             for item in self.file.references
             for name in item.applies_to
             if name not in known

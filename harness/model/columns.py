@@ -77,7 +77,7 @@ RESULTS: tuple[ResultColumn, ...] = (
     _text("method", "name of the method"),
     _text("family", "kind of method, by which the report groups"),
     _text("status", "how the run ended"),
-    _text("finding", "what the answer says about the wall"),
+    _text("finding", "finding on the wall"),
     _text("sentence", "the answer in a sentence"),
     ResultColumn(
         "multiplier",
@@ -101,15 +101,15 @@ RESULTS: tuple[ResultColumn, ...] = (
     ),
     _text(
         "residual_finding",
-        "what the answer says about the wall without cohesion and tensile strength",
+        "finding on the wall without cohesion and tensile strength",
         lambda row: None if (residual := residual_of(row.result)) is None else str(residual.finding),
     ),
     _text(
         "proof",
-        "how the multiplier stands to the minimum: minimum, minimum_to_rounding, least_known or none",
+        "relation of the multiplier to the minimum: minimum, minimum_to_rounding, least_known or none",
         lambda row: str(row.proof.standing),
     ),
-    _text("proof_sentence", "what is known of lower collapse states", attrgetter("proof.sentence")),
+    _text("proof_sentence", "bounds on lower collapse states", attrgetter("proof.sentence")),
     ResultColumn(
         "proved_bound",
         "Float64",
@@ -121,7 +121,7 @@ RESULTS: tuple[ResultColumn, ...] = (
         "verdict",
         "string",
         "",
-        "how the value stands to its references",
+        "comparison with its references",
         lambda row: str(row.result.verdict),
         words=lambda row: VERDICT_TEXTS[row.result.verdict],
     ),
@@ -172,12 +172,12 @@ IN_TABLES: tuple[ResultColumn, ...] = (
         "bracket",
         "Float64",
         "1",
-        "the pair of values that the method vouches for",
+        "the pair of values that enclose the multiplier",
         lambda row: None if row.result.bracket is None else list(row.result.bracket),
     ),
     _text(
         "reference",
-        "the value of another source that matters most; all are in comparisons.csv",
+        "the most relevant value of another source; comparisons.csv has all",
         lambda row: references_text(row.result),
     ),
     ResultColumn(
@@ -231,20 +231,18 @@ COMPARISONS: tuple[ComparisonColumn, ...] = (
     ComparisonColumn("reference", "string", "", "id of the reference in its case", attrgetter("comparison.reference")),
     _of_reference("type", "exact, bound, published, measured or regression"),
     ComparisonColumn("quantity", "string", "", "what is compared", attrgetter("comparison.quantity")),
-    _of_reference("relation", "how the value has to stand to the reference"),
+    _of_reference("relation", "required relation of the value to the reference"),
     ComparisonColumn("value", "object", "of the quantity", "of the result", attrgetter("comparison.value")),
     ComparisonColumn(
         "expected", "object", "of the quantity", "of the reference", attrgetter("comparison.expected"), "reference"
     ),
     ComparisonColumn("tolerance", "Float64", "1", "relative difference allowed", attrgetter("comparison.tolerance")),
     ComparisonColumn(
-        "gate", "boolean", "", "whether `drystone check` fails where it is not met", attrgetter("comparison.gate")
+        "gate", "boolean", "", "whether `drystone check` fails if it is not met", attrgetter("comparison.gate")
     ),
-    ComparisonColumn(
-        "verdict", "string", "", "how the value stands to the reference", lambda row: str(row.comparison.verdict)
-    ),
+    ComparisonColumn("verdict", "string", "", "comparison with the reference", lambda row: str(row.comparison.verdict)),
     ComparisonColumn("sentence", "string", "", "the difference in a sentence", attrgetter("comparison.sentence")),
-    _of_reference("requirement", "what the reference asks for", "source and requirement"),
+    _of_reference("requirement", "the settings of the reference", "source and requirement"),
     _of_reference("source", "of the reference"),
 )
 """Columns of comparisons.csv, in their order."""

@@ -116,7 +116,7 @@ class CaseResults:
         if not by_self_stress or any(traits.any_self_stress for traits in fall.values()):
             return f"{who}: it may be at the limit of standing, or one of them is wrong"
         return (
-            f"{who}. Limit analysis lets the joints carry any self-stress that statics and friction allow; springs "
+            f"{who}. Limit analysis allows the joints any self-stress within statics and friction; springs "
             "and distinct elements start without. A multiplier of this wall holds only if its joints are under such "
             "stress"
         )

@@ -1,4 +1,4 @@
-"""Where blocks touch: pairs of faces that look at each other, with the interface in the middle between them.
+"""Where blocks touch: pairs of faces that face each other, with the interface in the middle between them.
 
 Two edges of different blocks are the faces of one joint if they run in opposite directions within an angle, lie beside
 each other along a length, and are nowhere further apart, or further into each other, than is allowed. The interface
@@ -52,7 +52,7 @@ class Contacts:
         block_a, block_b: (m,) block indices, a < b.
         start, end: (m, 2) ends of the segments, counter-clockwise round a [length].
         corners: (k, 2) pairs of blocks that touch at a point only, and so do not support each other here.
-        missed: (j, 2) pairs of blocks without a contact whose faces look at each other from a little further off, or
+        missed: (j, 2) pairs of blocks without a contact whose faces face each other from a little further off, or
             lie a little deeper within each other.
         missed_gap: (j,) how far or how deep [length].
         missed_at: (j, 2) middles of the segments between them [length].

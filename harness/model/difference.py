@@ -41,7 +41,7 @@ class Row:
 
     Attributes:
         case, method: which.
-        kind: how the answer stands to the one before.
+        kind: comparison with the earlier answer.
         figures: the two values.
         old_seconds, new_seconds: CPU time, where it was measured.
         ratio: new time by old time, where the two may be compared.
@@ -78,9 +78,7 @@ DifferenceColumn = TableColumn[Row]
 DIFFERENCE: tuple[DifferenceColumn, ...] = (
     DifferenceColumn("case", "string", "", "id of the wall", attrgetter("case")),
     DifferenceColumn("method", "string", "", "name of the method", attrgetter("method")),
-    DifferenceColumn(
-        "kind", "string", "", "how the answer stands to the one before", lambda row: str(row.kind), "stands"
-    ),
+    DifferenceColumn("kind", "string", "", "comparison with the earlier answer", lambda row: str(row.kind), "stands"),
     DifferenceColumn("figures", "string", "", "the values", attrgetter("figures"), "value"),
     DifferenceColumn("old_seconds", "Float64", "s", "processor time before", attrgetter("old_seconds"), "CPU before"),
     DifferenceColumn("new_seconds", "Float64", "s", "processor time now", attrgetter("new_seconds"), "CPU now"),

@@ -48,7 +48,7 @@ class Mark:
 
     @property
     def near_miss(self) -> bool:
-        """Whether it is a pair of faces that look at each other and have no joint."""
+        """Whether it is a pair of faces that face each other and have no joint."""
         return self.kind == "doubt" and self.size is not None
 
     def __str__(self) -> str:
@@ -98,7 +98,7 @@ class Inspection:
             remedy = f"{saying(advice)}, which joins {'all' if joined == len(gaps) else joined} of them"
         told.append(
             f"{near[0][0]} to {near[-1][0]}. doubt: {len(near)} pair(s) of faces {NEAR_MISS} {span(gaps)} apart, or "
-            f"lie as deep within each other, and have no joint; if they bear on each other, say {remedy}"
+            f"overlap by as much, and have no joint; if they are in contact, write {remedy}"
         )
         return told
 
@@ -217,9 +217,9 @@ def _missed(names: Sequence[str], joints: Joints) -> list[Mark]:
             Mark(
                 "doubt",
                 f'blocks "{pair[0]}" and "{pair[1]}"',
-                f"faces {NEAR_MISS} {gap:.3g} apart, or as deep within each other, and have no joint, because "
+                f"faces {NEAR_MISS} {gap:.3g} apart, or overlap by as much, and have no joint, because "
                 f"joints are up to {joints.gap:.3g} wide",
-                f"If they bear on each other, say {allowing(gap)}",
+                f"If they are in contact, write {allowing(gap)}",
                 pair,
                 at,
                 gap,

@@ -165,8 +165,8 @@ def floating(names: Sequence[str], blocks: IntArray, joints: Joints) -> InputErr
         gaps, unlucky = joints.missed_gap[near], joints.missed[near]
         one, other = (names[k] for k in unlucky[int(np.argmin(gaps))])
         remedy = (
-            f'Faces look at each other {span(gaps)} apart, those of "{one}" and "{other}" the nearest, '
-            f"and joints are up to {joints.gap:.3g} wide: if they bear on each other, say {allowing(gaps.max())}"
+            f'Faces lie opposite each other {span(gaps)} apart, those of "{one}" and "{other}" the nearest, '
+            f"and joints are up to {joints.gap:.3g} wide: if they are in contact, write {allowing(gaps.max())}"
         )
     return InputError(
         "no chain of interfaces joins "

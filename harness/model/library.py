@@ -20,10 +20,10 @@ Words = TypeVar("Words", bound=Strict)
 class DefaultMethods(Strict):
     """Names of the methods that are asked where nobody names any."""
 
-    compare: Annotated[tuple[str, ...], Field(min_length=1, description="of a comparison, besides those gated")]
+    compare: Annotated[tuple[str, ...], Field(min_length=1, description="of a comparison, besides those of references")]
     sweep: Annotated[tuple[str, ...], Field(min_length=1, description="of a study")]
-    one: str = Field(description="where one answer is wanted")
-    quick: str = Field(description="where many walls are asked about at once")
+    one: str = Field(description="for a single answer")
+    quick: str = Field(description="for many walls at once")
 
 
 class Library(Strict):

@@ -1,4 +1,4 @@
-"""When a wall is at its limit: its multiplier is zero within the accuracy of the numbers that describe it.
+"""When a wall is at its limit: its multiplier is zero within the accuracy of its data.
 
 Coordinates, friction and loads are written to some digits. What they leave open moves the multiplier of a mechanism, by
 virtual work, by that share of the power which the dead load would have on it if nothing cancelled. A multiplier no

@@ -73,7 +73,7 @@ class Finding(StrEnum):
     COLLAPSES = "collapses"
     """At the multiplier given, by the mechanism given."""
     STANDS = "stands"
-    """Under its dead load; no live load was asked about."""
+    """Under its dead load; no live load is given."""
     FALLS = "falls"
     """Already under its dead load, at multiplier zero."""
     UNBOUNDED = "unbounded"
@@ -293,7 +293,7 @@ def check_takes(method: Method, assembly: Assembly) -> None:
     if assembly.dilates and not method.traits.any_dilatancy:
         joint = int(np.argmax(law.dilatancy))
         raise InputError(
-            f"{method.name} lets no joint lift as it slides; that between {between(joint)} has the dilatancy "
+            f"{method.name} takes no dilatancy; the joint between {between(joint)} has the dilatancy "
             f"{law.dilatancy[joint]:g}",
             "Take a method of limit analysis (`drystone list methods`), or leave the dilatancy out",
         )

@@ -18,7 +18,7 @@ ASTRAY = 0.5
 SHORT = 1e-3
 """Length of an interface, in typical block sizes, below which it is worth a warning."""
 
-NEAR_MISS = "look at each other"
+NEAR_MISS = "face each other"
 """Words of a near miss, by which its sentence is known."""
 
 
@@ -28,7 +28,7 @@ def contact_warnings(assembly: Assembly, corners: IntArray, size: float) -> list
     corners = _unbonded(assembly, corners)
     if len(corners):
         shown = first_few([f"{assembly.block_ids[a]}/{assembly.block_ids[b]}" for a, b in corners], 5)
-        sentences.append(f"{len(corners)} pair(s) of blocks touch only at a corner, which is no support: {shown}")
+        sentences.append(f"{len(corners)} pair(s) of blocks touch only at a corner, which gives no support: {shown}")
     short = np.flatnonzero(assembly.length < SHORT * size)
     if len(short):
         p = short[int(np.argmin(assembly.length[short]))]
@@ -66,7 +66,7 @@ def allowing(gap: float) -> str:
 
 
 def near_misses(names: Sequence[str], pairs: IntArray, gaps: FloatArray, greatest: float) -> list[str]:
-    """A sentence about pairs (k, 2) of blocks whose faces look at each other and have no joint.
+    """A sentence about pairs (k, 2) of blocks whose faces face each other and have no joint.
 
     Args:
         names: of the blocks; pairs: (k, 2); gaps: (k,) between them [length]; greatest: gap of a joint [length].
@@ -76,9 +76,9 @@ def near_misses(names: Sequence[str], pairs: IntArray, gaps: FloatArray, greates
     order = np.argsort(gaps, kind="stable")
     shown = first_few([f"{names[pairs[k, 0]]}/{names[pairs[k, 1]]} ({gaps[k]:.3g})" for k in order.tolist()], 5)
     return [
-        f"{len(pairs)} pair(s) of faces {NEAR_MISS} {span(gaps)} apart, or lie as deep "
-        f"within each other, and have no joint, because joints are up to {greatest:.3g} wide: {shown}. If they bear on "
-        f"each other the answer is another: say {allowing(gaps.max())}"
+        f"{len(pairs)} pair(s) of faces {NEAR_MISS} {span(gaps)} apart, or overlap by as "
+        f"much, and have no joint, because joints are up to {greatest:.3g} wide: {shown}. If they are in contact, the "
+        f"answer changes: write {allowing(gaps.max())}"
     ]
 
 

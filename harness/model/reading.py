@@ -281,7 +281,7 @@ def _unknown_field(model: type[BaseModel], location: tuple[int | str, ...], plac
         return InputError(
             f'"{name}" is outside the model: Drystone has rigid blocks, and joints of friction and constant strength, '
             f"in the plane, not {beyond}",
-            f"Leave it out; {SCOPE} says what is modelled, and what to use instead",
+            f"Leave it out; {SCOPE} says what is modelled, and other tools",
             place,
             source,
         )

@@ -85,7 +85,7 @@ class Block(Strict):
     unit_weight: NonNegative | None = Field(None, description="[force/length^3]; else the wall's")
     thickness: Positive | None = Field(None, description="out of plane [length]; else the wall's")
     material: str = "stone"
-    fixed: bool = Field(False, description="cannot move: a support")
+    fixed: bool = Field(False, description="a support")
     groups: list[Name] = Field(default_factory=list, description="groups a load may name")
 
     @model_validator(mode="after")
@@ -243,7 +243,7 @@ class Interface(Strict):
 
 
 class Detection(Strict):
-    """How interfaces are found: faces that look at each other, with the interface in the middle between them."""
+    """How interfaces are found: faces that face each other, with the interface in the middle between them."""
 
     tolerance: Positive | None = Field(
         None, description="greatest gap and overlap at once [length]; default 1e-6 of the typical block size"
@@ -260,7 +260,7 @@ class Detection(Strict):
     )
     sight: Positive | None = Field(
         None,
-        description="faces that look at each other from no further than this and have no joint are told [length]; "
+        description="opposite faces up to this distance without a joint cause a warning [length]; "
         "default ten times the greatest gap, at least a fiftieth of the typical block size",
     )
     given: list[Interface] = Field(
@@ -330,7 +330,7 @@ class Loads(Strict):
         None, description="on every block; absent or true: [0, -1] times its weight; false: none; [x, y]: so much of it"
     )
     dead: Load = Field(default_factory=Load, description="on top of gravity")
-    live: Load | None = Field(None, description="absent: the wall is asked only whether it stands")
+    live: Load | None = Field(None, description="absent: only whether the wall stands is decided")
 
     @property
     def gravity_per_weight(self) -> Point:
@@ -358,7 +358,7 @@ class Wall(Strict):
     metadata: dict[str, Any] = Field(default_factory=dict, description="free: source, author, remarks")
     doubts: list[str] = Field(
         default_factory=list,
-        description="what was left out or guessed when a drawing became this wall: told with every answer",
+        description="what was ignored or assumed when the drawing was imported; a warning with every answer",
     )
     unit_weight: NonNegative | None = Field(None, description="[force/length^3] for blocks that give no weight")
     thickness: Positive | None = Field(None, description="out of plane [length]; one metre if absent")
@@ -402,7 +402,7 @@ class Wall(Strict):
         units = self.units
         length, force = ("none" if unit == DIMENSIONLESS else unit for unit in (units.length, units.force))
         told = f"length {length}, force {force}" + (f", unit weight {units.unit_weight}" if units.unit_weight else "")
-        return told if self.units_declared else f"{told} (taken so: the file declares none)"
+        return told if self.units_declared else f"{told} (assumed: the file declares none)"
 
     def document(self) -> dict[str, Any]:
         """The wall as JSON values of format wall/1: fields at their defaults left out, but units that are declared."""

@@ -24,7 +24,7 @@ def check_output(path: Path) -> Path:
     target = path.resolve()
     if target.exists() and not target.is_file():
         raise InputError(
-            "it is not a regular file, and nothing else is replaced",
+            "it is not a regular file, and only regular files are replaced",
             "Give the name of a new file",
             source=str(path),
         )

@@ -17,7 +17,7 @@ from methods.de.holds.order_bracket import BRACKET, BracketSearch, OrderBracket,
 from methods.de.settings import HoldSettings
 
 BRACKET_MEANING = (
-    "[lowest multiplier held, highest multiplier moving] over the body orders: every order was held at or above the "
+    "[lowest multiplier held, highest multiplier moving] over the sweep orders: every order was held at or above the "
     "lower end and moved at or below the upper end"
 )
 
@@ -165,12 +165,12 @@ def _conclude(assembly: Assembly, settings: HoldSettings, brackets: list[OrderBr
     if fallen:
         return _at_zero(assembly, brackets, fallen)
     if not assembly.has_live_load:
-        return Answer(Status.OK, Finding.STANDS, f"the dead load is held in all {len(brackets)} body orders")
+        return Answer(Status.OK, Finding.STANDS, f"the dead load is held in all {len(brackets)} sweep orders")
     if all(b.capped for b in brackets):
         cap = settings.load_cap * unit
         sentence = (
             f"held up to the cap: the live load was raised to multiplier {cap:.6g}, {settings.load_cap:g} times the "
-            f"dead load, and held in all {len(brackets)} body orders; larger loads were not tried"
+            f"dead load, and held in all {len(brackets)} sweep orders; larger loads were not tried"
         )
         return Answer(Status.OK, Finding.UNBOUNDED, sentence, details={"cap": cap})
     return _collapse(brackets)
@@ -180,15 +180,15 @@ def _at_zero(assembly: Assembly, brackets: list[OrderBracket], fallen: list[Orde
     """Some order is not held under the dead load alone."""
     moved = [b for b in fallen if b.moving is not None]
     if len(moved) == len(brackets):
-        sentence = f"falls under its dead load: it moved in all {len(brackets)} body orders at multiplier 0"
+        sentence = f"falls under its dead load: it moved in all {len(brackets)} sweep orders at multiplier 0"
         answer = Answer(Status.OK, Finding.FALLS, sentence)
         answer.mechanism, answer.flow = moved[0].velocity, "approximate"
         if moved[0].moving_forces is not None:
             answer.details[MOVING_FORCES] = moved[0].moving_forces.tolist()
         return answer
     sentence = (
-        f"whether the dead load is held is not decided: of {len(brackets)} body orders {len(brackets) - len(fallen)} "
-        f"held it, {len(moved)} moved and {len(fallen) - len(moved)} could not be told"
+        f"whether the dead load is held is not decided: of {len(brackets)} sweep orders {len(brackets) - len(fallen)} "
+        f"held it, {len(moved)} moved and {len(fallen) - len(moved)} are undecided"
     )
     return Answer(Status.NOT_CONVERGED, Finding.NONE, sentence)
 
@@ -199,23 +199,23 @@ def _collapse(brackets: list[OrderBracket]) -> Answer:
     complete = [b for b in brackets if b.middle is not None]
     if best is None or best.middle is None or not complete:
         held = min(b.held or 0.0 for b in brackets)
-        sentence = f"no body order came to a state that moves: held up to multiplier {held:.6g}, then undecided"
+        sentence = f"no sweep order reached a state that moves: held up to multiplier {held:.6g}, then undecided"
         return Answer(Status.NOT_CONVERGED, Finding.NONE, sentence)
     low = min(b.held for b in brackets if b.held is not None)
     high = max(b.moving for b in complete if b.moving is not None)
     undecided = sum(len(b.undecided) for b in brackets)
     sentence = (
-        f"collapses between {low:.6g} (held) and {high:.6g} (moving) over {len(brackets)} body orders; the multiplier "
+        f"collapses between {low:.6g} (held) and {high:.6g} (moving) over {len(brackets)} sweep orders; the multiplier "
         f"{best.middle:.6g} is the middle of the median order's bracket [{best.held:.6g}, {best.moving:.6g}], not an "
         "exact value"
     )
     if best.nothing:
         sentence = (
-            f"collapses at 0: it stands without live load and moved at {best.moving:.3g}, the least that residuals "
-            f"tell from none; over {len(brackets)} body orders between {low:.6g} and {high:.6g}"
+            f"collapses at 0: it stands without live load and moved at {best.moving:.3g}, which the residuals "
+            f"do not distinguish from zero; over {len(brackets)} sweep orders between {low:.6g} and {high:.6g}"
         )
     if undecided:
-        sentence += f"; {undecided} holds could not be told and are not counted as held"
+        sentence += f"; {undecided} load steps are undecided and are not counted as held"
     status = Status.OK
     # Beside a range that the orders leave open, what one of them leaves open is as small as it is to that range.
     widest = max(0.0 if b.nothing else ((b.moving or 0.0) - (b.held or 0.0)) / high for b in complete)

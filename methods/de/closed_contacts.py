@@ -35,7 +35,7 @@ class ClosedContacts(Solver):
         }
         wall = settings.wall
         if not settled.at_rest:
-            sentence = f"{wall} did not come to rest under its dead load, so its contacts are not known."
+            sentence = f"{wall} did not come to rest under its dead load, so its contacts are not determined."
             return Answer(Status.NOT_CONVERGED, Finding.NONE, sentence, details=details)
         try:
             gapped = GappedWall(assembly, settled.outlines, settled.settlement, FALL.reach)
@@ -58,11 +58,11 @@ class ClosedContacts(Solver):
 def _concluded(wall: str, loaded: tuple[float, float | None] | None) -> Answer:
     """What the loading says, without details."""
     if loaded is None:
-        sentence = f"{wall} came to rest in distinct elements, but springs in its contacts found no rest."
+        sentence = f"{wall} came to rest in distinct elements, but springs in its contacts found no equilibrium."
         return Answer(Status.NOT_CONVERGED, Finding.NONE, sentence)
     stood, fell = loaded
     if fell is None:
-        sentence = f"{wall} stood at {stood:.6g} and is not shown to fall up to the greatest multiplier asked."
+        sentence = f"{wall} stood at {stood:.6g} and did not fall up to the greatest multiplier tested."
         return Answer(Status.NOT_CONVERGED, Finding.NONE, sentence)
     return Answer(
         Status.OK,

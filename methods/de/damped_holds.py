@@ -21,14 +21,14 @@ from methods.numerics.claims import analysed
 
 
 class DampedHolds(Solver):
-    """Damped holds of a wall at frozen geometry, bracketed over body orders."""
+    """Damped holds of a wall at frozen geometry, bracketed over sweep orders."""
 
     def prepare(self) -> None:
         """Load the compiled sweeps."""
         load_impulses()
 
     def solve(self, assembly: Assembly, settings: SweepSettings) -> Answer:
-        """Bracket of the collapse multiplier over body orders; see `methods.de.answers`."""
+        """Bracket of the collapse multiplier over sweep orders; see `methods.de.answers`."""
 
         return analysed(assembly, lambda part: self._of_component(part, settings))
 
@@ -47,7 +47,7 @@ class MujocoHolds(Solver):
     """The holds, the bracket and the orders of `de` on MuJoCo, so that an answer does not hang on one engine."""
 
     def solve(self, assembly: Assembly, settings: MujocoSettings) -> Answer:
-        """Bracket of the collapse multiplier over body orders; see `methods.de.answers`.
+        """Bracket of the collapse multiplier over sweep orders; see `methods.de.answers`.
 
         Raises:
             InputError: mujoco is not installed.
@@ -106,8 +106,6 @@ class ReleasedCollapse(Solver):
             "frames": (np.round(collapse.places / motion_units(assembly), 6) * motion_units(assembly)).tolist(),
             "time_unit": "sqrt(length scale / gravity)",
         }
-        end = (
-            "until a block had moved as far as asked" if collapse.reached else "without a block moving as far as asked"
-        )
-        answer.sentence += f"; released at {multiplier:.6g} and followed {end}: {len(pairs)} interfaces came apart"
+        end = "until a block had moved far enough" if collapse.reached else "without such a displacement"
+        answer.sentence += f"; released at {multiplier:.6g} and followed {end}: {len(pairs)} interfaces separated"
         return answer

@@ -18,7 +18,7 @@ UNEVEN_RESOLUTION = 0.005
 DE = Listed(
     name="de",
     family="de",
-    title="distinct elements (damped holds)",
+    title="distinct elements (damped load steps)",
     solver="methods.de.damped_holds:DampedHolds",
     Settings=SweepSettings,
     tolerance=1e-6,
@@ -31,12 +31,12 @@ DE = Listed(
         marker="d",
     ),
 )
-"""Damped holds of a wall at frozen geometry, bracketed over body orders."""
+"""Damped holds of a wall at frozen geometry, bracketed over sweep orders."""
 
 DE_MUJOCO = Listed(
     name="de-mujoco",
     family="de",
-    title="distinct elements (MuJoCo, damped holds)",
+    title="distinct elements (MuJoCo, damped load steps)",
     solver="methods.de.damped_holds:MujocoHolds",
     Settings=MujocoSettings,
     tolerance=1e-4,
@@ -97,7 +97,7 @@ DE_CLOSED = Listed(
     Settings=ClosedSettings,
     tolerance=1e-6,
     traits=Traits(
-        caption="plateau over the contacts that closed",
+        caption="plateau over the closed contacts",
         brackets=True,
         resolution=UNEVEN_RESOLUTION,
         colour="#2f6b3a",
@@ -115,7 +115,7 @@ DE_SOFT = Listed(
     Settings=SoftSettings,
     tolerance=1e-5,
     traits=Traits(
-        caption="between held and moving, joints that give",
+        caption="between held and moving, deformable joints",
         brackets=True,
         colour="#2f6b3a",
         marker="*",

@@ -71,8 +71,7 @@ class SweepSettings(HoldSettings):
 
     Attributes:
         engine: "sweeps": compiled sweeps over the contacts of a wall at frozen geometry; "pymunk": the same through a
-            rigid-body engine, which looks for the contacts again in every step and takes 1.5 times as long on 25 blocks
-            and 3.4 times on 820.
+            rigid-body engine, which searches for the contacts in every step and takes longer.
     """
 
     engine: Literal["sweeps", "pymunk"] = "sweeps"
@@ -82,14 +81,14 @@ class MujocoSettings(HoldSettings):
     """Settings of the holds in MuJoCo: those of `de`, and how soft its contacts are.
 
     Attributes:
-        iterations: most Newton iterations of the contact solver in a time step. Walls take a hundred and more; cut
-            short at 50, a wall of 105 bricks explodes.
+        iterations: most Newton iterations of the contact solver in a time step. Walls need a hundred and more; with too
+            few, blocks separate.
         impedance: constraint impedance of the contacts; None: 0.9 on walls, 0.97 on chains of blocks. Nearer to 1 is
             stiffer and settles sooner, but head joints of walls then chatter.
         friction_ratio: MuJoCo's impratio. Shear forces cost a creep that falls with it: at 100 it exceeds
             `held_residual`, at 1e4 the contact problem is so ill-conditioned that walls chatter. It is raised in
             proportion to the courses above 6, as the creep is.
-        hold_steps: contacts so soft settle slowly near collapse; with 20, walls of 55 bricks were undecided there.
+        hold_steps: walls with contacts so soft come to rest slowly near collapse.
         held_residual: above the creep that shear forces cost.
         moving_residual: above `held_residual`.
         force_residual: what the creep leaves to be gained.

@@ -1,8 +1,8 @@
 """`de-soft`: distinct elements with deformable joints and rounded corners, at large displacements.
 
-This is the kind of distinct elements that UDEC made common: joints have a stiffness, blocks that lean add to the load
-(P-Delta), and corners roll. With stiff joints and small rounds it comes to the multiplier of the other methods; what
-softer joints and larger rounds take from it is the finding.
+The model is that of UDEC (Cundall 1987): joints have a stiffness, leaning blocks add to the load (P-Delta), and corners
+roll. `methods.de.engines.soft_wall` has the equations of motion. With stiff joints and small radii the multiplier is
+that of the other methods; the reduction by softer joints and larger radii is the result of interest.
 """
 
 from __future__ import annotations
@@ -182,22 +182,22 @@ def _concluded(holds: Holds, joints: str, stood: float, fell: float | None, cap:
     """The answer for a wall that stands its dead load."""
     if fell is None:
         sentence = (
-            f"rested up to the cap: the live load was raised to {cap:.6g}, with {joints}; larger ones were not tried"
+            f"at rest up to the cap: the live load was raised to {cap:.6g}, with {joints}; larger loads were not tried"
         )
         return Answer(Status.OK, Finding.UNBOUNDED, sentence, details={"cap": cap})
     if fell in holds.undecided:
         fell = _fall_above(holds, fell, cap)
     if fell is None:
-        sentence = f"came to rest at {stood:.6g} and neither rested nor fell above it, with {joints}"
+        sentence = f"came to rest at {stood:.6g} and neither came to rest nor fell above it, with {joints}"
         return Answer(Status.NOT_CONVERGED, Finding.NONE, sentence)
     moved = holds.path["live_displacement"][-1]
     sentence = (
         f"came to rest at {stood:.6g} and fell at {fell:.6g}, with {joints}; the live load had moved by {moved:.3g} "
-        "at the last rest"
+        "at the last state of rest"
     )
     loose = fell - stood > BRACKET.loose * fell
     if loose:
-        sentence += "; not converged: between them it neither rested nor fell"
+        sentence += "; not converged: between them it neither came to rest nor fell"
     return Answer(
         Status.NOT_CONVERGED if loose else Status.OK,
         Finding.COLLAPSES,
@@ -232,7 +232,7 @@ def _better(answer: Answer, again: Answer) -> Answer:
     if answer.status is not Status.OK:
         return again
     if again.details.get("stopped_by_limit"):
-        answer.sentence += f"; stiffer joints were not tried to the end: {STOPPED}"
+        answer.sentence += f"; the run with stiffer joints is incomplete: {STOPPED}"
         answer.details["stopped_by_limit"] = True
     return answer
 

@@ -43,7 +43,7 @@ class UnevenBlocks(Solver):
 def _without_fall(wall: str, found: Loading) -> str:
     """What is said of a wall that is not shown to move at any load."""
     if found.stood is None:
-        return f"{wall} neither came to rest under its dead load nor is shown to fall."
+        return f"{wall} neither came to rest under its dead load nor is proved to fall."
     if found.undecided:
-        return f"{wall} came to rest at {found.stood:.6g}, and above it neither did so nor is shown to fall."
-    return f"{wall} stood at {found.stood:.6g}, the greatest multiplier asked."
+        return f"{wall} came to rest at {found.stood:.6g}, and above it neither did so nor is proved to fall."
+    return f"{wall} stood at {found.stood:.6g}, the greatest multiplier tested."

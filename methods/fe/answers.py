@@ -78,7 +78,7 @@ def standing_answer(forces: FloatArray, iterations: int, details: dict[str, Any]
     return Answer(
         Status.OK,
         Finding.STANDS,
-        "the wall is in equilibrium under its dead load; no live load was asked about",
+        "the wall is in equilibrium under its dead load; no live load is given",
         forces=forces,
         forces_multiplier=0.0,
         iterations=iterations,
@@ -126,7 +126,7 @@ def collapse_answer(model: WallModel, results: list[HistoryResult], factorisatio
             return Answer(
                 Status.OK,
                 Finding.UNBOUNDED,
-                "the live load cannot make the wall collapse: the path goes on to any multiplier",
+                "the live load cannot make the wall collapse: the path continues to any multiplier",
                 iterations=iterations,
                 details=details,
             )
@@ -134,7 +134,7 @@ def collapse_answer(model: WallModel, results: list[HistoryResult], factorisatio
         details["path_status"] = "peak_only" if peaked else "not_converged"
         if any(r.end is PathEnd.TIME for r in results):
             details["stopped_by_limit"] = True
-        reason = results[0].sentence if results else "no history was asked for"
+        reason = results[0].sentence if results else "no history is selected"
         return Answer(
             Status.NOT_CONVERGED,
             Finding.NONE,
@@ -161,14 +161,14 @@ def collapse_answer(model: WallModel, results: list[HistoryResult], factorisatio
         f"the wall collapses at {best.state.multiplier:.6g} times the live load (plateau; peak {best.record.peak:.6g})"
     )
     if best.raised is not None:
-        sentence += f"; up to {best.raised.multiplier:.4g} the load was raised in finite steps from rest to rest"
+        sentence += f"; up to {best.raised.multiplier:.4g} the load was raised in finite steps between states of rest"
     if spread > TOLD.spread:
         sentence += (
-            f"; friction histories that nobody can know differ by {100.0 * spread:.1f} %, "
+            f"; the friction history is unknown; histories differ by {100.0 * spread:.1f} %, "
             f"from {min(plateaus):.6g} to {max(plateaus):.6g}"
         )
     if len(results) == 1:
-        sentence += "; one friction history, so the spread over histories was not measured"
+        sentence += "; one friction history, so the spread over histories is unknown"
     lost = len(results) - len(reached)
     if lost:
         sentence += f"; {lost} of {len(results)} histories reached no plateau"
@@ -222,9 +222,9 @@ def bracket_answer(result: ConvexResult, forces: FloatArray, details: dict[str, 
     if not (result.settles and result.fine):
         share = f"{TRESCA.repeated:g}"
         doubt = (
-            f"friction limits that settle to {share} of the loads are not exact enough for so small a multiplier"
+            f"friction limits that converge to {share} of the loads are not accurate enough for so small a multiplier"
             if result.settles
-            else f"at {upper:.6g} the friction limits do not settle, which is no proof of collapse"
+            else f"at {upper:.6g} the friction limits do not converge, which is no proof of collapse"
         )
         return Answer(
             Status.NOT_CONVERGED,

@@ -1,4 +1,4 @@
-"""The gap-spring methods as the harness knows them: `fe`, `fe-newton` and `fe-qp`."""
+"""The gap-spring methods `fe`, `fe-newton` and `fe-qp`."""
 
 from __future__ import annotations
 
@@ -195,7 +195,7 @@ class ConvexSteps(Solver):
                 Status.REFUSED,
                 Finding.NONE,
                 f"{assembly.n_free} blocks: the convex steps are a cross-check for up to {settings.max_blocks} blocks, "
-                "above which their fixed point is too slow; use fe",
+                "above which their fixed-point iteration is too slow; use fe",
                 details={"path_status": "refused"},
             )
         model = build_model(assembly, settings, settings.friction_cap)
@@ -208,7 +208,7 @@ class ConvexSteps(Solver):
             return Answer(
                 Status.NOT_CONVERGED,
                 Finding.NONE,
-                "no equilibrium was found under the dead load alone; fe tells whether the wall falls",
+                "no equilibrium was found under the dead load alone; fe decides whether the wall falls",
                 iterations=result.programmes,
                 details=details | {"path_status": "not_converged"},
             )

@@ -54,13 +54,13 @@ class HistoryTuning:
 HISTORIES = HistoryTuning()
 SENTENCES = {
     PathEnd.PLATEAU: "the path ends on a plateau",
-    PathEnd.UNBOUNDED: "the path goes on to any multiplier",
+    PathEnd.UNBOUNDED: "the path continues to any multiplier",
     PathEnd.RUNS_DOWN: "the path has a peak but runs down without a plateau",
-    PathEnd.EVENTS: "the path was given up at the largest number of events",
+    PathEnd.EVENTS: "the path was stopped at the largest number of events",
     PathEnd.BREAKDOWN: "the path was lost",
-    PathEnd.TARGET: "the path was left at its target",
+    PathEnd.TARGET: "the path reached its target",
     PathEnd.TURNED_DOWN: "the path turned down",
-    PathEnd.TIME: "the path was left at the time limit",
+    PathEnd.TIME: "the path was stopped at the time limit",
 }
 BELOW_ZERO = "the path has a peak but runs down below zero: past its peak the wall falls under its dead load alone"
 
@@ -238,7 +238,7 @@ def _followed(follower: PathFollower, plan: Plan, record: PathRecord) -> History
     elif state is None and end == PathEnd.PLATEAU:
         sentence = _not_collapse(model, follower.present().velocity)
     if plan.committed_up_to < np.inf:
-        sentence += f"; committed up to {plan.committed_up_to:.4g} only, because later commits lost the path"
+        sentence += f"; plastic slip updated up to {plan.committed_up_to:.4g} only: later updates lost the path"
     return HistoryResult(plan, end, sentence, record, state, way.commits, way.residual)
 
 
@@ -250,7 +250,7 @@ def _not_collapse(model: WallModel, velocity: FloatArray) -> str:
     moving = model.moving_blocks(model.block_displacements(velocity))
     if without_load.issuperset(moving):
         return (
-            f"blocks without weight or load came loose ({first_few(moving, 8)}), and nothing tells where to: "
+            f"blocks without weight or load move freely ({first_few(moving, 8)}), in an undetermined direction: "
             "give every block a weight, however small"
         )
     return "the last piece is a mechanism, but its forces do not pass the check of an exact collapse state"

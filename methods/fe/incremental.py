@@ -75,7 +75,7 @@ class IncrementalResult:
     Attributes:
         load_control: largest multiplier at which load control converged; record: all converged points.
         state: the collapse state, or None; sentence: why it stopped; iterations: Newton iterations.
-        unbounded: whether load control went on to any multiplier.
+        unbounded: whether load control continued to any multiplier.
     """
 
     load_control: float
@@ -120,7 +120,7 @@ def march(
     reached = point.multiplier
     record.peak = reached
     if cut <= cuts:
-        return IncrementalResult(reached, record, None, "load control went on to any multiplier", iterations, True)
+        return IncrementalResult(reached, record, None, "load control continued to any multiplier", iterations, True)
     travel = point.u - gravity.u
     if not np.any(travel):
         with suppress(SingularTangent):
@@ -131,7 +131,7 @@ def march(
     if state is None:
         sentence = (
             f"load control stopped at {reached:.6g} and displacement control at {end:.6g}; "
-            "that Newton did not converge there is no proof of collapse"
+            "failure of Newton's method to converge is no proof of collapse"
         )
     return IncrementalResult(reached, record, state, sentence, iterations + spent)
 

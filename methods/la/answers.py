@@ -20,7 +20,7 @@ from methods.la.interior.phase_one import phase_one_forces
 LOCAL_RESIDUAL = 1e-8
 """Residual at a block or joint, relative to the forces and speeds there, of a state that is returned."""
 
-NO_MOTION = "No mechanism lets the live load do work: it cannot make the wall collapse."
+NO_MOTION = "The live load does no work on any mechanism: it cannot make the wall collapse."
 NO_STATE = "Statics allows any live load, and the search found no collapse state under zero dilatancy either."
 
 
@@ -42,13 +42,13 @@ def collapse_answer(
     if failed:
         shown = ", ".join(f"{name} {value:.2g}" for name, value in failed.items())
         return not_converged(
-            f"The best state, near multiplier {multiplier:.6g}, is not exact enough: {shown}", iterations, details
+            f"The best state, near multiplier {multiplier:.6g}, is not accurate enough: {shown}", iterations, details
         )
     blocks = _inexact_blocks(problem, state)
     if blocks:
         return not_converged(
-            f"The best state, near multiplier {multiplier:.6g}, is not exact enough beside {first_few(blocks, 8)}, "
-            "whose loads or speeds are small beside those of the others.",
+            f"The best state, near multiplier {multiplier:.6g}, is not accurate enough at {first_few(blocks, 8)}, "
+            "whose loads or velocities are small compared with those of the others.",
             iterations,
             details,
         )
@@ -132,7 +132,7 @@ def dead_load_answer(problem: Problem, newton: NewtonMatrix, has_live_load: bool
         return None
     found = standing(problem)
     if isinstance(found, str):
-        return not_converged(f"Whether the wall stands under its dead load was not settled: the programme was {found}.")
+        return not_converged(f"Whether the wall stands under its dead load was not decided: the programme was {found}.")
     if isinstance(found, KinematicSolution):
         return falls_answer(problem, found.velocities)
     if has_live_load:
@@ -140,7 +140,7 @@ def dead_load_answer(problem: Problem, newton: NewtonMatrix, has_live_load: bool
     return Answer(
         Status.OK,
         Finding.STANDS,
-        "Under its dead load the wall has an equilibrium within yield; no live load was given.",
+        "Under its dead load the wall has an equilibrium within yield; no live load is given.",
         forces=problem.to_forces(found.forces),
         forces_multiplier=0.0,
         iterations=found.iterations,

@@ -1,4 +1,7 @@
-"""The associated programme as the harness knows it: it needs no compiled kernels, and loads none."""
+"""The method `la-associated`: max lambda s.t. C' r + f0 + lambda fL = 0, S r + s0 >= 0 (Livesley 1978).
+
+`methods.la.interior.associated` solves it with its dual. This module loads no compiled code.
+"""
 
 from __future__ import annotations
 
@@ -50,7 +53,7 @@ def associated_answer(problem: Problem, result: AssociatedResult, tolerance: flo
     return collapse_answer(
         problem,
         result.state,
-        f"The greatest multiplier that statics and yield allow is {multiplier:.7g}.",
+        f"The greatest multiplier within statics and yield is {multiplier:.7g}.",
         tolerance,
         result.iterations,
         {"duality_gap": result.gap, "unknowns": 3 * problem.n_interfaces + 1},

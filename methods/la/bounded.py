@@ -1,4 +1,4 @@
-"""The least state known and a lower bound on every other, as the harness knows it."""
+"""The method `la-bound`: the least state known and a lower bound on every other (`methods.la.bounds`)."""
 
 from __future__ import annotations
 

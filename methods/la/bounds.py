@@ -40,7 +40,7 @@ def with_bound(assembly: Assembly, problem: Problem, known: Answer, settings: Bo
     if known.details.get("stopped_by_limit"):
         return known
     if assembly.dilates or assembly.strong:
-        own, why = known.sentence.rstrip("."), "lift as they slide" if assembly.dilates else "have strength"
+        own, why = known.sentence.rstrip("."), "have dilatancy" if assembly.dilates else "have strength"
         return replace(known, sentence=f"{own}. No bound below it is sought: some joints {why}.")
     began = time.process_time()
     document = None

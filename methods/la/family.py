@@ -42,9 +42,9 @@ def proved_of_all(answer: Answer, parts: Sequence[Answer]) -> Answer:
     rest = f"there is none below {lower:.7g}" if lower > 0.0 else "nothing is proved"
     said = ""
     if not proved and (answer.details["proved_least"] or own > lower):
-        said = f" What is proved is proved of that component alone; of the whole wall {rest}."
+        said = f" The proof covers that component alone; of the whole wall {rest}."
     elif len(kept) < len(answer.details):
-        said = " That the other components bear more is found to rounding."
+        said = " The other components bear more, to rounding."
     return replace(answer, sentence=answer.sentence + said, details=details)
 
 

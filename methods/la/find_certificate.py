@@ -25,7 +25,7 @@ from methods.proof.search.window_search import Bracket
 
 @dataclass(frozen=True)
 class Attempt:
-    """What came of the attempt to certify a wall.
+    """Results of the attempt to certify a wall.
 
     Attributes:
         document: the certificate; None where nothing is proved in fractions.
@@ -66,7 +66,7 @@ def find_certificate(
         return Attempt(None, too_large)
     if problem.n_interfaces > WINDOWS.loose:
         say_before(
-            f"The wall has {problem.n_interfaces} interfaces: on more than {WINDOWS.loose} the bound of some minutes "
+            f"The wall has {problem.n_interfaces} interfaces: above {WINDOWS.loose} the bound after some minutes "
             f"lies well below the least state known. The search for that state comes first, then {seconds:g} s of CPU "
             "time for the bound."
         )
@@ -109,11 +109,11 @@ def account(
     bound = found.in_floats * problem.unit_multiplier
     in_floats = f"at {bound:.7g} in floating point" if bound > 0.0 else "still at zero"
     in_fractions = f"at {proved:.7g} in fractions" if proved > 0.0 else "nothing is proved in fractions"
-    reasons = [f"no certificate of a window, because {found.refused}"] if found.refused else []
+    reasons = [f"no certificate of an interval, because {found.refused}"] if found.refused else []
     reasons += [found.stopped] if found.stopped else []
     if not reasons:
-        reasons = ["exact arithmetic leaves less of some part than floating point"]
+        reasons = ["exact arithmetic gives a lower bound of some subproblem than floating point"]
     return (
         f"After {seconds:.1f} s of CPU time the bound is {in_floats}, {in_fractions}; "
-        f"the least state known is {multiplier:.7g}. What stopped it: {'; '.join(reasons)}."
+        f"the least state known is {multiplier:.7g}. Reasons: {'; '.join(reasons)}."
     )

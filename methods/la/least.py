@@ -1,4 +1,12 @@
-"""The run of `la`: the sources of states in order, one budget and one record, and the answer they lead to."""
+"""The run of `la`: starting-point strategies in order, one budget and one record, and the answer.
+
+The least multiplier under zero dilatancy is a mathematical programme with equilibrium constraints:
+
+    min lambda   s.t.  C' r + f0 + lambda fL = 0,   C u = E g,   fL.u = 1,   0 <= y = S r + s0,   g >= 0,   y.g = 0
+
+Source: Baggio and Trovalusci (1995), equations 1 to 11; Ferris and Tin-Loi (2001). It is not convex: the search returns
+the least state that it finds, and `methods.la.certify` and `methods.proof` prove bounds.
+"""
 
 from __future__ import annotations
 
@@ -30,7 +38,7 @@ from methods.la.sources.budget import Budget, rounds_of
 from methods.la.sources.search import CHOICES, Search
 from methods.numerics.failures import NumericalFailure
 
-NOT_EXACT = "No state was found that holds beside the lightest blocks too: weights differ too much within the wall"
+NOT_EXACT = "No state is in equilibrium at the lightest blocks too: weights differ too much within the wall"
 SAME_MULTIPLIER = 1e-9
 """Relative difference of two multipliers below which the state with the smaller residuals is the better one."""
 
@@ -136,7 +144,7 @@ def _stopped_before_the_first(search: Search, associated: CollapseState, toleran
     )
     details = _details(search, None, None) | {"stopped_by_limit": True}
     return collapse_answer(
-        problem, associated, sentence, tolerance, 0, details, (0.0, greatest), "nothing is known but the upper bound"
+        problem, associated, sentence, tolerance, 0, details, (0.0, greatest), "only the upper bound is known"
     )
 
 
@@ -231,9 +239,8 @@ def _sentence(search: Search, best: CollapseState, proof: Proof) -> str:
     least = search.problem.to_multiplier(best.multiplier)
     if proof.complete:
         nodes = f"{proof.nodes} node{'s' if proof.nodes != 1 else ''}"
-        return (
-            f"The least collapse multiplier is {least:.7g}: branch and bound ({nodes}) leaves none below, to rounding."
-        )
+        lower = f"branch and bound ({nodes}) excludes lower ones to rounding"
+        return f"The least collapse multiplier is {least:.7g}: {lower}."
     source = search.record.improvements[-1].source
     descent = "" if search.budget.limits.descents else ", without descent because of the size of the wall"
-    return f"The least collapse multiplier known is {least:.7g}{descent}; it was found by way of {source}."
+    return f"The least collapse multiplier known is {least:.7g}{descent}; found from: {source}."

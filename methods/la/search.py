@@ -1,4 +1,4 @@
-"""The search for the least collapse state as the harness knows it."""
+"""The method `la`: the search for the least collapse state (`methods.la.least`)."""
 
 from __future__ import annotations
 

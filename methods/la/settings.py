@@ -68,8 +68,8 @@ class BoundSettings(Settings):
     Attributes:
         seed, effort: of the search of `la` that comes first.
         bound_seconds: of CPU time for the bound, which is the best one reached by then.
-        most_interfaces: walls with more have no bound, because the matrices of products are dense: with 286 interfaces
-            they take .6 GB and an iteration 40 ms, with 141 .15 GB and 5 ms. Tens of thousands are needed.
+        most_interfaces: walls with more have no bound, because the matrices of products are dense, and tens of
+            thousands of iterations are needed.
         largest_certificate: characters of a certificate above which the answer holds its bound only, because results
             are kept and copied; `drystone bound` writes it whatever its size.
     """

@@ -109,9 +109,9 @@ def _at_limit(assembly: Assembly, answer: Answer) -> Answer:
             return answer  # the live load holds it up
         if (assembly.dilatancy >= assembly.friction).all():
             return _stands_though_joints_give(answer, bears)
-        reason = "it falls for want of self-stress in its joints, or because they give"
+        reason = "it falls because its joints have no self-stress, or because they deform"
     elif answer.multiplier == 0.0 and answer.bracket is None and bears > 0.0:
-        reason = "what the wall bears hangs on the self-stress in its joints, of which fe and de start without any"
+        reason = "the multiplier depends on the self-stress in its joints; fe and de start without any"
     else:
         return answer
     own = answer.sentence.rstrip(".")
@@ -129,7 +129,7 @@ def _stands_though_joints_give(answer: Answer, bears: float) -> Answer:
         status=Status.NOT_CONVERGED,
         finding=Finding.NONE,
         sentence=f"Rigid blocks stand under the dead load and bear up to {bears:.7g}, since equilibrium exists and no "
-        f"slip works against friction; only with joints that give does the wall not come to rest: {own}.",
+        f"slip works against friction; only with deformable joints does the wall not come to rest: {own}.",
         multiplier=None,
         bracket=None,
         forces=None,
@@ -142,7 +142,7 @@ def _with_limit(answer: Answer, statics: Statics) -> Answer:
     """The answer of a wall at its limit; one that has no forces or no mechanism takes those of statics."""
     own = answer.sentence.rstrip(".")
     if answer.multiplier is None:
-        said = f" Of itself the method says: {own}."
+        said = f" The method's own sentence: {own}."
     else:
         said = "" if answer.multiplier < 0.0 else f" {own[:1].upper()}{own[1:]}."
     return replace(
@@ -150,7 +150,7 @@ def _with_limit(answer: Answer, statics: Statics) -> Answer:
         status=Status.OK,
         finding=Finding.AT_LIMIT,
         sentence="The wall is at its limit under its dead load: its multiplier is zero within the accuracy of the "
-        f"numbers that describe it.{said}",
+        f"wall's data.{said}",
         multiplier=0.0,
         bracket=None if answer.bracket is None else (0.0, answer.bracket[1]),
         forces=statics.forces if answer.forces is None else answer.forces,
@@ -166,7 +166,7 @@ def _falls(answer: Answer, mechanism: FloatArray) -> Answer:
         answer,
         status=Status.OK,
         finding=Finding.FALLS,
-        sentence="The wall falls under its dead load, by less than the method tells of itself: no equilibrium within "
+        sentence="The wall falls under its dead load, by less than the method can resolve: no equilibrium within "
         "yield exists, whatever the flow rule.",
         multiplier=None,
         bracket=None,
@@ -178,11 +178,11 @@ def _falls(answer: Answer, mechanism: FloatArray) -> Answer:
 
 
 def _below_zero(assembly: Assembly, answer: Answer) -> Answer:
-    """The answer for a collapse state below zero, which the live load does not bring about, of a wall that stands."""
+    """The answer for a collapse state below zero, which the live load does not cause, of a wall that stands."""
     assert answer.multiplier is not None
     if answer.mechanism is not None and -answer.multiplier <= least_told(assembly, answer.mechanism):
         return replace(answer, multiplier=0.0, forces_multiplier=0.0)
-    sentence = "the run ended in a collapse state below zero, which the live load does not bring about"
+    sentence = "the run ended in a collapse state below zero, which the live load does not cause"
     return replace(
         answer,
         status=Status.NOT_CONVERGED,

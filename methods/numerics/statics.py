@@ -1,4 +1,7 @@
-"""Contact forces within yield that balance given loads, whatever the method that asks for them."""
+"""Contact forces within yield that balance given loads, for all methods: C' r + f = 0, S r + s0 >= 0.
+
+The greatest multiplier is the programme of Livesley (1978), max lambda with f = f0 + lambda fL.
+"""
 
 from __future__ import annotations
 

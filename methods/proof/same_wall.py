@@ -44,7 +44,7 @@ def _require_dry(assembly: Assembly) -> None:
     A certificate holds the ends of an interface and a side: its normal is across the ends.
     """
     if assembly.dilates:
-        raise CertificateError("it is of a wall without dilatancy, and joints of this one lift as they slide")
+        raise CertificateError("it is of a wall without dilatancy, and joints of this one have dilatancy")
     if not assembly.law.dry.all():
         raise CertificateError("it is of a wall with dry joints, and joints of this one have strength of their own")
     if np.any(assembly.support_motion):

@@ -71,9 +71,9 @@ def _load_displacement(item: CaseResults, result: Result, moved: list[float], lo
         zero_y=True,
         levels=levels,
     )
-    caption = f"{result.method}: the multiplier along the path, against the displacement the live load works on"
+    caption = f"{result.method}: the multiplier along the path over the work-conjugate displacement of the live load"
     if shown < len(loads):
-        caption += "; the plateau goes on beyond the right edge"
+        caption += "; the plateau continues beyond the right edge"
     return f"{caption}.", charts.svg(chart)
 
 
@@ -131,22 +131,22 @@ def _holds(result: Result) -> tuple[str, Markup]:
         groups[name][0].append(float(number))
         groups[name][1].append(load)
     chart = charts.Chart(
-        title=f"Holds of {result.method}: which multipliers were held and which moved",
+        title=f"Load steps of {result.method}: multipliers held and moving",
         x_label="hold number",
         y_label="multiplier",
         series=[charts.Series(name, x, y, line=False) for name, (x, y) in groups.items() if x],
         whole=True,
     )
     orders = details.orders
-    count = "" if orders is None else f" ({numbers.count(len(orders), 'body order')} tried)"
+    count = "" if orders is None else f" ({numbers.count(len(orders), 'sweep order')} tried)"
     return (
-        f"{result.method}: the holds of the reported body order, which close in on the bracket from both sides{count}.",
+        f"{result.method}: the load steps of the reported sweep order narrow the bracket from both sides{count}.",
         charts.svg(chart),
     )
 
 
 def _orders(result: Result) -> list[tuple[str, Markup]]:
-    """The bracket of every body order, which shows the spread that rigid contacts leave."""
+    """The bracket of every sweep order, which shows the spread that rigid contacts leave."""
     orders = AnswerDetails(result.details).orders or ()
     ends = [
         (float(number), order.held, order.moving)
@@ -166,16 +166,14 @@ def _orders(result: Result) -> list[tuple[str, Markup]]:
         line=False,
     )
     chart = charts.Chart(
-        title=f"Brackets of {result.method} over body orders",
-        x_label="body order",
+        title=f"Brackets of {result.method} over sweep orders",
+        x_label="sweep order",
         y_label="multiplier",
         series=[held, moving],
         whole=True,
     )
     names = ", ".join(f"{number} {order.name}" for number, order in enumerate(orders, start=1))
-    return [
-        (f"{result.method}: held and moving for every order in which blocks were entered ({names}).", charts.svg(chart))
-    ]
+    return [(f"{result.method}: held and moving for every sweep order ({names}).", charts.svg(chart))]
 
 
 def _starts(result: Result) -> tuple[str, Markup]:

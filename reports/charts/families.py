@@ -141,8 +141,8 @@ def _study(drawn: list[tuple[Members, list[charts.Series]]], parameter: Paramete
     return Study(
         f"Multiplier against {parameter.name}: walls that differ in it alone",
         f"{how_many}. {_changes(first)}" if len(drawn) == 1 else f"{how_many}; {len(drawn)} walls side by side.",
-        "A bar is a bracket. Where a line bends, another mechanism takes over; where the lines part, the answer "
-        "depends on the flow rule or on the path, and the least one known is the one to trust.",
+        "A bar is a bracket. Where a line bends, another mechanism takes over; where the lines differ, the "
+        "answer depends on the flow rule or on the path, and the least known value is the safe one.",
         found,
     )
 

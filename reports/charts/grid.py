@@ -178,8 +178,9 @@ def _study(kind: str, cells: list[Cell]) -> Study:
         f"Where {who} agree: {kind}, by proportion and friction",
         " ".join(sentence for sentence in (_where(cells), *_why(cells)) if sentence),
         "A row is a proportion of the brick (width over height), a column a friction. “agree” means that all "
-        "multipliers lie within 1 %; “open” that a measured bracket does not decide; otherwise the cell names the "
-        "method furthest from the middle one, and how far its nearest end lies from it. The links lead to all values.",
+        "multipliers lie within 1 %; “open” that a measured bracket does not decide; otherwise the cell names "
+        "the method that differs most from the middle one, and the difference of its nearest end. The links "
+        "lead to all values.",
         table=Markup(table),
     )
 
@@ -231,7 +232,7 @@ def _odd(name: str, odd: list[Cell], number: int, where: str) -> str:
     if name in thrust and len(thrust) > 1:
         others = [f"{value:.2g} in {each.upper()}" for each, value in thrust.items() if each != name]
         said += (
-            f"; its head joints press with {thrust[name]:.2g} of the wall's weight there"
+            f"; its head joints carry {thrust[name]:.2g} of the wall's weight there"
             f"{' in the median' if len(odd) > 1 else ''}, with {labels.and_(others)}"
         )
     return f"{said}."

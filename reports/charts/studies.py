@@ -47,9 +47,9 @@ def cost_against_size(run: ComparisonRun) -> Study | None:
     return Study(
         "Cost against size",
         _slopes(run),
-        "Both axes are logarithmic: a slope of 1 means that twice the blocks cost twice the time. Only runs that found "
-        "a collapse and were accepted are drawn; time to start the process is not counted. Of limit analysis it is the "
-        "time of the whole search; its value is known much earlier.",
+        "Both axes are logarithmic: a slope of 1 means that twice the blocks cost twice the time. Only runs "
+        "that found a collapse and were accepted are drawn; time to start the process is not counted. Limit "
+        "analysis counts the whole search, which reaches its value much earlier.",
         drawings,
     )
 
@@ -167,11 +167,11 @@ def performance_profile(run: ComparisonRun) -> Study | None:
     return Study(
         "Performance profile",
         f"How much of the {numbers.count(len(run.cases), 'case')} each method solved within a multiple of the "
-        f"fastest method's time; {numbers.count(unsolved, 'case')} nobody solved.",
-        "Higher is more often right, further left is faster. A run that failed, was rejected by the judge or "
-        "contradicts a reference is not solved, however fast it was; a case that nobody solved counts for nobody. "
-        "A case that a method was not asked about is not solved by it. The associated maximum is left out: it "
-        "answers an easier question.",
+        f"fastest method's time; {numbers.count(unsolved, 'case')} no method solved.",
+        "Higher: more cases solved. Further left: faster. A run that failed, was rejected by the judge or "
+        "contradicts a reference is not solved, however fast it was; a case that no method solved counts for "
+        "none. A method does not solve a case on which it was not run. The associated maximum is excluded, "
+        "because it solves an easier problem.",
         [("", charts.svg(chart))],
     )
 

@@ -1,4 +1,4 @@
-"""What came of a study, in sentences: where multipliers lie, how likely collapse is, what matters most."""
+"""Results of a study, in sentences: where multipliers lie, how likely collapse is, what matters most."""
 
 from __future__ import annotations
 
@@ -114,5 +114,5 @@ def _matters(tables: Mapping[str, pd.DataFrame], grid: Sequence[str]) -> Iterato
         else:
             yield (
                 f"Whether {first['quantity']} or {second['quantity']} matters more, {first['walls']} "
-                f"walls do not tell{about} (Borgonovo's delta {first['delta']:.2f} and {second['delta']:.2f})."
+                f"walls do not decide{about} (Borgonovo's delta {first['delta']:.2f} and {second['delta']:.2f})."
             )

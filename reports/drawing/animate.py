@@ -45,10 +45,12 @@ def animate(case: Case, result: Result, path: Path) -> None:
     """
     suffix = path.suffix.lower()
     if suffix not in FORMATS:
-        raise InputError(f'no animation is written as "{path.suffix}"', f"Use {', '.join(FORMATS)}", source=str(path))
+        raise InputError(
+            f'no animation format is called "{path.suffix}"', f"Use {', '.join(FORMATS)}", source=str(path)
+        )
     if result.mechanism is None and released(result, case.assembly.n_blocks) is None:
         raise InputError(
-            f"{result.method} left no mechanism to animate ({labels.STATUS[result.status][1]}: {result.sentence})",
+            f"{result.method} gave no mechanism to animate ({labels.STATUS[result.status][1]}: {result.sentence})",
             "Choose a method that ended with a collapse state",
             source=case.id,
         )

@@ -82,7 +82,7 @@ def results_figure(case: Case, results: list[Result], kind: str) -> Figure:
     if not usable:
         methods = ", ".join(result.method for result in results) or "no method"
         raise InputError(
-            f"{methods} left no {' and no '.join(needed)} to draw",
+            f"{methods} gave no {' and no '.join(needed)} to draw",
             "Choose a method that ended with a collapse state",
             source=case.id,
         )
@@ -161,7 +161,7 @@ def save(make: Callable[[], Figure], path: Path) -> None:
         InputError: an ending that no figure has, or the path of something that is no regular file.
     """
     if path.suffix.lower() not in FORMATS:
-        raise InputError(f'no figure is written as "{path.suffix}"', f"Use {', '.join(FORMATS)}", source=str(path))
+        raise InputError(f'no figure format is called "{path.suffix}"', f"Use {', '.join(FORMATS)}", source=str(path))
     with replacing(path) as draft, style():
         make().savefig(draft, metadata=metadata(path))
 

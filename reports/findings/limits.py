@@ -18,8 +18,8 @@ LIMITS: tuple[tuple[str, str, tuple[str, ...]], ...] = (
             "Blocks are rigid and infinitely strong, joints have no tensile strength, and friction is Coulomb's with "
             "one coefficient. Crushing, wear and cohesion are outside of the model.",
             "Displacements are small: a multiplier belongs to the wall as drawn. Second-order effects that lower it "
-            "as the wall leans are seen only where a method says that it follows them.",
-            "The wall is plane. Forces across its thickness, and what happens at its ends out of plane, are left out.",
+            "as the wall leans are included only by methods that state so.",
+            "The wall is plane. Forces across its thickness, and effects at its ends out of plane are not modelled.",
         ),
     ),
     (
@@ -27,7 +27,7 @@ LIMITS: tuple[tuple[str, str, tuple[str, ...]], ...] = (
         "elastic",
         (
             "The plateau is a collapse state, but which one depends on the history of friction; the spread over "
-            "histories is reported and is the uncertainty of the number.",
+            "histories is reported and is the uncertainty of the value.",
             "Springs are numerical: the plateau does not depend on their stiffness at a fixed ratio of tangential to "
             "normal stiffness, and on regular walls little on the ratio; on irregular ones with rough joints it may "
             "move by a third. Deformable joints tend to reach states above the least one.",
@@ -38,32 +38,33 @@ LIMITS: tuple[tuple[str, str, tuple[str, ...]], ...] = (
         "The search for the least collapse state",
         "seeks_least",
         (
-            "With friction the problem has many local minima. What is reported is the least collapse state known: a "
-            "true collapse state, checked as such, which a longer search may undercut. It is called "
-            "the least there is only where a proved lower bound meets it: branch and bound comes to "
-            "that end on single blocks, columns, rings of up to 30 joints and most walls of up to six blocks.",
+            "With friction the problem has many local minima. The report gives the least collapse state known: "
+            "a checked collapse state, below which a longer search may find another. It is called the least "
+            "only if a proved lower bound reaches it: branch and bound achieves this on single blocks, columns,"
+            " rings of up to 30 joints and most walls of up to six blocks.",
         ),
     ),
     (
         "The associated maximum",
         "bounds_above",
         (
-            "The associated maximum is a bound from above for every method; it lets blocks rise as they slide and "
-            "may rest on self-stress that a real wall need not have.",
+            "The associated maximum is an upper bound for every method; its blocks rise as they slide, and it "
+            "may depend on self-stress that a real wall need not have.",
         ),
     ),
     (
         "Measured between two loads",
         "brackets",
         (
-            "The answer is a bracket between a load that was held and a load that moved, and a spread over the orders "
-            "in which blocks were entered. The number printed as multiplier is the middle and not exact.",
-            "Rigid contacts leave contact forces undetermined where several solutions exist; the engine takes one of "
-            "them.",
-            "Damping removes inertia: what is found is quasi-static. Walls of many courses need many steps, and holds "
-            "that could not be told are counted as undecided, never as held.",
-            "Joints that give, round corners and blocks that lean lower the multiplier where they are modelled; how "
-            "much depends on a stiffness that drawings do not tell. The sentence of such an answer names both.",
+            "The answer is a bracket between a load that was held and a load that moved, and a spread over the "
+            "sweep orders. The printed multiplier is the middle, not an exact value.",
+            "Rigid contacts leave contact forces undetermined where several solutions exist; the engine finds "
+            "one of them.",
+            "Damping removes inertia: the result is quasi-static. Walls of many courses need many steps, and "
+            "undecided load steps are never counted as held.",
+            "Deformable joints, rounded corners and leaning blocks reduce the multiplier where they are "
+            "modelled. The reduction depends on a stiffness that drawings do not give. The sentence of such an "
+            "answer states both.",
         ),
     ),
 )

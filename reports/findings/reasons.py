@@ -118,14 +118,14 @@ def _self_stress(item: CaseResults, least: Result, other: Result) -> str:
     if thrusts[0] is None or thrusts[1] is None or abs(thrusts[0] - thrusts[1]) < THRUST:
         return ""
     said = (
-        f" Head joints press with {thrusts[0]:.2f} of the wall’s weight in {least.method} "
+        f" Head joints carry {thrusts[0]:.2f} of the wall’s weight in {least.method} "
         f"and {thrusts[1]:.2f} in {other.method}"
     )
     springs = next((r for r in item.mains if r.traits.elastic and r is not least and r.status is Status.OK), None)
     built = None if springs is None else thrust_lines.head_thrust(assembly, springs.forces)
     if springs is None or built is None or not other.traits.bounds_above or thrusts[1] - built < THRUST:
         return f"{said}."
-    return f"{said}, a self-stress that loading does not build up: {springs.method} ends with {built:.2f}."
+    return f"{said}, a self-stress that the load path does not produce: {springs.method} ends with {built:.2f}."
 
 
 def _histories(states: list[Result], *, several: bool) -> list[str]:

@@ -42,22 +42,22 @@ PURPOSE: dict[str, tuple[str, tuple[ReferenceType, ...], str]] = {
     "Verification": (
         "Verification: does each method solve its own equations?",
         (ReferenceType.EXACT, ReferenceType.BOUND),
-        "Closed forms and proved bounds. A value outside its tolerance here is a fault of the programme.",
+        "Closed forms and proved bounds. A value outside its tolerance here is an error of the code.",
     ),
     "Benchmark": (
-        "Benchmark: do others compute the same?",
+        "Benchmark: do other codes agree?",
         (ReferenceType.PUBLISHED,),
-        "Values computed by others. A difference asks for an explanation; the fault may be on either side.",
+        "Values computed by others. A difference needs an explanation; either side may be wrong.",
     ),
     "Validation": (
         "Validation: does the model describe the wall?",
         (ReferenceType.MEASURED,),
-        "Values found by experiments. They judge the model of rigid blocks in dry contact, not the programme.",
+        "Values of experiments. They test the model of rigid blocks in dry contact, not the code.",
     ),
     "Regression": (
         "Regression: our own earlier values",
         (ReferenceType.REGRESSION,),
-        "Values of an earlier release of this programme. They prove nothing; they show that something moved.",
+        "Values of an earlier release. They prove nothing; they show changes.",
     ),
 }
 

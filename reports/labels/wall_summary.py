@@ -36,7 +36,7 @@ def wall_summary(case: Case) -> list[tuple[str, str]]:
         ("Friction tan φ", friction_text(assembly)),
         ("Size", f"{numbers.given(extent.width, 4)} × {numbers.given(extent.height, 4)} {units.length}"),
         ("Weight of free blocks", numbers.quantity(weight, units.force, 4)),
-        ("Live load", direction_in_words(case) or "none: the question is whether it stands"),
+        ("Live load", direction_in_words(case) or "none: only stability is analysed"),
         ("Units", case.wall.units_sentence),
     ]
     if case.wall.loads.gravity_per_weight != (0.0, -1.0):
@@ -49,7 +49,7 @@ def detection_text(case: Case) -> str:
     """The tolerances within which two faces were taken to touch."""
     joints, unit = case.wall.interfaces, case.wall.units.length
     if not isinstance(joints, Detection):
-        return "not looked for: the file gives the joints"
+        return "none: the file lists the joints"
     found = limits_of(joints, case.assembly.length_scale)
     gap, overlap = (f"{numbers.given(value, 3)} {unit}" for value in (found.gap, found.overlap))
     return f"gap {gap}, overlap {overlap}, angle {numbers.given(float(np.degrees(found.angle)), 3)}°"

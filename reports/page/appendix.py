@@ -48,7 +48,7 @@ LIMITS = SheetLimits()
 ASSUMPTIONS = (
     "The wall is plane; blocks are rigid and do not crush.",
     "Joints are dry: they bear no tension, and shear up to friction times compression (Coulomb), at each contact.",
-    "Sliding is without dilatancy, except in the associated maximum, which is an upper bound and no design value.",
+    "Sliding is without dilatancy, except in the associated maximum, which is an upper bound and not a design value.",
     "Displacements before collapse are small: equilibrium is that of the wall as drawn.",
     "Dead loads act first and stay; the live load grows by one multiplier, slowly.",
 )

@@ -200,7 +200,7 @@ def _forces_beside(case: Case, result: Result) -> str:
         return ""
     carry = f"{numbers.count(number, 'joint')} drawn as open {'carries' if number == 1 else 'carry'} force below"
     if result.flow == "approximate":
-        return f"{carry}: the forces are of the state that was held, the mechanism is of the one that moved"
+        return f"{carry}: the forces belong to the held state, the mechanism to the moving one"
     return carry
 
 
@@ -215,13 +215,13 @@ def origin(result: Result) -> str:
     if not math.isclose(last.multiplier, result.multiplier, rel_tol=1e-7, abs_tol=1e-9):
         return ""
     after = "" if last.cpu_seconds is None else f" after {numbers.seconds(last.cpu_seconds)} of CPU time"
-    return f"found by “{last.source}”{after}"
+    return f"found from “{last.source}”{after}"
 
 
 def _forces_are(result: Result) -> str:
     if result.flow == "approximate":
-        moved = "; the mechanism above is of the one that moved" if result.mechanism is not None else ""
-        return f"contact forces of the last state that was held{moved}"
+        moved = "; the mechanism above belongs to the moving state" if result.mechanism is not None else ""
+        return f"contact forces of the last held state{moved}"
     at = numbers.multiplier(result.forces_multiplier)
     if result.forces_multiplier is not None and at != numbers.multiplier(result.multiplier):
         return f"contact forces at {at}"

@@ -23,16 +23,16 @@ longer table is folded."""
 
 READ = {
     "agreement": "A row is a point of the grid, a column a value of the quantity on the axis. “agree”: the multipliers "
-    "of all families lie within 1 % of the lowest. Otherwise the cell gives how far the highest lies above the lowest; "
-    "two numbers are the least and the greatest difference that brackets allow. “open”: the brackets do not decide.",
+    "of all families lie within 1 % of the lowest. Otherwise the cell gives the difference of highest and lowest; two "
+    "numbers are the least and the greatest difference that brackets allow. “open”: the brackets do not decide.",
     "failure": "Share of walls that collapse at or below a multiplier, with Wilson's score interval at 95 %. A wall "
     "whose wide bracket holds the multiplier counts in `probability_at_most` only.",
-    "sensitivity": "Borgonovo's delta: 0 where a quantity does not matter, 1 where nothing else does; and the share of "
-    "the variance it explains alone.",
-    "quantiles": "One line a group of walls: how many answered, how many of them with a wide bracket, mean and "
+    "sensitivity": "Borgonovo's delta: 0 for a quantity without influence, 1 for the only one with influence; and "
+    "its share of the variance.",
+    "quantiles": "One line a group of walls: number of answers, number of wide brackets, mean and "
     "standard deviation without these, the mean and quantiles of all as low and as high as the brackets allow.",
-    "neighbours": "Runs that a mechanism of a neighbouring wall led lower, and what they had found alone. A search "
-    "that misses a state at one point of a study may find it at the next.",
+    "neighbours": "Runs with a lower value from the mechanism of a neighbouring wall, and their value without it. A "
+    "search may miss a state at one point of a study and find it at the next.",
     "fragility": "Probability of collapse counted over walls (95 % by Greenwood, log-log) beside a lognormal curve "
     "(95 % by bootstrap).",
 }

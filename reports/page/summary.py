@@ -122,7 +122,7 @@ def red_rows(run: ComparisonRun) -> list[RedRow]:
             RedRow(
                 f"case-{number}",
                 f"{item.case.id}, {'search' if gate.of_search else 'theory'}",
-                f"{gate.statement}: does not hold ({gate.sentence})",
+                f"{gate.statement}: not met ({gate.sentence})",
             )
             for gate in item.gates
             if gate.passed is False
@@ -240,7 +240,7 @@ def which_number(item: CaseResults) -> str:
         )
     if associated is not None and _above(associated, least):
         sentences.append(
-            f"Do not rely on {_height(associated, least)} ({associated.method}): it lets joints widen as they slide."
+            f"Do not rely on {_height(associated, least)} ({associated.method}): its joints open as they slide."
         )
     return " ".join(sentences)
 

@@ -391,7 +391,7 @@ def findings(run: ComparisonRun) -> str:
         + (f", and {unjudged} {_are(unjudged)} not judged." if unjudged else ".")
     ]
     if gated:
-        sentences.append(f"Of {numbers.count(len(gated), 'gated reference value')}, {held} {_are(held)} met.")
+        sentences.append(f"Of {numbers.count(len(gated), 'checked reference value')}, {held} {_are(held)} met.")
     gates = [gate for item in run.cases for gate in item.gates if gate.passed is not None]
     if gates:
         passed = sum(bool(gate.passed) for gate in gates)

@@ -371,7 +371,7 @@ NOT_DESCRIBED: dict[str, tuple[Callable[[Assembly], Assembly], str]] = {
         lambda a: replace(a, constant=a.constant + np.outer([1.0, 0.0], [1e-9, 0.0, 0.0, 0.0])),
         "strength of their own",
     ),
-    "dilatancy": (lambda a: replace(a, dilatancy=np.array([0.0, 1e-12])), "lift as they slide"),
+    "dilatancy": (lambda a: replace(a, dilatancy=np.array([0.0, 1e-12])), "have dilatancy"),
     "a support that moves": (lambda a: replace(a, support_motion=np.outer(a.fixed, [0.0, 1e-9, 0.0])), "move"),
     "a normal that is not across its joint": (lambda a: replace(a, normal=_turned(a.normal, 1e-6)), "normals"),
     "a normal without a number": (lambda a: replace(a, normal=a.normal * np.nan), "normals"),

@@ -70,7 +70,7 @@ def test_what_is_known_to_be_loose_is_said_before_the_search(tmp_path: Path, mon
 STOPPED = {
     "the time": (Bracket(0.25, 0.5, stopped=Stop.TIME), Stop.TIME.value),
     "a window that exact arithmetic refuses": (Bracket(0.25, 0.25, refused="a weight is above zero"), "above zero"),
-    "parts without a certificate": (Bracket(0.25, 0.25), "exact arithmetic leaves less"),
+    "parts without a certificate": (Bracket(0.25, 0.25), "exact arithmetic gives a lower bound"),
 }
 
 
@@ -81,7 +81,7 @@ def test_a_bound_that_stalls_says_how_far_it_came(name: str) -> None:
     sentence = account(problem, 0.65, found, {"bound": "1/8"}, 3.0)
     assert f"at {0.25 * problem.unit_multiplier:.7g} in floating point, at 0.125 in fractions" in sentence
     assert "After 3.0 s of CPU time" in sentence
-    assert "the least state known is 0.65. What stopped it: " in sentence
+    assert "the least state known is 0.65. Reasons: " in sentence
     assert reason in sentence
 
 

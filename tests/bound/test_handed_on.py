@@ -158,5 +158,5 @@ def test_a_certificate_of_as_many_divisions_as_those_of_the_library_fits_into_an
 def test_a_bound_that_is_not_sought_because_joints_dilate_is_said() -> None:
     wall = case(stack(2), {"default": 0.5, "dilatancy": 0.1}).assembly
     answer = BoundedLimitAnalysis().solve(wall, BoundSettings(bound_seconds=5.0, effort="quick"))
-    assert answer.sentence.endswith("No bound below it is sought: some joints lift as they slide.")
+    assert answer.sentence.endswith("No bound below it is sought: some joints have dilatancy.")
     assert "certificate" not in answer.details

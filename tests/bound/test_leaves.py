@@ -98,7 +98,7 @@ def test_without_velocities_a_normal_force_is_at_least_zero_and_no_more(least: s
     if holds:
         assert known_of(forces, said).least == {0: 0}
         return
-    with pytest.raises(CertificateError, match="less than is said"):
+    with pytest.raises(CertificateError, match="less than stated"):
         known_of(forces, said)
 
 
@@ -165,7 +165,7 @@ FALSE_WINDOWS: dict[str, tuple[Callable[[Any], Any], str]] = {
         lambda w: w["motions"]["strains"].__setitem__(0, 3 * len(w["weights"])),
         "may stand here",
     ),
-    "velocities of one block more": (lambda w: w["motions"]["inverse"].append([0] * 3), "not all there"),
+    "velocities of one block more": (lambda w: w["motions"]["inverse"].append([0] * 3), "are missing"),
 }
 
 
@@ -216,7 +216,7 @@ def test_a_normal_force_is_at_least_what_bears_the_weight_with_all_friction(beyo
     if holds:
         assert known_of(forces, said).least == {0: claim}
         return
-    with pytest.raises(CertificateError, match="less than is said"):
+    with pytest.raises(CertificateError, match="less than stated"):
         known_of(forces, said)
 
 

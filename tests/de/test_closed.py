@@ -100,6 +100,6 @@ def test_what_cannot_be_analysed_gives_no_multiplier():
     pressed = assembly(stack(2), 0.7, loads={"live": {"body": [{"per_weight": [0, -1]}]}})
     stands = closed(pressed, size=0.0, alone=("la",), compare=False)
     assert (stands.status, stands.finding, stands.multiplier) == (Status.NOT_CONVERGED, Finding.NONE, None)
-    assert "greatest multiplier asked" in stands.sentence
+    assert "greatest multiplier tested" in stands.sentence
     unbounded = stands.details["analyses"]["la"]
     assert (unbounded["finding"], unbounded["multiplier"]) == (Finding.UNBOUNDED, None)

@@ -211,14 +211,14 @@ def test_cases_of_a_user_are_compared_and_gated(value: float, code: int, tmp_pat
     done = drystone("compare", "--cases", "mine", "--methods", "la", cwd=tmp_path)
     assert done.returncode == code, done.stdout + done.stderr
     assert "my-block" in done.stdout
-    assert ("not hold:" in done.stdout) is bool(code)
+    assert ("Not met, of" in done.stdout) is bool(code)
     checked = drystone("check", "my-block", "--cases", "mine", "--json", cwd=tmp_path)
     assert checked.returncode == code
     assert json.loads(checked.stdout)["passed"] is not bool(code)
 
 
 def test_methods_that_a_case_names_and_nobody_has_are_told(tmp_path: Path):
-    """A gated reference that applies to a misspelt method was passed over without a word, a chosen one a traceback."""
+    """A gated reference that applies to a misspelt method was ignored without a message, a chosen one a traceback."""
     folder = tmp_path / "mine" / "my-block"
     folder.mkdir(parents=True)
     (folder / "wall.json").write_text(json.dumps(wall_data(stack(1), 0.25)))

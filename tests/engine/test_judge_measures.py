@@ -141,9 +141,9 @@ SPOILED: dict[str, tuple[Callable[[DisplacedState], DisplacedState], str]] = {
     ),
     "across": (lambda state: replace(state, normal=state.normal[:, ::-1]), "across a face"),
     "inwards": (lambda state: replace(state, normal=-state.normal), "across a face"),
-    "long": (lambda state: replace(state, normal=1.2 * state.normal), "no unit vector"),
+    "long": (lambda state: replace(state, normal=1.2 * state.normal), "not a unit vector"),
     "no joint": (lambda state: replace(state, interface=state.interface - 1), "none of the 3 joints"),
-    "other block": (lambda state: replace(state, onto=np.roll(state.onto, 2)), "none of its joint"),
+    "other block": (lambda state: replace(state, onto=np.roll(state.onto, 2)), "does not belong to its joint"),
     "one less": (lambda state: replace(state, onto=state.onto[1:]), "one entry each"),
     "not finite": (lambda state: moved(state, 3, [np.nan, 0.0, 0.0]), "finite"),
 }

@@ -343,7 +343,7 @@ def test_stores_are_merged_without_doubling(tmp_path: Path):
     rows_of(second, tmp_path / "b.sqlite")
     done = drystone("store", "merge", "a.sqlite", "b.sqlite", cwd=tmp_path)
     assert done.returncode == 0, done.stderr
-    assert "1 runs taken over, 1 were there" in done.stdout
+    assert "1 runs copied, 1 were there already" in done.stdout
     _, stored = rows_of(study(vary={"friction": [0.1, 0.2, 0.3]}), tmp_path / "a.sqlite")
     assert stored == 3
     with open_store(tmp_path / "a.sqlite") as store:

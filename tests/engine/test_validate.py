@@ -35,7 +35,7 @@ def test_brick_a_little_low_is_told_with_the_tolerance_that_finds_its_joints(tmp
     wall = off(0.001, greatest_overlap=0.002)
     code, told = validated(tmp_path, wall)
     assert code == 0
-    assert [doubt["size"] for doubt in told["doubts"] if "look at each other" in doubt["text"]] == [
+    assert [doubt["size"] for doubt in told["doubts"] if "face each other" in doubt["text"]] == [
         pytest.approx(0.001)
     ] * 2  # both bricks that stand on it
     most = max(told["tolerances"], key=lambda item: item["joints"] or 0)

@@ -190,7 +190,7 @@ def test_fe_goes_on_beside_a_block_without_weight_that_comes_loose() -> None:
     answer = solve(panel)
     assert answer.multiplier == pytest.approx(32 / 3, rel=1e-9)
     assert answer.multiplier == pytest.approx(answered(load_method("la-associated"), panel)[0].multiplier, rel=1e-9)
-    assert "blocks without weight or load came loose (a)" in str(answer.details["histories"])
+    assert "blocks without weight or load move freely (a)" in str(answer.details["histories"])
 
 
 def test_fe_path_columns_have_equal_length_and_end_at_the_plateau() -> None:
@@ -231,7 +231,7 @@ def test_fe_history_that_late_commits_lose_is_committed_up_to_less_of_the_multip
     assert [history["committed_up_to"] is not None for history in histories] == [k == lost for k in range(3)]
     assert histories[lost]["commits"] > 50
     assert histories[lost]["committed_up_to"] == pytest.approx(0.97 * histories[0]["plateau"], rel=1e-3)
-    assert "committed up to" in histories[lost]["sentence"]
+    assert "plastic slip updated up to" in histories[lost]["sentence"]
     assert [history["plateau"] for history in histories] == pytest.approx([histories[0]["plateau"]] * 3, rel=1e-3)
 
 

@@ -113,7 +113,7 @@ def test_convex_steps_say_when_a_multiplier_is_too_small_for_them() -> None:
     assert answer.multiplier == pytest.approx(0.02, rel=2e-3)
     answer = ConvexSteps().solve(block_on_halves((0.003, 0.003)), ConvexSettings())
     assert (answer.status, answer.finding, answer.multiplier) == (Status.NOT_CONVERGED, Finding.NONE, None)
-    assert "not exact enough for so small a multiplier" in answer.sentence
+    assert "not accurate enough for so small a multiplier" in answer.sentence
 
 
 def test_convex_steps_refuse_walls_that_are_too_large_for_them() -> None:

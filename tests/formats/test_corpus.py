@@ -69,7 +69,7 @@ def test_open_joints_are_told_with_their_width_and_closed_when_asked_for(tmp_pat
     mapping = drawn(wall, apart, tmp_path / "wall.dxf")
     with pytest.raises(InputError) as caught:
         build(import_drawing(tmp_path / "wall.dxf", mapping).wall)
-    assert "look at each other 10 apart" in str(caught.value)
+    assert "lie opposite each other 10 apart" in str(caught.value)
     assert '"tolerance": 10.2' in str(caught.value)
     wide = mapping.model_copy(update={"tolerance": 10.2})
     assert _value(import_drawing(tmp_path / "wall.dxf", wide).wall) == pytest.approx(_value(wall), rel=0.05)

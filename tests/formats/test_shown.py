@@ -97,7 +97,7 @@ def test_a_selector_that_is_not_followed_is_told(tmp_path: Path) -> None:
     text = "<style>rect:hover {display: none} rect:hover {color: red}</style>"
     imported = read(tmp_path / "d.svg", svg(text + GROUND + STONE))
     assert [doubt for doubt in imported.wall.doubts if "rect:hover" in doubt] == [
-        'the style of "rect:hover" is not followed: it may hide or show shapes'
+        'the style of "rect:hover" is ignored: it may hide or show shapes'
     ]
 
 

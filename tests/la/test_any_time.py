@@ -21,8 +21,8 @@ def out_of_time(*_: Any, **__: Any) -> Any:
 
 STEPS = {
     "later": ("sources.paths.CentralPath.states", "central path"),
-    "ladder": ("sources.ladder.FrictionLadder.states", "friction ladder"),
-    "springs": ("sources.search.gravity_of", "springs with little self-stress"),
+    "ladder": ("sources.friction_continuation.FrictionContinuation.states", "friction continuation"),
+    "springs": ("sources.search.gravity_of", "springs with low prestress"),
     "proof": ("least.prove", "moving blocks joined"),
 }
 
@@ -64,7 +64,7 @@ def test_without_a_state_the_time_is_over(monkeypatch: pytest.MonkeyPatch):
 
 def test_bound_of_a_search_that_was_stopped_is_the_answer_of_the_search(monkeypatch: pytest.MonkeyPatch):
     wall, method = assembly(running_bond(6, 3), 0.65), load_method("la-bound")
-    monkeypatch.setattr("methods.la.sources.friction_continuation.FrictionLadder.states", out_of_time)
+    monkeypatch.setattr("methods.la.sources.friction_continuation.FrictionContinuation.states", out_of_time)
     answer = method.solve(wall, method.Settings())
     assert answer.status is Status.OK
     assert answer.details["stopped_by_limit"]

@@ -132,7 +132,7 @@ def test_methods_without_dilatancy_refuse_the_wall_by_name():
             takes.add(name)
             check_takes(method, wall)
             continue
-        with pytest.raises(InputError, match=f"{name} lets no joint lift"):
+        with pytest.raises(InputError, match=f"{name} takes no dilatancy"):
             check_takes(method, wall)
     assert takes == {"la", "la-associated", "la-associated-cvxpy"}
     check_takes(load_method("fe"), assembly(running_bond(2, 2), 0.6))

@@ -39,7 +39,7 @@ def test_the_paper_s_block_has_no_collapse_state_below_its_smaller_friction() ->
     assert answer.details["proved_least"]
     assert answer.multiplier == pytest.approx(0.4, rel=1e-12)
     assert answer.details["lower_bound"] == pytest.approx(0.4, rel=2e-6)  # the margin of the tree
-    assert "leaves none below, to rounding" in answer.sentence
+    assert "excludes lower ones to rounding" in answer.sentence
 
 
 def test_the_tree_finds_the_least_state_of_six_blocks_from_a_higher_one() -> None:

@@ -139,7 +139,7 @@ def test_a_sweep_takes_a_shipped_study_with_changes_and_refuses_what_varies_noth
         drystone.sweep(WALL)
     with pytest.raises(drystone.InputError, match='no study is called "frictoin"'):
         drystone.sweep("frictoin")
-    with pytest.raises(drystone.InputError, match="says itself what varies"):
+    with pytest.raises(drystone.InputError, match="defines what varies"):
         drystone.sweep("friction", {"friction": [0.5]})
 
 
@@ -149,4 +149,4 @@ def test_a_check_holds_methods_to_gated_references():
     table = checked.to_pandas()
     assert set(table["case"]) == {"slide", "topple"}
     assert set(table["verdict"]) == {"agrees"}
-    assert "references hold" in checked._repr_html_()
+    assert "references are met" in checked._repr_html_()

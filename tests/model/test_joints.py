@@ -95,11 +95,11 @@ def test_brick_a_little_off_is_told_and_the_tolerance_that_is_named_mends_it(by:
     sound = least(build(Wall.model_validate(bricks())))[1]
     data = lowered(bricks(greatest_overlap=0.002, greatest_gap=1e-6), 7, by)
     built = build(Wall.model_validate(data))
-    (warning,) = [text for text in built.warnings if "look at each other" in text]
+    (warning,) = [text for text in built.warnings if "face each other" in text]
     assert f"{abs(by):.3g}" in warning
     tolerance = float(warning.rsplit('"tolerance": ', 1)[1].split("}")[0])
     mended = build(Wall.model_validate(data | {"interfaces": {"tolerance": tolerance}}))
-    assert not [text for text in mended.warnings if "look at each other" in text]
+    assert not [text for text in mended.warnings if "face each other" in text]
     assert least(mended)[1] == pytest.approx(sound, rel=0.02)
 
 

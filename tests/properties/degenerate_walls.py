@@ -36,7 +36,7 @@ NEAR_ZERO = 1e-9
 
 @dataclass
 class Tally:
-    """What came of the walls of one kind."""
+    """Results of the walls of one kind."""
 
     walls: int = 0
     findings: Counter[str] = field(default_factory=Counter)

@@ -143,7 +143,7 @@ def solved(case: Case, method: str, multiplier: float, *, cpu: float = 0.5, turn
         residuals={"equilibrium": 3e-16, "yield": 0.0, "live_work": 0.4},
         tolerance=1e-8,
         accepted=True,
-        sentence="The collapse state was checked from block sums and holds within 1e-08.",
+        sentence="The collapse state was recomputed from the equilibrium of the blocks and holds within 1e-08.",
     )
     measured(result, cpu)
     return result

@@ -63,4 +63,4 @@ def test_open_joint_that_carries_force_is_told_beside_the_drawing(flow: str):
     assert joints.open_with_force(case.assembly, result) == 2
     told = sections._forces_beside(case, result)
     assert told.startswith("2 joints drawn as open carry force below")
-    assert ("of the state that was held" in told) == (flow == "approximate")
+    assert ("the forces belong to the held state" in told) == (flow == "approximate")

@@ -53,7 +53,7 @@ def test_wall_is_drawn_before_anything_is_run(tmp_path: Path):
 
 def test_refusals_say_what_would_be_right(tmp_path: Path):
     stopped = samples.failed(CASE, "de", Status.TIMEOUT, "too long")
-    with pytest.raises(InputError, match="left no mechanism"):
+    with pytest.raises(InputError, match="gave no mechanism"):
         figures.figure(CASE, [stopped], "mechanism", tmp_path / "a.pdf")
     with pytest.raises(InputError, match=r"\.pdf, \.svg, \.png"):
         figures.figure(CASE, results(), "mechanism", tmp_path / "a.docx")

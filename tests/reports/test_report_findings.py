@@ -139,7 +139,7 @@ def test_self_stress_that_loading_does_not_build_up_is_told_with_its_size():
         result.forces = forces.tolist()
     told = reasons.reasons(item)
     (associated,) = (sentence for sentence in told if "la-associated" in sentence)
-    assert "Head joints press with 0.20 of the wall’s weight in la and 0.50 in la-associated" in associated
+    assert "Head joints carry 0.20 of the wall’s weight in la and 0.50 in la-associated" in associated
     assert "loading does not build up: fe ends with 0.10" in associated
 
 
@@ -239,11 +239,9 @@ def test_joints_are_told_by_what_they_do_and_forces_by_the_state_they_are_of():
     item = of_one_wall()
     page = build.render(ComparisonRun("mine", "", "", [item]), data_folder="x")
     assert "of the joints" in page
-    assert (
-        page.count("contact forces of the last state that was held; the mechanism above is of the one that moved") == 1
-    )
+    assert page.count("contact forces of the last held state; the mechanism above belongs to the moving state") == 1
     assert page.count("contact forces at collapse") == 3
-    assert "No result of this comparison stands beside a value of others" in page
+    assert "No result of this comparison has a value of others" in page
 
 
 def test_joint_that_rocks_and_slides_counts_as_both():

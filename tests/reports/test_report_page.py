@@ -112,7 +112,7 @@ def test_failed_runs_stay_with_their_sentences(page: Page):
 
 def test_findings_count_what_there_is(page: Page):
     assert "Of 12 runs on 3 cases, 10 ended with an answer; the judge accepted 9 and rejected 1." in page.text
-    assert "Of 2 gated reference values, 2 are met." in page.text
+    assert "Of 2 checked reference values, 2 are met." in page.text
     assert "Of 3 statements of theory that could be tested, 2 hold." in page.text
 
 

@@ -60,7 +60,7 @@ def test_terminal_says_both_and_which_is_safe_and_who_refuses(tmp_path: Path):
     done = command("compare", path, "--methods", "la-associated,fe,de", cwd=tmp_path)
     said = " ".join(done.stdout.split())
     assert "la-associated 0.7500000 plastic, 0.5000000 residual, an upper bound" in said
-    assert "rely on the residual value of a method that is no upper bound" in said
+    assert "rely on the residual value of a method that is not an upper bound" in said
     for method in ("fe", "de"):
         assert f"{method} takes dry joints only" in said
     assert "Take a method that knows the strength of joints (la, la-associated, la-associated-cvxpy)" in said

@@ -39,7 +39,7 @@ def quick_study(
         methods: names, or None for those of the library; with imperfections for the one whose setting they are.
         settings: of methods.
         limits: of each run.
-        multipliers: at which the probability of failure is asked.
+        multipliers: for the probability of failure.
         vary: "NAME=FROM:TO:COUNT" or "NAME=A,B,C", where vectors stand in brackets: "NAME=[1,0],[0,1]".
         imperfection: "FROM:TO", "FROM:TO:COUNT" or "A,B,C".
         seeds: of the imperfections, from 0.

@@ -85,7 +85,7 @@ STUDY: tuple[StudyColumn, ...] = (
     StudyColumn("method", "string", "", "name of the method", attrgetter("run.method")),
     *_from_result("family"),
     StudyColumn("status", "string", "", "how the run ended", _status),
-    StudyColumn("finding", "string", "", "what the answer says about the wall", _finding),
+    StudyColumn("finding", "string", "", "finding on the wall", _finding),
     *_from_result("multiplier"),
     StudyColumn(
         "from_neighbour",

@@ -105,7 +105,7 @@ class Curve(Strict):
     apart: str = Field("", description="quantity each of whose values has a line of its own; methods otherwise")
     labels: dict[str, str] = Field(default_factory=dict, description="names of these lines, by value")
     relative: bool = Field(False, description="percent of change from the first value, instead of multipliers")
-    level: float | None = Field(None, description="is looked for along each line")
+    level: float | None = Field(None, description="located on each line")
     x_label: str = ""
     read: str = Field("", description="how to read it")
 
@@ -128,12 +128,12 @@ class Study(Strict):
     draw: dict[str, Distribution] = Field(default_factory=dict, description="drawn at random, `samples` times")
     samples: Annotated[int, Field(ge=1, le=MOST_RUNS)] = 100
     seed: Annotated[int, Field(ge=0, description="of the draws")] = 0
-    settings: dict[str, dict[str, Any]] = Field(default_factory=dict, description="of methods, where not the defaults")
+    settings: dict[str, dict[str, Any]] = Field(default_factory=dict, description="of methods, if not the defaults")
     neighbours: bool = Field(
-        False, description="runs take up the mechanisms found on walls of the same joints, where the method can"
+        False, description="runs use the mechanisms found on walls with the same joints, if the method supports it"
     )
     limits: StudyLimits = Field(default_factory=StudyLimits)
-    multipliers: list[float] = Field(default_factory=list, description="at which the probability of failure is asked")
+    multipliers: list[float] = Field(default_factory=list, description="for the probability of failure")
     curve: Curve | None = Field(None, description="how `drystone compare --study` draws it")
 
     @model_validator(mode="after")

@@ -12,7 +12,7 @@ import pandas as pd
 from harness.engine.sweep import statistics
 from harness.engine.sweep.study import Study, Whole
 
-NO_SALIB = "SALib is not installed, so no sensitivities are told: pip install 'drystone[sensitivity]'"
+NO_SALIB = "SALib is not installed, so no sensitivities are reported: pip install 'drystone[sensitivity]'"
 
 
 @dataclass(frozen=True)
@@ -87,10 +87,10 @@ def _taken_over(rows: pd.DataFrame, place: list[str]) -> tuple[pd.DataFrame, str
     table = changed[[*place, "multiplier_alone", "multiplier"]].reset_index(drop=True)
     table["change_percent"] = 100.0 * (table["multiplier"] / table["multiplier_alone"] - 1.0)
     if not len(table):
-        return table, "No run found a lower state by taking up the mechanisms of its neighbours."
+        return table, "No run found a lower state from the mechanisms of its neighbours."
     return table, (
         f"{len(table)} of {len(rows)} runs take a lower multiplier from the mechanism of a neighbour, by up to "
-        f"{-table['change_percent'].min():.2g} %; it holds on their own walls, by their own forces."
+        f"{-table['change_percent'].min():.2g} %; forces of their own walls fit it."
     )
 
 
@@ -106,19 +106,15 @@ def summarise(study: Study, rows: pd.DataFrame) -> Summary:
     counted = statistics.answered(rows)
     lost = len(rows) - len(counted)
     if lost:
-        remarks.append(
-            f"{lost} of {len(rows)} runs gave no multiplier, or one that the judge rejects; they are in the rows."
-        )
+        remarks.append(f"{lost} of {len(rows)} runs gave no multiplier, or a rejected one; they are in the rows.")
     unjudged = int(counted["judge_accepted"].isna().sum())
     if unjudged:
-        remarks.append(
-            f"{unjudged} of {len(rows)} runs count though the judge can neither accept nor reject their answers."
-        )
+        remarks.append(f"{unjudged} of {len(rows)} runs count although their answers are not judged.")
     brackets = int(counted["multiplier"].isna().sum())
     if brackets:
         remarks.append(
             f"{brackets} of {len(rows)} runs give a bracket wider than the stated accuracy of their method. They are "
-            "in no mean and in no sensitivity; quantiles and probabilities are given as low and high as they allow."
+            "in no mean and in no sensitivity; quantiles and probabilities have a lower and an upper value."
         )
     agreement = statistics.agreement(rows, ["case", *varied_of(study)])
     if len(agreement) > 1:

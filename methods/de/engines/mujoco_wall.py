@@ -33,8 +33,7 @@ class SoftContacts:
 
     Attributes:
         time_step: in units of sqrt(length scale / gravity).
-        stiffness, damping: as above. With a stiffness of 0.25 walls of more than 50 bricks shook for ever under their
-            dead load, with 0.1 those of more than 200.
+        stiffness, damping: as above. Stiffer contacts let large walls vibrate under their dead load.
         wall_impedance, chain_impedance: for walls, and for chains of blocks, whose slow modes want stiffer contacts.
         radius: of a contact sphere, in unit lengths. It does not matter: the sphere touches a flat face at one point.
         overlap: by which a sphere starts inside its face, in unit lengths, so that rounding does not decide which
@@ -246,14 +245,14 @@ class MujocoWall:
         """Make time steps.
 
         Raises:
-            SolverFailed: the blocks were thrown apart.
+            SolverFailed: the the blocks separated.
         """
         # One call a step, so that the alarm of a time limit is heard between them: walls take 5 ms for each.
         for _ in range(steps):
             self._mujoco.mj_step(self._model, self._data)
         self.steps += steps
         if self._was_reset() or not float(np.abs(self._data.qvel).max(initial=0.0)) * self._drag < MUJOCO.exploded:
-            raise SolverFailed("MuJoCo's contact solver did not converge: blocks were thrown apart")
+            raise SolverFailed("MuJoCo's contact solver did not converge: the blocks separated")
 
     def _was_reset(self) -> bool:
         """Whether MuJoCo met numbers it cannot go on from: it then starts again at rest, without an error."""

@@ -1,9 +1,10 @@
-"""The wall of `space.py` at frozen geometry in compiled sweeps over its contacts, without an engine's searches.
+"""Projected Gauss-Seidel (sequential impulses) on the contacts of a wall of constant geometry, in compiled loops.
 
-The velocity problem M (v+ - beta v) = f + C' J with Coulomb contact is solved by sequential impulses that start from
-those of the last step (E. Catto, Iterative dynamics with temporal coherence, GDC 2005), as Chipmunk does. Where nothing
-moves there are no contacts to find again in every time step, and no positions to integrate: a step of 2,361 interfaces
-takes a fifth of Chipmunk's time. Units: length scale, mean dead load of a block, time step.
+A time step solves M (v+ - beta v) = f + C' J with 0 <= J_n, w_n >= 0, J_n w_n = 0 and |J_t| <= mu J_n, J_t against the
+slip rate w_t where it slips, w = C v+ (Moreau 1988; Jean 1999). One contact after the other, J_n <- max(J_n - m_n w_n,
+0) and J_t <- min(max(J_t - m_t w_t, -mu J_n), mu J_n) with effective masses m_n, m_t, from the impulses of the last
+step (E. Catto, Iterative dynamics with temporal coherence, GDC 2005). Contacts are constant, so there is no search for
+them and no position to integrate. Units: length scale, mean dead load of a block, time step.
 """
 
 from __future__ import annotations

@@ -1,10 +1,11 @@
 """A wall with deformable joints between blocks of rounded corners, followed through large displacements.
 
 The blocks are rigid. At each end of an interface a rounded corner of one block touches the face of the other: a spring
-across the contact takes no tension, one along it slips at the Coulomb limit. The motion is explicit. What damps it is a
-force against the velocity of every block in proportion to the force that is out of balance, so that nothing damps a
-wall at rest (P. A. Cundall and O. D. L. Strack, A discrete numerical model for granular assemblies, Geotechnique 29
-(1979) 47-65; P. A. Cundall, Distinct element models of rock and soil structure, 1987, for damping and corners).
+across the contact takes no tension, one along it slips at the Coulomb limit. The motion is explicit, M dv/dt = p -
+alpha |p| sign(v) with the out-of-balance force p = f0 + lambda fL + C' r: damping is proportional to the imbalance, so
+a wall at rest is not damped (P. A. Cundall and O. D. L. Strack, A discrete numerical model for granular assemblies,
+Geotechnique 29 (1979) 47-65; P. A. Cundall, Distinct element models of rock and soil structure, 1987, for damping and
+corners).
 Equilibrium contains neither masses nor time: masses are in proportion to the stiffness around a block, so that one time
 step suits all.
 
@@ -34,7 +35,7 @@ class ExplicitTuning:
         inertia: masses as a share of the stiffness around a block; time_step: with a quarter of it the fastest
             oscillation takes 4.4.
         damping: force of the damping as a share of the force out of balance (Cundall 1987).
-        steps_at_once: made in one call: at 6,000 interfaces 20 take some 10 ms, and what a call costs is far less.
+        steps_at_once: made in one call, so that the time limit is checked often and calls cost little.
     """
 
     inertia: float = 0.25

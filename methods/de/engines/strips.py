@@ -129,5 +129,5 @@ def colour_strips(vertices: FloatArray, margin: float) -> IntArray:
         taken = {int(colour[j]) for j in near}
         colour[i] = next(c for c in range(len(boxes) + 1) if c not in taken)
     if colour.max() >= MAX_COLOURS:
-        raise CannotModel(f"{colour.max() + 1} interfaces crowd one place; distinct elements can part {MAX_COLOURS}")
+        raise CannotModel(f"{colour.max() + 1} interfaces lie close together; the limit is {MAX_COLOURS}")
     return colour

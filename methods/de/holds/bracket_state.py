@@ -14,7 +14,7 @@ from methods.numerics.statics import out_of_balance
 
 STOPPED = "the search was stopped by the time limit"
 BRACKET_MEANING = (
-    "[multiplier held, multiplier moving], as far as the search had come: the body orders that were searched to the "
+    "[multiplier held, multiplier moving], at the time limit: the sweep orders that were searched to the "
     "end, or the first, were held at or above the lower end and moved at or below the upper end"
 )
 
@@ -157,7 +157,7 @@ def _with_rest(assembly: Assembly, known: BracketState, found: list[OrderBracket
     middle = 0.0 if best.nothing else 0.5 * (low + best.moving)
     sentence = (
         f"collapses between {low:.6g} (held) and {best.moving:.6g} (moving) in {_so_far(known)}; {STOPPED}, and the "
-        f"multiplier {middle:.6g} is no more than the middle of what is known so far"
+        f"multiplier {middle:.6g} is only the middle of the bracket so far"
     )
     answer = Answer(
         Status.OK, Finding.COLLAPSES, sentence, multiplier=middle, bracket=(low, best.moving), mechanism=best.velocity
@@ -169,5 +169,5 @@ def _with_rest(assembly: Assembly, known: BracketState, found: list[OrderBracket
 def _so_far(known: BracketState) -> str:
     """How many orders were searched, in words."""
     if known.finished:
-        return f"{len(known.finished)} of {known.orders} body orders"
-    return f"the first of {known.orders} body orders, not yet searched to its end"
+        return f"{len(known.finished)} of {known.orders} sweep orders"
+    return f"the first of {known.orders} sweep orders, not yet searched to its end"

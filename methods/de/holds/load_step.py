@@ -177,8 +177,7 @@ def reported_residuals(engine: MeasuredState, settings: HoldSettings) -> tuple[f
     """Residuals below which a wall rests under its present load, and from which it may move.
 
     What a multiplier too high by a share leaves out of balance is that share of the live load. Where that is a small
-    part of the dead load both are less: were they fixed parts of the dead load, a wall of multiplier .002 would rest
-    .1 % above it, and not be seen to move before it is 1 % too high.
+    part of the dead load both are less. Fixed parts of the dead load would make brackets of small multipliers too wide.
     """
     live = abs(engine.multiplier) / engine.assembly.load_unit
     if live == 0.0:

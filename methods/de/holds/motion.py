@@ -46,8 +46,8 @@ class Trend:
             rest keeps nothing, one on its way to a steady motion all that it then has: half parts the two.
         steady: change of the speed from one check, or quarter, to the next below which rounding decides its sign.
         checks: checks in a row with no more change than that that make a field worth asking about.
-        followed: part of the work of an order after which an even decay is no longer followed: thin arches of 100
-            voussoirs come to rest within it; the wall of Ferris and Tin-Loi, which creeps, would use up all.
+        followed: part of the work of an order after which an even decay is no longer followed: long thin arches come to
+            rest within it; a wall that creeps would use all of it.
     """
 
     alike: float = 0.9

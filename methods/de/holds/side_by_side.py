@@ -1,4 +1,4 @@
-"""Insertion orders searched side by side: none waits for another, so two processes take little more than half the time.
+"""Insertion orders searched side by side: none waits for another.
 
 All begin with the tuning that is tried first. Where the first order asks for another, the others are searched again
 with it, so the answer is the one that a single process gives, to the bit.

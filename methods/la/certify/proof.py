@@ -6,8 +6,7 @@ with those slacks at zero; and, by virtual work, the least work -dead.u of mecha
 live work, for friction only takes more. Where forces and mechanism are complementary the node is a collapse state;
 elsewhere it is divided at the contact of the largest product y_k g_k. Neither bound needs one on forces or rates.
 What the tree gives up is bounded again by vertices that are right to rounding of their own terms; without that it
-proves nothing. The number of nodes grows exponentially with the interfaces: a ring of 25 voussoirs takes a thousand,
-blocks of any shape reach that at six or seven blocks.
+proves nothing. The number of nodes grows exponentially with the interfaces.
 """
 
 from __future__ import annotations

@@ -2,8 +2,8 @@
 
 D holds one 3 x 3 flexibility per interface. The pattern of K is the adjacency of the blocks, so the order of
 elimination is found once: for small walls by nested dissection of the block centroids (George 1973), and SuperLU
-factorises; for larger ones by minimum degree, with the factors in dense supernodes, which takes half the time but loads
-the compiled code.
+factorises; for larger ones by minimum degree, with the factors in dense supernodes, which is faster but loads the
+compiled code.
 """
 
 from __future__ import annotations

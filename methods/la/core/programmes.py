@@ -1,7 +1,11 @@
 """The two linear programmes of the search, kept in HiGHS so that a change of the active set starts from the last basis.
 
-Static: least (or greatest) multiplier under equilibrium and yield with some slacks held at zero. Kinematic: the
-mechanism of least cost among those that move only in given contacts; its vertices are extreme mechanisms.
+Static, with the slacks of J held at zero; kinematic, with the rates of the contacts K only:
+
+    min or max lambda   s.t.  C' r + f0 + lambda fL = 0,   y = S r + s0 >= 0,   y_J = 0
+    min c.g             s.t.  C u = E g,   fL.u = const,   g >= 0,   g_k = 0 outside K
+
+The vertices of the kinematic programme are extreme mechanisms.
 """
 
 from __future__ import annotations

@@ -31,8 +31,7 @@ class EndOfPath:
     """When the own interior point is used for the programme, and what is made of its end.
 
     Attributes:
-        above: interfaces above which it comes before the simplex method, which takes 4 and 7 ms of CPU on running bond
-            of 49 and 83, where the interior point takes 10 and 12; 14 and 60 on 141 and 281, where that takes 17, 26.
+        above: interfaces above which it is faster than the simplex method and comes first.
         gap: complementarity y.g relative to the live work at which the path ends; the multiplier is known to that.
         exact: residual of a state, and slack or rate of a contact that has both, up to which one is taken.
         biases: ratios g / y above which a slack counts as zero and below which a rate does, tried in turn. At one both

@@ -1,7 +1,11 @@
-"""Finite elements and limit analysis together, as Baggio and Trovalusci (1995) ask for in their conclusion.
+"""Finite elements and limit analysis together, as Baggio and Trovalusci (1995) propose in their conclusion.
 
-The contact forces of the finite-element collapse state are projected onto equilibrium and yield by a quadratic
-programme (OSQP, polished); the extreme mechanism nearest to them starts the ray descent.
+The contact forces r_FE and the multiplier of the finite-element collapse state are projected onto equilibrium and yield
+by a quadratic programme (OSQP, polished),
+
+    min |r - r_FE|^2 + m (lambda - lambda_FE)^2   s.t.  C' r + f0 + lambda fL = 0,   S r + s0 >= 0,
+
+with m interfaces. The extreme mechanism nearest to these forces starts the ray descent.
 """
 
 from __future__ import annotations

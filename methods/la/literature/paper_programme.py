@@ -6,8 +6,7 @@ of the first, r1 = -(A' r2 + A0' f) with A = B2 A0 and f = f0 + lambda fL. The p
 
     min lambda   s.t.  (A M1 - M2) m = 0,   y = S r(lambda, r2) >= 0,   y.m = 0,   (A0 M1 m).fL = 1,   lambda, m >= 0
 
-with 1 + 3 (m - n) + 4 m unknowns: 281 for the wall of 21 bricks. Gradients are exact; Ipopt solves a sequence of
-relaxations y.m <= epsilon.
+with 1 + 3 (m - n) + 4 m unknowns. Gradients are exact; Ipopt solves a sequence of relaxations y.m <= epsilon.
 """
 
 from __future__ import annotations

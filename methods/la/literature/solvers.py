@@ -97,7 +97,7 @@ class TrescaSequence(LimitAnalysisFamily):
         """The sequence from the associated solution; its fixed point is a collapse state, not the least one."""
         associated = solve_associated(problem, newton)
         if associated.outcome == "unbounded":
-            return unbounded_answer("Statically the live load can grow without limit, so the sequence has no end.")
+            return unbounded_answer("Statically the live load can grow without limit, so the sequence diverges.")
         if associated.state is None:
             return not_converged(f"The associated programme that starts the sequence ended as {associated.outcome}.")
         result = tresca_sequence(
@@ -110,13 +110,13 @@ class TrescaSequence(LimitAnalysisFamily):
         tight = tight_contacts(problem, result.forces) | (problem.slacks(result.forces) < 1e-6)
         mechanism = search.kinematic.solve(tight, np.ones(tight.shape))
         if mechanism is None:
-            return not_converged("No mechanism fits the last forces.", len(result.history), details)
+            return not_converged("No mechanism is complementary to the last forces.", len(result.history), details)
         state = CollapseState(result.forces, result.multiplier, mechanism.velocities, moving_contacts(mechanism.rates))
         state = polished(problem, newton, state, tight=tight)
         return collapse_answer(
             problem,
             state,
-            f"The sequence settles at {problem.to_multiplier(state.multiplier):.7g}: a collapse state, "
+            f"The sequence converges to {problem.to_multiplier(state.multiplier):.7g}: a collapse state, "
             "seldom the least one.",
             LA_TRESCA.tolerance,
             len(result.history),

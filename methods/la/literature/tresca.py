@@ -1,7 +1,11 @@
 """The sequence of linear programmes with the friction bound of the previous iterate (Gilbert, Casapulla, Ahmed 2006).
 
-Shear is limited by mu times the normal force of the iterate before, so a slip does not dilate. Where the sequence
-settles it is at a collapse state of zero-dilatancy flow, but seldom at a low one: a baseline of the literature.
+With the bound c of shear held, iterate k solves
+
+    max lambda   s.t.  C' r + f0 + lambda fL = 0,   n1, n2 >= 0,   -c <= s <= c,
+
+whose mechanism slips without dilatancy, and c moves towards mu (n1 + n2) of its forces by a given weight. A fixed point
+is a collapse state of zero dilatancy, but seldom a low one: a baseline of the literature.
 """
 
 from __future__ import annotations

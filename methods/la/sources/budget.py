@@ -23,8 +23,7 @@ class Limits:
         descents: lowest states of each source, and of each rung, that are descended from.
         ladder: factors on friction of the rungs.
         nodes: of the tree that may prove the least state.
-        certificates: programmes that may bound a tree that does not come to an end to rounding, as a whole: 5 ms each
-            on 10 interfaces. 751 leaves of a wall of 12 take 242.
+        certificates: programmes that may bound an unfinished tree as a whole, to rounding.
         leaves: of such a tree that are bounded where the whole takes more.
         programmes: linear ones in all, those of the proof among them.
         block_steps: Newton steps times blocks after which no further path is begun once a state is known.
@@ -52,12 +51,10 @@ class Sizes:
 
     Attributes:
         few_blocks, some_blocks: up to the first the whole ladder is tried, up to the next half of it, three descents a
-            source on both; above, no rungs but those of rough joints, and one longer descent. With one descent instead
-            of three and 6,000 breakpoints instead of 9,000 two walls of 44 blocks reach their least value with 3 seeds
-            of 12 instead of 9.
+            source on both; above, no rungs but those of rough joints, and one longer descent.
         descended: interfaces up to which states are descended from; above, a draw takes a second and more.
         provable, provable_ring: interfaces up to which a proof is tried, and those of walls with at most two more
-            interfaces than blocks. With more, hardly any tree of 1,500 nodes comes to an end.
+            interfaces than blocks. With more, hardly any tree finishes within its nodes.
         ladder, fine_ladder: factors on friction: mechanisms found at each are carried to the next. The fine one first
             goes down from above the friction of the wall.
     """

@@ -1,4 +1,4 @@
-"""Continuation in friction: mechanisms found at lower friction are carried up a ladder to the friction of the wall.
+"""Continuation in friction: mechanisms found at lower friction are carried in steps to the friction of the wall.
 
 The mechanisms of zero-dilatancy flow do not depend on friction, only the forces that fit them do. At high friction
 the low collapse states have small basins; at lower friction the same mechanisms are found at once.
@@ -28,7 +28,7 @@ class FrictionContinuation:
         rough_rungs: friction of the rungs added for joints that are rougher still.
     """
 
-    name: ClassVar[str] = "friction ladder"
+    name: ClassVar[str] = "friction continuation"
     pool: int = 24
     rough: float = 1.0
     rough_rungs: tuple[float, ...] = (1.0, 1.5, 2.25)

@@ -26,7 +26,7 @@ class ReducedFriction:
         all_up_to: interfaces up to which every factor is tried, instead of the first that leads to a state.
     """
 
-    name: ClassVar[str] = "smoother unloaded joints"
+    name: ClassVar[str] = "reduced friction in unloaded joints"
     factors: tuple[float, ...] = (0.3, 0.6, 0.0)
     pool: int = 24
     most: int = 6000

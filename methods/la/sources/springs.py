@@ -104,28 +104,25 @@ class CommittedHistories:
 class LowPrestress:
     """Paths from forces with little self-stress: gravity's, then vertices or mixtures of statics.
 
-    On walls of many interfaces those of gravity with committed histories come between. No other forces that fit its
-    mechanism made any of 611 such states on walls of irregular blocks lower.
+    On walls of many interfaces those of gravity with updated plastic slip come between. docs/notes/limit-analysis.md
+    gives the evidence for the limits below.
 
     Attributes:
-        most: interfaces above which the path of gravity takes minutes. On 4,162 it takes 12 to 60 s, and ends below all
-            other sources on walls with openings.
+        most: interfaces above which the path of gravity takes minutes.
         vertices_up_to: interfaces up to which paths start from pure vertices. Above, none is begun on walls of
-            right-angled joints where gravity leads above what is known: on none of ten walls of courses, nor of 25 of
-            rectangular stones of many sizes, did one lead to anything lower. Gravity is no such sign where joints have
-            many directions.
-            Up to there none is where gravity leads to nothing lower and the least state rubs: on 103 walls of courses
-            with such a state no path from a vertex led to anything lower, on 8 of 96 without one did, by up to 6 %.
+            right-angled joints where gravity ends above the least known state. Gravity is no such sign where joints
+            have many directions.
+            Up to there none is where gravity leads to nothing lower and friction does work in the least state.
         rubs: share of the work of the live load that friction takes in such a state; rounding leaves 1e-15.
-        gravity_alone: interfaces above which there is no other path: committed histories take 60,000 breakpoints on a
-            facade of 863 bricks and end 1e-4 lower, and lead nowhere on 900 irregular blocks.
+        gravity_alone: interfaces above which there is no other path, because updated histories need many breakpoints
+            and gain little.
         vertex: shares of a vertex, of gravity's forces and of central ones up to there.
         mixtures: above, in turn. Pure vertices have many forces at zero or at the limit of friction, and on walls of
             hundreds of blocks their paths seldom end; a tenth of central forces takes them off their limits.
         heavy: power of the exponential weights on compression: a few joints are to carry next to nothing.
     """
 
-    name: ClassVar[str] = "springs with little self-stress"
+    name: ClassVar[str] = "springs with low prestress"
     most: int = 6000
     vertices_up_to: int = 200
     rubs: float = 1e-6
@@ -205,7 +202,7 @@ class ShiftedAssociated:
         left: where the associated path is left; full steps meet the equilibrium at a gap of half a percent or so.
     """
 
-    name: ClassVar[str] = "springs from safe forces"
+    name: ClassVar[str] = "springs from shifted associated forces"
     least: int = 0
     most: float = np.inf
     left: PathSettings = field(default_factory=lambda: PathSettings(dilatancy=1.0, gap=0.1, residual=1e-7))
@@ -239,7 +236,7 @@ class AnalyticCentre:
         gravity_above: interfaces above which gravity's committed histories are tried here, as nowhere else.
     """
 
-    name: ClassVar[str] = "springs from central forces"
+    name: ClassVar[str] = "springs from the analytic centre"
     shares: tuple[float, ...] = (3e-3, 1e-3)
     gravity_above: int = 2000
     committed: CommittedHistories = CommittedHistories()

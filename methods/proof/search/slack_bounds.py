@@ -1,4 +1,7 @@
-"""Least and greatest yield slacks of all states of forces in equilibrium whose multiplier lies in a window."""
+"""Least and greatest yield slacks of all states of forces in equilibrium on a multiplier interval.
+
+min or max w.y   s.t.  C' r + f0 + lambda fL = 0,   y = S r + s0 >= 0,   low <= lambda <= high
+"""
 
 from __future__ import annotations
 

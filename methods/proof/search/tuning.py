@@ -1,4 +1,4 @@
-"""What the bound was tuned with on running bonds of 10 to 49 interfaces, in one place."""
+"""Constants of the search for a lower bound; docs/notes/lower-bound.md gives the evidence."""
 
 from __future__ import annotations
 
@@ -19,17 +19,14 @@ class Windows:
         above: relative distance of the window's upper end above the state, so that rounding does not cut it off.
         below: part of the bracket that a certificate may lose to rounding before it takes more digits.
         finished: relative distance at which a window ends: less than `closed`, because a certificate loses some.
-        patience: iterations in which the bracket is to lose `gain` of itself; else its states are divided. Parts of
-            21 bricks gain little in 6,000 and a third of the bracket in 14,000.
-        worth: part of the bracket that a window must gain for the next not to be of a half of its states: windows of 32
-            interfaces on friction 1.0 gained .007 of it in 40 s, and then half of it in 15 s in parts.
-        inside: part of the range of a normal force that either half of a division has at least: without it one of a
-            wall that was all but closed was divided 20 times next to the end of its range.
-        loose: interfaces above which what some minutes give is loose: 17 % below the state on 141.
+        patience: iterations in which the bracket is to lose `gain` of itself; else its states are divided.
+        worth: part of the bracket that a window must gain for the next not to be of a half of its states.
+        inside: part of the range of a normal force that either half of a division has at least, so that none is divided
+            next to the end of its range.
+        loose: interfaces above which the bound after some minutes is far below the state.
         share: of its iterations that a window may spend so.
-        least_weight: of a rate in the size of mechanisms, the greatest price being one. On 83 interfaces few of 172
-            rates bear most of the price: with .3 a third is lost to it of what is with one. With .1 sizes of 21 bricks
-            were not bounded any more.
+        least_weight: of a rate in the size of mechanisms, the greatest price being one. A smaller one loses less to the
+            price, but the size may then be unbounded.
         newest_weight: share of the weights that the last check has, since prices change from one to the next.
     """
 
@@ -54,8 +51,6 @@ class Windows:
 class Steps:
     """Step sizes of the splitting for one cost: the first, and the least and the greatest that checks may come to.
 
-    On walls of 24 to 141 interfaces checks come to 4 to 2,500 for the size and to 100 to 10^5 for the multiplier. With
-    10^6 allowed, an irregular wall of 28 interfaces stays there and 1.2e-6 below its state.
     Where the step of the last window is not kept, the first is taken again: kept ones of the size were too large.
     """
 
@@ -75,8 +70,8 @@ class Restarts:
         sufficient, necessary: a restart where the residual fell to the first of these shares, or to the second and
             rises.
         long, patience: or where the round is longer than this share of the run and so many iterations.
-        step_change: factor by which a check changes the step at most; step_kept: below which it leaves the step. Of 3
-            the step runs away on 21 bricks: .0001 after 51,000 iterations of a window that closes in 26,000.
+        step_change: factor by which a check changes the step at most; step_kept: below which it leaves the step. A
+            larger change may let the step diverge.
         tiny: losses and distances below this, relative and absolute, are rounding.
         rounding: units of rounding of the iterate's norm below which a residual in single precision says nothing more.
     """

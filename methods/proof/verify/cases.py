@@ -187,7 +187,7 @@ def _loaded(states: States, step: Any) -> States:
     p = whole(step["interface"], 0, states.wall.n_interfaces - 1)
     least = number(step["least"])
     if not ZERO <= least <= -states.forces.greatest({p: Fraction(-1)}, step["velocities"]):
-        raise CertificateError("a normal force may be less than is said")
+        raise CertificateError("a normal force may be less than stated")
     return replace(states, known=replace(states.known, least={**states.known.least, p: least}))
 
 

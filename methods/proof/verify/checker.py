@@ -85,7 +85,7 @@ def _check_windows(wall: ExactWall, bound: Fraction, document: Any) -> None:
     if "leaves" in document:
         raise CertificateError("it has leaves and windows")
     if bound < 0:
-        raise CertificateError("windows say nothing of multipliers below zero")
+        raise CertificateError("intervals do not cover multipliers below zero")
     proved = Fraction(0)
     states: States | None = None
     for window in listed(document["windows"]):

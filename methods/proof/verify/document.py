@@ -59,7 +59,7 @@ def read(content: bytes) -> Any:
     except CertificateError:
         raise
     except (ValueError, RecursionError) as error:
-        raise CertificateError(f"it is no JSON that can be read ({error})") from None
+        raise CertificateError(f"it is not readable JSON ({error})") from None
 
 
 def digest(document: Any) -> str:

@@ -140,7 +140,7 @@ class ExactWall:
             CertificateError: they are over.
         """
         if time.process_time() > self._until:
-            raise CertificateError("checking it takes more than the seconds that it may take")
+            raise CertificateError("the check exceeds its time limit")
 
     @property
     def rows(self) -> list[Vector]:
@@ -206,7 +206,7 @@ def listed(values: Any) -> list[Any]:
         CertificateError: it is none.
     """
     if not isinstance(values, list):
-        raise CertificateError(f"{repr(values)[:40]} stands where a list should")
+        raise CertificateError(f"{repr(values)[:40]} is not a list")
     return values
 
 

@@ -193,5 +193,5 @@ def known_of(forces: Forces, document: Any) -> Known:
     for (p, claimed), velocities in paired(list(paired(loaded, document["least"])), document["least_velocities"]):
         least[p] = number(claimed)
         if least[p] < 0 or -forces.greatest({p: Fraction(-1)}, velocities) < least[p]:
-            raise CertificateError("a normal force may be less than is said")
+            raise CertificateError("a normal force may be less than stated")
     return Known(frozenset(still), least, {})

@@ -129,7 +129,7 @@ class Motions:
         strains = [whole(k, 0, 3 * wall.n_interfaces - 1) for k in listed(document["strains"])]
         inverse = [whole_numbers(row, len(strains)) for row in listed(document["inverse"])]
         if len(inverse) != n:
-            raise CertificateError("the velocities of a window are not all there")
+            raise CertificateError("velocities of a window are missing")
         self._inverse = [{k: Fraction(v, unit) for k, v in zip(strains, row, strict=True) if v} for row in inverse]
         errors = [self._error(d) for d in range(n)]
         limits = columns.strain_limits()

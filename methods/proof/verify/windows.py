@@ -158,7 +158,7 @@ class _Products:
             violated = max((mu * shear + side * (second if end else first) for end, side in rays), default=ZERO)
             violated = max(ZERO, violated)
             if violated and not mu:
-                raise CertificateError("a slip without friction is paid by none")
+                raise CertificateError("a slip without friction has no bound")
             worst = max(worst, Fraction(violated) / mu if mu else ZERO)
         columns = self.columns
         self.lost = loss["work"] + self._paid_for_slow(still)

@@ -1,8 +1,8 @@
 """Where the gap points of an interface lie: rules on [0, 1] that contain both ends.
 
 With both ends among the points the admissible (N, T, M) of an interface are exactly |T| <= mu N and |M| <= l N for
-any number of points. A rule without the ends (Gauss) moves the hinge inside the joint and gives a smaller multiplier
-(0.468 in place of 0.565 on the 21-brick wall); it is refused.
+any number of points. A rule without the ends (Gauss) moves the hinge inside the joint and gives too small a multiplier;
+it is refused.
 """
 
 from __future__ import annotations

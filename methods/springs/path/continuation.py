@@ -1,8 +1,8 @@
-"""The equilibrium path traced exactly, breakpoint by breakpoint.
+"""The equilibrium path traced exactly, breakpoint by breakpoint (Katzenelson 1965; Eaves and Scarf 1976).
 
-In a fixed set of states the response is linear, and the path is a chain of straight pieces; at each breakpoint one gap
-point changes state and the path turns (`direction.py`). When nothing stops the motion at a constant multiplier,
-it is the collapse mechanism.
+In a fixed set of states the response is linear, K v = l fL, and the path is a chain of straight pieces; at each
+breakpoint one gap point changes its state and the direction is updated (`direction.py`). A piece at constant multiplier
+that no breakpoint ends, K v = 0 with fL.v > 0, is the collapse mechanism.
 """
 
 from __future__ import annotations

@@ -168,7 +168,7 @@ class PathDirection:
         try:
             share = self._share(x, held)
         except np.linalg.LinAlgError as error:
-            raise SingularTangent("the motions that are pinned are not independent") from error
+            raise SingularTangent("the bordered motions are not independent") from error
         if not np.isfinite(share).all():
             raise SingularTangent("the live load does not act on the motion")
         out = x + share[0] * self.response

@@ -1,7 +1,9 @@
-"""Equilibrium at a given multiplier by full Newton steps.
+"""Equilibrium at a given multiplier by full Newton steps: C' r(C u; h) + f0 + lambda fL = 0 with the law of `gap_law`.
 
-The law is piecewise linear, so Newton ends exactly when the states it lands in are those it started from. From the
-virgin state it may cycle, which a repeated set of states shows.
+    K(u) du = f0 + lambda fL + C' r(C u; h)
+
+The law is piecewise linear, so Newton ends exactly when the resulting states are those it started from. From the
+unloaded state it may cycle, which a repeated set of states shows.
 """
 
 from __future__ import annotations
