@@ -11,6 +11,7 @@ from __future__ import annotations
 
 import ast
 import contextlib
+import itertools
 import json
 import os
 import random
@@ -20,11 +21,12 @@ import subprocess
 import sys
 import tempfile
 from collections import Counter
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 from pathlib import Path
 from queue import Queue
+from xml.etree import ElementTree
 
 import click
 from coverage import CoverageData
@@ -55,7 +57,11 @@ PACKAGES = {
     "model": ("harness/model/*.py", "tests/model"),
     "formats": ("harness/formats/*.py", "tests/formats"),
     "engine": ("harness/engine/*.py", "tests/engine tests/faults"),
-    "studies": ("harness/engine/sweep/*.py drystone/studies.py", "tests/engine tests/reports"),
+    "studies": (
+        "harness/engine/sweep/*.py drystone/studies.py",
+        "tests/engine/test_sweep.py tests/engine/test_curve.py tests/engine/test_neighbours.py "
+        "tests/engine/test_brackets_of_studies.py tests/reports/test_study_page.py",
+    ),
     "reports": ("reports/*.py", "tests/reports"),
     "fe": ("methods/fe/*.py methods/springs/**/*.py", "tests/fe tests/springs"),
     "la": ("methods/la/*.py methods/la/core/*.py methods/la/interior/*.py methods/la/sources/*.py", "tests/la"),
@@ -64,6 +70,8 @@ PACKAGES = {
 """Patterns of the sources of each package and of the tests that are its own."""
 SECONDS = 300
 """After which a mutant counts as found: its tests take no more than half of this without it."""
+NEAR = (40, 8.0)
+"""Tests that run a changed line are asked first: so many of the quickest, and so many seconds of them, at most."""
 CANNOT_START = (3, 4, 5)
 """Exit codes of pytest that say nothing of the tests: an internal error, wrong words, no test found."""
 COMPARED = {
@@ -186,12 +194,13 @@ def make_map(package: str) -> None:
     data = KEPT / f"{package}.coverage"
     settings.write_text(f"[run]\ndata_file = {data}\ndynamic_context = test_function\nsource = .\nomit = tests/*\n")
     words = ["-m", "coverage", "run", f"--rcfile={settings}", "-m", "pytest", "-q", "-m", "not slow and not browser"]
-    if subprocess.run([sys.executable, *words, *own_tests(package)], cwd=ROOT, check=False).returncode != 0:
+    kept = f"--junitxml={KEPT / package}.xml"
+    if subprocess.run([sys.executable, *words, kept, *own_tests(package)], cwd=ROOT, check=False).returncode != 0:
         raise click.ClickException(f"the tests of {package} fail without any mutant: mend them, then make its map")
 
 
 def tests_by_line(package: str) -> dict[str, dict[int, list[str]]]:
-    """Functions of tests that run each line of each source, as the map has them; first those that run few lines."""
+    """Functions of tests that run each line of each source, as the map has them: the quickest, those first."""
     data = CoverageData(str(KEPT / f"{package}.coverage"))
     data.read()
     found: dict[str, dict[int, list[str]]] = {}
@@ -200,16 +209,36 @@ def tests_by_line(package: str) -> dict[str, dict[int, list[str]]]:
             lines = data.contexts_by_lineno(file)
             path = str(Path(file).relative_to(ROOT))
             found[path] = {line: [test for test in tests if test] for line, tests in lines.items()}
-    runs = Counter(test for lines in found.values() for tests in lines.values() for test in tests)
-    for lines in found.values():
-        for tests in lines.values():
-            tests.sort(key=lambda test: (runs[test], test))
+    seconds = seconds_of_tests(package)
+    return {path: {line: quickest(tests, seconds) for line, tests in lines.items()} for path, lines in found.items()}
+
+
+def quickest(tests: list[str], seconds: Mapping[tuple[str, str], float]) -> list[str]:
+    """The quickest tests, as many as `NEAR` takes; one at least."""
+    ordered = sorted(tests, key=lambda test: (seconds[module_and_function(test)], test))
+    spent = itertools.accumulate(seconds[module_and_function(test)] for test in ordered)
+    return [test for number, (test, so_far) in enumerate(zip(ordered, spent, strict=True))
+            if number < NEAR[0] and (so_far <= NEAR[1] or number == 0)]  # fmt: skip
+
+
+def seconds_of_tests(package: str) -> Counter[tuple[str, str]]:
+    """Time of every function of the tests, all of its parameters together, by module and function."""
+    found: Counter[tuple[str, str]] = Counter()
+    for case in ElementTree.parse(KEPT / f"{package}.xml").iter("testcase"):
+        test = f"{case.attrib['classname']}.{case.attrib['name'].partition('[')[0]}"
+        found[module_and_function(test)] += float(case.attrib["time"])  # type: ignore[assignment]
     return found
+
+
+def module_and_function(test: str) -> tuple[str, str]:
+    """The last two words of what coverage and pytest call a test."""
+    *_, module, function = test.split(".")
+    return module, function
 
 
 def node(test: str, folder: Path) -> list[str]:
     """What pytest calls a test that coverage calls `module.function` or `tests.room.module.function`."""
-    *_, module, function = test.split(".")
+    module, function = module_and_function(test)
     found = [path for path in folder.glob(f"tests/**/{module}.py") if f"def {function}(" in path.read_text("utf-8")]
     return [f"{path.relative_to(folder)}::{function}" for path in found]
 
@@ -238,7 +267,7 @@ def survives(
                 kept.unlink()
 
     try:
-        near = [name for test in lines.get(mutant.path, {}).get(mutant.line, [])[:40] for name in node(test, folder)]
+        near = [name for test in lines.get(mutant.path, {}).get(mutant.line, []) for name in node(test, folder)]
         own = own_tests(package, folder)
         rounds = [near, *([] if near_only else [own])] if near else [own]
         return all(passes(tests) for tests in rounds)
