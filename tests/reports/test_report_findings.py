@@ -11,7 +11,7 @@ import pytest
 from harness.model.comparison import CaseResults, Certified, ComparisonRun, Gate
 from harness.model.method import Finding, Status
 from harness.model.result import Verdict
-from reports import build, joints, mechanism_drawing, opening, reasons, tables
+from reports import build, joints, mechanism_drawing, opening, reasons, tables, words
 from reports.limits import known_limits
 from tests.reports import samples
 
@@ -356,3 +356,32 @@ def test_a_reference_that_is_a_range_is_printed_with_both_ends():
     samples.held_against(case, result, "known", Verdict.AGREES)
     ((row,),) = tables.run_rows(ComparisonRun("known", "", "", [CaseResults(case, [result])]))
     assert row.reference.text == "in [0.45, 0.61]"
+
+
+def test_the_reference_that_stands_in_the_row_is_the_one_that_matters_most():
+    known = [
+        samples.reference("width", "published", 0.2, ["la"], quantity="details.width"),
+        samples.reference("close", "published", 0.5, ["la"]),
+        samples.reference("gate", "exact", 0.51, ["la"], gate=True),
+        samples.reference("missed", "published", 0.7, ["la"], quantity="details.peak"),
+    ]
+    case = samples.bond("known", references=known)
+    result = samples.solved(case, "la", 0.5)
+
+    def told() -> str:
+        ((row,),) = tables.run_rows(ComparisonRun("known", "", "", [CaseResults(case, [result])]))
+        return row.reference.text
+
+    samples.held_against(case, result, "width", Verdict.AGREES)
+    assert told() == "width 0.2"
+    samples.held_against(case, result, "close", Verdict.AGREES)
+    assert told() == "0.5 +1", "the multiplier before what else is known"
+    samples.held_against(case, result, "gate", Verdict.AGREES)
+    assert told() == "0.51 +2", "what a gate holds before what it does not"
+    samples.held_against(case, result, "missed", Verdict.OUTSIDE_TOLERANCE)
+    assert told() == "peak 0.7 +3", "what is missed before what agrees"
+
+
+def test_names_are_listed_as_in_a_sentence():
+    listed = [words.all_of(["fe", "la", "de"][:count]) for count in (1, 2, 3)]
+    assert listed == ["FE", "FE and LA", "FE, LA and DE"]
