@@ -184,7 +184,7 @@ def test_scales_of_a_figure_lie_within_it(kind: str):
 
 
 def test_ids_fit_into_blocks_and_dimensions_onto_the_sheet_that_is_shown():
-    looked = inspect(column(3, width=0.1, height=0.4))
+    looked = inspect(column(3, width=0.05, height=0.4))
     page = inspected_figure(looked, dimensions=True)
     ax = page.axes[0]
     for note in ax.texts:
