@@ -1,4 +1,4 @@
-"""Values read off a drawn chart, as a reader does: by the numbers at its axes, not by what drew it."""
+"""Values read off a drawn chart, as a reader does, by the numbers at its axes; and the corners of paths."""
 
 from __future__ import annotations
 
@@ -8,7 +8,22 @@ from collections.abc import Callable
 import numpy as np
 
 Points = list[tuple[float, float]]
+NUMBER = r"-?\d*\.?\d+"
 PLACE = re.compile(r"(-?[\d.]+) (-?[\d.]+)")
+
+
+def points_of(path: str) -> np.ndarray:
+    """All corners (k, 2) of path data with the letters M, L, l, h, H, v and z."""
+    found: list[tuple[float, float]] = []
+    for letter, words in re.findall(r"([MLlhHv])([^MLlhHvz]*)", path):
+        values = [float(value) for value in re.findall(NUMBER, words)]
+        x, y = found[-1] if found else (0.0, 0.0)
+        if letter in "hHv":
+            dx, dy = (values[0], 0.0) if letter == "h" else (0.0, values[0])
+            found.append((values[0], y) if letter == "H" else (x + dx, y + dy))
+        else:
+            found.append((values[0], values[1]) if letter in "ML" else (x + values[0], y + values[1]))
+    return np.array(found)
 
 
 def _scale(texts: list[tuple[str, str]], *, log: bool) -> Callable[[float], float]:

@@ -22,26 +22,12 @@ from reports.drawing import Frame
 from reports.force_drawing import forces_svg
 from reports.inspected import inspected_figure
 from tests.reports import samples
+from tests.reports.read_chart import NUMBER, points_of
 from tests.walls import case as wall_case
 from tests.walls import running_bond, stack
 
-NUMBER = r"-?\d+(?:\.\d+)?"
 DIGIT = 0.55
 """Width of a letter in its size, about."""
-
-
-def points_of(path: str) -> np.ndarray:
-    """All corners (k, 2) of path data with the letters M, L, l, h, H, v and z."""
-    found: list[tuple[float, float]] = []
-    for letter, numbers in re.findall(r"([MLlhHv])([^MLlhHvz]*)", path):
-        values = [float(value) for value in re.findall(NUMBER, numbers)]
-        x, y = found[-1] if found else (0.0, 0.0)
-        if letter in "hHv":
-            dx, dy = (values[0], 0.0) if letter == "h" else (0.0, values[0])
-            found.append((values[0], y) if letter == "H" else (x + dx, y + dy))
-        else:
-            found.append((values[0], values[1]) if letter in "ML" else (x + values[0], y + values[1]))
-    return np.array(found)
 
 
 def drawings_of(text: str) -> list[tuple[np.ndarray, np.ndarray]]:
