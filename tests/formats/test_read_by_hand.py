@@ -164,6 +164,11 @@ def test_the_account_counts_every_outline_and_every_thing_left_out(tmp_path: Pat
     assert any("it crosses itself near" in line for line in left)
     assert any('LWPOLYLINE on layer "S": it is a point' in line for line in left)
     assert any('TEXT on layer "S": no outline' in line for line in left)
+    spike = [(0, 0), (4, 0), (4, 4), (0, 4), (0.02, 4.02), (-0.01, 3.9)]  # its tip lies over the upper edge
+    rows = ["block,x,y", *(f"a,{x},{y}" for x, y in spike)]
+    told = read(tmp_path / "d.csv", "\n".join(rows), units="m").account
+    assert told[0] == "read 1 x polygon"
+    assert any(line.startswith("polygon mended: it crosses itself by a spike near") for line in told)
     text = json.dumps({"type": "FeatureCollection", "features": [
         {"type": "Feature", "geometry": None, "properties": None},
         {"type": "Feature", "id": "s", "geometry": _square(0.0), "properties": None},
@@ -199,8 +204,11 @@ def test_a_line_that_ends_where_it_began_is_closed_and_one_that_does_not_is_open
     for end, count in ((ring[0], 2), (near, 1)):
         path = "M" + " L".join(f"{x} {y}" for x, y in [*ring, end])
         stone = f'<rect x="{away}" y="{away - 1}" width="1" height="1"/>'
-        body = stone + f'<path d="{path}"/>'
-        assert len(read(tmp_path / "d.svg", svg(body), units="m").wall.blocks) == count
+        imported = read(tmp_path / "d.svg", svg(stone + f'<path d="{path}"/>'), units="m")
+        assert len(imported.wall.blocks) == count
+        assert [line for line in imported.account if line.startswith("read ")][count - 1 :] == [
+            "read 1 x Path" if count == 2 else "read 1 x Rect"
+        ]
 
 
 def boxed(x: float, z: float, size: tuple[float, float, float], **said: Any) -> dict[str, Any]:
