@@ -15,7 +15,7 @@ import pymunk
 
 from benchmarks.walls import bond, stack
 from harness.model.assembly import Assembly, polygon_area
-from methods.de.engines.space import polygon_gyration
+from methods.de.engines.pymunk_joints import polygon_gyration
 
 
 @dataclass(frozen=True)

@@ -12,7 +12,7 @@ from drystone.analysis import Result, analyse_by
 from drystone.certificates import with_certificates
 from drystone.walls import Wall
 from harness.engine import compare as engine
-from harness.engine.isolate import announce
+from harness.engine.isolate import preload_methods
 from harness.engine.plan import Limits, Run, check_methods, plan_case
 from harness.engine.regression import violations
 from harness.engine.store import open_store
@@ -129,7 +129,7 @@ def compare(
     cases = [wall.case for wall in chosen]
     with nullcontext() if store is None else open_store(Path(store)) as opened:
         if isolated:
-            announce(run.method for run in planned)
+            preload_methods(run.method for run in planned)
             results = engine.execute(planned, opened, jobs, fresh=fresh, told=told)
         else:
             results = _here(chosen, planned)

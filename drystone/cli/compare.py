@@ -34,7 +34,7 @@ from drystone.comparing import compare as make_comparison
 from drystone.walls import Wall
 from harness.engine import compare as comparing
 from harness.engine import regression
-from harness.engine.isolate import announce
+from harness.engine.isolate import preload_methods
 from harness.engine.plan import Limits, check_methods, find_cases, plan_case
 from harness.engine.store import open_store
 from harness.model.comparison import ComparisonRun
@@ -102,7 +102,7 @@ def compare(
     asked = method_settings(settings)
     written = None if no_report else report
     planned = [run for case in chosen for run in plan_case(case, names, limits, settings=asked)]
-    announce(run.method for run in planned)
+    preload_methods(run.method for run in planned)
     study = [] if studied is None else [curve_of_shipped(studied, jobs, store, fresh=fresh, quiet=as_json)]
     with terminal.progress(len(planned), quiet=as_json) as told:
         compared = make_comparison(
@@ -183,7 +183,7 @@ def _appendix(wall: str, folder: Path, store: Path) -> None:
     if is_horizontal(chosen[0]):
         chosen = [*chosen, reversed_live(chosen[0])]
     runs = [planned for case in chosen for planned in plan_case(case, None, Limits())]
-    announce(planned.method for planned in runs)
+    preload_methods(planned.method for planned in runs)
     with open_store(store) as opened, terminal.progress(len(runs), quiet=False) as told:
         results = comparing.execute(runs, opened, os.cpu_count() or 1, told=told)
     compared = with_certificates(comparing.comparison_run(title, _command_line(), chosen, runs, results))

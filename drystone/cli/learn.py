@@ -11,7 +11,7 @@ import click
 from drystone.cli import terminal
 from drystone.cli.options import OUTPUT, catching, jobs_option, say, store_option
 from harness.engine import compare as comparing
-from harness.engine.isolate import announce
+from harness.engine.isolate import preload_methods
 from harness.engine.plan import Limits, find_cases, plan_case
 from harness.engine.store import open_store
 from harness.model.library import library
@@ -34,7 +34,7 @@ def learn(output: Path, jobs: int, store: Path) -> None:
 
     chosen = find_cases(("single-block", *WALLS), None, ())
     runs = [planned for case in chosen for planned in plan_case(case, list(library().methods.compare), Limits())]
-    announce(planned.method for planned in runs)
+    preload_methods(planned.method for planned in runs)
     with open_store(store) as opened, terminal.progress(len(runs), quiet=False) as told:
         results = comparing.execute(runs, opened, jobs, told=told)
     command = shlex.join(["drystone", *sys.argv[1:]])

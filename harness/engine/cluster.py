@@ -16,7 +16,7 @@ from contextlib import contextmanager, suppress
 from typing import Any
 
 from harness.engine.executors import Job, Slots
-from harness.engine.isolate import LOOK_SECONDS, Measured, ended_run, start_context
+from harness.engine.isolate import LOOK_SECONDS, TimedResult, ended_run, start_context
 from harness.engine.provenance import code_version, versions
 from harness.engine.worker import Task
 from harness.model.errors import InputError
@@ -66,7 +66,7 @@ class ClusterExecutor:
         self._address = address
         self._connect(CONNECT_SECONDS).close()
 
-    def map(self, jobs: Iterable[Job], methods: Collection[str]) -> Generator[tuple[int, Measured]]:
+    def map(self, jobs: Iterable[Job], methods: Collection[str]) -> Generator[tuple[int, TimedResult]]:
         """See `harness.engine.executors.Executor`."""
         ours = identity(methods)
         coming, left = iter(jobs), dict[int, Job]()
@@ -86,7 +86,7 @@ class ClusterExecutor:
 
     def _through(
         self, client: Any, coming: Iterator[Job], left: dict[int, Job], ours: Identity
-    ) -> Generator[tuple[int, Measured]]:
+    ) -> Generator[tuple[int, TimedResult]]:
         """Results through one client; `left` holds the jobs whose results have not been given."""
         under_way: dict[Any, int] = {}
 
@@ -160,7 +160,7 @@ REMEDY = "Install the same release, with the same versions, on every machine"
 _slots: dict[str, Slots] = {}
 
 
-def make_run(task: Task, case: str, theirs: Identity) -> Measured:
+def make_run(task: Task, case: str, theirs: Identity) -> TimedResult:
     """Make one run in a child process of this worker.
 
     Args:

@@ -10,7 +10,7 @@ from multiprocessing.context import BaseContext
 from typing import Protocol
 
 from harness.engine import preload
-from harness.engine.isolate import LOOK_SECONDS, Again, Child, Measured, own_context, start_context
+from harness.engine.isolate import LOOK_SECONDS, Child, Retry, TimedResult, own_context, start_context
 from harness.engine.worker import Task
 
 RUNS_A_CHILD = 500
@@ -32,7 +32,7 @@ class Job:
 class Executor(Protocol):
     """A place where runs are made."""
 
-    def map(self, jobs: Iterable[Job], methods: Collection[str]) -> Generator[tuple[int, Measured]]:
+    def map(self, jobs: Iterable[Job], methods: Collection[str]) -> Generator[tuple[int, TimedResult]]:
         """Numbers and results of jobs, in the order in which they end.
 
         Args:
@@ -50,7 +50,7 @@ class LocalExecutor:
     def __init__(self, processes: int) -> None:
         self.processes = max(1, processes)
 
-    def map(self, jobs: Iterable[Job], methods: Collection[str]) -> Generator[tuple[int, Measured]]:
+    def map(self, jobs: Iterable[Job], methods: Collection[str]) -> Generator[tuple[int, TimedResult]]:
         """See `Executor`."""
         coming = iter(jobs)
         first = list(itertools.islice(coming, 2))
@@ -69,11 +69,11 @@ class LocalExecutor:
                 for child, job, found in ended:
                     del busy[child]
                     slots.give_back(child)
-                    if found is Again.FRESH:
+                    if found is Retry.FRESH:
                         busy[slots.begin(job.task, job.case, last=True)] = job
                 occupy()  # before the caller is given results, so that the children work while it does
                 for _, job, found in ended:
-                    if isinstance(found, Measured):
+                    if isinstance(found, TimedResult):
                         yield job.number, found
         finally:
             for child in busy:

@@ -24,8 +24,8 @@ from typing import Any
 
 from harness.engine import preload, worker
 from harness.engine.provenance import machine, versions
+from harness.engine.resource_use import resource_use
 from harness.engine.threads import pin
-from harness.engine.usage import usage
 from harness.engine.worker import Task
 from harness.model.answer_check import checked
 from harness.model.errors import InputError, visible
@@ -48,7 +48,7 @@ MOST_READ = 4096
 
 
 @dataclass(frozen=True)
-class Measured:
+class TimedResult:
     """A result with the tolerance its method asks the judge for."""
 
     result: Result
@@ -65,7 +65,7 @@ def _fork_server() -> multiprocessing.context.ForkServerContext:
 _announced: set[str] = set()
 
 
-def announce(methods: Iterable[str]) -> None:
+def preload_methods(methods: Iterable[str]) -> None:
     """Name methods that are going to be run: the fork server loads once what was named before it starts."""
     _announced.update(preload.shipped(methods))
 
@@ -76,7 +76,7 @@ def start_context(methods: Iterable[str]) -> BaseContext:
     The server starts with the first call and keeps what it loaded then; other methods are loaded by the children.
     """
     pin()
-    announce(methods)
+    preload_methods(methods)
     context = _fork_server()
     os.environ[preload.VARIABLE] = ",".join(sorted(_announced))
     try:
@@ -114,7 +114,7 @@ def own_context(methods: Iterable[str]) -> BaseContext | None:
     return multiprocessing.get_context("fork") if threads == 1 else None
 
 
-def run_isolated(task: Task, case: str) -> Measured:
+def run_isolated(task: Task, case: str) -> TimedResult:
     """Run a task in a fresh child process. Whatever happens there becomes a result with a sentence.
 
     Args:
@@ -130,7 +130,7 @@ def run_isolated(task: Task, case: str) -> Measured:
     return measured
 
 
-def ended_run(child: Child, context: BaseContext) -> tuple[Child, Measured]:
+def ended_run(child: Child, context: BaseContext) -> tuple[Child, TimedResult]:
     """Wait for the run that a child has begun, and make it once more in a fresh child where it must be.
 
     Returns:
@@ -140,9 +140,9 @@ def ended_run(child: Child, context: BaseContext) -> tuple[Child, Measured]:
         while True:
             wait(child.waitables, timeout=LOOK_SECONDS)
             found = child.look()
-            if isinstance(found, Measured):
+            if isinstance(found, TimedResult):
                 break
-            if found is Again.FRESH:
+            if found is Retry.FRESH:
                 task, case = child.task, child.case
                 child.end()
                 child = Child(context)
@@ -155,7 +155,7 @@ def ended_run(child: Child, context: BaseContext) -> tuple[Child, Measured]:
     return child, found
 
 
-class Again(Enum):
+class Retry(Enum):
     """What a child says of a run that another must make."""
 
     FRESH = "in a fresh process"
@@ -182,7 +182,7 @@ class Child:
         self.runs = 0
         self.reusable = True
         self._came = bytearray()
-        self._run: _UnderWay | None = None
+        self._run: _RunningJob | None = None
         self._last = False
 
     @property
@@ -206,17 +206,17 @@ class Child:
         return self._under_way.case
 
     @property
-    def _under_way(self) -> _UnderWay:
+    def _under_way(self) -> _RunningJob:
         assert self._run is not None, "no run was begun"
         return self._run
 
     def begin(self, task: Task, case: str, *, last: bool = False) -> None:
         """Send a task. With `last` its row is made here whatever happens; it was begun elsewhere before."""
-        self._run, self._last = _UnderWay(task, case, self._process.pid), last
+        self._run, self._last = _RunningJob(task, case, self._process.pid), last
         with contextlib.suppress(BrokenPipeError, ConnectionResetError):  # its end is told by the next look
             self._connection.send(task)
 
-    def look(self) -> Measured | Again | None:
+    def look(self) -> TimedResult | Retry | None:
         """The measured run if it has ended; else None, after its use of time and memory was looked at.
 
         A run is made again where its method asks for a fresh process, and once where the process was killed from
@@ -227,7 +227,7 @@ class Child:
             for line in self._lines():
                 if line == worker.REPLACE and not run.begun_by_method and not self._last:
                     self.reusable = False
-                    return Again.FRESH
+                    return Retry.FRESH
                 if line == worker.LOADED and not run.begun_by_method:
                     run.loaded()
                 else:
@@ -237,7 +237,7 @@ class Child:
         if not self._process.is_alive():
             self.reusable = False
             killed = self._process.exitcode == -signal.SIGKILL and not self._last
-            return Again.FRESH if killed else self._failed(run)
+            return Retry.FRESH if killed else self._failed(run)
         run.look()
         if run.ending is not None:
             self._kill()
@@ -259,7 +259,7 @@ class Child:
             if len(self._came) > LARGEST_FILE:
                 yield bytes(self._came)
 
-    def _measured(self, run: _UnderWay, line: bytes) -> Measured:
+    def _measured(self, run: _RunningJob, line: bytes) -> TimedResult:
         """The run whose record is a line. What a method has changed in its process may have written anything."""
         try:
             record = json.loads(line)
@@ -276,7 +276,7 @@ class Child:
         self.reusable = self.reusable and reusable
         return measured
 
-    def _failed(self, run: _UnderWay) -> Measured:
+    def _failed(self, run: _RunningJob) -> TimedResult:
         self._run = None
         self.reusable = False
         answer = run.failure(self._process.exitcode, _last_words(Path(self._folder.name)))
@@ -299,7 +299,7 @@ class Child:
         self._folder.cleanup()
 
 
-class _UnderWay:
+class _RunningJob:
     """A run under way: its use of time and memory, and how it was ended if it had to be."""
 
     def __init__(self, task: Task, case: str, pid: int) -> None:
@@ -332,7 +332,7 @@ class _UnderWay:
             return
         self._next_look = now + LOOK_SECONDS
         self._looks += 1
-        found = usage(self._pid, with_children=self._looks % LOOKS_AT_CHILDREN == 0)
+        found = resource_use(self._pid, with_children=self._looks % LOOKS_AT_CHILDREN == 0)
         if found is not None:
             memory, cpu = found
             self._cpu_before = cpu if self._cpu_before is None else self._cpu_before
@@ -357,7 +357,7 @@ class _UnderWay:
             sentence = f"Its process ended with exit code {exit_code} and left no answer.{last_words}"
         return Answer(status=self.ending or Status.CRASHED, finding=Finding.NONE, sentence=sentence)
 
-    def measured(self, record: dict[str, Any]) -> Measured:
+    def measured(self, record: dict[str, Any]) -> TimedResult:
         """The result of a record, with where, when and under which limits it was made."""
         task = self.task
         result = result_of(
@@ -378,7 +378,7 @@ class _UnderWay:
             "machine": machine(),
             "started": self.begun,
         }
-        return Measured(result.model_copy(update=update), float(record.get("tolerance") or 0.0))
+        return TimedResult(result.model_copy(update=update), float(record.get("tolerance") or 0.0))
 
 
 def _last_words(folder: Path) -> str:

@@ -10,10 +10,10 @@ import numpy as np
 
 from harness.model.assembly import Assembly, IntArray
 from harness.model.method import MOVING_FORCES, Answer, Finding, OutOfTime, Status
-from methods.de.engines.courses import Tuning, courses, insertion_orders, tunings
 from methods.de.engines.engine import Engine
+from methods.de.engines.mass_scaling import MassScaling, courses, insertion_orders, tunings
+from methods.de.holds.bracket_state import BracketState, stopped_answer
 from methods.de.holds.order_bracket import BRACKET, BracketSearch, OrderBracket, held_forces, mechanism_at
-from methods.de.holds.stopped import KnownBrackets, stopped_answer
 from methods.de.settings import HoldSettings
 
 BRACKET_MEANING = (
@@ -21,7 +21,7 @@ BRACKET_MEANING = (
     "lower end and moved at or below the upper end"
 )
 
-EngineMaker = Callable[[IntArray, IntArray, Tuning], Engine]
+EngineMaker = Callable[[IntArray, IntArray, MassScaling], Engine]
 """From free blocks and interfaces in insertion order and a tuning to an engine that holds the wall."""
 
 
@@ -30,7 +30,7 @@ def solve_by_holds(
     settings: HoldSettings,
     make_engine: EngineMaker,
     tolerance: float,
-    candidates: list[Tuning] | None = None,
+    candidates: list[MassScaling] | None = None,
 ) -> Answer:
     """Bracket the collapse multiplier in every insertion order and put the findings together.
 
@@ -39,9 +39,9 @@ def solve_by_holds(
         settings: settings of the holds.
         make_engine: makes the engine.
         tolerance: residual of contact forces that the judge accepts of the method.
-        candidates: tunings to try in turn; None: those of `methods.de.engines.courses.tunings`.
+        candidates: tunings to try in turn; None: those of `methods.de.engines.mass_scaling.tunings`.
 
-    Where the time is over what is shown by then is the answer (`methods.de.holds.stopped`).
+    Where the time is over what is shown by then is the answer (`methods.de.holds.bracket_state`).
     """
     if assembly.n_free == 0:
         return Answer(Status.OK, Finding.STANDS, "every block is fixed: nothing can move")
@@ -49,9 +49,9 @@ def solve_by_holds(
     course = courses(assembly)
     orders = insertion_orders(assembly, course, settings.orders, settings.seed)
     candidates = candidates or tunings(course, settings.mass_decay)
-    known = KnownBrackets(len(orders))
+    known = BracketState(len(orders))
 
-    def searches(tuning: Tuning, first: int) -> list[BracketSearch]:
+    def searches(tuning: MassScaling, first: int) -> list[BracketSearch]:
         return [BracketSearch(make_engine(b, j, tuning), settings, unit, name) for name, b, j in orders[first:]]
 
     try:
@@ -76,7 +76,7 @@ def solve_by_holds(
         return stopped_answer(assembly, known, tolerance, describe(assembly, found))
 
 
-def _of_tuning(tuning: Tuning) -> dict[str, Any]:
+def _of_tuning(tuning: MassScaling) -> dict[str, Any]:
     return {"mass_decay": tuning.mass_decay, "damping": tuning.damping}
 
 
@@ -103,16 +103,16 @@ def first_bracket(
     settings: HoldSettings,
     make_engine: EngineMaker,
     order: tuple[str, IntArray, IntArray],
-    candidates: list[Tuning],
-    known: KnownBrackets,
-) -> tuple[Tuning, OrderBracket]:
+    candidates: list[MassScaling],
+    known: BracketState,
+) -> tuple[MassScaling, OrderBracket]:
     """The first order's bracket, and the tuning that gave it: the first that converges, else the one that got nearest.
 
     The tunings decide only how fast a wall settles; a bracket of either is a bracket. A wall falls under its dead load
     only where it moves with every tuning: what one of them holds, stands.
     """
     name, blocks, joints = order
-    tried: list[tuple[tuple[bool, float, bool, int], Tuning, OrderBracket]] = []
+    tried: list[tuple[tuple[bool, float, bool, int], MassScaling, OrderBracket]] = []
     for k, tuning in enumerate(candidates):
         search = BracketSearch(make_engine(blocks, joints, tuning), settings, assembly.load_unit, name)
         found = known.searched(search, assembly.has_live_load)

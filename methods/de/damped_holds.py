@@ -7,13 +7,13 @@ import numpy as np
 from harness.model.assembly import Assembly, IntArray
 from harness.model.method import Answer, Finding, OutOfTime, Solver, Status
 from methods.de.answers import solve_by_holds
-from methods.de.engines.courses import Tuning
+from methods.de.engines.compile_impulses import load_impulses
 from methods.de.engines.engine import Engine, motion_units
+from methods.de.engines.mass_scaling import MassScaling
 from methods.de.engines.mujoco_wall import MujocoWall, SolverFailed, load_mujoco, mujoco_tunings
-from methods.de.engines.space import StripSpace
+from methods.de.engines.pymunk_joints import PymunkJoints
+from methods.de.engines.sequential_impulses import SequentialImpulses
 from methods.de.engines.strips import CannotModel
-from methods.de.engines.sweeps import SweptWall
-from methods.de.engines.warm_sweeps import load_sweeps
 from methods.de.holds.release import release
 from methods.de.methods import DE, DE_MUJOCO
 from methods.de.settings import MujocoSettings, ReleaseSettings, SweepSettings
@@ -25,7 +25,7 @@ class DampedHolds(Solver):
 
     def prepare(self) -> None:
         """Load the compiled sweeps."""
-        load_sweeps()
+        load_impulses()
 
     def solve(self, assembly: Assembly, settings: SweepSettings) -> Answer:
         """Bracket of the collapse multiplier over body orders; see `methods.de.answers`."""
@@ -33,8 +33,8 @@ class DampedHolds(Solver):
         return analysed(assembly, lambda part: self._of_component(part, settings))
 
     def _of_component(self, assembly: Assembly, settings: SweepSettings) -> Answer:
-        def engine(blocks: IntArray, joints: IntArray, tuning: Tuning) -> Engine:
-            make = StripSpace if settings.engine == "pymunk" else SweptWall
+        def engine(blocks: IntArray, joints: IntArray, tuning: MassScaling) -> Engine:
+            make = PymunkJoints if settings.engine == "pymunk" else SequentialImpulses
             return make(assembly, blocks, joints, settings.iterations, tuning)
 
         try:
@@ -59,7 +59,7 @@ class MujocoHolds(Solver):
         candidates = mujoco_tunings(assembly, settings)
         soft = dict(candidates)
 
-        def engine(blocks: IntArray, joints: IntArray, tuning: Tuning) -> MujocoWall:
+        def engine(blocks: IntArray, joints: IntArray, tuning: MassScaling) -> MujocoWall:
             ratio = settings.friction_ratio
             return MujocoWall(assembly, blocks, joints, settings.iterations, tuning, soft[tuning], ratio)
 
@@ -76,7 +76,7 @@ class ReleasedCollapse(Solver):
 
     def prepare(self) -> None:
         """Load the compiled sweeps."""
-        load_sweeps()
+        load_impulses()
 
     def solve(self, assembly: Assembly, settings: ReleaseSettings) -> Answer:
         """Answer of `de` with the history of the collapse: frames in `details`, time and displacement in `path`."""

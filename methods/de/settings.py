@@ -41,7 +41,7 @@ class HoldSettings(Settings):
         iterations: sweeps of the contact solver in a time step.
         mass_decay: logarithmic decay of the masses from one course to the next. Masses do not enter equilibrium, so
             they are chosen for convergence: light blocks on heavy ones. None: the quickest at multiplier zero of the
-            tunings in `methods.de.engines.courses`; 0: masses in proportion to areas.
+            tunings in `methods.de.engines.mass_scaling`; 0: masses in proportion to areas.
         held_residual: a state is held when the largest force left over is below this part of a block's dead load.
         moving_residual: a state moves when a steady velocity field keeps a force above this part out of balance.
         force_residual: the highest held state is followed until its residual is below this, for its contact forces.

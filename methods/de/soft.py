@@ -14,14 +14,14 @@ import numpy as np
 
 from harness.model.assembly import Assembly, FloatArray
 from harness.model.method import Answer, Finding, OutOfTime, Solver, Status
-from methods.de.engines.courses import courses, number_of_courses
 from methods.de.engines.engine import motion_units
+from methods.de.engines.mass_scaling import courses, number_of_courses
 from methods.de.engines.soft_wall import SoftWall
-from methods.de.holds.hold import Hold, State, Watch
+from methods.de.holds.bracket_state import STOPPED, undecided, unmoved
+from methods.de.holds.load_step import ConvergenceMonitor, LoadStep, State
 from methods.de.holds.loading import raise_until_it_falls
 from methods.de.holds.motion import MotionProof, by_travel
 from methods.de.holds.order_bracket import BRACKET
-from methods.de.holds.stopped import STOPPED, undecided, unmoved
 from methods.de.settings import FALL, JOINTS, SOFT_HOLDS, SoftSettings
 from methods.numerics.claims import at_limit, with_proof
 
@@ -78,7 +78,7 @@ class Holds:
         wall.restore(self.rest)
         return state
 
-    def _settled(self, looks: int) -> Hold:
+    def _settled(self, looks: int) -> LoadStep:
         """What the wall does under its load within so many looks, or within twenty times its own slowest relaxation.
 
         `methods.de.holds.motion` says whether it moves: asked at each doubling of the looks, where a block has come far
@@ -88,7 +88,7 @@ class Holds:
         before = self.rest[0]
         load = wall.assembly.dead + wall.multiplier * wall.assembly.live
         away = SOFT_HOLDS.away * float(np.abs(before[:, :2]).max()) if np.any(before[:, :2]) else np.inf
-        watch = Watch(settings.held_residual, settings.held_residual, motion_units(wall.assembly))
+        watch = ConvergenceMonitor(settings.held_residual, settings.held_residual, motion_units(wall.assembly))
         places, start = before, wall.steps
         affordable = settings.relaxations * looks
         while True:
@@ -97,7 +97,7 @@ class Holds:
             watch.note(moved, residual)
             if residual < settings.held_residual or not np.all(np.isfinite(places)):
                 state = State.HELD if residual < settings.held_residual else State.UNDECIDED
-                return Hold(state, residual, wall.steps - start, places - before)
+                return LoadStep(state, residual, wall.steps - start, places - before)
             over = watch.over(looks, affordable, settings.relaxations)
             motion = by_travel(wall.assembly, load, places - before, settings.reach)
             far = float(np.abs((places - before)[:, :2]).max(initial=0.0)) > away
@@ -105,9 +105,9 @@ class Holds:
                 motion = watch.motion(wall)
                 away *= 2.0 if far else 1.0
             if motion is not None:
-                return Hold(State.MOVING, residual, wall.steps - start, places - before, motion.proof)
+                return LoadStep(State.MOVING, residual, wall.steps - start, places - before, motion.proof)
             if over:
-                return Hold(State.UNDECIDED, residual, wall.steps - start, places - before)
+                return LoadStep(State.UNDECIDED, residual, wall.steps - start, places - before)
 
 
 class DeformableJoints(Solver):

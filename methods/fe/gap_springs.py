@@ -38,7 +38,7 @@ load_kernels()
 
 
 @dataclass(frozen=True)
-class EventLimits:
+class BreakpointLimits:
     """Events up to which histories are traced, and how many histories there are.
 
     Attributes:
@@ -59,11 +59,11 @@ class EventLimits:
     three: int = 1200
 
 
-EVENTS = EventLimits()
+EVENTS = BreakpointLimits()
 
 
 class GapSprings(Solver):
-    """Gap-spring finite elements with the path traced exactly, kink by kink (`fe`)."""
+    """Gap-spring finite elements with the path traced exactly, breakpoint by breakpoint (`fe`)."""
 
     def solve(self, assembly: Assembly, settings: Any) -> Answer:
         """Gravity first, then the live load to the plateau under every history asked for."""

@@ -19,13 +19,13 @@ from harness.model.method import OutOfTime
 from methods.springs.model.factor import Factor, SingularTangent
 from methods.springs.model.gap_law import OPEN, SLIP_PLUS
 from methods.springs.model.wall_model import WallModel
-from methods.springs.path.continuation import Tracer
-from methods.springs.path.follow import follow
-from methods.springs.path.path_record import LoadStep, PathEnd, PathRecord
+from methods.springs.path.continuation import PathFollower
+from methods.springs.path.load_path import follow
+from methods.springs.path.path_record import PathEnd, PathRecord, PathStep
 from methods.springs.path.plateau import PlateauState, finish
 from methods.springs.rest.equilibrium import doubled, equilibrium, first_step
 from methods.springs.rest.newton import Equilibrium
-from methods.springs.rest.slow_motion import SlowMotion
+from methods.springs.rest.pseudo_transient import PseudoTransient
 
 
 @dataclass(frozen=True)
@@ -36,7 +36,7 @@ class HistoryTuning:
         disturbances: random initial shears, in weights of a block, tried in turn where exact ties lead a path astray.
         committed_up_to: shares of the multiplier scale up to which a history is committed, in turn while it is lost.
         astray: multiple of the first history's plateau at which a committed history counts as lost.
-        large: blocks above which a path of too many kinks is given up early, and not traced again with disturbed
+        large: blocks above which a path of too many breakpoints is given up early, and not traced again with disturbed
             shears.
         doubled: blocks above which a path without commits starts where doubled Newton steps end, to save the early
             events.
@@ -110,11 +110,11 @@ def trace_history(model: WallModel, factor: Factor, start: Equilibrium, plan: Pl
     """Trace one history from the gravity state, or from the rest that another raised the load to.
 
     A lost history with commits is traced again with commits up to 97, then 90, then 80 % of the multiplier scale only:
-    at a commit many kinks meet, and near the peak the path from there may run in a closed loop. Where exact ties lead
+    at a commit many breakpoints meet, and near the peak the path from there may run in a closed loop. Where exact ties lead
     a path without commits astray it is traced again with the initial shears disturbed by 1e-9, 1e-7 and 1e-5 of a
     block's weight: data nobody knows, and the end is an exact collapse state all the same. Where a path without
     commits has not ended after so many events, the load is raised in finite steps instead
-    (`methods.springs.rest.slow_motion`), and the path goes on from there.
+    (`methods.springs.rest.pseudo_transient`), and the path goes on from there.
 
     Args:
         model: the wall; factor: its tangent; start: equilibrium under the dead load, or at the rest.
@@ -156,7 +156,7 @@ def _raised(model: WallModel, factor: Factor, gravity: Equilibrium, plan: Plan, 
     """
     rest = gravity
     record.keep(partial(_load_step, model, gravity))
-    for rest in SlowMotion(model, factor, gravity, True).raise_load(plan.scale):
+    for rest in PseudoTransient(model, factor, gravity, True).raise_load(plan.scale):
         _note(record, model, rest)
         record.peak = rest.multiplier
     return _resumed(model, factor, rest, plan, record)
@@ -164,7 +164,7 @@ def _raised(model: WallModel, factor: Factor, gravity: Equilibrium, plan: Plan, 
 
 def _resumed(model: WallModel, factor: Factor, rest: Equilibrium, plan: Plan, record: PathRecord) -> HistoryResult:
     """Trace a path into the record from the rest that the load was raised to. Raises as `_raised` does."""
-    result = _followed(Tracer.from_rest(model, factor, rest), plan, record)
+    result = _followed(PathFollower.from_rest(model, factor, rest), plan, record)
     sentence = f"{result.sentence}; up to {rest.multiplier:.4g} the load was raised in finite steps"
     return replace(result, sentence=sentence, raised=rest)
 
@@ -215,20 +215,20 @@ def _trace_in_time(
         for further in doubled(model, factor, first):
             first = further
             _note(record, model, first)
-    return _followed(Tracer.from_rest(model, factor, first), plan, record)
+    return _followed(PathFollower.from_rest(model, factor, first), plan, record)
 
 
-def _followed(tracer: Tracer, plan: Plan, record: PathRecord) -> HistoryResult:
+def _followed(follower: PathFollower, plan: Plan, record: PathRecord) -> HistoryResult:
     """What following a path from where the tracer stands leads to. Raises OutOfTime and SingularTangent as above."""
-    model, scale = tracer.model, plan.scale
+    model, scale = follower.model, plan.scale
     interval = plan.step * scale or np.inf
     way = follow(
-        tracer, record, plan.max_events, interval, HISTORIES.astray * scale, committed_up_to=plan.committed_up_to
+        follower, record, plan.max_events, interval, HISTORIES.astray * scale, committed_up_to=plan.committed_up_to
     )
-    tracer, end = way.tracer, way.end
-    record.keep(tracer.load_step, always=True)
+    follower, end = way.follower, way.end
+    record.keep(follower.load_step, always=True)
     state = (
-        finish(model, tracer.present(), tracer.kept)
+        finish(model, follower.present(), follower.kept)
         if end in (PathEnd.PLATEAU, PathEnd.BREAKDOWN, PathEnd.EVENTS)
         else None
     )
@@ -236,7 +236,7 @@ def _followed(tracer: Tracer, plan: Plan, record: PathRecord) -> HistoryResult:
     if state is not None and state.multiplier < 0.0:
         state, end, sentence = None, PathEnd.RUNS_DOWN, BELOW_ZERO
     elif state is None and end == PathEnd.PLATEAU:
-        sentence = _not_collapse(model, tracer.present().velocity)
+        sentence = _not_collapse(model, follower.present().velocity)
     if plan.committed_up_to < np.inf:
         sentence += f"; committed up to {plan.committed_up_to:.4g} only, because later commits lost the path"
     return HistoryResult(plan, end, sentence, record, state, way.commits, way.residual)
@@ -263,10 +263,10 @@ def _note(record: PathRecord, model: WallModel, rest: Equilibrium) -> None:
     record.keep(partial(_load_step, model, rest))
 
 
-def _load_step(model: WallModel, rest: Equilibrium) -> LoadStep:
+def _load_step(model: WallModel, rest: Equilibrium) -> PathStep:
     """An equilibrium, kept whole."""
     opening, slip = model.strains(rest.u)
-    return LoadStep(rest.multiplier, rest.u, opening, model.kt * slip + rest.history, rest.state)
+    return PathStep(rest.multiplier, rest.u, opening, model.kt * slip + rest.history, rest.state)
 
 
 def with_initial_shear(model: WallModel, gravity: Equilibrium, share: float, seed: int) -> WallModel:

@@ -18,7 +18,7 @@ import numpy as np
 from harness.model.assembly import FloatArray, IntArray
 from methods.springs.model.factor import Factor, SingularTangent
 from methods.springs.model.wall_model import WallModel, load_scale
-from methods.springs.path.path_record import PathRecord, Snapshot
+from methods.springs.path.path_record import PathRecord, PathSnapshot
 from methods.springs.path.plateau import PlateauState, finish
 from methods.springs.rest.newton import NEWTON, Equilibrium, newton, settled
 
@@ -124,7 +124,7 @@ def march(
     travel = point.u - gravity.u
     if not np.any(travel):
         with suppress(SingularTangent):
-            factor.refactor(point.state, footing=True)
+            factor.refactor(point.state, regularised=True)
             travel = step * factor.solve(model.live)
     state, end, spent = _displacement_control(model, factor, point, travel, displacement_steps, record)
     sentence = f"displacement control reached a plateau, where load control stopped at {reached:.6g}"
@@ -194,7 +194,7 @@ def _controlled(
             share = max(0.5 * share, DISPLACEMENT_CONTROL.damped)
         seen.add(state.tobytes())
         try:
-            factor.refactor(state, footing=True)
+            factor.refactor(state, regularised=True)
             right = factor.solve(model.residual(u, multiplier, model.history, state))
             drive = factor.solve(model.live)
         except SingularTangent:
@@ -218,4 +218,6 @@ def _collapse(model: WallModel, point: StepPoint, direction: FloatArray) -> Plat
     """The collapse state of a wall that moves at constant multiplier, or None when it fails its check."""
     opening, slip = model.strains(point.u)
     velocity = direction / np.abs(direction).max()
-    return finish(model, Snapshot(point.multiplier, opening, model.kt * slip + model.history, point.state, velocity))
+    return finish(
+        model, PathSnapshot(point.multiplier, opening, model.kt * slip + model.history, point.state, velocity)
+    )

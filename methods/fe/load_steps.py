@@ -8,10 +8,10 @@ from harness.model.assembly import IntArray
 from harness.model.load_steps import STATES, LoadSteps
 from methods.springs.model.gap_law import OPEN, SLIP_MINUS, SLIP_PLUS, gap_forces
 from methods.springs.model.wall_model import WallModel
-from methods.springs.path.path_record import LoadStep
+from methods.springs.path.path_record import PathStep
 
 
-def load_steps(model: WallModel, steps: list[LoadStep], most: int) -> LoadSteps:
+def load_steps(model: WallModel, steps: list[PathStep], most: int) -> LoadSteps:
     """At most so many of the steps of a path (one at least), evenly picked, the first and the last among them."""
     pick = np.unique(np.linspace(0, len(steps) - 1, min(len(steps), most)).astype(int))
     kept = [steps[-1]] if most == 1 else [steps[k] for k in pick]

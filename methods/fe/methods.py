@@ -19,7 +19,7 @@ FE = Listed(
         marker="o",
     ),
 )
-"""Gap-spring finite elements with the path traced exactly, kink by kink (`fe`)."""
+"""Gap-spring finite elements with the path traced exactly, breakpoint by breakpoint (`fe`)."""
 
 FE_NEWTON = Listed(
     name="fe-newton",

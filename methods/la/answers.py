@@ -9,12 +9,12 @@ import numpy as np
 from harness.model.assembly import Assembly, FloatArray
 from harness.model.errors import first_few
 from harness.model.method import Answer, Finding, Status
-from methods.la.core.extremes import standing, uneven
 from methods.la.core.newton_matrix import NewtonMatrix
 from methods.la.core.problem import Problem
 from methods.la.core.programmes import KinematicSolution
 from methods.la.core.state import CollapseState, local_residuals, residuals
-from methods.la.interior.standing import standing_forces
+from methods.la.core.vertex_programmes import badly_scaled, standing
+from methods.la.interior.phase_one import phase_one_forces
 
 LOCAL_RESIDUAL = 1e-8
 """Residual at a block or joint, relative to the forces and speeds there, of a state that is returned."""
@@ -90,7 +90,7 @@ def unbounded_answer(sentence: str, iterations: int = 0, details: dict[str, Any]
 
 def dead_load_answer(problem: Problem, newton: NewtonMatrix, has_live_load: bool) -> Answer | None:
     """Falls with its mechanism, or stands if there is no live load; None if there is a live load to study."""
-    if has_live_load and not uneven(problem) and standing_forces(problem, newton) is not None:
+    if has_live_load and not badly_scaled(problem) and phase_one_forces(problem, newton) is not None:
         return None
     found = standing(problem)
     if isinstance(found, str):

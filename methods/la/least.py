@@ -20,10 +20,10 @@ from methods.la.answers import (
 from methods.la.certify.proof import Proof, prove
 from methods.la.certify.rational import confirm
 from methods.la.core.exact import exact_mechanism
-from methods.la.core.extremes import ForceProgramme, Units, units_of
 from methods.la.core.newton_matrix import NewtonMatrix
 from methods.la.core.problem import Problem
 from methods.la.core.state import CollapseState, local_residuals, polished, residuals
+from methods.la.core.vertex_programmes import ForceProgramme, RowScaling, row_scaling
 from methods.la.settings import SearchSettings
 from methods.la.sources import SOURCES, Source, explore
 from methods.la.sources.budget import Budget, rounds_of
@@ -88,15 +88,15 @@ def _found(search: Search, settings: SearchSettings, tolerance: float) -> Answer
 def _chosen(search: Search) -> tuple[CollapseState, Proof] | None:
     """The least state, exact, and what a tree proves of it; None where none holds beside the lightest blocks."""
     problem, newton, states = search.problem, search.newton, search.record.states
-    uneven = units_of(problem)
-    if uneven is not None:
-        states = confirmed(problem, newton, uneven, states)
+    badly_scaled = row_scaling(problem)
+    if badly_scaled is not None:
+        states = confirmed(problem, newton, badly_scaled, states)
         if not states:
             return None
     best = least_of(problem, states)
     proof = prove(search, best, search.budget.limits.nodes)
-    if uneven is not None:
-        return _of_uneven(problem, newton, uneven, [*states, best], proof)
+    if badly_scaled is not None:
+        return _of_uneven(problem, newton, badly_scaled, [*states, best], proof)
     if proof.state is not best:
         best = search.descend(proof.state)
         proof = replace(proof, state=best)
@@ -159,7 +159,7 @@ def least_of(problem: Problem, states: list[CollapseState]) -> CollapseState:
 
 
 def confirmed(
-    problem: Problem, newton: NewtonMatrix, units: Units | None, states: list[CollapseState]
+    problem: Problem, newton: NewtonMatrix, units: RowScaling | None, states: list[CollapseState]
 ) -> list[CollapseState]:
     """The states whose forces, solved for in units of their own blocks and interfaces, exist; lowest first, some left.
 
@@ -182,7 +182,7 @@ def confirmed(
 
 
 def _of_uneven(
-    problem: Problem, newton: NewtonMatrix, units: Units, states: list[CollapseState], proof: Proof
+    problem: Problem, newton: NewtonMatrix, units: RowScaling, states: list[CollapseState], proof: Proof
 ) -> tuple[CollapseState, Proof]:
     """The least state that is confirmed, and what the tree proves of it: nothing where its own is not confirmed."""
     best = least_of(problem, confirmed(problem, newton, units, [*states, proof.state]) or states)
@@ -211,7 +211,7 @@ def _details(search: Search, best: CollapseState | None, proof: Proof | None) ->
         **search.record.details(problem.unit_multiplier),
         "newton_steps": spent.newton_steps,
         "programmes": spent.programmes,
-        "kinks": spent.kinks,
+        "breakpoints": spent.breakpoints,
         "unknowns": 7 * problem.n_interfaces + problem.n_velocities + 1,
         "lower_bound": 0.0 if proof is None else problem.to_multiplier(proof.lower_bound),
         "proved_least": proof is not None and proof.complete,

@@ -11,8 +11,8 @@ from methods.springs.model.factor import SparseFactor
 from methods.springs.model.gap_law import STICK, neighbour_states
 from methods.springs.model.settings import GapSettings
 from methods.springs.model.wall_model import build_model
-from methods.springs.path.continuation import Tracer
-from methods.springs.path.kinks import live_rate, strain_rates
+from methods.springs.path.breakpoints import live_rate, strain_rates
+from methods.springs.path.continuation import PathFollower
 from methods.springs.path.path_record import PathRecord
 from methods.springs.path.plateau import finish
 from methods.springs.patterns import block_on_halves
@@ -26,9 +26,9 @@ def load_kernels() -> None:
     factor = SparseFactor(model)
     gravity = gravity_state(model, factor)
     first = first_step(model, factor, gravity, 1.0)
-    tracer = Tracer.from_rest(model, factor, first)
-    tracer.run(PathRecord(), 100)
-    finish(model, tracer.present(), tracer.kept)
+    follower = PathFollower.from_rest(model, factor, first)
+    follower.run(PathRecord(), 100)
+    finish(model, follower.present(), follower.kept)
     rates = np.empty(model.n_points), np.empty(model.n_points)
     kinematics = model.unknown, model.rows, model.interface, model.position
     exact_gap_rates(*kinematics, model.kt, gravity.u, np.zeros(model.n_unknowns), *rates)

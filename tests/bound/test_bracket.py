@@ -22,9 +22,9 @@ from methods.la.search import LimitAnalysis
 from methods.la.settings import BoundSettings, SearchSettings
 from methods.la.sources.search import Search
 from methods.proof.search.bracket import bracket
-from methods.proof.search.case import Case
 from methods.proof.search.relaxation import Relaxation
 from methods.proof.search.slack_bounds import SlackProgramme
+from methods.proof.search.subproblem import Subproblem
 from methods.proof.search.window_search import Bracket
 from tests.bound.by_cases import in_cases
 from tests.enumeration import least_by_enumeration
@@ -112,7 +112,7 @@ def test_products_of_collapse_states_satisfy_the_relaxation(wall: Assembly) -> N
     for state, share, limited in itertools.product(states, (0.0, 0.97), (0, 3)):
         low, high = share * state.multiplier, 1.01 * state.multiplier
         normal = state.forces.reshape(-1, 3)[:limited, :2].sum(axis=1)
-        case = Case(normal={p: (0.9 * force, 1.1 * force + 0.01) for p, force in enumerate(normal.tolist())})
+        case = Subproblem(normal={p: (0.9 * force, 1.1 * force + 0.01) for p, force in enumerate(normal.tolist())})
         bounds = programme.bounds(low, high, case)
         assert bounds is not None
         relaxation = Relaxation(equations, low, high, bounds, case)

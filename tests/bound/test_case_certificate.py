@@ -19,9 +19,9 @@ from methods.la.core.problem import make_problem
 from methods.la.search import LimitAnalysis
 from methods.la.settings import SearchSettings
 from methods.proof.same_wall import require_same_wall
-from methods.proof.search.case import AtContact, AtNormalForce, Case
 from methods.proof.search.rate_bounds import RateProgramme
 from methods.proof.search.slack_bounds import SlackProgramme
+from methods.proof.search.subproblem import AtContact, AtNormalForce, Subproblem
 from methods.proof.search.window_search import Bracket, WindowSearch
 from methods.proof.verify.cases import STEPS, states_of
 from methods.proof.verify.checker import verify
@@ -192,7 +192,7 @@ def test_a_case_in_which_nothing_moves_is_empty() -> None:
         part = part.part(AtContact(contact), False)
     bounds = SlackProgramme(equations).bounds(search.found.lower, upper)
     assert bounds is not None
-    decided, proofs = RateProgramme(equations).decided(upper, bounds, Case(still=held))
+    decided, proofs = RateProgramme(equations).decided(upper, bounds, Subproblem(still=held))
     assert (decided, [proof.shows for proof in proofs]) == (None, ["no mechanism"])
     other = certifier.part(AtContact(0), False)
     assert other is not None

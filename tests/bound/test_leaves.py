@@ -13,7 +13,7 @@ from methods.proof.verify.force_limits import known_of
 from methods.proof.verify.windows import WindowLimits
 from tests.bound.test_attacks import tree, windows
 
-EVERY = list(range(8))
+ROOT = list(range(8))
 PRESSING = [0, 1, 4, 5]
 """Contacts of the normal forces of both joints."""
 
@@ -52,7 +52,7 @@ def balancing() -> list[Fraction]:
 def test_forces_may_balance_the_live_load_alone(parts: tuple[int, int], times: int, reason: str):
     """In a leaf without rates all forces lose nothing; on no mechanism has the live load work then."""
     forces = [str(times * force) for force in balancing()]
-    leaf = {"still": EVERY, "forces": forces, "parts": [str(part) for part in parts]}
+    leaf = {"still": ROOT, "forces": forces, "parts": [str(part) for part in parts]}
     found = checked(leaf, Fraction(1, 7))
     assert found == "" if not reason else reason in found
 
@@ -74,9 +74,9 @@ def test_forces_against_a_rate_need_it_to_be_zero():
         ((0, 1, 0), 5, PRESSING, ""),  # nothing presses, and the weight is borne by nothing
         ((0, 1, 0), 5, PRESSING[1:], "gain work"),
         ((0, -1, 0), 5, PRESSING, "exclude nothing"),
-        ((1, 0, 0), 0, EVERY, ""),  # without forces no multiplier is below zero
-        ((1, 0, 0), Fraction(1, 10), EVERY, "exclude nothing"),
-        ((-1, 0, 0), 0, EVERY, "exclude nothing"),
+        ((1, 0, 0), 0, ROOT, ""),  # without forces no multiplier is below zero
+        ((1, 0, 0), Fraction(1, 10), ROOT, "exclude nothing"),
+        ((-1, 0, 0), 0, ROOT, "exclude nothing"),
     ],
 )
 def test_velocities_may_do_work_on_one_load_alone(velocities: Any, bound: Any, tight: list[int], reason: str):

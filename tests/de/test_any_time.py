@@ -16,9 +16,9 @@ from harness.model.method import Answer, Finding, OutOfTime, Status, load_method
 from harness.model.result import result_of
 from harness.model.wall import Wall
 from methods.de import answers as de_answer
+from methods.de.engines.sequential_impulses import SequentialImpulses
 from methods.de.engines.soft_wall import SoftWall
-from methods.de.engines.sweeps import SweptWall
-from methods.de.holds.stopped import highest_shown
+from methods.de.holds.bracket_state import highest_shown
 from tests.walls import assembly, running_bond, stack
 
 WALL = assembly(running_bond(6, 3), 0.65)
@@ -48,7 +48,7 @@ def solved(name: str, wall: Assembly = WALL, **settings: Any) -> tuple[Answer, b
 
 @pytest.mark.parametrize("calls", [120, 180, 400])
 def test_bracket_known_when_the_time_is_over_is_the_answer(calls: int, monkeypatch: pytest.MonkeyPatch):
-    stopped_after(calls, monkeypatch, SweptWall)
+    stopped_after(calls, monkeypatch, SequentialImpulses)
     answer, accepted = solved("de")
     assert (answer.status, answer.finding, accepted) == (Status.OK, Finding.COLLAPSES, True)
     assert "stopped by the time limit" in answer.sentence
@@ -61,7 +61,7 @@ def test_bracket_known_when_the_time_is_over_is_the_answer(calls: int, monkeypat
 
 
 def test_lower_end_that_was_shown_is_named_where_no_motion_was(monkeypatch: pytest.MonkeyPatch):
-    stopped_after(40, monkeypatch, SweptWall)
+    stopped_after(40, monkeypatch, SequentialImpulses)
     answer, _ = solved("de")
     assert (answer.status, answer.finding, answer.multiplier) == (Status.NOT_CONVERGED, Finding.NONE, None)
     assert 0.1 < answer.forces_multiplier < 0.5
@@ -74,7 +74,7 @@ def test_without_a_rest_nothing_is_said(name: str, monkeypatch: pytest.MonkeyPat
         pytest.importorskip("mujoco")
         from methods.de.engines.mujoco_wall import MujocoWall as engine
     else:
-        engine = {"de": SweptWall, "de-soft": SoftWall}[name]
+        engine = {"de": SequentialImpulses, "de-soft": SoftWall}[name]
     stopped_after(1, monkeypatch, engine)
     answer, _ = solved(name, assembly(stack(2), 0.5))
     assert (answer.status, answer.finding) == (Status.NOT_CONVERGED, Finding.NONE)
@@ -83,7 +83,7 @@ def test_without_a_rest_nothing_is_said(name: str, monkeypatch: pytest.MonkeyPat
 
 
 def test_orders_searched_to_the_end_are_counted(monkeypatch: pytest.MonkeyPatch):
-    stopped_after(2, monkeypatch, de_answer.KnownBrackets, "searched")
+    stopped_after(2, monkeypatch, de_answer.BracketState, "searched")
     answer, accepted = solved("de")
     alone, _ = solved("de", orders=1)
     assert accepted
@@ -92,12 +92,12 @@ def test_orders_searched_to_the_end_are_counted(monkeypatch: pytest.MonkeyPatch)
 
 
 def test_state_that_is_not_in_balance_shows_nothing(monkeypatch: pytest.MonkeyPatch):
-    def worse(self: SweptWall) -> Any:
+    def worse(self: SequentialImpulses) -> Any:
         return whole(self) * (1.0 + 1e-4 * (self.multiplier > 0.3))
 
-    whole = SweptWall.contact_forces
-    monkeypatch.setattr(SweptWall, "contact_forces", worse)
-    stopped_after(120, monkeypatch, SweptWall)
+    whole = SequentialImpulses.contact_forces
+    monkeypatch.setattr(SequentialImpulses, "contact_forces", worse)
+    stopped_after(120, monkeypatch, SequentialImpulses)
     answer, _ = solved("de")
     assert 0.2 < answer.forces_multiplier <= 0.3
     assert answer.bracket[0] == answer.forces_multiplier

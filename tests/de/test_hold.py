@@ -7,9 +7,9 @@ import pytest
 
 from harness.model.method import Finding, Status
 from methods.de.answers import solve_by_holds
-from methods.de.engines.courses import Tuning
-from methods.de.engines.space import StripSpace
-from methods.de.holds.hold import Watch
+from methods.de.engines.mass_scaling import MassScaling
+from methods.de.engines.pymunk_joints import PymunkJoints
+from methods.de.holds.load_step import ConvergenceMonitor
 from methods.de.holds.motion import Trend, by_power, by_travel, by_virtual_work
 from methods.de.settings import HoldSettings
 from tests.walls import assembly, stack
@@ -20,7 +20,7 @@ MECHANISM = np.random.default_rng(0).normal(size=(12, 3))
 def goes_on(speeds, shaking):
     """What `Trend` says of a motion along one mechanism at these speeds, with random ones on top."""
     generator = np.random.default_rng(1)
-    watch = Watch(1e-6, 2e-5, np.ones(3))
+    watch = ConvergenceMonitor(1e-6, 2e-5, np.ones(3))
     for speed in speeds:
         watch.note(speed * MECHANISM + shaking * generator.normal(size=MECHANISM.shape), 1.0)
     return Trend().goes_on(watch.quarters)
@@ -52,7 +52,7 @@ def test_what_shakes_or_slows_down_is_not_moving(speeds, shaking):
 
 
 def test_a_hold_follows_a_slow_relaxation_and_not_a_residual_that_stays():
-    falling, staying = (Watch(1e-6, 2e-5, np.ones(3)) for _ in range(2))
+    falling, staying = (ConvergenceMonitor(1e-6, 2e-5, np.ones(3)) for _ in range(2))
     for k in range(60):
         falling.note(MECHANISM, 1e-3 * np.exp(-0.05 * k))
         staying.note(MECHANISM, 1e-3 + 0.1 * np.exp(-0.5 * k))
@@ -95,10 +95,10 @@ def test_travel_against_the_loads_or_too_short_shows_nothing():
 def test_a_wall_falls_only_where_it_moves_with_every_tuning(quick):
     wall, falling = assembly(stack(3), 0.7), assembly(stack(3) | {"offsets": [0.0, 0.0, 0.2]}, 0.7)
     settings = HoldSettings(orders=1, work=10**8 if quick else 1)
-    holds, falls = Tuning(0.4, 0.98), Tuning(0.0, 0.95)
+    holds, falls = MassScaling(0.4, 0.98), MassScaling(0.0, 0.95)
 
     def engine(blocks, joints, tuning):
-        return StripSpace(wall if tuning == holds else falling, blocks, joints, settings.iterations, tuning)
+        return PymunkJoints(wall if tuning == holds else falling, blocks, joints, settings.iterations, tuning)
 
     for candidates in ([holds, falls], [falls, holds]):
         answer = solve_by_holds(wall, settings, engine, 1e-6, candidates)

@@ -7,7 +7,7 @@ import pytest
 
 from harness.model.method import Finding
 from methods.de.damped_holds import ReleasedCollapse
-from methods.de.engines.bodies import convex_parts
+from methods.de.engines.pymunk_blocks import convex_parts
 from methods.de.holds.release import ReleaseSettings, even_frames, release
 from tests.walls import assembly, running_bond, stack
 

@@ -17,7 +17,7 @@ from harness.engine.worker import Task
 from harness.model.assembly import Assembly
 from harness.model.errors import InputError
 from harness.model.method import Answer, Finding, Status, allowing, load_method
-from methods.de.engines.courses import Tuning
+from methods.de.engines.mass_scaling import MassScaling
 from methods.numerics.forks import ForkLost, in_forks
 from tests.commands import drystone
 from tests.walls import assembly, running_bond, wall_data
@@ -40,8 +40,8 @@ def test_two_processes_give_the_answer_of_one_to_the_bit():
 
 
 def test_another_tuning_than_the_first_gives_the_same_answer_too(monkeypatch: pytest.MonkeyPatch):
-    slow = Tuning(0.4, 0.999999)  # hardly damped: it does not settle in the work there is
-    monkeypatch.setattr("methods.de.answers.tunings", lambda *_: [slow, Tuning(0.4, 0.95)])
+    slow = MassScaling(0.4, 0.999999)  # hardly damped: it does not settle in the work there is
+    monkeypatch.setattr("methods.de.answers.tunings", lambda *_: [slow, MassScaling(0.4, 0.95)])
     wall = assembly(running_bond(3, 2))
     one, two = (answered(wall, processes, work=300_000) for processes in (1, 2))
     assert one.details["damping"] == 0.95

@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from methods.de.engines.courses import courses, insertion_orders, tunings
-from methods.de.engines.space import polygon_gyration
+from methods.de.engines.mass_scaling import courses, insertion_orders, tunings
+from methods.de.engines.pymunk_joints import polygon_gyration
 from methods.de.engines.strips import CannotModel, build_strips, colour_strips
 from tests.walls import assembly, running_bond, stack
 

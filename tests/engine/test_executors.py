@@ -12,7 +12,7 @@ import psutil
 import pytest
 
 from harness.engine.executors import Job, LocalExecutor, Slots
-from harness.engine.isolate import Again, Child, Measured, run_isolated, start_context
+from harness.engine.isolate import Child, Retry, TimedResult, run_isolated, start_context
 from harness.engine.worker import Task
 from harness.model.method import Status
 from methods.dummy import Dummy
@@ -26,13 +26,13 @@ def task(method: str, seconds: float = 60.0, **settings: Any) -> Task:
     return Task(method, assembly(stack(2)), settings, seconds, 400 * 2**20)
 
 
-def results(tasks: list[Task], processes: int) -> list[Measured]:
+def results(tasks: list[Task], processes: int) -> list[TimedResult]:
     jobs = [Job(number, "made-up", each) for number, each in enumerate(tasks)]
     with closing(LocalExecutor(processes).map(jobs, {each.method for each in tasks})) as ended:
         return [measured for _, measured in sorted(ended, key=lambda pair: pair[0])]
 
 
-def looked(child: Child) -> Measured | Again:
+def looked(child: Child) -> TimedResult | Retry:
     while (found := child.look()) is None:
         wait(child.waitables, timeout=0.05)
     return found
@@ -56,7 +56,7 @@ def test_small_runs_share_a_process_and_each_is_charged_for_itself():
         costs = []
         for number in range(20):
             measured = looked(child)
-            assert isinstance(measured, Measured)
+            assert isinstance(measured, TimedResult)
             costs.append(measured.result.cpu_seconds)
             slots.give_back(child)
             again = slots.begin(task("la-associated"), f"case {number}")
@@ -89,7 +89,7 @@ def test_a_method_that_asks_for_a_fresh_process_gets_one(monkeypatch: pytest.Mon
     monkeypatch.setattr(Dummy, "fresh_process", True, raising=False)
     child = Child(multiprocessing.get_context("fork"))
     try:
-        for expected in (Measured, Again):
+        for expected in (TimedResult, Retry):
             assert child.reusable
             child.begin(task("dummy"), "made-up")
             assert isinstance(looked(child), expected)
@@ -111,11 +111,11 @@ def test_a_run_whose_process_is_killed_from_outside_is_made_once_more():
         finally:
             child.end()
         if last:
-            assert isinstance(found, Measured)
+            assert isinstance(found, TimedResult)
             assert found.result.status is Status.CRASHED
             assert "SIGKILL" in found.result.sentence
         else:
-            assert found is Again.FRESH
+            assert found is Retry.FRESH
 
 
 def test_killing_children_under_way_loses_and_doubles_no_run():

@@ -258,14 +258,14 @@ def test_fe_990_bricks_end_in_an_exact_collapse_state_on_soft_pieces() -> None:
 
 
 def test_fe_400_irregular_blocks_come_to_one_plateau_under_three_histories() -> None:
-    """They ended 102 % apart, the first after 60,000 kinks, while jumps kept the friction history from before them."""
+    """They ended 102 % apart, the first after 60,000 breakpoints, while jumps kept the friction history from before them."""
     answer = solve(irregular_wall(1, 20, 20, 1.0))
     plateaus = [history["plateau"] for history in answer.details["histories"]]
     assert plateaus == pytest.approx([0.1599892] * 3, rel=1e-6)
 
 
-def test_fe_path_of_too_many_kinks_is_begun_where_the_load_can_be_raised_to() -> None:
-    """55 bricks, whose exact path has 376 kinks: 94 are left, to a state that the history of the motion differs by.
+def test_fe_path_of_too_many_breakpoints_is_begun_where_the_load_can_be_raised_to() -> None:
+    """55 bricks, whose exact path has 376 breakpoints: 94 are left, to a state that the history of the motion differs by.
 
     The histories after it begin at the same rest.
     """

@@ -64,7 +64,7 @@ def test_without_a_state_the_time_is_over(monkeypatch: pytest.MonkeyPatch):
 
 def test_bound_of_a_search_that_was_stopped_is_the_answer_of_the_search(monkeypatch: pytest.MonkeyPatch):
     wall, method = assembly(running_bond(6, 3), 0.65), load_method("la-bound")
-    monkeypatch.setattr("methods.la.sources.ladder.FrictionLadder.states", out_of_time)
+    monkeypatch.setattr("methods.la.sources.friction_continuation.FrictionLadder.states", out_of_time)
     answer = method.solve(wall, method.Settings())
     assert answer.status is Status.OK
     assert answer.details["stopped_by_limit"]

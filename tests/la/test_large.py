@@ -17,8 +17,8 @@ from methods.la.core.problem import make_problem
 from methods.la.core.state import residuals
 from methods.la.interior.arc import STEPPING, ArcPath, Stepping
 from methods.la.interior.associated import END
-from methods.la.interior.feasible_pair import PAIR, feasible_pair
 from methods.la.interior.interior_point import PathSettings, follow_path, start_point
+from methods.la.interior.interior_starting_point import PAIR, interior_starting_point
 from methods.la.interior.newton_step import NewtonStep, Point
 from methods.la.interior.region import with_all_above
 from methods.la.least import least_of
@@ -35,7 +35,7 @@ def test_path_by_arc_length_leads_from_its_beginning_to_complementarity() -> Non
     """In two stretches, as the search follows it; the second goes on in the sense of the first."""
     problem = make_problem(running_bond(28, 16, 0.175, 0.65))
     newton = NewtonMatrix(problem)
-    start, _ = feasible_pair(problem, newton, 1e-2)
+    start, _ = interior_starting_point(problem, newton, 1e-2)
     assert start is not None
     path = ArcPath(problem, newton, start)
     middle, end = path.follow(1e-2, 500), path.follow(1e-6, 500)
@@ -49,7 +49,7 @@ def test_path_by_arc_length_leads_from_its_beginning_to_complementarity() -> Non
 def test_path_that_stays_beside_its_beginning_is_given_up() -> None:
     problem = make_problem(running_bond(28, 16, 0.175, 0.65))
     newton = NewtonMatrix(problem)
-    start, _ = feasible_pair(problem, newton, 1e-2)
+    start, _ = interior_starting_point(problem, newton, 1e-2)
     assert start is not None
     end = ArcPath(problem, newton, start, stepping=Stepping(trial=5, left=1e3)).follow(1e-6, 500)
     assert not end.converged
@@ -59,7 +59,7 @@ def test_path_that_stays_beside_its_beginning_is_given_up() -> None:
 def test_path_begins_with_forces_and_mechanism_of_the_true_wall() -> None:
     """The sums are those of zero-dilatancy flow, which neither of the two programmes behind the pair solves."""
     problem = make_problem(running_bond(14, 7, 0.175, 0.65))
-    pair, steps = feasible_pair(problem, NewtonMatrix(problem), 1e-2)
+    pair, steps = interior_starting_point(problem, NewtonMatrix(problem), 1e-2)
     assert pair is not None
     assert steps > 0
     assert np.all(pair.slack > 0.0)

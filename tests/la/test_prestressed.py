@@ -17,7 +17,7 @@ from methods.la.settings import SearchSettings
 from methods.la.sources import SOURCES, Source, explore
 from methods.la.sources.budget import Budget, Limits
 from methods.la.sources.search import Search
-from methods.la.sources.springs import CentralForces, CommittedHistories, LittleSelfStress, SafeForces
+from methods.la.sources.springs import AnalyticCentre, CommittedHistories, LowPrestress, ShiftedAssociated
 from tests.la.bodies import block_on_halves, running_bond
 
 WALLS = {
@@ -28,10 +28,10 @@ WALLS = {
 }
 
 
-def search_of(wall: Assembly, kinks: int) -> Search:
-    """With a budget of kinks, and the greatest multiplier known."""
+def search_of(wall: Assembly, breakpoints: int) -> Search:
+    """With a budget of breakpoints, and the greatest multiplier known."""
     problem = make_problem(wall)
-    search = Search(problem, NewtonMatrix(problem), budget=Budget(Limits(kinks=kinks)))
+    search = Search(problem, NewtonMatrix(problem), budget=Budget(Limits(breakpoints=breakpoints)))
     search.solve_associated()
     return search
 
@@ -49,7 +49,7 @@ def assert_exact_within_statics(search: Search, state: CollapseState) -> None:
 
 
 @pytest.mark.parametrize("wall", WALLS.values(), ids=WALLS)
-@pytest.mark.parametrize("source", [CentralForces(), SafeForces()], ids=["central", "safe"])
+@pytest.mark.parametrize("source", [AnalyticCentre(), ShiftedAssociated()], ids=["central", "safe"])
 def test_safe_forces_lead_to_an_exact_state_between_the_least_known_and_the_greatest(
     source: Source, wall: Assembly
 ) -> None:
@@ -66,7 +66,7 @@ def test_safe_forces_lead_to_an_exact_state_between_the_least_known_and_the_grea
 )
 def test_forces_with_little_self_stress_lead_to_exact_states_within_statics(wall: Assembly) -> None:
     search = search_of(wall, 1000)
-    states = list(states_of(LittleSelfStress(), search))
+    states = list(states_of(LowPrestress(), search))
     assert len(states) > 3
     assert len({round(state.multiplier, 9) for state in states}) > 1
     for state in states:
@@ -74,9 +74,9 @@ def test_forces_with_little_self_stress_lead_to_exact_states_within_statics(wall
 
 
 def test_mixtures_of_forces_lead_below_gravity_on_a_wall_of_hundreds_of_joints() -> None:
-    # One committed history of 2,460 kinks may run in a loop, as rounding has it, and leave less for the mixtures.
+    # One committed history of 2,460 breakpoints may run in a loop, as rounding has it, and leave less for the mixtures.
     search = search_of(irregular_wall(5003, 9, 10, 1.13), 12000 + 2460)
-    gravity, *others = states_of(LittleSelfStress(), search)
+    gravity, *others = states_of(LowPrestress(), search)
     lowest = min(others[len(CommittedHistories().ratios) :], key=lambda state: state.multiplier)
     assert lowest.multiplier < 0.9 * gravity.multiplier
     assert_exact_within_statics(search, lowest)
@@ -86,26 +86,26 @@ def test_committed_histories_lead_below_the_wall_without_history() -> None:
     """As `fe`'s histories do on walls of irregular blocks."""
     search = search_of(irregular_wall(5003, 9, 10, 1.13), 12000)
     count = 1 + len(CommittedHistories().ratios)
-    gravity, *committed = islice(states_of(LittleSelfStress(), search), count)
+    gravity, *committed = islice(states_of(LowPrestress(), search), count)
     assert min(state.multiplier for state in committed) < 0.95 * gravity.multiplier
     for state in committed:
         assert_exact_within_statics(search, state)
 
 
-def test_paths_of_springs_stop_where_the_kinks_are_spent() -> None:
+def test_paths_of_springs_stop_where_the_breakpoints_are_spent() -> None:
     """All sources draw from one budget: what one has spent the next does not have."""
     search = search_of(WALLS["21 bricks"], 500)
-    first = list(states_of(LittleSelfStress(), search))
-    spent = search.budget.spent.kinks
+    first = list(states_of(LowPrestress(), search))
+    spent = search.budget.spent.breakpoints
     assert len(first) > 1
     assert spent >= 500
-    assert not list(states_of(LittleSelfStress(), search))
-    assert search.budget.spent.kinks == spent
+    assert not list(states_of(LowPrestress(), search))
+    assert search.budget.spent.breakpoints == spent
 
 
 def test_wall_to_which_nothing_else_leads_gets_its_state_from_central_forces() -> None:
     search = search_of(irregular_wall(5003, 9, 10, 1.13), 5000)
-    explore(search, [source for source in SOURCES if source.name == CentralForces.name])
+    explore(search, [source for source in SOURCES if source.name == AnalyticCentre.name])
     assert len(search.record.states) > 3
     for state in search.record.states:
         assert_exact_within_statics(search, state)

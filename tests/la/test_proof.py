@@ -10,10 +10,10 @@ from harness.model.assembly import Assembly
 from harness.model.build import build
 from harness.model.wall import Wall
 from methods.la.certify.proof import Proof, _Certificates, _Part, prove
-from methods.la.core.extremes import ForceProgramme
 from methods.la.core.newton_matrix import NewtonMatrix
 from methods.la.core.problem import Problem, make_problem
 from methods.la.core.state import CollapseState
+from methods.la.core.vertex_programmes import ForceProgramme
 from methods.la.find_certificate import find_certificate
 from methods.la.search import LimitAnalysis
 from methods.la.settings import SearchSettings

@@ -19,7 +19,7 @@ from methods.la.sources import SOURCES, explore
 from methods.la.sources.budget import Budget, Limits, Sizes
 from methods.la.sources.paths import CentralPath
 from methods.la.sources.search import Search
-from methods.la.sources.springs import LittleSelfStress
+from methods.la.sources.springs import LowPrestress
 from methods.numerics.failures import SingularMatrix
 from tests.la.bodies import column, running_bond
 from tests.soak import random_wall
@@ -36,7 +36,7 @@ def test_result_tells_which_source_found_the_least_state_and_what_it_took() -> N
     assert {row["source"] for row in sources} <= {source.name for source in SOURCES}
     assert improvements[-1]["multiplier"] == pytest.approx(answer.multiplier, rel=1e-9)
     assert min(row["least"] for row in sources if row["least"] is not None) == pytest.approx(answer.multiplier)
-    for counted in ("newton_steps", "kinks", "programmes"):
+    for counted in ("newton_steps", "breakpoints", "programmes"):
         # The associated programme and the proof are no sources.
         assert 0 < sum(row[counted] for row in sources) <= answer.details[counted]
         assert [row[counted] for row in improvements] == sorted(row[counted] for row in improvements)
@@ -46,7 +46,7 @@ def test_answer_is_not_above_what_one_source_alone_leads_to() -> None:
     wall = running_bond(6, 3, 0.2, 1.0)
     whole = LimitAnalysis().solve(wall, SearchSettings())
     for source in SOURCES:
-        search = search_of(wall, kinks=200, ladder=(0.75,), starts=1)
+        search = search_of(wall, breakpoints=200, ladder=(0.75,), starts=1)
         explore(search, [source])
         assert whole.multiplier is not None
         assert search.problem.to_multiplier(search.record.least) >= whole.multiplier - 1e-9
@@ -110,7 +110,7 @@ def test_singular_matrix_ends_one_source_and_not_the_search(monkeypatch: pytest.
     answer = LimitAnalysis().solve(running_bond(6, 3, 0.2, 0.65), SearchSettings(effort="quick"))
     assert answer.multiplier is not None
     found = {row["source"]: row["states"] for row in answer.details["sources"]}
-    assert found[LittleSelfStress.name] >= 1
+    assert found[LowPrestress.name] >= 1
     assert CentralPath.name not in found
 
 
@@ -125,7 +125,7 @@ def test_larger_walls_are_given_no_more_draws() -> None:
 
 def springs_on(wall: Any) -> tuple[int, float]:
     answer = LimitAnalysis().solve(wall, SearchSettings())
-    (row,) = [row for row in answer.details["sources"] if row["source"] == LittleSelfStress.name]
+    (row,) = [row for row in answer.details["sources"] if row["source"] == LowPrestress.name]
     assert answer.multiplier is not None
     return row["states"], answer.multiplier
 

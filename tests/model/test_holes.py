@@ -18,8 +18,8 @@ from harness.model.method import load_method
 from harness.model.repair import repair
 from harness.model.rings import ringed, rings_of
 from harness.model.wall import Wall
-from methods.de.engines.bodies import convex_parts
-from methods.de.engines.space import polygon_gyration
+from methods.de.engines.pymunk_blocks import convex_parts
+from methods.de.engines.pymunk_joints import polygon_gyration
 
 
 def box(x: float, y: float, width: float, height: float) -> list[list[float]]:

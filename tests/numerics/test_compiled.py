@@ -7,7 +7,7 @@ import pytest
 from numba.core.caching import CacheImpl
 
 from methods.numerics.compiled import compiled, fused
-from methods.springs.path import kinks
+from methods.springs.path import breakpoints
 
 
 def doubled(value: float) -> float:
@@ -20,7 +20,7 @@ def test_functions_are_compiled_without_a_cache_where_no_folder_can_be_written(m
 
 
 def test_loops_are_kept_on_disk_so_that_the_next_process_need_not_compile_them() -> None:
-    assert kinks.next_kink.stats.cache_path
+    assert breakpoints.next_breakpoint.stats.cache_path
 
 
 def test_a_fused_product_is_rounded_once_in_python_as_in_a_compiled_function() -> None:

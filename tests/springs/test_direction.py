@@ -34,7 +34,7 @@ def defect(model: WallModel, state: IntArray, way: PathDirection) -> float:
 
 
 def change(way: PathDirection, state: IntArray, point: int, new: int) -> tuple[FloatArray, float]:
-    """Turn at a change of state; the gradient b of its kink function in full length, and its rate before."""
+    """Turn at a change of state; the gradient b of its breakpoint function in full length, and its rate before."""
     model = way.model
     old = int(state[point])
     index, _, b = model.change(point, old, new)
@@ -43,23 +43,23 @@ def change(way: PathDirection, state: IntArray, point: int, new: int) -> tuple[F
     crossing = float(gradient @ way.velocity)
     way.factor.foresee([(point, old, new)])
     state[point] = new
-    if not way.turn((point, old, new), crossing, state, EXTENT):
+    if not way.update((point, old, new), crossing, state, EXTENT):
         way.solve_anew(state, EXTENT, ((point, old, new), crossing))
     return gradient, crossing
 
 
 @pytest.mark.parametrize("kind", [DenseFactor, SparseFactor])
-@pytest.mark.parametrize(("shrink", "pins"), [(1.0, 0), (1e-6, 1), (1e-14, SOFT_MOTIONS.most)])
+@pytest.mark.parametrize(("shrink", "bordered"), [(1.0, 0), (1e-6, 1), (1e-14, SOFT_MOTIONS.most)])
 @pytest.mark.parametrize("seed", range(4))
 def test_each_piece_is_in_equilibrium_and_leads_on_into_the_new_cell(
-    rough: WallModel, kind: Kind, shrink: float, pins: int, seed: int
+    rough: WallModel, kind: Kind, shrink: float, bordered: int, seed: int
 ) -> None:
     state, generator = sticking(rough), np.random.default_rng(seed)
     way = PathDirection(rough, kind(rough))
     way.solve_anew(state, EXTENT)
     way.elastic *= shrink
     way.solve_anew(state, EXTENT)
-    assert len(way.pins) == pins
+    assert len(way.bordered) == bordered
     for point in generator.permutation(rough.n_points)[:40]:
         before = way.speed
         gradient, crossing = change(way, state, int(point), neighbour_states(STICK)[int(generator.integers(2))])
@@ -70,7 +70,9 @@ def test_each_piece_is_in_equilibrium_and_leads_on_into_the_new_cell(
 
 
 @pytest.mark.parametrize("shrink", [1.0, 1e-6])
-def test_a_velocity_whose_sense_was_lost_to_rounding_gets_it_from_the_kink(rough: WallModel, shrink: float) -> None:
+def test_a_velocity_whose_sense_was_lost_to_rounding_gets_it_from_the_breakpoint(
+    rough: WallModel, shrink: float
+) -> None:
     """Where 1 - b'w nearly vanishes rounding may turn the estimate round; the new direction must not follow it."""
     state = sticking(rough)
     way = PathDirection(rough, SparseFactor(rough))
@@ -99,7 +101,7 @@ def test_where_the_tangent_is_singular_the_velocity_is_its_null_vector(kind: Kin
         change(way, state, point, SLIP_PLUS)
     tangent = model.tangent(state).toarray()
     assert np.linalg.matrix_rank(tangent) == len(tangent) - 1
-    assert way.pins
+    assert way.bordered
     assert abs(way.speed) < 1e-25
     assert np.abs(tangent @ way.velocity).max() < 1e-14 * np.abs(way.velocity).max()
 

@@ -38,17 +38,17 @@ def sliding_states(model: WallModel, seed: int, share: float = 0.2) -> np.ndarra
 @pytest.mark.parametrize("seed", range(5))
 @pytest.mark.parametrize("shift", [0.0, 0.3])
 @pytest.mark.parametrize("careful", [False, True])
-@pytest.mark.parametrize("pins", [(), (4,)])
+@pytest.mark.parametrize("bordered", [(), (4,)])
 def test_a_fresh_factor_solves_with_the_tangent(
-    model: WallModel, factor: Factor, seed: int, shift: float, careful: bool, pins: tuple[int, ...]
+    model: WallModel, factor: Factor, seed: int, shift: float, careful: bool, bordered: tuple[int, ...]
 ) -> None:
     state = sliding_states(model, seed)
     right = np.random.default_rng(seed + 100).normal(size=model.n_unknowns)
-    factor.refactor(state, shift, careful, pins)
+    factor.refactor(state, shift, careful, bordered)
     x = factor.solve(right)
     tangent = model.tangent(state, shift).toarray()
-    for pin in pins:
-        tangent[pin, pin] += 1.0
+    for border in bordered:
+        tangent[border, border] += 1.0
     assert np.abs(tangent @ x - right).max() < 1e-11 * max(1.0, np.abs(x).max())
 
 
@@ -100,7 +100,7 @@ def test_a_loose_brick_stays_on_its_footing_and_the_others_bear_the_load(model: 
     with pytest.raises(SingularTangent):
         factor.refactor(state)
     refactor_any(factor, state)
-    assert factor.footed
+    assert factor.is_regularised
     unloaded = model.live.copy()
     place = 3 * model.order.tolist().index(loose)
     unloaded[place : place + 3] = 0.0

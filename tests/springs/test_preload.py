@@ -21,11 +21,11 @@ def test_springs_carry_the_given_forces_before_anything_moves() -> None:
     safe = follow_path(problem, NewtonMatrix(problem), start_point(problem), PathSettings(dilatancy=1.0, gap=0.1))
     forces = problem.to_forces(problem.forces_of_slacks(safe.point.slack))
     model = build_model(wall, GapSettings())
-    tracer = preloaded(model, make_factor(model), safe.point.multiplier * problem.unit_multiplier, forces)
+    follower = preloaded(model, make_factor(model), safe.point.multiplier * problem.unit_multiplier, forces)
     normal, shear = np.empty(model.n_points), np.empty(model.n_points)
-    gap_forces(tracer.opening, tracer.trial, model.kn, model.mu, tracer.state, normal, shear)
+    gap_forces(follower.opening, follower.trial, model.kn, model.mu, follower.state, normal, shear)
     carried = model.end_forces(normal, shear)
     assert np.abs(carried - forces).max() <= 1e-9 * wall.force_scale
     assert (normal > 0.0).all()
     assert (np.abs(shear) <= model.mu * normal).all()
-    assert tracer.worst_residual <= 1e-8
+    assert follower.worst_residual <= 1e-8

@@ -17,7 +17,7 @@ def motion_units(assembly: Assembly) -> FloatArray:
     return np.array([assembly.length_scale, assembly.length_scale, 1.0])
 
 
-class Measured(Protocol):
+class MeasuredState(Protocol):
     """A wall under a load whose contact forces can be read.
 
     Attributes:
@@ -33,7 +33,7 @@ class Measured(Protocol):
         ...
 
 
-class Engine(Measured, Protocol):
+class Engine(MeasuredState, Protocol):
     """A wall at frozen geometry inside a rigid-body engine.
 
     Attributes:

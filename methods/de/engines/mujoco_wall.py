@@ -17,9 +17,9 @@ from typing import Any
 import numpy as np
 
 from harness.model.assembly import Assembly, FloatArray, IntArray
-from methods.de.engines.courses import Tuning, courses, is_chain, light_top, masses, number_of_courses
 from methods.de.engines.engine import motion_units
-from methods.de.engines.space import polygon_gyration
+from methods.de.engines.mass_scaling import MassScaling, courses, is_chain, lighter_upwards, masses, number_of_courses
+from methods.de.engines.pymunk_joints import polygon_gyration
 from methods.de.engines.strips import STRIP, require_lengths
 from methods.de.settings import MujocoSettings
 from methods.numerics.optional import optional
@@ -73,7 +73,7 @@ class MujocoTuning:
 
 SOFT_CONTACTS = SoftContacts()
 MUJOCO = MujocoTuning()
-UNIFORM = Tuning(0.0, 0.99)
+UNIFORM = MassScaling(0.0, 0.99)
 """Masses in proportion to areas, for what does not settle with light tops."""
 
 
@@ -90,10 +90,10 @@ def load_mujoco() -> Any:
     return optional("mujoco", "mujoco", "de-mujoco")
 
 
-def mujoco_tunings(assembly: Assembly, settings: MujocoSettings) -> list[tuple[Tuning, float]]:
+def mujoco_tunings(assembly: Assembly, settings: MujocoSettings) -> list[tuple[MassScaling, float]]:
     """Tunings with their impedances, in the order in which they are tried: light tops first."""
     course = courses(assembly)
-    tuning = light_top(course)
+    tuning = lighter_upwards(course)
     usual = SOFT_CONTACTS.chain_impedance if is_chain(course) else SOFT_CONTACTS.wall_impedance
     impedance = settings.impedance or usual
     if settings.mass_decay is not None:
@@ -124,7 +124,7 @@ class MujocoWall:
         blocks: IntArray,
         joints: IntArray,
         iterations: int,
-        tuning: Tuning,
+        tuning: MassScaling,
         impedance: float,
         friction_ratio: float,
     ) -> None:

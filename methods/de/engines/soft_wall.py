@@ -218,7 +218,7 @@ class SoftWall:
         )
 
     def contact_forces(self) -> FloatArray:
-        """(m, 3) contact forces (n1, n2, s) [force] as on the wall that has not moved, see `Measured`."""
+        """(m, 3) contact forces (n1, n2, s) [force] as on the wall that has not moved, see `MeasuredState`."""
         now, wall = self.state(), self.assembly
         sign = np.where(now.onto == wall.block_b[now.interface], 1.0, -1.0)[:, None]
         force = (sign * now.force).reshape(-1, 2, 2)

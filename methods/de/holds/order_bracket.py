@@ -6,7 +6,7 @@ from dataclasses import dataclass, field
 
 from harness.model.assembly import FloatArray
 from methods.de.engines.engine import Engine
-from methods.de.holds.hold import Hold, State, hold, least_motion, settle
+from methods.de.holds.load_step import LoadStep, State, hold, least_motion, settle
 from methods.de.holds.motion import MotionProof
 from methods.de.settings import HoldSettings
 
@@ -147,7 +147,7 @@ class BracketSearch:
         self.found.exhausted = self.engine.steps * self.engine.interfaces >= self.settings.work
         return self.found.exhausted
 
-    def _try(self, multiplier: float) -> Hold:
+    def _try(self, multiplier: float) -> LoadStep:
         """Hold at this multiplier from the highest held state, and note what came of it."""
         found = self.found
         if found.state is not None:

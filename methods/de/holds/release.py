@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from harness.model.assembly import Assembly, FloatArray
-from methods.de.engines.bodies import BODIES, BlockSpace
+from methods.de.engines.pymunk_blocks import BODIES, PymunkBlocks
 from methods.de.settings import ReleaseSettings
 
 
@@ -38,7 +38,7 @@ def release(assembly: Assembly, multiplier: float, settings: ReleaseSettings) ->
         multiplier: load it is released under.
         settings: see `ReleaseSettings`.
     """
-    space = BlockSpace(assembly)
+    space = PymunkBlocks(assembly)
     space.load(multiplier)
     times, places = [0.0], [space.places()]
     stride, made = 20, 0

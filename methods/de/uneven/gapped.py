@@ -14,16 +14,16 @@ import numpy as np
 
 from harness.model.assembly import Assembly, FloatArray
 from harness.model.displaced import DisplacedState
-from methods.de.engines.bodies import BODIES
 from methods.de.engines.edges import FacingEdges
 from methods.de.engines.engine import motion_units
+from methods.de.engines.pymunk_blocks import BODIES
 from methods.de.holds.loading import raise_until_it_falls, shown_to_fall
 from methods.de.holds.motion import by_travel
 from methods.springs.model.factor import make_factor
 from methods.springs.model.settings import GapSettings
 from methods.springs.model.wall_model import WallModel, build_model
 from methods.springs.rest.newton import Equilibrium, newton
-from methods.springs.rest.slow_motion import SlowMotion
+from methods.springs.rest.pseudo_transient import PseudoTransient
 
 
 @dataclass(frozen=True)
@@ -174,4 +174,4 @@ def _at_rest(model: WallModel, multiplier: float) -> Equilibrium:
     found = newton(model, factor, still, multiplier, model.history)
     if found.found:
         return found
-    return SlowMotion(model, factor, replace(found, u=still), True).move(multiplier, GAPPED.newton_steps)
+    return PseudoTransient(model, factor, replace(found, u=still), True).move(multiplier, GAPPED.newton_steps)

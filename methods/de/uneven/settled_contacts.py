@@ -12,8 +12,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from harness.model.assembly import Assembly, FloatArray
-from methods.de.engines.bodies import BlockSpace
 from methods.de.engines.engine import motion_units
+from methods.de.engines.pymunk_blocks import PymunkBlocks
 from methods.de.holds.loading import raise_until_it_falls, shown_to_fall
 from methods.de.holds.motion import by_travel
 from methods.de.settings import FALL, Faces
@@ -94,13 +94,13 @@ def settle_uneven(
         most_steps: most time steps of the settling.
     """
     outlines = uneven_blocks(assembly, size, faces, seed)
-    space = BlockSpace(assembly, outlines, SETTLING.damping)
+    space = PymunkBlocks(assembly, outlines, SETTLING.damping)
     before, at_rest = come_to_rest(space, most_steps, np.inf)
     settled, single = with_contacts(assembly, space, before)
     return Settled(settled, at_rest, outlines, before, single)
 
 
-def come_to_rest(space: BlockSpace, most_steps: int, reach: float) -> tuple[FloatArray, bool]:
+def come_to_rest(space: PymunkBlocks, most_steps: int, reach: float) -> tuple[FloatArray, bool]:
     """Advance until nothing moves, a block has moved by `reach` length scales, or the steps are over.
 
     Returns:
@@ -162,7 +162,7 @@ def load_uneven(
         most_steps: most time steps of a load step.
     """
     outlines = uneven_blocks(assembly, size, faces, seed)
-    space = BlockSpace(assembly, outlines, SETTLING.damping)
+    space = PymunkBlocks(assembly, outlines, SETTLING.damping)
     # Gaps that close add up over the courses to more than `reach`, so the settling has none.
     rest, at_rest = come_to_rest(space, most_steps, np.inf)
     if not at_rest:
@@ -174,7 +174,7 @@ def load_uneven(
     def rests(trial: float) -> bool:
         nonlocal space, rest, fallen
         if fallen:
-            space = BlockSpace(assembly, outlines, SETTLING.damping)
+            space = PymunkBlocks(assembly, outlines, SETTLING.damping)
             space.put(rest)
         space.load(trial)
         places, at_rest = come_to_rest(space, most_steps, reach)
@@ -192,7 +192,7 @@ def load_uneven(
     return Loading(stood, fell, drift, fell != ends[1])
 
 
-def with_contacts(assembly: Assembly, space: BlockSpace, places: FloatArray) -> tuple[Assembly, int]:
+def with_contacts(assembly: Assembly, space: PymunkBlocks, places: FloatArray) -> tuple[Assembly, int]:
     """The wall at these places (n, 3) with the contacts of the space, and how many of them are single points."""
     unit = assembly.length_scale
     friction = {

@@ -18,10 +18,10 @@ from dataclasses import dataclass
 import numpy as np
 
 from harness.model.assembly import BoolArray, FloatArray
-from methods.la.core.extremes import ForceProgramme, rates_against_any_load, units_of
 from methods.la.core.problem import Problem
 from methods.la.core.programmes import KinematicProgramme
 from methods.la.core.state import CollapseState
+from methods.la.core.vertex_programmes import ForceProgramme, rates_against_any_load, row_scaling
 from methods.la.sources.search import Search
 from methods.numerics.linear_programme import INFINITY
 from methods.proof.search.tuning import WINDOWS
@@ -242,7 +242,7 @@ class _Certificates:
     def __init__(self, search: Search, limit: float) -> None:
         self._problem = search.problem
         self._spent = search.budget.spent
-        self._units = units_of(search.problem)
+        self._units = row_scaling(search.problem)
         self._programme = ForceProgramme(search.problem, self._units)
         self._limit = limit
         self.tight: list[BoolArray] = []

@@ -16,8 +16,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from harness.model.assembly import Assembly, FloatArray
-from methods.la.core.extremes import force_programme
 from methods.la.core.problem import make_problem
+from methods.la.core.vertex_programmes import force_programme
 
 
 @dataclass(frozen=True)

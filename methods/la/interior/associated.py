@@ -15,11 +15,11 @@ import numpy as np
 from harness.model.assembly import FloatArray
 from harness.model.joint_law import block_diagonal
 from methods.la.core.exact import exact_forces, exact_mechanism
-from methods.la.core.extremes import force_programme, standing
 from methods.la.core.newton_matrix import NewtonMatrix
 from methods.la.core.problem import Problem
 from methods.la.core.programmes import KinematicProgramme, StaticSolution
 from methods.la.core.state import CollapseState, moving_contacts, polished, residuals, tight_contacts
+from methods.la.core.vertex_programmes import force_programme, standing
 from methods.la.interior.interior_point import PathSettings, follow_path, start_point
 from methods.la.interior.newton_step import Point
 from methods.numerics.failures import NumericalFailure

@@ -17,9 +17,9 @@ from methods.la.core.exact import close_tight, exact_forces, exact_mechanism
 from methods.la.core.newton_matrix import NewtonMatrix
 from methods.la.core.problem import Problem
 from methods.la.core.state import CollapseState, residuals
-from methods.la.interior.feasible_pair import kinematic_programme
 from methods.la.interior.interior_point import PathResult, PathSettings, follow_path, start_point
-from methods.la.interior.lagged import SHARP
+from methods.la.interior.interior_starting_point import kinematic_programme
+from methods.la.interior.tresca_iteration import SHARP
 from methods.numerics.failures import NumericalFailure
 
 

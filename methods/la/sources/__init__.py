@@ -9,30 +9,30 @@ from dataclasses import replace
 from harness.model.assembly import FloatArray
 from methods.la.sources.arcs import ArcPaths
 from methods.la.sources.blocks import JoinedBlocks, SingleBlocks
+from methods.la.sources.friction_continuation import FrictionContinuation
 from methods.la.sources.given import GivenMechanisms
-from methods.la.sources.ladder import FrictionLadder
-from methods.la.sources.paths import CentralPath, LaggedFriction, RandomStarts, SmootherJoints
+from methods.la.sources.paths import CentralPath, RandomStarts, ReducedFriction, TrescaMechanisms
 from methods.la.sources.search import Search
 from methods.la.sources.source import Source
-from methods.la.sources.springs import CentralForces, LittleSelfStress, SafeForces
+from methods.la.sources.springs import AnalyticCentre, LowPrestress, ShiftedAssociated
 from methods.numerics.failures import SingularMatrix
 
 __all__ = ["SOURCES", "Source", "explore", "from_motions"]
 
 SOURCES: tuple[Source, ...] = (
-    SmootherJoints(factors=(0.3,)),
-    SafeForces(least=1001, most=6000),
-    SmootherJoints(factors=(0.6, 0.0)),
+    ReducedFriction(factors=(0.3,)),
+    ShiftedAssociated(least=1001, most=6000),
+    ReducedFriction(factors=(0.6, 0.0)),
     CentralPath(most=1000),
     RandomStarts(),
-    FrictionLadder(),
+    FrictionContinuation(),
     ArcPaths(),
-    LaggedFriction(),
+    TrescaMechanisms(),
     CentralPath(anyway=False),
-    LittleSelfStress(),
+    LowPrestress(),
     SingleBlocks(),
-    SafeForces(),
-    CentralForces(),
+    ShiftedAssociated(),
+    AnalyticCentre(),
     JoinedBlocks(),
 )
 """The soonest state first, then lower ones; what is for walls on which nothing is known stands behind the others."""
@@ -54,7 +54,7 @@ def explore(search: Search, sources: Sequence[Source] = SOURCES) -> None:
         search.solve_associated()
     if search.associated.outcome == "unbounded":
         limits = search.budget.limits
-        search.budget.limits = replace(limits, kinks=limits.unbounded_kinks)
+        search.budget.limits = replace(limits, breakpoints=limits.unbounded_breakpoints)
     for source in sources:
         if not source.applies(search.problem):
             continue

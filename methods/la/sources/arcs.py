@@ -12,16 +12,16 @@ import numpy as np
 from methods.la.core.problem import Problem
 from methods.la.core.state import CollapseState
 from methods.la.interior.arc import ArcPath
-from methods.la.interior.feasible_pair import feasible_pair
+from methods.la.interior.interior_starting_point import interior_starting_point
 from methods.la.interior.path_programmes import EXACTNESS, cheapest_mechanism, exact_state
 from methods.la.interior.region import Region, in_whole, moving_region
+from methods.la.sources.reduced_friction import with_reduced_friction
 from methods.la.sources.search import Search
-from methods.la.sources.unloaded import smoothed
 from methods.numerics.failures import SingularMatrix
 
 
 @dataclass(frozen=True)
-class Lead:
+class ArcStart:
     """How a path by arc length begins, and how far it is followed.
 
     Attributes:
@@ -58,8 +58,16 @@ class ArcPaths:
 
     name: ClassVar[str] = "paths by arc length"
     least: int = 1001
-    near: tuple[Lead, ...] = (Lead(0.3, 1e-2, *NEAR_PATH), Lead(0.45, 1e-2, *NEAR_PATH), Lead(0.3, 1e-3, *NEAR_PATH))
-    far: tuple[Lead, ...] = (Lead(0.15, 1e-2, *FAR_PATH), Lead(0.3, 1e-3, *FAR_PATH), Lead(0.0, 1e-2, *FAR_PATH))
+    near: tuple[ArcStart, ...] = (
+        ArcStart(0.3, 1e-2, *NEAR_PATH),
+        ArcStart(0.45, 1e-2, *NEAR_PATH),
+        ArcStart(0.3, 1e-3, *NEAR_PATH),
+    )
+    far: tuple[ArcStart, ...] = (
+        ArcStart(0.15, 1e-2, *FAR_PATH),
+        ArcStart(0.3, 1e-3, *FAR_PATH),
+        ArcStart(0.0, 1e-2, *FAR_PATH),
+    )
     many: int = 2000
 
     def applies(self, problem: Problem) -> bool:
@@ -72,28 +80,28 @@ class ArcPaths:
             return
         region = moving_region(search.problem, search.associated.state.velocities)
         far_only = region.problem.n_velocities // 3 > self.many
-        for lead in self.far if far_only else self.near + self.far:
+        for arc_start in self.far if far_only else self.near + self.far:
             known = search.record.known
-            if (known and lead in self.far and not far_only) or not search.budget.steps_left(known):
+            if (known and arc_start in self.far and not far_only) or not search.budget.steps_left(known):
                 return
             with suppress(SingularMatrix):  # It ends one lead, not the search.
-                state = _end_of(lead, search, region)
+                state = _end_of(arc_start, search, region)
                 if state is not None:
                     yield state
 
 
-def _end_of(lead: Lead, search: Search, region: Region) -> CollapseState | None:
+def _end_of(arc_start: ArcStart, search: Search, region: Region) -> CollapseState | None:
     """The state that one path by arc length leads to."""
     problem, part = search.problem, region.problem
     blocks = part.n_velocities // 3
-    guide = smoothed(part, lead.smooth) or part
-    start, steps = feasible_pair(guide, region.newton, lead.gap)
+    guide = with_reduced_friction(part, arc_start.smooth) or part
+    start, steps = interior_starting_point(guide, region.newton, arc_start.gap)
     search.budget.stepped(steps, blocks)
     if start is None:
         return None
-    arc = ArcPath(guide, region.newton, start, lead.spread)
-    for gap in lead.gaps:
-        path = arc.follow(gap, lead.most_steps)
+    arc = ArcPath(guide, region.newton, start, arc_start.spread)
+    for gap in arc_start.gaps:
+        path = arc.follow(gap, arc_start.most_steps)
         search.budget.stepped(path.iterations, blocks)
         if not path.converged:
             return None

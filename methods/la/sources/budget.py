@@ -1,6 +1,6 @@
 """What a search may spend, and what it has spent: one budget, from which all its sources draw.
 
-Work is counted in linear programmes, Newton steps times blocks, and kinks of paths of springs, never in seconds: a seed
+Work is counted in linear programmes, Newton steps times blocks, and breakpoints of paths of springs, never in seconds: a seed
 gives the same answer on every machine of the same arithmetic. The size of a wall decides how much there is of it, and
 nothing else.
 """
@@ -28,8 +28,8 @@ class Limits:
         leaves: of such a tree that are bounded where the whole takes more.
         programmes: linear ones in all, those of the proof among them.
         block_steps: Newton steps times blocks after which no further path is begun once a state is known.
-        kinks: on all paths of springs after which no further one is begun; twice as many while no state is known.
-        unbounded_kinks: instead of those where statics allows any live load.
+        breakpoints: on all paths of springs after which no further one is begun; twice as many while no state is known.
+        unbounded_breakpoints: instead of those where statics allows any live load.
     """
 
     starts: int = 0
@@ -42,8 +42,8 @@ class Limits:
     leaves: int = 100
     programmes: int = 50_000
     block_steps: float = 1e6
-    kinks: int = 9_000
-    unbounded_kinks: int = 9_000
+    breakpoints: int = 9_000
+    unbounded_breakpoints: int = 9_000
 
 
 @dataclass(frozen=True)
@@ -53,7 +53,7 @@ class Sizes:
     Attributes:
         few_blocks, some_blocks: up to the first the whole ladder is tried, up to the next half of it, three descents a
             source on both; above, no rungs but those of rough joints, and one longer descent. With one descent instead
-            of three and 6,000 kinks instead of 9,000 two walls of 44 blocks reach their least value with 3 seeds of 12
+            of three and 6,000 breakpoints instead of 9,000 two walls of 44 blocks reach their least value with 3 seeds of 12
             instead of 9.
         descended: interfaces up to which states are descended from; above, a draw takes a second and more.
         provable, provable_ring: interfaces up to which a proof is tried, and those of walls with at most two more
@@ -80,7 +80,7 @@ class Sizes:
         nodes = 1500 if interfaces <= most else 0
         descents = int(interfaces <= self.descended)
         if effort == "quick":
-            return Limits(0, 8, 200, descents, nodes=min(nodes, 100), kinks=300, unbounded_kinks=300)
+            return Limits(0, 8, 200, descents, nodes=min(nodes, 100), breakpoints=300, unbounded_breakpoints=300)
         if effort == "deep":
             nodes = 20000 if interfaces <= 2 * most else 0
             return Limits(20, 40, 200, 8, self.fine_ladder, nodes, 3 * nodes, nodes, 1_000_000, 1e7, 100_000, 100_000)
@@ -89,8 +89,8 @@ class Sizes:
         if blocks <= self.some_blocks:
             return Limits(0, 12, 200, 3, self.ladder[::2], nodes)
         if descents:
-            return Limits(0, 40, kinks=20_000, unbounded_kinks=20_000)
-        return Limits(0, 40, descents=0, kinks=60_000, unbounded_kinks=1)
+            return Limits(0, 40, breakpoints=20_000, unbounded_breakpoints=20_000)
+        return Limits(0, 40, descents=0, breakpoints=60_000, unbounded_breakpoints=1)
 
 
 SIZES = Sizes()
@@ -112,12 +112,12 @@ def rounds_of(settings: SearchSettings, problem: Problem) -> tuple[Limits, ...]:
 
 @dataclass
 class Work:
-    """Work that was done: programmes, Newton steps, the same times blocks, kinks."""
+    """Work that was done: programmes, Newton steps, the same times blocks, breakpoints."""
 
     programmes: int = 0
     newton_steps: int = 0
     block_steps: float = 0.0
-    kinks: int = 0
+    breakpoints: int = 0
 
     def since(self, before: Work) -> Work:
         """What was done after `before`."""
@@ -125,7 +125,7 @@ class Work:
             self.programmes - before.programmes,
             self.newton_steps - before.newton_steps,
             self.block_steps - before.block_steps,
-            self.kinks - before.kinks,
+            self.breakpoints - before.breakpoints,
         )
 
 
@@ -150,6 +150,6 @@ class Budget:
         """Whether a further path of Newton steps may begin; `known` says whether a state is known."""
         return not known or self.spent.block_steps < self.limits.block_steps
 
-    def kinks_left(self, known: bool) -> bool:
+    def breakpoints_left(self, known: bool) -> bool:
         """Whether a further path of springs may begin; `known` says whether a state is known."""
-        return self.spent.kinks < self.limits.kinks * (1 if known else 2)
+        return self.spent.breakpoints < self.limits.breakpoints * (1 if known else 2)

@@ -8,15 +8,15 @@ from typing import ClassVar
 
 from methods.la.core.problem import Problem
 from methods.la.core.state import CollapseState
-from methods.la.interior.lagged import lagged_mechanism
 from methods.la.interior.path_programmes import exact_state
+from methods.la.interior.tresca_iteration import tresca_mechanism
+from methods.la.sources.reduced_friction import with_reduced_friction
 from methods.la.sources.search import Search
-from methods.la.sources.unloaded import smoothed
 from methods.numerics.failures import SingularMatrix
 
 
 @dataclass(frozen=True)
-class SmootherJoints:
+class ReducedFriction:
     """The central path of the wall whose unloaded joints have a part of their friction; it ends low at any size.
 
     Attributes:
@@ -41,7 +41,7 @@ class SmootherJoints:
         for factor in self.factors:
             if search.record.known and search.problem.n_interfaces > self.all_up_to:
                 return
-            guide = smoothed(search.problem, factor)
+            guide = with_reduced_friction(search.problem, factor)
             if guide is not None:
                 yield from self._states_of(search, search.at_friction(guide))
 
@@ -105,8 +105,8 @@ class RandomStarts:
 
 
 @dataclass(frozen=True)
-class LaggedFriction:
-    """Paths with friction bounds that lag behind, where nothing else led to a state (`methods.la.interior.lagged`).
+class TrescaMechanisms:
+    """Paths with friction bounds that lag behind, where nothing else led to a state (`methods.la.interior.tresca_iteration`).
 
     Attributes:
         attempts: Newton steps with lagged bounds and how fast the bounds follow, tried until one leads to a state.
@@ -127,7 +127,7 @@ class LaggedFriction:
             return
         for steps, follow in self.attempts:
             try:
-                path, spent = lagged_mechanism(search.problem, search.newton, steps, follow)
+                path, spent = tresca_mechanism(search.problem, search.newton, steps, follow)
             except SingularMatrix:
                 continue
             state, more = exact_state(search.problem, search.newton, path)

@@ -133,4 +133,4 @@ def _row(name: str, group: list[Tried], unit: float) -> dict[str, Any]:
 
 
 def _counts(work: Work) -> dict[str, int]:
-    return {"programmes": work.programmes, "newton_steps": work.newton_steps, "kinks": work.kinks}
+    return {"programmes": work.programmes, "newton_steps": work.newton_steps, "breakpoints": work.breakpoints}

@@ -23,7 +23,7 @@ from methods.la.interior.associated import AssociatedResult, solve_associated
 from methods.la.interior.interior_point import PathResult, PathSettings, follow_path, start_point
 from methods.la.interior.newton_step import Point
 from methods.la.interior.path_programmes import EXACTNESS, cheapest_mechanism, exact_state, state_of_mechanism
-from methods.la.interior.standing import standing_forces
+from methods.la.interior.phase_one import phase_one_forces
 from methods.la.sources.budget import Budget, Limits
 from methods.la.sources.gravity import Gravity, gravity_of
 from methods.la.sources.record import LEAST_IMPROVEMENT, Record
@@ -116,7 +116,7 @@ class Search:
     @cached_property
     def central_forces(self) -> FloatArray | None:
         """Forces (m, 3) well within yield under the dead load; None if none are found."""
-        return standing_forces(self.problem, self.newton)
+        return phase_one_forces(self.problem, self.newton)
 
     def finds_motion(self) -> bool:
         """Whether the wall has any mechanism on which the live load does work, whatever its forces.

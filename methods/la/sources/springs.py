@@ -29,14 +29,14 @@ from methods.la.core.state import CollapseState, friction_work, moving_contacts
 from methods.la.interior.interior_point import PathSettings, follow_path, start_point
 from methods.la.sources.gravity import SPRINGS, Gravity, gravity_of
 from methods.la.sources.record import LEAST_IMPROVEMENT
+from methods.la.sources.reduced_friction import with_reduced_friction
 from methods.la.sources.search import Search
-from methods.la.sources.unloaded import smoothed
 from methods.springs.model.factor import SingularTangent, make_factor
 from methods.springs.model.settings import GapSettings
 from methods.springs.model.wall_model import build_model
-from methods.springs.path.continuation import Tracer
-from methods.springs.path.follow import follow
+from methods.springs.path.continuation import PathFollower
 from methods.springs.path.jump import JUMP
+from methods.springs.path.load_path import follow
 from methods.springs.path.path_record import PathEnd, PathRecord
 from methods.springs.path.plateau import finish
 from methods.springs.path.preload import preloaded
@@ -49,13 +49,13 @@ class Springs:
 
     Attributes:
         certificate: residual of a mechanism at which a path ends.
-        most_kinks: changes of state per gap point after which one is given up.
+        most_breakpoints: changes of state per gap point after which one is given up.
         ratios: kt / kn of further paths from the same kind of forces, in turn; the first is that of `fe`.
         right: sine of the angle by which right-angled joints may be off.
     """
 
     certificate: float = 1e-12
-    most_kinks: int = 5
+    most_breakpoints: int = 5
     ratios: tuple[float, ...] = (SPRINGS.stiffness_ratio, 5.0, 50.0)
     right: float = 1e-6
 
@@ -64,15 +64,15 @@ PATHS = Springs()
 
 
 @dataclass(frozen=True)
-class Beginning:
+class PathStart:
     """The beginning of a path, the jumps tried where it turns down, and the multiplier between two commits."""
 
-    tracer: Tracer
+    follower: PathFollower
     jumps: int = 0
     interval: float = np.inf
 
 
-Start = Callable[[], Beginning | None]
+Start = Callable[[], PathStart | None]
 """Makes the beginning of a path where that is possible. Raises SingularTangent."""
 
 
@@ -93,7 +93,7 @@ class CommittedHistories:
         for ratio in self.ratios:
             yield partial(self._from_gravity, search, ratio)
 
-    def _from_gravity(self, search: Search, ratio: float) -> Beginning | None:
+    def _from_gravity(self, search: Search, ratio: float) -> PathStart | None:
         """The path with kt/kn = ratio; None without equilibrium, or where no multiplier is known to measure commits."""
         least = _scale(search)
         gravity = gravity_of(search.problem, ratio)
@@ -101,7 +101,7 @@ class CommittedHistories:
 
 
 @dataclass(frozen=True)
-class LittleSelfStress:
+class LowPrestress:
     """Paths from forces with little self-stress: gravity's, then vertices or mixtures of statics.
 
     On walls of many interfaces those of gravity with committed histories come between. No other forces that fit its
@@ -117,7 +117,7 @@ class LittleSelfStress:
             Up to there none is where gravity leads to nothing lower and the least state rubs: on 103 walls of courses
             with such a state no path from a vertex led to anything lower, on 8 of 96 without one did, by up to 6 %.
         rubs: share of the work of the live load that friction takes in such a state; rounding leaves 1e-15.
-        gravity_alone: interfaces above which there is no other path: committed histories take 60,000 kinks on a facade
+        gravity_alone: interfaces above which there is no other path: committed histories take 60,000 breakpoints on a facade
             of 863 bricks and end 1e-4 lower, and lead nowhere on 900 irregular blocks.
         vertex: shares of a vertex, of gravity's forces and of central ones up to there.
         mixtures: above, in turn. Pure vertices have many forces at zero or at the limit of friction, and on walls of
@@ -145,7 +145,7 @@ class LittleSelfStress:
         return problem.n_interfaces <= self.most and not problem.dilates
 
     def states(self, search: Search) -> Iterator[CollapseState]:
-        """One state a path that ends, until the kinks are spent."""
+        """One state a path that ends, until the breakpoints are spent."""
         right_angled = _right_angled(search.problem)
         for k, state in ends(search, self._starts(search)):
             known = search.record.least
@@ -170,7 +170,7 @@ class LittleSelfStress:
         for k in range(2 * problem.n_interfaces):
             yield partial(self._from_mixture, search, k)
 
-    def _from_mixture(self, search: Search, k: int) -> Beginning | None:
+    def _from_mixture(self, search: Search, k: int) -> PathStart | None:
         """The path from the k-th mixture of a random vertex of statics, gravity's and central forces.
 
         Returns:
@@ -197,7 +197,7 @@ class LittleSelfStress:
 
 
 @dataclass(frozen=True)
-class SafeForces:
+class ShiftedAssociated:
     """The path from forces somewhat before the end of the associated one, where no state is known yet.
 
     Attributes:
@@ -219,9 +219,9 @@ class SafeForces:
         if not (search.record.known or search.associated.outcome == "unbounded"):
             yield from (state for _, state in ends(search, iter([partial(self._start, search)])))
 
-    def _start(self, search: Search) -> Beginning | None:
+    def _start(self, search: Search) -> PathStart | None:
         """From the wall with smooth unloaded joints, if it has any."""
-        guide = smoothed(search.problem, 0.0) or search.problem
+        guide = with_reduced_friction(search.problem, 0.0) or search.problem
         safe = follow_path(guide, search.newton, start_point(guide), self.left)
         search.stepped(safe.iterations)
         if not safe.converged:
@@ -231,7 +231,7 @@ class SafeForces:
 
 
 @dataclass(frozen=True)
-class CentralForces:
+class AnalyticCentre:
     """Paths from forces well within yield under the dead load, and gravity's, where nothing else led to a state.
 
     Attributes:
@@ -265,14 +265,14 @@ class CentralForces:
 
 
 def ends(search: Search, starts: Iterator[Start]) -> Iterator[tuple[int, CollapseState]]:
-    """The number of each start whose path ends in a collapse state, and the state, while there are kinks left."""
+    """The number of each start whose path ends in a collapse state, and the state, while there are breakpoints left."""
     for k, start in enumerate(starts):
-        if not search.budget.kinks_left(search.record.known):
+        if not search.budget.breakpoints_left(search.record.known):
             return
         state = None
         with suppress(SingularTangent):
-            beginning = start()
-            state = None if beginning is None else _collapse_state(search, beginning)
+            path_start = start()
+            state = None if path_start is None else _collapse_state(search, path_start)
         if state is not None:
             yield k, state
 
@@ -285,7 +285,7 @@ def _right_angled(problem: Problem) -> bool:
     return bool(off.max() < PATHS.right)
 
 
-def _from_gravity(gravity: Gravity, scale: float, interval: float = np.inf) -> Beginning | None:
+def _from_gravity(gravity: Gravity, scale: float, interval: float = np.inf) -> PathStart | None:
     """The path from the forces that gravity causes in a wall without self-stress; None if there are none.
 
     Args:
@@ -301,8 +301,8 @@ def _from_gravity(gravity: Gravity, scale: float, interval: float = np.inf) -> B
     if interval == np.inf:
         for further in doubled(model, factor, first):
             first = further
-    tracer = Tracer.from_rest(model, factor, first, PATHS.certificate)
-    return Beginning(tracer, JUMP.most, interval)
+    follower = PathFollower.from_rest(model, factor, first, PATHS.certificate)
+    return PathStart(follower, JUMP.most, interval)
 
 
 def _scale(search: Search) -> float:
@@ -310,31 +310,31 @@ def _scale(search: Search) -> float:
     return min(search.record.least, search.associated.greatest) * search.problem.unit_multiplier
 
 
-def _from_central_forces(search: Search, ratio: float, share: float = np.inf) -> Beginning | None:
+def _from_central_forces(search: Search, ratio: float, share: float = np.inf) -> PathStart | None:
     """The path from forces well within yield under the dead load, with commits as from gravity if any."""
     forces = search.central_forces
     if forces is None:
         return None
-    beginning = _from_forces(search.problem, forces, 0.0, ratio)
-    return beginning if share == np.inf else replace(beginning, jumps=JUMP.most, interval=share * _scale(search))
+    path_start = _from_forces(search.problem, forces, 0.0, ratio)
+    return path_start if share == np.inf else replace(path_start, jumps=JUMP.most, interval=share * _scale(search))
 
 
-def _from_forces(problem: Problem, forces: FloatArray, multiplier: float, ratio: float) -> Beginning:
+def _from_forces(problem: Problem, forces: FloatArray, multiplier: float, ratio: float) -> PathStart:
     """The path from scaled forces (m, 3) in equilibrium with a scaled multiplier. Raises SingularTangent."""
     model = build_model(problem.assembly, GapSettings(stiffness_ratio=ratio))
     start = multiplier * problem.unit_multiplier, problem.to_forces(forces)
-    return Beginning(preloaded(model, make_factor(model), *start, PATHS.certificate))
+    return PathStart(preloaded(model, make_factor(model), *start, PATHS.certificate))
 
 
-def _collapse_state(search: Search, beginning: Beginning) -> CollapseState | None:
+def _collapse_state(search: Search, path_start: PathStart) -> CollapseState | None:
     """The collapse state at the end of a path; None also below a multiplier of zero."""
-    problem, record, model = search.problem, PathRecord(), beginning.tracer.model
-    most = PATHS.most_kinks * model.n_points
+    problem, record, model = search.problem, PathRecord(), path_start.follower.model
+    most = PATHS.most_breakpoints * model.n_points
     try:
-        way = follow(beginning.tracer, record, most, beginning.interval, jumps=beginning.jumps)
+        way = follow(path_start.follower, record, most, path_start.interval, jumps=path_start.jumps)
     finally:
-        search.budget.spent.kinks += record.events
-    last = way.tracer
+        search.budget.spent.breakpoints += record.events
+    last = way.follower
     found = finish(model, last.present(), last.kept) if way.end in (PathEnd.PLATEAU, PathEnd.BREAKDOWN) else None
     if found is None or found.multiplier < 0.0:
         return None

@@ -8,11 +8,11 @@ from typing import Any
 import numpy as np
 
 from harness.model.assembly import FloatArray
-from methods.proof.search.case import AtContact, Division
 from methods.proof.search.equations import Equations
 from methods.proof.search.rate_bounds import RateProof
 from methods.proof.search.relaxation import Relaxation
 from methods.proof.search.slack_bounds import SlackBounds, SlackProgramme
+from methods.proof.search.subproblem import AtContact, Division
 from methods.proof.search.tuning import PRECISION, ROUNDING
 from methods.proof.search.window_document import Scales, WindowDocument, below, whole_values
 from methods.proof.search.window_search import WindowProof

@@ -5,9 +5,9 @@ from __future__ import annotations
 import numpy as np
 
 from harness.model.assembly import FloatArray
-from methods.proof.search.case import AtContact, AtNormalForce, Division
 from methods.proof.search.halpern import Splitting
 from methods.proof.search.relaxation import Relaxation
+from methods.proof.search.subproblem import AtContact, AtNormalForce, Division
 from methods.proof.search.tuning import ROUNDING, WINDOWS
 
 

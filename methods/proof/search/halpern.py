@@ -47,34 +47,34 @@ class Splitting:
 
     def run(self, until: float, stop: Callable[[DualBound | None, float], bool]) -> None:
         """Iterate to this CPU time, or until `stop(bound, primal cost)` says so at a check."""
-        sweep = self._sweep()
+        iterates = self._iterates()
         check = self.iterations + RESTARTS.checked_every
         first, before = 0.0, np.inf
         while True:
-            residual = sweep.advance(self.step)
+            residual = iterates.advance(self.step)
             self.iterations += 1
-            first = residual if sweep.count == 1 else first
+            first = residual if iterates.count == 1 else first
             if self.iterations >= check:
                 check = self.iterations + max(RESTARTS.checked_every, int(RESTARTS.checked_later * self.iterations))
-                self.iterate = sweep.iterate.astype(np.float64)
-                bound, primal = dual_bound(self.relaxation, self.iterate, self.step, self.cost), sweep.primal
+                self.iterate = iterates.iterate.astype(np.float64)
+                bound, primal = dual_bound(self.relaxation, self.iterate, self.step, self.cost), iterates.primal
                 if stop(bound, primal) or time.process_time() > until:
                     return
-                if self.single and sweep.rounds(residual):
+                if self.single and iterates.rounds(residual):
                     self.single = False
-                    sweep = self._sweep()
+                    iterates = self._iterates()
                 if bound is not None:
-                    self._balance(sweep, bound, primal)
+                    self._balance(iterates, bound, primal)
             stale = residual <= RESTARTS.necessary * first and residual > before
-            long = sweep.count > RESTARTS.long * self.iterations + RESTARTS.patience
-            if sweep.count > 1 and (residual <= RESTARTS.sufficient * first or stale or long):
-                sweep.restart()
+            long = iterates.count > RESTARTS.long * self.iterations + RESTARTS.patience
+            if iterates.count > 1 and (residual <= RESTARTS.sufficient * first or stale or long):
+                iterates.restart()
             before = residual
 
-    def _sweep(self) -> Sweep:
-        return Sweep(self.relaxation, self.cost, self.iterate, np.float32 if self.single else np.float64)
+    def _iterates(self) -> Iterates:
+        return Iterates(self.relaxation, self.cost, self.iterate, np.float32 if self.single else np.float64)
 
-    def _balance(self, sweep: Sweep, bound: DualBound, primal: float) -> None:
+    def _balance(self, iterates: Iterates, bound: DualBound, primal: float) -> None:
         """Change the step by what the bound loses to the dual over the distance of primal and dual cost, and by how far
         the primal part moved since the last check over how far the dual part did.
 
@@ -93,11 +93,11 @@ class Splitting:
         ratio = min(max(ratio, 1.0 / RESTARTS.step_change), RESTARTS.step_change)
         step = min(max(ratio * self.step, self.steps[0]), self.steps[1])
         if abs(np.log(step / self.step)) > np.log(RESTARTS.step_kept):
-            sweep.restart(step / self.step)
+            iterates.restart(step / self.step)
             self.step = step
 
 
-class Sweep:
+class Iterates:
     """The arrays of the splitting in one precision, changed in place: large new ones cost as much as the arithmetic.
 
     Attributes:

@@ -10,9 +10,9 @@ import scipy.sparse as sp
 
 from harness.model.assembly import FloatArray
 from methods.numerics.linear_programme import INFINITY, Programme
-from methods.proof.search.case import Case
 from methods.proof.search.equations import Equations
 from methods.proof.search.slack_bounds import SlackBounds
+from methods.proof.search.subproblem import Subproblem
 from methods.proof.search.tuning import ROUNDING
 
 
@@ -69,7 +69,7 @@ class RateProgramme:
             ray = np.zeros(3 * self._m + 2)
         return self._proof("no mechanism", ray if ray[3 * self._m] > 0.0 else -ray)
 
-    def decided(self, high: float, bounds: SlackBounds, case: Case) -> tuple[Case | None, list[RateProof]]:
+    def decided(self, high: float, bounds: SlackBounds, case: Subproblem) -> tuple[Subproblem | None, list[RateProof]]:
         """The case with the contacts that mechanisms of the window never move or always move, and what proves it.
 
         The case is None where there are no mechanisms.

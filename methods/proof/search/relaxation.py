@@ -15,9 +15,9 @@ import numpy as np
 import scipy.linalg
 
 from harness.model.assembly import FloatArray, IntArray
-from methods.proof.search.case import EVERY, Case
 from methods.proof.search.equations import Equations
 from methods.proof.search.slack_bounds import SlackBounds
+from methods.proof.search.subproblem import ROOT, Subproblem
 from methods.proof.search.tuning import ROUNDING
 
 
@@ -44,7 +44,7 @@ class Relaxation:
         low: float,
         high: float,
         bounds: SlackBounds,
-        case: Case = EVERY,
+        case: Subproblem = ROOT,
         weights: FloatArray | None = None,
     ) -> None:
         self.equations, self.low, self.high, self.bounds, self.case = equations, low, high, bounds, case

@@ -9,8 +9,8 @@ import scipy.sparse as sp
 
 from harness.model.assembly import FloatArray
 from methods.numerics.linear_programme import INFINITY, Programme
-from methods.proof.search.case import EVERY, Case
 from methods.proof.search.equations import Equations
+from methods.proof.search.subproblem import ROOT, Subproblem
 from methods.proof.search.tuning import ROUNDING
 
 
@@ -52,7 +52,7 @@ class SlackProgramme:
         upper = np.full(8 * m + 1, INFINITY)
         self._programme = Programme(sp.csc_matrix(matrix), np.zeros(8 * m + 1), (lower, upper), (right, right))
 
-    def window(self, low: float, high: float, case: Case = EVERY) -> None:
+    def window(self, low: float, high: float, case: Subproblem = ROOT) -> None:
         """Keep multipliers within a window, and slacks and normal forces within a case, from now on."""
         greatest = np.full(4 * self._m, INFINITY)
         greatest[list(case.tight)] = 0.0
@@ -83,7 +83,7 @@ class SlackProgramme:
         ray = self._programme.ray()
         return np.zeros(self._n) if ray is None else ray[: self._n]
 
-    def bounds(self, low: float, high: float, case: Case = EVERY) -> SlackBounds | None:
+    def bounds(self, low: float, high: float, case: Subproblem = ROOT) -> SlackBounds | None:
         """Bounds of all slacks for multipliers from `low` to `high`; None if no forces within yield exist there."""
         m = self._m
         self.window(low, high, case)

@@ -11,7 +11,6 @@ from typing import Protocol
 import numpy as np
 
 from harness.model.assembly import FloatArray
-from methods.proof.search.case import EVERY, Case, Division
 from methods.proof.search.dividing import division_of
 from methods.proof.search.dual import DualBound
 from methods.proof.search.equations import Equations
@@ -19,6 +18,7 @@ from methods.proof.search.halpern import Splitting, carried_over
 from methods.proof.search.rate_bounds import RateProgramme, RateProof
 from methods.proof.search.relaxation import Relaxation
 from methods.proof.search.slack_bounds import SlackBounds, SlackProgramme
+from methods.proof.search.subproblem import ROOT, Division, Subproblem
 from methods.proof.search.tuning import ROUNDING, STEPS, WINDOWS
 
 
@@ -113,7 +113,7 @@ class WindowSearch:
         found: Bracket,
         until: float,
         certify: Certify | None = None,
-        case: Case = EVERY,
+        case: Subproblem = ROOT,
     ) -> None:
         self.equations, self.found, self.until, self.case = equations, found, until, case
         self._slacks, self._certify = slacks, certify
@@ -200,7 +200,7 @@ class WindowSearch:
         found.windows.append(low)
         return True
 
-    def _slack_bounds(self, high: float, case: Case) -> SlackBounds | None:
+    def _slack_bounds(self, high: float, case: Subproblem) -> SlackBounds | None:
         """Bounds of the slacks of the present bracket; None, and the bound raised, if it leaves no forces."""
         bounds = self._slacks.bounds(self.found.lower, high, case)
         part = self._certify if self._rates is not None else None

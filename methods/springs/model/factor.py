@@ -23,7 +23,7 @@ from methods.numerics.block_lu import BlockFactor, BlockPattern
 from methods.numerics.compiled import compiled
 from methods.numerics.failures import SingularMatrix, sparse_lu
 from methods.numerics.vectors import largest
-from methods.springs.model.wall_model import FOOTING, WallModel, add_tangent
+from methods.springs.model.wall_model import REGULARISATION, WallModel, add_tangent
 
 Change = tuple[int, int, int]
 """A point, its state and the state that it turns to."""
@@ -66,15 +66,15 @@ class Factor(Protocol):
     capacity: int
     factorisations: int
     careful: bool
-    footed: bool
+    is_regularised: bool
 
     def refactor(
         self,
         state: IntArray,
         shift: float = 0.0,
         careful: bool = False,
-        pins: Sequence[int] = (),
-        footing: bool = False,
+        bordered: Sequence[int] = (),
+        regularised: bool = False,
     ) -> None:
         """Factorise the tangent in these states afresh.
 
@@ -108,7 +108,7 @@ def make_factor(model: WallModel) -> Factor:
     return DenseFactor(model) if model.n_unknowns <= FACTORS.dense else SparseFactor(model)
 
 
-def refactor_any(factor: Factor, state: IntArray, careful: bool = False, pins: Sequence[int] = ()) -> None:
+def refactor_any(factor: Factor, state: IntArray, careful: bool = False, bordered: Sequence[int] = ()) -> None:
     """Factorise the tangent in these states afresh, with the footing where it is singular.
 
     A block that nothing touches, or that balances on an edge, takes no stiffness from its joints. Loads that do no work
@@ -116,9 +116,9 @@ def refactor_any(factor: Factor, state: IntArray, careful: bool = False, pins: S
     are refined until the tangent without the footing is met have none of its force (proximal point; Rockafellar, 1976).
     """
     try:
-        factor.refactor(state, careful=careful, pins=pins)
+        factor.refactor(state, careful=careful, bordered=bordered)
     except SingularTangent:
-        factor.refactor(state, careful=careful, pins=pins, footing=True)
+        factor.refactor(state, careful=careful, bordered=bordered, regularised=True)
 
 
 class DenseFactor:
@@ -130,31 +130,34 @@ class DenseFactor:
         self.count = 0
         self.factorisations = 0
         self.careful = True
-        self.footed = False
+        self.is_regularised = False
         self.inverse = np.empty((0, 0))
-        self._size = np.sqrt(model.footing)
+        self._size = np.sqrt(model.regularised)
 
     def refactor(
         self,
         state: IntArray,
         shift: float = 0.0,
         careful: bool = True,
-        pins: Sequence[int] = (),
-        footing: bool = False,
+        bordered: Sequence[int] = (),
+        regularised: bool = False,
     ) -> None:
         """Invert afresh. Raises SingularTangent."""
         self.count = 0
         self.factorisations += 1
-        self.footed = footing
-        matrix = self.model.tangent(state, shift, footing).toarray()
-        for pin in pins:
-            matrix[pin, pin] += 1.0
+        self.is_regularised = regularised
+        matrix = self.model.tangent(state, shift, regularised).toarray()
+        for border in bordered:
+            matrix[border, border] += 1.0
         lu, pivots, info = sla.lapack.dgetrf(matrix, overwrite_a=True)
         if info == 0:
             self.inverse, info = sla.lapack.dgetri(lu, pivots, overwrite_lu=True)
         if info != 0 or not np.isfinite(self.inverse).all():
             raise SingularTangent("the tangent is singular in these states")
-        if not (shift or footing) and FOOTING.least * largest((self.inverse * self._size).T @ self._size) > 1.0:
+        if (
+            not (shift or regularised)
+            and REGULARISATION.least * largest((self.inverse * self._size).T @ self._size) > 1.0
+        ):
             raise SingularTangent("the tangent is singular to rounding in these states")
 
     def solve(self, right: FloatArray) -> FloatArray:
@@ -196,7 +199,7 @@ class SparseFactor:
         self._diagonal = pattern.diagonal
         self._lu = BlockFactor(pattern)
         self.careful = False
-        self.footed = False
+        self.is_regularised = False
         self._exchanged: SuperLU | None = None
         self._foreseen: dict[Change, FloatArray] = {}
         self._y = np.empty((self.capacity, n))
@@ -210,38 +213,38 @@ class SparseFactor:
         state: IntArray,
         shift: float = 0.0,
         careful: bool = False,
-        pins: Sequence[int] = (),
-        footing: bool = False,
+        bordered: Sequence[int] = (),
+        regularised: bool = False,
     ) -> None:
         """Factorise afresh. Raises SingularTangent."""
         self.count = 0
         self.factorisations += 1
-        self.footed = footing
+        self.is_regularised = regularised
         self._exchanged = None
         self._foreseen.clear()
-        added = self.model.added(shift, footing)
-        if careful or not self._factorise_blocks(state, added, pins):
-            self._exchanged = self._with_row_exchanges(self.model.tangent(state, shift, footing), added, pins)
+        added = self.model.added(shift, regularised)
+        if careful or not self._factorise_blocks(state, added, bordered):
+            self._exchanged = self._with_row_exchanges(self.model.tangent(state, shift, regularised), added, bordered)
         self.careful = self._exchanged is not None
 
-    def _factorise_blocks(self, state: IntArray, added: FloatArray, pins: Sequence[int]) -> bool:
+    def _factorise_blocks(self, state: IntArray, added: FloatArray, bordered: Sequence[int]) -> bool:
         model = self.model
         self._lu.values[:] = 0.0
         springs = model.interface, model.position, model.kn, model.kt, model.mu
         add_tangent(self._slot, model.rows, *springs, state, self._lu.values)
         self._lu.values[self._diagonal] += added
-        for pin in pins:
-            self._lu.values[self._diagonal[pin]] += 1.0
+        for border in bordered:
+            self._lu.values[self._diagonal[border]] += 1.0
         return self._lu.factorise(FACTORS.growth) and self._stiff(self._lu.values[self._diagonal], added)
 
     def _stiff(self, pivots: FloatArray, added: FloatArray) -> bool:
         """Whether every pivot (N,) is beyond rounding, be it by what was added to the tangent."""
-        return bool((abs(pivots) >= FOOTING.least * np.where(added == 0.0, self.model.footing, 0.0)).all())
+        return bool((abs(pivots) >= REGULARISATION.least * np.where(added == 0.0, self.model.regularised, 0.0)).all())
 
-    def _with_row_exchanges(self, matrix: sp.csc_matrix, added: FloatArray, pins: Sequence[int]) -> SuperLU:
+    def _with_row_exchanges(self, matrix: sp.csc_matrix, added: FloatArray, bordered: Sequence[int]) -> SuperLU:
         options = {"SymmetricMode": True}
-        for pin in pins:
-            matrix[pin, pin] += 1.0
+        for border in bordered:
+            matrix[border, border] += 1.0
         try:
             lu = sparse_lu(
                 matrix,

@@ -8,7 +8,7 @@ With the opening g, the slip s and the trial shear tau = kt s + h, where h = T0 
 
 T is the shear as an internal force, positive with s; the contact force of the project's convention is -T.
 Every change between neighbouring states is a rank-one change of the tangent, because the law is continuous:
-K_new - K_old = a b' where b is the gradient of the kink function that is crossed (Katzenelson, 1965).
+K_new - K_old = a b' where b is the gradient of the breakpoint function that is crossed (Katzenelson, 1965).
 """
 
 from __future__ import annotations
@@ -25,14 +25,14 @@ OPEN, STICK, SLIP_PLUS, SLIP_MINUS = 0, 1, 2, 3
 
 
 @dataclass(frozen=True)
-class KinkTolerances:
-    """When a gap point sits on its kink, and when it moves towards it.
+class BreakpointTolerances:
+    """When a gap point sits on its breakpoint, and when it moves towards it.
 
     Attributes:
-        force: forces, as a share of the load scale, that count as the same: a point that near its kink may be in either
-            state, and the choice among near ties may overrun a kink by as much. Compressions that a
+        force: forces, as a share of the load scale, that count as the same: a point that near its breakpoint may be in either
+            state, and the choice among near ties may overrun a breakpoint by as much. Compressions that a
             path starts from are at least as large, in block weights.
-        rate: rates of kink functions below this share of the fastest gap rate count as zero.
+        rate: rates of breakpoint functions below this share of the fastest gap rate count as zero.
         soft_rate: the same on pinned pieces, as forces over a motion as long as the displacements so far.
         sure_rate: such a rate, over the fastest velocity, from which its sign in a new direction is beyond doubt.
     """
@@ -43,7 +43,7 @@ class KinkTolerances:
     sure_rate: float = 1e-6
 
 
-KINKS = KinkTolerances()
+BREAKPOINTS = BreakpointTolerances()
 
 
 @compiled
@@ -98,7 +98,7 @@ def same_forces(
     other: IntArray,
     tolerance: float,
 ) -> bool:
-    """Whether two sets of states (P,) give the same forces: they differ at most at points that sit on their kink."""
+    """Whether two sets of states (P,) give the same forces: they differ at most at points that sit on their breakpoint."""
     for p in range(len(opening)):
         if state[p] != other[p]:
             ours = point_forces(opening[p], trial[p], kn[p], mu[p], state[p])
@@ -148,7 +148,7 @@ def flip_vectors(
 
 
 def neighbour_states(state: int) -> tuple[int, ...]:
-    """The states a point can reach across one kink; a point passes through slip before it opens."""
+    """The states a point can reach across one breakpoint; a point passes through slip before it opens."""
     if state in (OPEN, STICK):
         return (SLIP_PLUS, SLIP_MINUS)
     return (OPEN, STICK)

@@ -34,7 +34,7 @@ from methods.springs.model.settings import GapSettings
 
 
 @dataclass(frozen=True)
-class Footing:
+class Regularisation:
     """The stiffness of blocks against the ground that a singular tangent is factorised with.
 
     Attributes:
@@ -46,7 +46,7 @@ class Footing:
     least: float = 1e-4
 
 
-FOOTING = Footing()
+REGULARISATION = Regularisation()
 
 
 @dataclass(frozen=True, eq=False)
@@ -84,7 +84,7 @@ class WallModel:
     dead: FloatArray
     live: FloatArray
     inertia: FloatArray
-    footing: FloatArray
+    regularised: FloatArray
     column_start: IntArray
     row_index: IntArray
     slot: IntArray
@@ -148,17 +148,17 @@ class WallModel:
         )
         return out
 
-    def added(self, shift: float, footing: bool) -> FloatArray:
+    def added(self, shift: float, regularised: bool) -> FloatArray:
         """What the diagonal (N,) of the tangent is given: `shift` times the inertia, and the footing if asked."""
-        return shift * self.inertia + (self.footing if footing else 0.0)
+        return shift * self.inertia + (self.regularised if regularised else 0.0)
 
-    def tangent(self, state: IntArray, shift: float = 0.0, footing: bool = False) -> sp.csc_matrix:
+    def tangent(self, state: IntArray, shift: float = 0.0, regularised: bool = False) -> sp.csc_matrix:
         """The sparse tangent (N, N) in the given states, with what is `added` to its diagonal."""
         values = np.zeros(len(self.row_index))
         add_tangent(self.slot, self.rows, self.interface, self.position, self.kn, self.kt, self.mu, state, values)
         matrix = sp.csc_matrix((values, self.row_index, self.column_start), shape=(self.n_unknowns, self.n_unknowns))
-        if shift or footing:
-            matrix.setdiag(matrix.diagonal() + self.added(shift, footing))
+        if shift or regularised:
+            matrix.setdiag(matrix.diagonal() + self.added(shift, regularised))
         return matrix
 
     def change(self, point: int, old: int, new: int) -> tuple[IntArray, FloatArray, FloatArray]:
@@ -214,7 +214,7 @@ def build_model(assembly: Assembly, settings: GapSettings, friction_cap: float =
     gyration = np.array([np.ptp(assembly.polygons[i], axis=0) @ np.ptp(assembly.polygons[i], axis=0) for i in order])
     lever = gyration / (12.0 * length**2)
     inertia = np.stack([mass, mass, mass * lever], axis=1).ravel()
-    footing = FOOTING.stiffness * np.stack([np.ones_like(lever), np.ones_like(lever), lever], axis=1).ravel()
+    regularised = REGULARISATION.stiffness * np.stack([np.ones_like(lever), np.ones_like(lever), lever], axis=1).ravel()
     stiffness = settings.normal_stiffness or 1000.0 * force / length
     model = WallModel(
         assembly=assembly,
@@ -231,7 +231,7 @@ def build_model(assembly: Assembly, settings: GapSettings, friction_cap: float =
         dead=(assembly.dead[order] * scale).ravel(),
         live=(assembly.live[order] * scale).ravel(),
         inertia=inertia,
-        footing=footing,
+        regularised=regularised,
         column_start=start,
         row_index=row_index,
         slot=slot,

@@ -1,1 +1,1 @@
-"""The equilibrium path traced exactly, kink by kink, to its plateau."""
+"""The equilibrium path traced exactly, breakpoint by breakpoint, to its plateau."""

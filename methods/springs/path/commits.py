@@ -1,6 +1,6 @@
 """A finite step with freshly committed friction history, by Newton on the factor that the path already has.
 
-After a commit every slipping point sits exactly on its kink, where a path has no single direction. A finite step
+After a commit every slipping point sits exactly on its breakpoint, where a path has no single direction. A finite step
 decides which of them stick. Few points change, so the factor follows by rank-one updates.
 """
 
@@ -14,9 +14,9 @@ from harness.model.assembly import FloatArray, IntArray
 from methods.numerics.block_kernels import COLUMNS
 from methods.numerics.vectors import largest
 from methods.springs.model.factor import Change, Factor, SingularTangent, refactor_any
-from methods.springs.model.gap_law import KINKS, OPEN, SLIP_MINUS, SLIP_PLUS, STICK, classify, same_forces
+from methods.springs.model.gap_law import BREAKPOINTS, OPEN, SLIP_MINUS, SLIP_PLUS, STICK, classify, same_forces
 from methods.springs.model.wall_model import WallModel, point_strains
-from methods.springs.path.continuation import Tracer
+from methods.springs.path.continuation import PathFollower
 
 
 @dataclass(frozen=True)
@@ -44,18 +44,18 @@ class CommitTuning:
 COMMITS = CommitTuning()
 
 
-def committed_step(tracer: Tracer, ahead: float) -> Tracer | None:
+def committed_step(follower: PathFollower, ahead: float) -> PathFollower | None:
     """Commit the history where the tracer stands and step `ahead` in the multiplier.
 
     Returns:
         A tracer on the new path, or None when Newton did not settle (the old tracer must then be `refresh`ed).
     """
-    model, factor = tracer.model, tracer.factor
-    history = tracer.commit()
-    multiplier = tracer.multiplier + ahead
-    u, state = tracer.u.copy(), tracer.state.copy()
-    shift = history - tracer.history
-    opening, trial = tracer.opening.copy(), tracer.trial + shift
+    model, factor = follower.model, follower.factor
+    history = follower.commit()
+    multiplier = follower.multiplier + ahead
+    u, state = follower.u.copy(), follower.state.copy()
+    shift = history - follower.history
+    opening, trial = follower.opening.copy(), follower.trial + shift
     opening_rate, slip_rate = np.empty_like(opening), np.empty_like(trial)
     seen: set[bytes] = set()
     landed = np.empty_like(state)
@@ -67,14 +67,14 @@ def committed_step(tracer: Tracer, ahead: float) -> Tracer | None:
             opening += opening_rate
             trial += model.kt * slip_rate
             classify(opening, trial, model.kn, model.mu, landed, False)
-            if same_forces(opening, trial, model.kn, model.mu, state, landed, KINKS.force * tracer.scale):
+            if same_forces(opening, trial, model.kn, model.mu, state, landed, BREAKPOINTS.force * follower.scale):
                 opening, trial = model.strains(u)
                 trial = model.kt * trial + history
-                if largest(model.out_of_balance(opening, trial, state, multiplier)) > COMMITS.balanced * tracer.scale:
+                if largest(model.out_of_balance(opening, trial, state, multiplier)) > COMMITS.balanced * follower.scale:
                     continue
-                if not _near(tracer, u, ahead):
+                if not _near(follower, u, ahead):
                     return None
-                return Tracer(model, factor, u, multiplier, history, state, factorised=True)
+                return PathFollower(model, factor, u, multiplier, history, state, factorised=True)
             key = landed.tobytes()
             if key in seen:
                 return None
@@ -85,11 +85,11 @@ def committed_step(tracer: Tracer, ahead: float) -> Tracer | None:
     return None
 
 
-def _near(tracer: Tracer, u: FloatArray, ahead: float) -> bool:
+def _near(follower: PathFollower, u: FloatArray, ahead: float) -> bool:
     """Whether a step stays on its branch: the live load works forwards, not much further than the tangent predicts."""
-    moved = u - tracer.u
-    predicted = largest(tracer.direction.velocity) * ahead
-    return float(tracer.model.live @ moved) > 0.0 and largest(moved) <= COMMITS.longest * predicted
+    moved = u - follower.u
+    predicted = largest(follower.direction.velocity) * ahead
+    return float(follower.model.live @ moved) > 0.0 and largest(moved) <= COMMITS.longest * predicted
 
 
 def change_states(model: WallModel, factor: Factor, state: IntArray, wanted: IntArray) -> None:

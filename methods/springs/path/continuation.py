@@ -1,6 +1,6 @@
-"""The equilibrium path traced exactly, kink by kink.
+"""The equilibrium path traced exactly, breakpoint by breakpoint.
 
-In a fixed set of states the response is linear, and the path is a chain of straight pieces; at each kink one gap point
+In a fixed set of states the response is linear, and the path is a chain of straight pieces; at each breakpoint one gap point
 changes state and the path turns (`direction.py`). When nothing stops the motion at a constant multiplier,
 it is the collapse mechanism.
 """
@@ -15,17 +15,17 @@ from harness.model.assembly import FloatArray, IntArray
 from methods.numerics.block_kernels import COLUMNS
 from methods.numerics.vectors import largest
 from methods.springs.model.factor import Change, Factor, SingularTangent
-from methods.springs.model.gap_law import KINKS, OPEN, SLIP_PLUS, STICK, gap_forces
+from methods.springs.model.gap_law import BREAKPOINTS, OPEN, SLIP_PLUS, STICK, gap_forces
 from methods.springs.model.wall_model import WallModel, load_scale
+from methods.springs.path.breakpoints import advance, coming_breakpoints, live_rate, next_breakpoint, strain_rates
 from methods.springs.path.direction import PathDirection
-from methods.springs.path.kinks import advance, coming_kinks, live_rate, next_kink, strain_rates
-from methods.springs.path.path_record import LoadStep, PathEnd, PathRecord, Snapshot
+from methods.springs.path.path_record import PathEnd, PathRecord, PathSnapshot, PathStep
 from methods.springs.path.plateau import COLLAPSE, worst_residual
 from methods.springs.path.tolerances import DRIFT, MECHANISM, UPDATES
 from methods.springs.rest.newton import Equilibrium
 
 
-class Tracer:
+class PathFollower:
     """A point on the path and the straight piece that leads on from it.
 
     Attributes:
@@ -64,7 +64,7 @@ class Tracer:
         self.n_slip = int(np.count_nonzero(state >= SLIP_PLUS))
         self.largest = largest(self.u)
         self.first_displacement = self.largest + 1.0 + largest(model.initial_opening)
-        self.kept: Snapshot | None = None
+        self.kept: PathSnapshot | None = None
         self.kept_holds, self.looked_at = False, 0.0
         self.turns: set[tuple[int, int, float]] = set()
         self.direction = PathDirection(model, factor)
@@ -76,7 +76,7 @@ class Tracer:
     @classmethod
     def from_rest(
         cls, model: WallModel, factor: Factor, rest: Equilibrium, certificate: float = COLLAPSE.certificate
-    ) -> Tracer:
+    ) -> PathFollower:
         """The path that goes on from a state of equilibrium."""
         return cls(model, factor, rest.u, rest.multiplier, rest.history, rest.state, certificate=certificate)
 
@@ -85,20 +85,20 @@ class Tracer:
         """The largest displacement so far (dimensionless, never zero)."""
         return max(self.largest, self.first_displacement)
 
-    def present(self) -> Snapshot:
+    def present(self) -> PathSnapshot:
         """The point and the velocity along the present piece."""
-        return Snapshot(self.multiplier, self.opening, self.trial, self.state, self.direction.velocity)
+        return PathSnapshot(self.multiplier, self.opening, self.trial, self.state, self.direction.velocity)
 
-    def load_step(self) -> LoadStep:
+    def load_step(self) -> PathStep:
         """The point, kept whole."""
-        return LoadStep(self.multiplier, self.u.copy(), self.opening.copy(), self.trial.copy(), self.state.copy())
+        return PathStep(self.multiplier, self.u.copy(), self.opening.copy(), self.trial.copy(), self.state.copy())
 
     def may_commit(self) -> bool:
         """Whether a commit changes anything, and the factor is that of the tangent itself."""
-        return self.n_slip > 0 and not self.direction.pins
+        return self.n_slip > 0 and not self.direction.bordered
 
     def refresh(self, crossed: tuple[Change, float] | None = None) -> None:
-        """Factorise afresh, solve for the direction again, on over the kink just crossed, and remove the drift."""
+        """Factorise afresh, solve for the direction again, on over the breakpoint just crossed, and remove the drift."""
         self.direction.solve_anew(self.state, self.extent, crossed)
         self._remove_drift()
 
@@ -171,7 +171,7 @@ class Tracer:
     def _piece(self, record: PathRecord, target: float, turn: float, note: int) -> PathEnd | None:
         """Follow one straight piece and change the state at its end."""
         model, way = self.model, self.direction
-        step, point, new = next_kink(
+        step, point, new = next_breakpoint(
             self.opening,
             self.trial,
             way.opening_rate,
@@ -179,9 +179,9 @@ class Tracer:
             model.kn,
             model.mu,
             self.state,
-            KINKS.force * self.scale,
-            KINKS.rate,
-            KINKS.soft_rate * self.scale / self.extent if way.pins else np.inf,
+            BREAKPOINTS.force * self.scale,
+            BREAKPOINTS.rate,
+            BREAKPOINTS.soft_rate * self.scale / self.extent if way.bordered else np.inf,
             self.last_point,
             self.last_old,
         )
@@ -192,7 +192,7 @@ class Tracer:
         if ahead == np.inf:
             if self.is_mechanism():
                 return PathEnd.PLATEAU
-            if way.pins:
+            if way.bordered:
                 return PathEnd.BREAKDOWN
             return PathEnd.UNBOUNDED if way.speed > 0.0 else PathEnd.RUNS_DOWN
         if reach <= step:
@@ -210,21 +210,21 @@ class Tracer:
         return PathEnd.TURNED_DOWN if rising and way.speed < 0.0 and self._turned_before() else None
 
     def _turned_before(self) -> bool:
-        """Whether the path turned down here before: from a commit, where many kinks meet, it may run in a loop."""
+        """Whether the path turned down here before: from a commit, where many breakpoints meet, it may run in a loop."""
         turn = self.last_point, self.last_old, float(f"{self.multiplier:.11g}")
         known = turn in self.turns
         self.turns.add(turn)
         return known
 
     def _is_collapse(self, step: float) -> bool:
-        """Whether the piece is a mechanism that goes on so far that the next kink is of no interest.
+        """Whether the piece is a mechanism that goes on so far that the next breakpoint is of no interest.
 
         No gap may close on it. Mechanisms that stop earlier are kept: each is an exact collapse state at its
         multiplier, and the last one that passes its check stands for the plateau when rounding ends the path. Among
         displacements of 1e10 times the elastic ones it is the plateau.
         """
         model, way = self.model, self.direction
-        if not way.pins:
+        if not way.bordered:
             return False
         size, fastest = self.extent, largest(way.velocity)
         ahead = step * fastest
@@ -260,14 +260,14 @@ class Tracer:
     def _flip(self, point: int, new: int) -> None:
         """Change one state, and turn onto the next piece."""
         old = int(self.state[point])
-        change, crossing = (point, old, new), self._kink_rate(point, old, new)
+        change, crossing = (point, old, new), self._breakpoint_rate(point, old, new)
         if not self.factor.foresees(change):
             self.factor.foresee(self._coming(change))
         self.state[point] = new
         self.n_open += (new == OPEN) - (old == OPEN)
         self.n_slip += (new >= SLIP_PLUS) - (old >= SLIP_PLUS)
         self.last_point, self.last_old = point, old
-        if not self.direction.turn(change, crossing, self.state, self.extent):
+        if not self.direction.update(change, crossing, self.state, self.extent):
             self.refresh((change, crossing))
         elif self._drifted():
             self._remove_drift()
@@ -277,7 +277,7 @@ class Tracer:
         model, way = self.model, self.direction
         points, targets = np.empty(COLUMNS - 1, dtype=np.int64), np.empty(COLUMNS - 1, dtype=np.int64)
         gaps = self.opening, self.trial, way.opening_rate, way.trial_rate
-        found = coming_kinks(*gaps, model.kn, model.mu, self.state, points, targets)
+        found = coming_breakpoints(*gaps, model.kn, model.mu, self.state, points, targets)
         coming = zip(points[:found].tolist(), targets[:found].tolist(), strict=True)
         return [change, *((p, int(self.state[p]), new) for p, new in coming if p != change[0])]
 
@@ -287,7 +287,7 @@ class Tracer:
             return False
         return largest(self._out_of_balance()) > DRIFT.removed * self.scale
 
-    def _kink_rate(self, point: int, old: int, new: int) -> float:
+    def _breakpoint_rate(self, point: int, old: int, new: int) -> float:
         """b'v of a change of state and the velocity v of the present piece."""
         model, way = self.model, self.direction
         pressed = model.kn[point] * way.opening_rate[point]

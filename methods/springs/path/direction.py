@@ -1,11 +1,11 @@
 """Along which velocity the path goes on in a set of states, and at which rate of the multiplier.
 
 The straight piece of a path is a velocity v with a rate of the multiplier l such that K v = l live, up to a factor.
-When a gap point changes state at a kink, K turns into K + a b' and, with K w = m live - a,
+When a gap point changes state at a breakpoint, K turns into K + a b' and, with K w = m live - a,
 
     v' = (1 - b'w) v + (b'v) w,   l' = (1 - b'w) l + (b'v) m,
 
-which keeps b'v' = b'v: the kink function that was crossed moves on into the new cell (Katzenelson, 1965; Eaves and
+which keeps b'v' = b'v: the breakpoint function that was crossed moves on into the new cell (Katzenelson, 1965; Eaves and
 Scarf, 1976), so that a path cannot turn back on itself, and nothing is divided by 1 - b'w, which vanishes at limit
 points. On soft pieces the tangent itself is nearly singular. There the fastest displacement is pinned by a spring, and
 one more for each further soft motion, K + sum e e', and the factor of that is used to solve K v = l live with the first
@@ -23,16 +23,16 @@ from harness.model.assembly import FloatArray, IntArray
 from methods.numerics.vectors import combine, largest
 from methods.springs.model.exact_rates import exact_gap_rates
 from methods.springs.model.factor import Change, Factor, SingularTangent, refactor_any
-from methods.springs.model.gap_law import KINKS
+from methods.springs.model.gap_law import BREAKPOINTS
 from methods.springs.model.wall_model import WallModel, point_strains
 from methods.springs.path.tolerances import REFINEMENT, SOFT_MOTIONS, UPDATES
 
 
 @dataclass
-class Shape:
+class UnitResponse:
     """The displacements value + tail (N,) that a unit force at a pin causes in the pinned wall."""
 
-    pin: int
+    border: int
     value: FloatArray
     tail: FloatArray
 
@@ -52,9 +52,9 @@ class PathDirection:
         self.model, self.factor = model, factor
         self.velocity, self.tail, self.speed = np.zeros(model.n_unknowns), np.zeros(model.n_unknowns), 1.0
         self.opening_rate, self.trial_rate = np.empty(model.n_points), np.empty(model.n_points)
-        self.pins: list[int] = []
+        self.bordered: list[int] = []
         self.response = self.velocity
-        self.shapes: list[Shape] = []
+        self.unit_responses: list[UnitResponse] = []
         self.fine = False
         self.elastic = 0.0
         self.live_size = largest(model.live)
@@ -70,7 +70,7 @@ class PathDirection:
 
         Args:
             state: (P,) states; extent: largest displacement so far, over which force rates must not matter.
-            crossed: the change of state just made, and the rate b'v at which its kink was met, if it was.
+            crossed: the change of state just made, and the rate b'v at which its breakpoint was met, if it was.
 
         Raises:
             SingularTangent: the tangent is singular, or the velocity cannot be refined.
@@ -79,7 +79,7 @@ class PathDirection:
         for careful in (False, True):
             self.velocity, self.speed = before, rising
             self._solve_pinned(state, careful)
-            if self.straighten(state, extent):
+            if self.refine(state, extent):
                 if crossed is not None and self._leads_back(*crossed):
                     self.velocity, self.tail, self.speed = -self.velocity, -self.tail, -self.speed
                     self.measure()
@@ -92,7 +92,7 @@ class PathDirection:
         """Solve for the velocity, its fastest displacement pinned where the piece turns out to be soft."""
         for _ in range(SOFT_MOTIONS.most):
             before, rising = self.velocity, self.speed
-            self.pins = [int(np.argmax(np.abs(before)))] if self.size > SOFT_MOTIONS.velocity else []
+            self.bordered = [int(np.argmax(np.abs(before)))] if self.size > SOFT_MOTIONS.velocity else []
             self._factorise(state, careful)
             self._solve(before, rising)
             if self._is_pinned_right():
@@ -100,9 +100,9 @@ class PathDirection:
 
     def _is_pinned_right(self) -> bool:
         """Whether a soft piece is pinned, where it moves."""
-        if not self.pins:
+        if not self.bordered:
             return self.size <= SOFT_MOTIONS.velocity
-        return bool(abs(self.velocity[self.pins[0]]) >= SOFT_MOTIONS.held * largest(self.velocity))
+        return bool(abs(self.velocity[self.bordered[0]]) >= SOFT_MOTIONS.held * largest(self.velocity))
 
     def _factorise(self, state: IntArray, careful: bool) -> None:
         """Factorise the tangent, and where a pinned one is still soft, pin the softest motion as well.
@@ -111,13 +111,18 @@ class PathDirection:
         moves along it. Others without stiffness stay on their footing.
         """
         while True:
-            refactor_any(self.factor, state, careful, self.pins)
+            refactor_any(self.factor, state, careful, self.bordered)
             self.response = self.factor.solve(self.model.live)
             softest = int(np.argmax(np.abs(self.response)))
-            if not self.pins or not self._is_soft() or softest in self.pins or len(self.pins) == SOFT_MOTIONS.most:
+            if (
+                not self.bordered
+                or not self._is_soft()
+                or softest in self.bordered
+                or len(self.bordered) == SOFT_MOTIONS.most
+            ):
                 break
-            self.pins.insert(0 if self.factor.footed else len(self.pins), softest)
-        self.shapes = [self._shape(pin, state) for pin in self.pins[1:]]
+            self.bordered.insert(0 if self.factor.is_regularised else len(self.bordered), softest)
+        self.unit_responses = [self._unit_response(border, state) for border in self.bordered[1:]]
 
     def _is_soft(self) -> bool:
         """Whether the response to the live load shows a soft motion that is not pinned."""
@@ -125,32 +130,32 @@ class PathDirection:
 
     def solve_first(self, state: IntArray) -> None:
         """Solve for the velocity with the factor as it stands, the multiplier rising."""
-        self.pins, self.shapes = [], []
+        self.bordered, self.unit_responses = [], []
         self.response = self.factor.solve(self.model.live)
         self._solve(self.velocity, 1.0)
-        if not self.straighten(state, 0.0):
+        if not self.refine(state, 0.0):
             raise SingularTangent("the direction of the path was lost to rounding")
 
     def _solve(self, before: FloatArray, rising: float) -> None:
         """v and l from the factor: l = 1, or v_e = 1 at the pin, with the sense of the velocity before."""
         self.tail = np.zeros_like(before)
-        if not self.pins:
+        if not self.bordered:
             self.velocity, self.speed, sense = self.response.copy(), 1.0, rising
             if not self.elastic:
                 self.elastic = largest(self.velocity)
         else:
             one = np.zeros_like(before)
-            one[self.pins[0]] = 1.0
+            one[self.bordered[0]] = 1.0
             self.velocity, self.speed = self._hold(self.factor.solve(one), 1.0)
-            sense = float(before[self.pins[0]])
+            sense = float(before[self.bordered[0]])
         if sense < 0.0:
             self.velocity, self.speed = -self.velocity, -self.speed
 
     def _leads_back(self, change: Change, rate: float) -> bool:
-        """Whether the velocity leads back, beyond rounding, over the kink just crossed with a rate b'v."""
+        """Whether the velocity leads back, beyond rounding, over the breakpoint just crossed with a rate b'v."""
         index, _, b = self.model.change(*change)
         along = float(b @ self.velocity[index])
-        return abs(along) > KINKS.sure_rate * largest(self.velocity) and along * rate < 0.0
+        return abs(along) > BREAKPOINTS.sure_rate * largest(self.velocity) and along * rate < 0.0
 
     def _hold(self, x: FloatArray, held: float = 0.0) -> tuple[FloatArray, float]:
         """Add m responses to the live load and shapes of the pins to x, so that the springs of the pins carry nothing.
@@ -158,7 +163,7 @@ class PathDirection:
         Returns:
             The sum (N,), whose displacement at the first pin is `held`, and m.
         """
-        if not self.pins:
+        if not self.bordered:
             return x, 0.0
         try:
             share = self._share(x, held)
@@ -167,20 +172,20 @@ class PathDirection:
         if not np.isfinite(share).all():
             raise SingularTangent("the live load does not act on the motion")
         out = x + share[0] * self.response
-        for part, shape in zip(share[1:], self.shapes, strict=True):
+        for part, shape in zip(share[1:], self.unit_responses, strict=True):
             out += part * shape.value
         return out, float(share[0])
 
     def _share(self, x: FloatArray, held: float) -> FloatArray:
         """How much of the response and of each shape, (1 + shapes,), to add to x."""
-        if not self.shapes:
-            return np.array([(held - x[self.pins[0]]) / self.response[self.pins[0]]])
-        basis = [self.response, *(shape.value for shape in self.shapes)]
-        system = np.array([values[self.pins] for values in basis]).T
-        for j, shape in enumerate(self.shapes, start=1):
-            system[:, j] += shape.tail[self.pins]
-            system[j, j] = (shape.value[self.pins[j]] - 1.0) + shape.tail[self.pins[j]]
-        right = -x[self.pins]
+        if not self.unit_responses:
+            return np.array([(held - x[self.bordered[0]]) / self.response[self.bordered[0]]])
+        basis = [self.response, *(shape.value for shape in self.unit_responses)]
+        system = np.array([values[self.bordered] for values in basis]).T
+        for j, shape in enumerate(self.unit_responses, start=1):
+            system[:, j] += shape.tail[self.bordered]
+            system[j, j] = (shape.value[self.bordered[j]] - 1.0) + shape.tail[self.bordered[j]]
+        right = -x[self.bordered]
         right[0] += held
         return np.linalg.solve(system, right)
 
@@ -188,28 +193,28 @@ class PathDirection:
         """x (N,) and m with K x - m live = right: m = 0, or x = 0 at the first pin."""
         return self._hold(self.factor.solve(right))
 
-    def _shape(self, pin: int, state: IntArray) -> Shape:
+    def _unit_response(self, border: int, state: IntArray) -> UnitResponse:
         """The displacements that a unit force at a pin causes."""
         one = np.zeros(self.model.n_unknowns)
-        one[pin] = 1.0
-        shape = Shape(pin, self.factor.solve(one), np.zeros_like(one))
+        one[border] = 1.0
+        shape = UnitResponse(border, self.factor.solve(one), np.zeros_like(one))
         self._refine(shape, state, 2)
         return shape
 
-    def _refine(self, shape: Shape, state: IntArray, rounds: int) -> None:
+    def _refine(self, shape: UnitResponse, state: IntArray, rounds: int) -> None:
         """Refine a shape, whose pin's spring carries all but a tiny share of the force, to twice working precision."""
         for _ in range(rounds):
             self.rates(shape.value, shape.tail)
             defect = self.model.out_of_balance(self.opening_rate, self.trial_rate, state, 0.0, 0.0)
-            for pin in self.pins:
-                defect[pin] += (float(pin == shape.pin) - shape.value[pin]) - shape.tail[pin]
+            for border in self.bordered:
+                defect[border] += (float(border == shape.border) - shape.value[border]) - shape.tail[border]
             shape.value, shape.tail = _sum(shape.value, shape.tail + self.factor.solve(defect))
 
-    def turn(self, change: Change, crossing: float, state: IntArray, extent: float) -> bool:
+    def update(self, change: Change, crossing: float, state: IntArray, extent: float) -> bool:
         """Turn onto the next piece.
 
         Args:
-            change: the point that changes state, already changed in `state`; crossing: rate b'v of its kink function.
+            change: the point that changes state, already changed in `state`; crossing: rate b'v of its breakpoint function.
 
         Returns:
             False where the tangent must be factorised afresh; velocity and rate of the multiplier are near then.
@@ -222,7 +227,7 @@ class PathDirection:
         combine(self.velocity, keep, crossing, w)
         self.speed = keep * self.speed + crossing * rate
         self.tail *= keep
-        unit = largest(self.velocity) if self.pins else abs(self.speed)
+        unit = largest(self.velocity) if self.bordered else abs(self.speed)
         if unit > 0.0:
             self.velocity /= unit
             self.tail /= unit
@@ -232,25 +237,25 @@ class PathDirection:
         if not self._is_pinned_right():
             return False
         self.factor.update(y, index, b, 1.0 + along)
-        if self.pins:
+        if self.bordered:
             self.response -= y * (float(b @ self.response[index]) / (1.0 + along))
-            if self._is_soft() and len(self.pins) < SOFT_MOTIONS.most:
+            if self._is_soft() and len(self.bordered) < SOFT_MOTIONS.most:
                 return False
-            for shape in self.shapes:
+            for shape in self.unit_responses:
                 shape.value -= y * (float(b @ shape.value[index]) / (1.0 + along))
                 shape.tail -= y * (float(b @ shape.tail[index]) / (1.0 + along))
                 self._refine(shape, state, 1)
-        return self.straighten(state, extent, strict=True) and not self._leads_back(change, crossing)
+        return self.refine(state, extent, strict=True) and not self._leads_back(change, crossing)
 
-    def straighten(self, state: IntArray, extent: float, strict: bool = False) -> bool:
+    def refine(self, state: IntArray, extent: float, strict: bool = False) -> bool:
         """Measure the gap rates, and refine the velocity while K v = l live is not met. False: it stays bent.
 
         A defect of a soft piece that refinement no longer lowers is borne, unless it is to be strictly straight.
         """
-        self.fine = bool(self.shapes) or (bool(self.pins) and extent > REFINEMENT.doubled)
+        self.fine = bool(self.unit_responses) or (bool(self.bordered) and extent > REFINEMENT.doubled)
         self.measure()
         by = REFINEMENT
-        if self.pins:
+        if self.bordered:
             enough, bearable = by.soft_defect / extent, (by.soft_defect if strict else by.soft_accepted) / extent
         else:
             enough = bearable = by.defect * self.live_size * abs(self.speed)
@@ -258,7 +263,7 @@ class PathDirection:
         for count in range(REFINEMENT.steps):
             defect = self.model.out_of_balance(self.opening_rate, self.trial_rate, state, self.speed, 0.0)
             worst = largest(defect)
-            if worst <= enough and (count > 0 or not self.factor.footed):
+            if worst <= enough and (count > 0 or not self.factor.is_regularised):
                 return True
             if not worst < REFINEMENT.contraction * previous:
                 return worst <= bearable

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from methods.springs.model.factor import SingularTangent
-from methods.springs.path.continuation import Tracer
+from methods.springs.path.continuation import PathFollower
 from methods.springs.rest.equilibrium import equilibrium
 
 
@@ -30,7 +30,7 @@ class JumpTuning:
 JUMP = JumpTuning()
 
 
-def past_turn(tracer: Tracer, peak: float, jumps: int) -> tuple[Tracer, float]:
+def past_turn(follower: PathFollower, peak: float, jumps: int) -> tuple[PathFollower, float]:
     """The tracer to go on with where a path has turned down, and the share of the peak at which to look again.
 
     Args:
@@ -39,28 +39,28 @@ def past_turn(tracer: Tracer, peak: float, jumps: int) -> tuple[Tracer, float]:
     Raises:
         SingularTangent: the path cannot be taken up again where it stands.
     """
-    after = _jump(tracer, peak) if jumps > 0 else None
+    after = _jump(follower, peak) if jumps > 0 else None
     if after is not None:
         return after, JUMP.turn
-    tracer.refresh()
-    return tracer, np.inf
+    follower.refresh()
+    return follower, np.inf
 
 
-def _jump(tracer: Tracer, peak: float) -> Tracer | None:
+def _jump(follower: PathFollower, peak: float) -> PathFollower | None:
     """The tracer just above the peak, at the equilibrium that the springs come to from where it is; None if at none."""
     above = peak * (1.0 + JUMP.above) + JUMP.least
-    answer = equilibrium(tracer.model, tracer.factor, tracer.u, above, tracer.history, commits=True)
+    answer = equilibrium(follower.model, follower.factor, follower.u, above, follower.history, commits=True)
     if not answer.found:
         return None
     try:
-        follow = Tracer.from_rest(tracer.model, tracer.factor, answer)
+        follow = PathFollower.from_rest(follower.model, follower.factor, answer)
     except SingularTangent:
         return None
-    return successor(follow, tracer)
+    return successor(follow, follower)
 
 
-def successor(follow: Tracer, tracer: Tracer) -> Tracer:
+def successor(follow: PathFollower, follower: PathFollower) -> PathFollower:
     """A tracer further along the path, which keeps the scales of the one it follows."""
-    follow.direction.elastic, follow.first_displacement = tracer.direction.elastic, tracer.first_displacement
-    follow.certificate = tracer.certificate
+    follow.direction.elastic, follow.first_displacement = follower.direction.elastic, follower.first_displacement
+    follow.certificate = follower.certificate
     return follow

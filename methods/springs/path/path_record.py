@@ -25,7 +25,7 @@ class PathEnd(StrEnum):
 
 
 @dataclass(frozen=True, eq=False)
-class LoadStep:
+class PathStep:
     """A point of the path: multiplier, displacements u (N,), gaps g and tau (P,) and states (P,)."""
 
     multiplier: float
@@ -51,11 +51,11 @@ class PathRecord:
     first_limit: float | None = None
     events: int = 0
     most: int = 0
-    steps: list[LoadStep] = field(default_factory=list)
+    steps: list[PathStep] = field(default_factory=list)
     _met: int = field(default=0, init=False)
     _every: int = field(default=1, init=False)
 
-    def keep(self, step: Callable[[], LoadStep], always: bool = False) -> None:
+    def keep(self, step: Callable[[], PathStep], always: bool = False) -> None:
         """Keep a point whole if it is its turn, or `always`; where there are too many, every second one goes."""
         if self.most and (always or self._met % self._every == 0):
             self.steps.append(step())
@@ -73,7 +73,7 @@ class PathRecord:
 
 
 @dataclass(frozen=True, eq=False)
-class Snapshot:
+class PathSnapshot:
     """A mechanism met on the path: multiplier, gaps g and tau (P,), states (P,) and velocity (N,)."""
 
     multiplier: float

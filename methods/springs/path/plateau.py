@@ -19,7 +19,7 @@ from methods.numerics.failures import SingularMatrix, sparse_lu
 from methods.springs.model.factor import SingularTangent
 from methods.springs.model.gap_law import STICK, classify, gap_forces
 from methods.springs.model.wall_model import WallModel, point_strains
-from methods.springs.path.path_record import Snapshot
+from methods.springs.path.path_record import PathSnapshot
 
 
 @dataclass(frozen=True)
@@ -74,10 +74,10 @@ class PlateauState:
         return max(self.residuals.values())
 
 
-def finish(model: WallModel, present: Snapshot, kept: Snapshot | None = None) -> PlateauState | None:
+def finish(model: WallModel, present: PathSnapshot, kept: PathSnapshot | None = None) -> PlateauState | None:
     """The best collapse state of a path that has come to a plateau, or broke off after a mechanism; None if none.
 
-    The state on the last piece is solved for exactly; where that overshoots a kink, or several mechanisms move at once,
+    The state on the last piece is solved for exactly; where that overshoots a breakpoint, or several mechanisms move at once,
     the state as traced, one solved for with some inertia, and the last mechanism kept on the way are tried. Which one
     holds is decided by their residuals alone.
     """
@@ -96,12 +96,12 @@ def finish(model: WallModel, present: Snapshot, kept: Snapshot | None = None) ->
     return None
 
 
-def worst_residual(model: WallModel, shot: Snapshot) -> float:
+def worst_residual(model: WallModel, shot: PathSnapshot) -> float:
     """Largest relative residual of forces and velocity of a snapshot, as they are, as a collapse state."""
     return _as_traced(model, shot).worst
 
 
-def _as_traced(model: WallModel, shot: Snapshot) -> PlateauState:
+def _as_traced(model: WallModel, shot: PathSnapshot) -> PlateauState:
     """Forces and velocity of a snapshot as they are."""
     return _collapse_state(model, shot.multiplier, shot.opening, shot.trial, shot.state, shot.velocity)
 
@@ -124,10 +124,10 @@ def _collapse_state(
     return check(assembly, multiplier, forces, field / (abs(live) or 1.0))
 
 
-def _solve_last_piece(model: WallModel, shot: Snapshot) -> PlateauState:
+def _solve_last_piece(model: WallModel, shot: PathSnapshot) -> PlateauState:
     """Solve for the state and the mechanism of the singular piece. Raises SingularTangent when it is not unique.
 
-    Points that rounding carried a hair across their kink change state, and the piece is solved for again.
+    Points that rounding carried a hair across their breakpoint change state, and the piece is solved for again.
     """
     multiplier, state = shot.multiplier, shot.state.copy()
     opening, trial = shot.opening.copy(), shot.trial.copy()
@@ -152,7 +152,7 @@ def _solve_last_piece(model: WallModel, shot: Snapshot) -> PlateauState:
     return _collapse_state(model, multiplier, opening, trial, state, mechanism)
 
 
-def _of_many_mechanisms(model: WallModel, shot: Snapshot) -> PlateauState:
+def _of_many_mechanisms(model: WallModel, shot: PathSnapshot) -> PlateauState:
     """State and mechanism of a piece on which several motions have no stiffness, so that no system has one solution.
 
     Points that hardly move in the velocity are held. Some inertia makes the tangents regular, and iteration removes

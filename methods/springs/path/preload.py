@@ -12,15 +12,15 @@ import numpy as np
 
 from harness.model.assembly import FloatArray
 from methods.springs.model.factor import Factor
-from methods.springs.model.gap_law import KINKS, STICK
+from methods.springs.model.gap_law import BREAKPOINTS, STICK
 from methods.springs.model.wall_model import WallModel
-from methods.springs.path.continuation import Tracer
+from methods.springs.path.continuation import PathFollower
 from methods.springs.path.plateau import COLLAPSE
 
 
 def preloaded(
     model: WallModel, factor: Factor, multiplier: float, forces: FloatArray, certificate: float = COLLAPSE.certificate
-) -> Tracer:
+) -> PathFollower:
     """The path from contact forces, with a gap point at each end of every interface.
 
     Args:
@@ -29,9 +29,9 @@ def preloaded(
         forces: (m, 3) end forces n1, n2, s [force] within yield; the shear is shared out as the compression is.
         certificate: largest residual of a mechanism that ends the path.
     """
-    ends = np.maximum(forces[:, :2] / model.force, KINKS.force)
+    ends = np.maximum(forces[:, :2] / model.force, BREAKPOINTS.force)
     share = (forces[:, 2] / model.force / ends.sum(axis=1))[model.interface]
     normal = np.where(model.position == 0.0, ends[model.interface, 0], ends[model.interface, 1])
     loaded = replace(model, initial_opening=-normal / model.kn)
     u, state = np.zeros(model.n_unknowns), np.full(model.n_points, STICK)
-    return Tracer(loaded, factor, u, multiplier, -share * normal, state, certificate=certificate)
+    return PathFollower(loaded, factor, u, multiplier, -share * normal, state, certificate=certificate)

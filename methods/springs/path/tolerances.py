@@ -82,8 +82,8 @@ class MechanismTests:
 
     Attributes:
         elastic: elastic force rates below this share of the strain rates count as zero: the direction is a mechanism.
-        least: share of the present displacement by which it moves before its next kink, to be looked at.
-        far: multiple of the present displacement that it moves before its next kink as the collapse.
+        least: share of the present displacement by which it moves before its next breakpoint, to be looked at.
+        far: multiple of the present displacement that it moves before its next breakpoint as the collapse.
         growth: of the displacements from one check to the next.
         confirmed: displacements, in multiples of the first, at which one that passes its check is the collapse.
     """

@@ -11,12 +11,12 @@ from harness.model.assembly import FloatArray
 from methods.springs.model.factor import Factor
 from methods.springs.model.wall_model import WallModel
 from methods.springs.rest.newton import Equilibrium, newton
-from methods.springs.rest.slow_motion import LOAD_RAISING, REST, SlowMotion
+from methods.springs.rest.pseudo_transient import LOAD_RAISING, REST, PseudoTransient
 
 
 @dataclass(frozen=True)
 class FirstSteps:
-    """The Newton steps off the kinks on which gravity leaves many gap points.
+    """The Newton steps off the breakpoints on which gravity leaves many gap points.
 
     Attributes:
         multiplier: of the first.
@@ -52,7 +52,7 @@ def equilibrium(
     if answer.found:
         return answer
     start = replace(answer, u=u, history=history)
-    return SlowMotion(model, factor, start, commits).move(multiplier, limit)
+    return PseudoTransient(model, factor, start, commits).move(multiplier, limit)
 
 
 def gravity_state(model: WallModel, factor: Factor) -> Equilibrium:

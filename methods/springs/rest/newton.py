@@ -12,7 +12,7 @@ import numpy as np
 
 from harness.model.assembly import FloatArray, IntArray
 from methods.springs.model.factor import Factor, SingularTangent, refactor_any
-from methods.springs.model.gap_law import KINKS, same_forces
+from methods.springs.model.gap_law import BREAKPOINTS, same_forces
 from methods.springs.model.wall_model import WallModel, load_scale
 
 
@@ -94,4 +94,4 @@ def settled(
 ) -> bool:
     """Whether the two sets of states give the same forces at u."""
     opening, slip = model.strains(u)
-    return same_forces(opening, model.kt * slip + history, model.kn, model.mu, state, landed, KINKS.force * scale)
+    return same_forces(opening, model.kt * slip + history, model.kn, model.mu, state, landed, BREAKPOINTS.force * scale)

@@ -7,30 +7,30 @@ from dataclasses import dataclass
 import numpy as np
 
 from methods.springs.path.commits import COMMITS, committed_step
-from methods.springs.path.continuation import Tracer
+from methods.springs.path.continuation import PathFollower
 from methods.springs.path.jump import JUMP, past_turn, successor
 from methods.springs.path.path_record import PathEnd, PathRecord
 
 
 @dataclass(frozen=True)
-class Followed:
+class LoadPath:
     """Where a path ended and why, the commits on the way, and the largest residual found on it."""
 
-    tracer: Tracer
+    follower: PathFollower
     end: PathEnd
     commits: int
     residual: float
 
 
 def follow(
-    tracer: Tracer,
+    follower: PathFollower,
     record: PathRecord,
     max_events: int,
     interval: float = np.inf,
     highest: float = np.inf,
     jumps: int = JUMP.most,
     committed_up_to: float = np.inf,
-) -> Followed:
+) -> LoadPath:
     """Follow a path from where the tracer stands to its end.
 
     Args:
@@ -46,37 +46,37 @@ def follow(
         SingularTangent: the path cannot be taken up again where it stands.
         OutOfTime: the time given is over; the record has the path so far.
     """
-    committing, large = interval < np.inf, COMMITS.within * tracer.first_displacement
+    committing, large = interval < np.inf, COMMITS.within * follower.first_displacement
     turn = JUMP.turn if jumps > 0 else np.inf
     commits, residual, hopeless = 0, 0.0, -np.inf
     while True:
         after = None
-        early = record.peak <= tracer.multiplier <= committed_up_to - interval and tracer.extent < large
-        if committing and early and tracer.may_commit():
-            after = _committed(tracer, interval, record)
+        early = record.peak <= follower.multiplier <= committed_up_to - interval and follower.extent < large
+        if committing and early and follower.may_commit():
+            after = _committed(follower, interval, record)
         if after is not None:
-            commits, tracer, end = commits + 1, after, PathEnd.TARGET
+            commits, follower, end = commits + 1, after, PathEnd.TARGET
         else:
-            end = tracer.run(record, max_events, tracer.multiplier + interval, turn)
-        residual = max(residual, tracer.worst_residual)
+            end = follower.run(record, max_events, follower.multiplier + interval, turn)
+        residual = max(residual, follower.worst_residual)
         if end == PathEnd.TURNED_DOWN:
-            tracer, turn = past_turn(tracer, record.peak, jumps if record.peak > hopeless else 0)
+            follower, turn = past_turn(follower, record.peak, jumps if record.peak > hopeless else 0)
             jumps -= 1
             if turn == np.inf:
                 hopeless = record.peak
         elif end != PathEnd.TARGET:
-            return Followed(tracer, end, commits, residual)
-        elif tracer.multiplier > highest:
-            return Followed(tracer, PathEnd.BREAKDOWN, commits, residual)
+            return LoadPath(follower, end, commits, residual)
+        elif follower.multiplier > highest:
+            return LoadPath(follower, PathEnd.BREAKDOWN, commits, residual)
 
 
-def _committed(tracer: Tracer, interval: float, record: PathRecord) -> Tracer | None:
+def _committed(follower: PathFollower, interval: float, record: PathRecord) -> PathFollower | None:
     """The tracer one interval after a commit, by a finite Newton step; None where that does not settle."""
-    after = committed_step(tracer, interval)
+    after = committed_step(follower, interval)
     if after is None:
-        tracer.refresh()
+        follower.refresh()
         return None
     record.peak = max(record.peak, after.multiplier)
-    record.add(after.multiplier, float(tracer.model.live @ after.u), after.n_slip, after.n_open)
+    record.add(after.multiplier, float(follower.model.live @ after.u), after.n_slip, after.n_open)
     record.keep(after.load_step)
-    return successor(after, tracer)
+    return successor(after, follower)

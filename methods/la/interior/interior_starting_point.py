@@ -22,7 +22,7 @@ from methods.la.interior.newton_step import Point
 
 
 @dataclass(frozen=True)
-class Pair:
+class StartingPair:
     """How exact the pair is, and where its paths are left.
 
     Attributes:
@@ -36,10 +36,10 @@ class Pair:
     least_cost: float = 1e-9
 
 
-PAIR = Pair()
+PAIR = StartingPair()
 
 
-def feasible_pair(problem: Problem, newton: NewtonMatrix, gap: float) -> tuple[Point | None, int]:
+def interior_starting_point(problem: Problem, newton: NewtonMatrix, gap: float) -> tuple[Point | None, int]:
     """The pair as one point, or None where either path does not get there, and the Newton steps spent.
 
     Args:

@@ -16,7 +16,7 @@ ROUGHEST = 1.5
 """Friction of all joints at most, where unloaded ones are lowered further; above, starts end at self-stress."""
 
 
-def smoothed(problem: Problem, factor: float) -> Problem | None:
+def with_reduced_friction(problem: Problem, factor: float) -> Problem | None:
     """The wall with friction of ROUGHEST at most, times `factor` in the unloaded joints; None if all are loaded."""
     unloaded = problem.unloaded_joints
     if not unloaded.any():

@@ -18,7 +18,7 @@ from methods.la.interior.interior_point import PathSettings, follow_path, start_
 from methods.numerics.failures import NumericalFailure
 
 
-def standing_forces(problem: Problem, newton: NewtonMatrix, imbalance: float = 1e-9) -> FloatArray | None:
+def phase_one_forces(problem: Problem, newton: NewtonMatrix, imbalance: float = 1e-9) -> FloatArray | None:
     """Forces (m, 3) in equilibrium with the dead load within yield, or None if the path does not find any.
 
     Args:

@@ -14,15 +14,15 @@ from methods.springs.model.settings import GapSettings
 from methods.springs.model.wall_model import build_model
 from methods.springs.patterns import running_bond
 from methods.springs.rest.newton import newton
-from methods.springs.rest.slow_motion import SlowMotion
+from methods.springs.rest.pseudo_transient import PseudoTransient
 
 
-def standing(wall: Assembly, commits: bool = True) -> SlowMotion:
+def standing(wall: Assembly, commits: bool = True) -> PseudoTransient:
     """The wall come to rest under its dead load by slow motion."""
     model = build_model(wall, GapSettings())
     factor = make_factor(model)
     virgin = newton(model, factor, np.zeros(model.n_unknowns), 0.0, model.history, 0)
-    motion = SlowMotion(model, factor, virgin, commits)
+    motion = PseudoTransient(model, factor, virgin, commits)
     assert motion.move(0.0).found
     return motion
 

@@ -17,8 +17,8 @@ import pymunk
 from pymunk import batch
 
 from harness.model.assembly import Assembly, FloatArray, IntArray
-from methods.de.engines.courses import Tuning, courses, masses, number_of_courses
 from methods.de.engines.engine import motion_units
+from methods.de.engines.mass_scaling import MassScaling, courses, masses, number_of_courses
 from methods.de.engines.strips import STRIP, build_strips
 
 
@@ -44,7 +44,7 @@ _VELOCITY = batch.BodyFields.VELOCITY | batch.BodyFields.ANGULAR_VELOCITY
 _FORCE = batch.BodyFields.FORCE | batch.BodyFields.TORQUE
 
 
-class StripSpace:
+class PymunkJoints:
     """The engine of `de`: see `methods.de.engines.engine.Engine`.
 
     Args:
@@ -58,7 +58,9 @@ class StripSpace:
         CannotModel: see `methods.de.engines.strips.build_strips`.
     """
 
-    def __init__(self, assembly: Assembly, blocks: IntArray, joints: IntArray, iterations: int, tuning: Tuning) -> None:
+    def __init__(
+        self, assembly: Assembly, blocks: IntArray, joints: IntArray, iterations: int, tuning: MassScaling
+    ) -> None:
         self.assembly = assembly
         self.interfaces = assembly.n_interfaces
         self.steps = 0

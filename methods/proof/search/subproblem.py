@@ -27,7 +27,7 @@ Division = AtContact | AtNormalForce
 
 
 @dataclass(frozen=True)
-class Case:
+class Subproblem:
     """Collapse states of some contacts without slack and some without a rate, and some normal forces within limits.
 
     Attributes:
@@ -39,7 +39,7 @@ class Case:
     still: frozenset[int] = frozenset()
     normal: Mapping[int, tuple[float, float]] = field(default_factory=dict)
 
-    def halves(self, at: Division) -> tuple[Case, Case]:
+    def halves(self, at: Division) -> tuple[Subproblem, Subproblem]:
         """The two cases of a division, which hold every state of this one."""
         if isinstance(at, AtContact):
             return replace(self, tight=self.tight | {at.contact}), replace(self, still=self.still | {at.contact})
@@ -57,4 +57,4 @@ class Case:
         return found
 
 
-EVERY = Case()
+ROOT = Subproblem()

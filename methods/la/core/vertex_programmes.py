@@ -32,7 +32,7 @@ class ExactVertices:
 
     simplex_up_to: int = 400
     cost: float = 1e4
-    uneven: float = 1e3
+    badly_scaled: float = 1e3
 
 
 VERTICES = ExactVertices()
@@ -47,7 +47,7 @@ class ExtremeSolution:
 
 
 @dataclass(frozen=True, eq=False)
-class Units:
+class RowScaling:
     """What one unit of a programme is worth: forces of every interface (m,), equilibrium of every free block (n,)."""
 
     interfaces: FloatArray
@@ -71,10 +71,10 @@ class ForceProgramme:
         also: (3n,) a further load that may act at any multiple from zero on; its column stands before the multiplier's.
     """
 
-    def __init__(self, problem: Problem, units: Units | None = None, also: FloatArray | None = None) -> None:
+    def __init__(self, problem: Problem, units: RowScaling | None = None, also: FloatArray | None = None) -> None:
         self.problem = problem
         m, n = problem.n_interfaces, problem.n_velocities
-        self._units = units or Units(np.ones(m), np.ones(n // 3))
+        self._units = units or RowScaling(np.ones(m), np.ones(n // 3))
         self._rows = np.repeat(1.0 / self._units.blocks, 3)
         self._columns = np.repeat(self._units.interfaces, 3)
         self._loads = 1 if also is None else 2
@@ -262,10 +262,10 @@ class ForceProgramme:
 
 def force_programme(problem: Problem) -> ForceProgramme:
     """The programmes of a wall in units that suit the loads of its blocks."""
-    return ForceProgramme(problem, units_of(problem))
+    return ForceProgramme(problem, row_scaling(problem))
 
 
-def rates_against_any_load(problem: Problem, units: Units | None, tight: BoolArray) -> FloatArray | None:
+def rates_against_any_load(problem: Problem, units: RowScaling | None, tight: BoolArray) -> FloatArray | None:
     """Rates (m, 4) of a mechanism to rounding that proves that no forces bear any multiplier, or None without one.
 
     Args:
@@ -276,10 +276,10 @@ def rates_against_any_load(problem: Problem, units: Units | None, tight: BoolArr
     return None if isinstance(found, str) or found.statics.multiplier <= 0.5 else found.kinematics.rates
 
 
-def uneven(problem: Problem) -> bool:
+def badly_scaled(problem: Problem) -> bool:
     """Whether loads of blocks differ so much that forces and equilibrium are measured in units of their own."""
     size = _loads(problem)
-    return bool(size.max(initial=0.0) >= VERTICES.uneven * size.min(initial=np.inf) > 0.0)
+    return bool(size.max(initial=0.0) >= VERTICES.badly_scaled * size.min(initial=np.inf) > 0.0)
 
 
 def _loads(problem: Problem) -> FloatArray:
@@ -289,9 +289,9 @@ def _loads(problem: Problem) -> FloatArray:
     return np.asarray(np.maximum(size, least))
 
 
-def units_of(problem: Problem) -> Units | None:
+def row_scaling(problem: Problem) -> RowScaling | None:
     """Units of interfaces and blocks where loads differ much: what each carries of the dead load, or its own load."""
-    if not uneven(problem):
+    if not badly_scaled(problem):
         return None
     size = _loads(problem)
     found = ForceProgramme(replace(problem, live=-problem.dead)).extreme(greatest=False)
@@ -304,7 +304,7 @@ def units_of(problem: Problem) -> Units | None:
     blocks = np.where(np.isfinite(own), own, 0.0)
     for block in (assembly.block_a, assembly.block_b):
         np.maximum.at(blocks, block, carried)
-    return Units(_power_of_two(carried), _power_of_two(blocks[assembly.free]))
+    return RowScaling(_power_of_two(carried), _power_of_two(blocks[assembly.free]))
 
 
 def _power_of_two(size: FloatArray) -> FloatArray:

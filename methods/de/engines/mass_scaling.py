@@ -12,7 +12,7 @@ from harness.model.assembly import Assembly, FloatArray, IntArray, polygon_area
 
 
 @dataclass(frozen=True)
-class Tuning:
+class MassScaling:
     """Numbers that decide how fast a wall settles, and not what it settles to.
 
     Attributes:
@@ -50,19 +50,19 @@ class SettlingRules:
 RULES = SettlingRules()
 
 
-def tunings(course: IntArray, mass_decay: float | None) -> list[Tuning]:
+def tunings(course: IntArray, mass_decay: float | None) -> list[MassScaling]:
     """Tunings to choose from at multiplier zero: for walls, and for chains of blocks as arches are.
 
     Walls: masses fall by exp(-0.4) a course, over at most exp(-14); damping 1 - 0.2 / courses between 0.95 and 0.9975.
-    Chains: `light_top`, with damping 1 - 0.5 / courses where that is weaker: arches of 81 and 101 voussoirs then settle
+    Chains: `lighter_upwards`, with damping 1 - 0.5 / courses where that is weaker: arches of 81 and 101 voussoirs then settle
     in nine tenths and half of the time steps. A chain is offered this tuning first. A mass decay that is given leaves
     one tuning.
     """
     tallest = number_of_courses(course)
     keep = float(np.clip(1.0 - RULES.loss / tallest, RULES.strongest, RULES.weakest))
     if mass_decay is not None:
-        return [Tuning(mass_decay, keep)]
-    wall, chain = Tuning(min(RULES.decay, RULES.span / tallest), keep), light_top(course)
+        return [MassScaling(mass_decay, keep)]
+    wall, chain = MassScaling(min(RULES.decay, RULES.span / tallest), keep), lighter_upwards(course)
     chain = replace(chain, damping=float(np.clip(1.0 - RULES.chain_loss / tallest, chain.damping, RULES.weakest)))
     return [chain, wall] if is_chain(course) else [wall, chain]
 
@@ -72,9 +72,9 @@ def number_of_courses(course: IntArray) -> int:
     return int(course.max(initial=1))
 
 
-def light_top(course: IntArray) -> Tuning:
+def lighter_upwards(course: IntArray) -> MassScaling:
     """Masses that fall by exp(-0.4) a course, over at most exp(-4) in all; damping 0.98."""
-    return Tuning(min(RULES.decay, RULES.light_span / number_of_courses(course)), RULES.kept)
+    return MassScaling(min(RULES.decay, RULES.light_span / number_of_courses(course)), RULES.kept)
 
 
 def is_chain(course: IntArray) -> bool:

@@ -24,7 +24,7 @@ from methods.numerics.failures import NumericalFailure
 
 
 @dataclass(frozen=True)
-class Lagging:
+class TrescaIteration:
     """How the bounds lag behind.
 
     Attributes:
@@ -47,7 +47,7 @@ class Lagging:
     clipped: float = 5.0
 
 
-LAGGING = Lagging()
+TRESCA_ITERATION = TrescaIteration()
 SHARP = PathSettings(dilatancy=1.0, gap=1e-17, residual=1e-3, max_iterations=150, patience=5)
 """Rates of contacts that do not move must vanish against forces of any size, hence the small gap."""
 
@@ -58,7 +58,7 @@ def with_bounds(problem: Problem, bound: FloatArray) -> Problem:
     return replace(problem, law=JointLaw(none, none, np.column_stack([none, none, bound, bound])))
 
 
-def lagged_mechanism(problem: Problem, newton: NewtonMatrix, steps: int, follow: float) -> tuple[PathResult, int]:
+def tresca_mechanism(problem: Problem, newton: NewtonMatrix, steps: int, follow: float) -> tuple[PathResult, int]:
     """The exact mechanism of the programme with the bounds reached, and the Newton steps in all.
 
     Args:
@@ -70,12 +70,12 @@ def lagged_mechanism(problem: Problem, newton: NewtonMatrix, steps: int, follow:
     Raises:
         SingularMatrix: a Newton matrix is singular to rounding.
     """
-    settings = PathSettings(dilatancy=1.0, gap=LAGGING.start_gap, residual=1e-3)
+    settings = PathSettings(dilatancy=1.0, gap=TRESCA_ITERATION.start_gap, residual=1e-3)
     start = follow_path(problem, newton, start_point(problem), settings)
     point, bound = start.point, _strength(problem, start.point)
     tight = close_tight(problem)
     mean = float((point.slack * point.rates).mean())
-    least = LAGGING.end_gap * problem.live_work / point.slack.size
+    least = TRESCA_ITERATION.end_gap * problem.live_work / point.slack.size
     taken = 0
     for _ in range(steps):
         held = with_bounds(problem, bound)
@@ -87,17 +87,19 @@ def lagged_mechanism(problem: Problem, newton: NewtonMatrix, steps: int, follow:
         wanted = bound + follow * (_strength(problem, point) - bound)
         point, length = _step(step, point, wanted - bound, mean)
         bound = 0.5 * point.slack[:, 2:].sum(axis=1)
-        if length < LAGGING.shortest:
+        if length < TRESCA_ITERATION.shortest:
             break
-        if length > LAGGING.free:
-            mean = max(LAGGING.fall * mean, least)
+        if length > TRESCA_ITERATION.free:
+            mean = max(TRESCA_ITERATION.fall * mean, least)
     held = with_bounds(problem, bound)
     sharp = follow_path(held, newton, start_point(held), SHARP)
     return sharp, start.iterations + taken + sharp.iterations
 
 
 def _strength(problem: Problem, point: Point) -> FloatArray:
-    return np.asarray(np.maximum(problem.law.strength(problem.forces_of_slacks(point.slack)), LAGGING.least_bound))
+    return np.asarray(
+        np.maximum(problem.law.strength(problem.forces_of_slacks(point.slack)), TRESCA_ITERATION.least_bound)
+    )
 
 
 def _step(step: NewtonStep, point: Point, shift: FloatArray, mean: float) -> tuple[Point, float]:
@@ -109,8 +111,8 @@ def _step(step: NewtonStep, point: Point, shift: FloatArray, mean: float) -> tup
     lengths = step_lengths(point, replace(predictor, slack=predictor.slack + grown), step.tight, 1.0, 1.0)
     with np.errstate(over="ignore"):  # A product without bound is clipped below like any large one.
         second = (predictor.slack + grown) * predictor.rates * min(lengths)
-    target = target - np.clip(second, -LAGGING.clipped * mean, LAGGING.clipped * mean)
+    target = target - np.clip(second, -TRESCA_ITERATION.clipped * mean, TRESCA_ITERATION.clipped * mean)
     corrector = step.refined(step.direction(target), target)
     corrector = replace(corrector, slack=corrector.slack + grown)
-    primal, dual = step_lengths(point, corrector, step.tight, LAGGING.to_boundary, 1.0)
+    primal, dual = step_lengths(point, corrector, step.tight, TRESCA_ITERATION.to_boundary, 1.0)
     return step.advance(corrector, primal, dual), min(primal, dual)

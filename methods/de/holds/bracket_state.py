@@ -30,7 +30,7 @@ def unmoved(stood: float, how: str = "") -> Answer:
 
 
 @dataclass(eq=False)
-class KnownBrackets:
+class BracketState:
     """What the searches of a wall have found at any time.
 
     Attributes:
@@ -83,7 +83,7 @@ class KnownBrackets:
 
 
 @dataclass(frozen=True, eq=False)
-class Stood:
+class RestState:
     """A state at rest whose contact forces (m, 3) [force] show that the wall bears this multiplier."""
 
     search: BracketSearch
@@ -91,7 +91,7 @@ class Stood:
     forces: FloatArray
 
 
-def highest_shown(assembly: Assembly, searches: list[BracketSearch], tolerance: float) -> Stood | None:
+def highest_shown(assembly: Assembly, searches: list[BracketSearch], tolerance: float) -> RestState | None:
     """The highest state held whose contact forces are in balance as far as the judge asks; None if none is.
 
     Near collapse a state that is held may be followed further before its forces balance block by block; one below it,
@@ -109,11 +109,11 @@ def highest_shown(assembly: Assembly, searches: list[BracketSearch], tolerance: 
         forces = search.engine.contact_forces()
         left = out_of_balance(assembly, forces, assembly.dead + multiplier * assembly.live)
         if float(left.max(initial=0.0)) <= tolerance:
-            return Stood(search, multiplier, forces)
+            return RestState(search, multiplier, forces)
     return None
 
 
-def stopped_answer(assembly: Assembly, known: KnownBrackets, tolerance: float, details: dict[str, Any]) -> Answer:
+def stopped_answer(assembly: Assembly, known: BracketState, tolerance: float, details: dict[str, Any]) -> Answer:
     """What was shown when the time was over.
 
     Args:
@@ -133,7 +133,7 @@ def stopped_answer(assembly: Assembly, known: KnownBrackets, tolerance: float, d
     return answer
 
 
-def _without_rest(known: KnownBrackets) -> Answer:
+def _without_rest(known: BracketState) -> Answer:
     """Nothing is shown to bear even the dead load."""
     moved = [bracket for bracket in known.finished if bracket.held is None and bracket.moving is not None]
     if moved and len(moved) == len(known.finished):
@@ -144,7 +144,7 @@ def _without_rest(known: KnownBrackets) -> Answer:
     return undecided()
 
 
-def _with_rest(assembly: Assembly, known: KnownBrackets, found: list[OrderBracket], stood: Stood) -> Answer:
+def _with_rest(assembly: Assembly, known: BracketState, found: list[OrderBracket], stood: RestState) -> Answer:
     """A state at rest is shown; the upper end is that of the motions above it, if there are any."""
     if not assembly.has_live_load:
         return Answer(Status.OK, Finding.STANDS, f"the dead load is held in {_so_far(known)}; {STOPPED}")
@@ -166,7 +166,7 @@ def _with_rest(assembly: Assembly, known: KnownBrackets, found: list[OrderBracke
     return answer
 
 
-def _so_far(known: KnownBrackets) -> str:
+def _so_far(known: BracketState) -> str:
     """How many orders were searched, in words."""
     if known.finished:
         return f"{len(known.finished)} of {known.orders} body orders"

@@ -19,7 +19,7 @@ from methods.la.sources.search import Search
 
 
 @dataclass(frozen=True)
-class FrictionLadder:
+class FrictionContinuation:
     """Rungs of lower friction, each with its own path and what the rung before knew.
 
     Attributes:

@@ -18,8 +18,8 @@ from methods.la.core.newton_matrix import NewtonMatrix
 from methods.la.core.problem import Problem, make_problem
 from methods.la.sources import explore
 from methods.la.sources.budget import SIZES, Budget
-from methods.la.sources.ladder import FrictionLadder
-from methods.la.sources.paths import CentralPath, SmootherJoints
+from methods.la.sources.friction_continuation import FrictionContinuation
+from methods.la.sources.paths import CentralPath, ReducedFriction
 from methods.la.sources.search import Search
 
 LOWER = 1e-7
@@ -29,7 +29,7 @@ LOWER = 1e-7
 def least(problem: Problem, newton: NewtonMatrix, ladder: tuple[float, ...]) -> float:
     """The least multiplier (scaled) that central paths and a ladder lead to; infinite where they lead to none."""
     search = Search(problem, newton, 0, Budget(replace(SIZES.limits("normal", problem), ladder=ladder)))
-    explore(search, [SmootherJoints(), CentralPath(), FrictionLadder()])
+    explore(search, [ReducedFriction(), CentralPath(), FrictionContinuation()])
     return search.record.least
 
 

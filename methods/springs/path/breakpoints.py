@@ -1,8 +1,8 @@
-"""The search for the next kink along a straight piece of the path.
+"""The search for the next breakpoint along a straight piece of the path.
 
 Inside a cell of states these functions stay positive:
     open: g (closes into slip);  slip: N (opens), sign tau - mu N (sticks);  stick: mu N -+ tau (slips).
-The search is Harris' two-pass ratio test (1973): of the kinks met within a hair of the first, the one crossed
+The search is Harris' two-pass ratio test (1973): of the breakpoints met within a hair of the first, the one crossed
 fastest is taken, which keeps the pivots away from zero.
 """
 
@@ -17,10 +17,10 @@ from methods.springs.model.gap_law import OPEN, SLIP_MINUS, SLIP_PLUS, STICK
 
 
 @compiled
-def kink_functions(
+def breakpoint_functions(
     opening: float, trial: float, opening_rate: float, trial_rate: float, kn: float, mu: float, state: int
 ) -> tuple[float, float, float, float]:
-    """Values and rates (value 0, rate 0, value 1, rate 1) of the two kink functions of one point; rate 1 for none."""
+    """Values and rates (value 0, rate 0, value 1, rate 1) of the two breakpoint functions of one point; rate 1 for none."""
     if state == OPEN:
         return kn * opening, kn * opening_rate, 1.0, 1.0
     normal, normal_rate = -kn * opening, -kn * opening_rate
@@ -40,7 +40,7 @@ def kink_functions(
 
 @compiled
 def target_state(state: int, which: int, trial: float) -> int:
-    """The state behind kink function `which`; a point that closes slips the way its trial shear pulls."""
+    """The state behind breakpoint function `which`; a point that closes slips the way its trial shear pulls."""
     if state == OPEN:
         return SLIP_PLUS if trial >= 0.0 else SLIP_MINUS
     if state == STICK:
@@ -49,7 +49,7 @@ def target_state(state: int, which: int, trial: float) -> int:
 
 
 @compiled
-def next_kink(
+def next_breakpoint(
     opening: FloatArray,
     trial: FloatArray,
     opening_rate: FloatArray,
@@ -63,17 +63,17 @@ def next_kink(
     barred_point: int,
     barred_state: int,
 ) -> tuple[float, int, int]:
-    """Find the first kink on the way.
+    """Find the first breakpoint on the way.
 
     Args:
         opening, trial: (P,) g and tau now; opening_rate, trial_rate: (P,) their rates.
         kn, mu: (P,) of the points; state: (P,) states.
-        tolerance: how far (dimensionless force) a kink may be overrun by the choice among near ties.
-        noise: rates of kink functions below this share of the fastest gap rate count as zero, if below `floor` too.
+        tolerance: how far (dimensionless force) a breakpoint may be overrun by the choice among near ties.
+        noise: rates of breakpoint functions below this share of the fastest gap rate count as zero, if below `floor` too.
         barred_point, barred_state: the change just made the other way round, which is not taken back at once.
 
     Returns:
-        (step, point, new state); step is infinite and point -1 when no kink follows.
+        (step, point, new state); step is infinite and point -1 when no breakpoint follows.
     """
     count = len(state)
     least = min(noise * max(largest(opening_rate), largest(trial_rate)), floor)
@@ -81,7 +81,9 @@ def next_kink(
     within = np.empty(count, dtype=np.int64)
     found = 0
     for p in range(count):
-        v0, r0, v1, r1 = kink_functions(opening[p], trial[p], opening_rate[p], trial_rate[p], kn[p], mu[p], state[p])
+        v0, r0, v1, r1 = breakpoint_functions(
+            opening[p], trial[p], opening_rate[p], trial_rate[p], kn[p], mu[p], state[p]
+        )
         near = False
         if r0 < -least and max(v0, 0.0) <= -r0 * best:
             near = True
@@ -103,7 +105,9 @@ def next_kink(
         return step, point, target
     best *= 1.0 + 1e-14
     for p in within[:found]:
-        v0, r0, v1, r1 = kink_functions(opening[p], trial[p], opening_rate[p], trial_rate[p], kn[p], mu[p], state[p])
+        v0, r0, v1, r1 = breakpoint_functions(
+            opening[p], trial[p], opening_rate[p], trial_rate[p], kn[p], mu[p], state[p]
+        )
         if r0 < -least and -r0 > speed and max(v0, 0.0) <= -r0 * best:
             at = max(v0, 0.0) / -r0
             new = target_state(state[p], 0, trial[p] + at * trial_rate[p])
@@ -117,7 +121,7 @@ def next_kink(
 
 
 @compiled
-def coming_kinks(
+def coming_breakpoints(
     opening: FloatArray,
     trial: FloatArray,
     opening_rate: FloatArray,
@@ -128,10 +132,10 @@ def coming_kinks(
     points: IntArray,
     targets: IntArray,
 ) -> int:
-    """The next kinks along a piece if no state changed, one a point at most; the arguments as in `next_kink`.
+    """The next breakpoints along a piece if no state changed, one a point at most; the arguments as in `next_breakpoint`.
 
     Args:
-        points, targets: (k,) receive the points and the states behind their kinks, nearest first.
+        points, targets: (k,) receive the points and the states behind their breakpoints, nearest first.
 
     Returns:
         How many were found, at most k.
@@ -139,7 +143,9 @@ def coming_kinks(
     limit, found = len(points), 0
     steps = np.empty(limit)
     for p in range(len(state)):
-        v0, r0, v1, r1 = kink_functions(opening[p], trial[p], opening_rate[p], trial_rate[p], kn[p], mu[p], state[p])
+        v0, r0, v1, r1 = breakpoint_functions(
+            opening[p], trial[p], opening_rate[p], trial_rate[p], kn[p], mu[p], state[p]
+        )
         at, which = np.inf, 0
         if r0 < 0.0:
             at = max(v0, 0.0) / -r0

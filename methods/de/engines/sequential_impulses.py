@@ -13,9 +13,9 @@ from typing import NamedTuple
 import numpy as np
 
 from harness.model.assembly import Assembly, FloatArray, IntArray
-from methods.de.engines.courses import Tuning, courses, masses, number_of_courses
 from methods.de.engines.engine import motion_units
-from methods.de.engines.space import polygon_gyration
+from methods.de.engines.mass_scaling import MassScaling, courses, masses, number_of_courses
+from methods.de.engines.pymunk_joints import polygon_gyration
 from methods.de.engines.strips import require_lengths
 from methods.numerics.compiled import compiled
 
@@ -41,7 +41,7 @@ class Rows(NamedTuple):
     friction: FloatArray
 
 
-class SweptWall:
+class SequentialImpulses:
     """The engine of `de`: see `methods.de.engines.engine.Engine`.
 
     Args:
@@ -55,7 +55,9 @@ class SweptWall:
         CannotModel: the two contact points of an interface are not a distance apart.
     """
 
-    def __init__(self, assembly: Assembly, blocks: IntArray, joints: IntArray, iterations: int, tuning: Tuning) -> None:
+    def __init__(
+        self, assembly: Assembly, blocks: IntArray, joints: IntArray, iterations: int, tuning: MassScaling
+    ) -> None:
         require_lengths(assembly)
         self.assembly, self.interfaces, self.steps = assembly, assembly.n_interfaces, 0
         self._unit, self._force = assembly.length_scale, assembly.force_scale / max(assembly.n_free, 1)

@@ -5,9 +5,9 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from methods.de.engines.courses import courses, insertion_orders, tunings
-from methods.de.engines.space import StripSpace
-from methods.de.engines.sweeps import SweptWall
+from methods.de.engines.mass_scaling import courses, insertion_orders, tunings
+from methods.de.engines.pymunk_joints import PymunkJoints
+from methods.de.engines.sequential_impulses import SequentialImpulses
 from methods.de.settings import HoldSettings
 from tests.de.answers import run, unbalanced, unyielding
 from tests.walls import assembly, running_bond, stack
@@ -32,7 +32,7 @@ def test_first_step_is_that_of_pymunk():
     course = courses(wall)
     tuning = tunings(course, None)[0]
     _, blocks, joints = insertion_orders(wall, course, 1, 0)[0]
-    engines = [make(wall, blocks, joints, 20, tuning) for make in (StripSpace, SweptWall)]
+    engines = [make(wall, blocks, joints, 20, tuning) for make in (PymunkJoints, SequentialImpulses)]
     for engine in engines:
         engine.restore(np.zeros_like(engine.save()))
         engine.load(0.5)
@@ -47,7 +47,7 @@ def test_restored_state_is_at_rest_with_the_forces_it_had():
     wall = assembly(running_bond(4, 2), 0.65)
     course = courses(wall)
     _, blocks, joints = insertion_orders(wall, course, 3, 0)[2]
-    engine = SweptWall(wall, blocks, joints, HoldSettings().iterations, tunings(course, None)[0])
+    engine = SequentialImpulses(wall, blocks, joints, HoldSettings().iterations, tunings(course, None)[0])
     engine.advance(40)
     state, forces = engine.save(), engine.contact_forces()
     engine.load(0.4)

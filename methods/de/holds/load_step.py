@@ -8,7 +8,7 @@ from enum import StrEnum
 import numpy as np
 
 from harness.model.assembly import FloatArray
-from methods.de.engines.engine import Engine, Measured, motion_units
+from methods.de.engines.engine import Engine, MeasuredState, motion_units
 from methods.de.holds.motion import Motion, MotionProof, Trend, by_power, by_virtual_work
 from methods.de.settings import HoldSettings
 
@@ -25,7 +25,7 @@ class State(StrEnum):
 
 
 @dataclass(frozen=True, eq=False)
-class Hold:
+class LoadStep:
     """The end of a hold.
 
     Attributes:
@@ -44,7 +44,7 @@ class Hold:
 
 
 @dataclass(eq=False)
-class Watch:
+class ConvergenceMonitor:
     """What a hold shows from check to check.
 
     Attributes:
@@ -126,7 +126,7 @@ class Watch:
             return count >= usual
         return not 0.0 < count * self.decay < relaxations
 
-    def motion(self, engine: Measured) -> Motion | None:
+    def motion(self, engine: MeasuredState) -> Motion | None:
         """The motion, where it is shown that the wall moves; else None."""
         if len(self.velocities) < 8 or self.residuals[-1] <= self.moving:
             return None
@@ -139,13 +139,13 @@ class Watch:
         return motion
 
 
-def hold(engine: Engine, settings: HoldSettings, patience: int = 1) -> Hold:
+def hold(engine: Engine, settings: HoldSettings, patience: int = 1) -> LoadStep:
     """Let the engine settle under its present load.
 
     Held: the residual stays below `held_residual` at two checks in a row. Moving: `motion.py` shows it; this
     is asked where the field is steady, at each doubling of the checks, and at the end. Undecided: neither, when
     `hold_steps` relaxation times are over. That is the time of the damping, or of the wall on its way to rest where
-    that is longer (`Watch.decay`).
+    that is longer (`ConvergenceMonitor.decay`).
 
     Args:
         engine: the wall with its load.
@@ -155,7 +155,7 @@ def hold(engine: Engine, settings: HoldSettings, patience: int = 1) -> Hold:
     check = max(10, round(engine.relaxation / 3.0))
     usual = patience * hold_limit(engine, settings) / check
     units = motion_units(engine.assembly)
-    start, watch = engine.steps, Watch(*residuals_told(engine, settings), units)
+    start, watch = engine.steps, ConvergenceMonitor(*reported_residuals(engine, settings), units)
     affordable = (watch.trend.followed * settings.work / max(engine.interfaces, 1) - engine.steps) / check
     while True:
         engine.advance(check)
@@ -163,17 +163,17 @@ def hold(engine: Engine, settings: HoldSettings, patience: int = 1) -> Hold:
         watch.note(velocity, engine.unbalance(velocity))
         residual = watch.residuals[-1]
         if watch.rests:
-            return Hold(State.HELD, residual, engine.steps - start, velocity)
+            return LoadStep(State.HELD, residual, engine.steps - start, velocity)
         over = watch.over(usual, affordable, patience * settings.hold_steps)
         if over or watch.steady or watch.doubled:
             motion = watch.motion(engine)
             if motion is not None:
-                return Hold(State.MOVING, residual, engine.steps - start, motion.field, motion.proof)
+                return LoadStep(State.MOVING, residual, engine.steps - start, motion.field, motion.proof)
         if over or not np.isfinite(residual):
-            return Hold(State.UNDECIDED, residual, engine.steps - start, velocity)
+            return LoadStep(State.UNDECIDED, residual, engine.steps - start, velocity)
 
 
-def residuals_told(engine: Measured, settings: HoldSettings) -> tuple[float, float]:
+def reported_residuals(engine: MeasuredState, settings: HoldSettings) -> tuple[float, float]:
     """Residuals below which a wall rests under its present load, and from which it may move.
 
     What a multiplier too high by a share leaves out of balance is that share of the live load. Where that is a small

@@ -19,7 +19,7 @@ from pymunk.autogeometry import convex_decomposition
 
 from harness.model.assembly import Assembly, FloatArray, polygon_area
 from harness.model.rings import rings_of
-from methods.de.engines.space import polygon_gyration
+from methods.de.engines.pymunk_joints import polygon_gyration
 
 
 @dataclass(frozen=True)
@@ -43,7 +43,7 @@ _PLACE = batch.BodyFields.POSITION | batch.BodyFields.ANGLE
 _VELOCITY = batch.BodyFields.VELOCITY | batch.BodyFields.ANGULAR_VELOCITY
 
 
-class BlockSpace:
+class PymunkBlocks:
     """Whole blocks under dead + multiplier x live, whose directions stay as they are.
 
     Args:

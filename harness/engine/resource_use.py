@@ -7,7 +7,7 @@ import contextlib
 import psutil
 
 
-def usage(pid: int, *, with_children: bool = False) -> tuple[int, float] | None:
+def resource_use(pid: int, *, with_children: bool = False) -> tuple[int, float] | None:
     """Resident memory [bytes] and CPU time [s] of a process, and of those it started if asked; None if it has ended."""
     memory, cpu = 0, 0.0
     with contextlib.suppress(psutil.Error):
