@@ -12,8 +12,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from harness.engine.compare import execute
-from harness.engine.plan import Limits, Run
+from harness.engine.pipeline import execute
+from harness.engine.run import Limits, Run
 from harness.model.case import Case, CaseFile
 from harness.model.method import Status
 from harness.model.result import Result

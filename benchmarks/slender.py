@@ -16,8 +16,8 @@ from typing import Any
 
 import numpy as np
 
-from harness.engine.compare import execute
-from harness.engine.plan import Limits, Run
+from harness.engine.pipeline import execute
+from harness.engine.run import Limits, Run
 from harness.engine.threads import pin
 from harness.model.assembly import Assembly, FloatArray
 from harness.model.case import Case, CaseFile

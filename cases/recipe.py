@@ -110,6 +110,7 @@ class Remarks:
     suites: Sequence[str]
     errata: Sequence[str] = field(default_factory=tuple)
     kind: Literal["multiplier", "stability"] = "multiplier"
+    methods: Sequence[str] | None = None
 
 
 def recipe(name: str, content: Wall, references: Sequence[Reference], remarks: Remarks) -> Recipe:
@@ -121,6 +122,7 @@ def recipe(name: str, content: Wall, references: Sequence[Reference], remarks: R
         kind=remarks.kind,
         suites=list(remarks.suites),
         source=remarks.source,
+        methods=None if remarks.methods is None else list(remarks.methods),
         errata=[Erratum(text=text) for text in remarks.errata],
         references=list(references),
     )

@@ -25,12 +25,18 @@ def command_pages(folder: Path) -> None:
 
 
 def columns_page(folder: Path) -> None:
-    """The columns of tables of results."""
-    from harness.model.columns import RESULTS
+    """The columns of tables of results, of their comparisons with references, and of studies."""
+    from harness.engine.sweep.running import STUDY
+    from harness.model.columns import COMPARISONS, RESULTS
 
-    parts = ["# Columns of results", "", "Of results.csv, results.parquet and `to_pandas()`.", ""]
-    parts += ["| column | type | unit | meaning |", "|---|---|---|---|"]
-    parts += [f"| `{item.name}` | {item.dtype} | {item.unit} | {item.meaning} |" for item in RESULTS]
+    parts = ["# Columns of results"]
+    for sentence, columns in (
+        ("Of results.csv, results.parquet and `to_pandas()`.", RESULTS),
+        ("Of comparisons.csv.", COMPARISONS),
+        ("Of the runs.csv of a study; what the study varies comes after `case`.", STUDY),
+    ):
+        parts += ["", sentence, "", "| column | type | unit | meaning |", "|---|---|---|---|"]
+        parts += [f"| `{item.name}` | {item.dtype} | {item.unit} | {item.meaning} |" for item in columns]
     (folder / "columns.md").write_text("\n".join(parts) + "\n", encoding="utf-8")
 
 

@@ -2,29 +2,25 @@
 
 from __future__ import annotations
 
-import time
-from datetime import UTC, datetime
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from pydantic import PrivateAttr
 
 from drystone.walls import Wall
-from harness.engine import compare as engine
+from harness.engine import pipeline
+from harness.engine.executors import InProcess, LocalExecutor
 from harness.engine.judge import judge as judge_result
-from harness.engine.plan import Limits, Run, check_methods, check_shares
-from harness.engine.provenance import machine, versions
-from harness.model.answer_check import checked
+from harness.engine.plan import check_methods, check_shares
+from harness.engine.run import Limits, Run
 from harness.model.comparison import CaseResults
 from harness.model.errors import InputError
 from harness.model.method import (
     Answer,
     Method,
-    allowing,
-    check_takes,
     checked_method,
     load_method,
     method_names,
-    prepared,
 )
 from harness.model.proof import Proof, proof_of
 from harness.model.reading import validate
@@ -136,6 +132,7 @@ def analyse(
     seconds: float = Limits().seconds,
     memory_bytes: int = Limits().memory_bytes,
     processes: int = 1,
+    store: str | Path | None = None,
     **settings: Any,
 ) -> Result:
     """What a method finds on a wall, judged; in this process and without limits unless it is isolated.
@@ -147,21 +144,34 @@ def analyse(
         seconds: wall-clock limit of an isolated run [s].
         memory_bytes: memory limit of an isolated run [bytes].
         processes: that the run may use side by side, where the method can (`de`); the answer is the same.
+        store: file in which the result is kept and looked for; None: nowhere. An isolated run is found there by
+            `compare`, `check` and `sweep` under the same limits, and theirs by it.
         settings: of the method, by name; what is not given has its default.
 
     Raises:
         InputError: an unknown method or setting, a wall that the method refuses (isolated: the result says so), or one
-            of your own is to be isolated.
+            of your own is to be isolated or kept.
     """
-    return analyse_by(
-        wall, method, settings, isolated=isolated, limits=Limits(seconds, memory_bytes), processes=processes
-    )
+    limits = Limits(seconds, memory_bytes)
+    return analyse_by(wall, method, settings, isolated=isolated, limits=limits, processes=processes, store=store)
 
 
 def analyse_by(
-    wall: Wall, method: str | Method, settings: dict[str, Any], *, isolated: bool, limits: Limits, processes: int
+    wall: Wall,
+    method: str | Method,
+    settings: dict[str, Any],
+    *,
+    isolated: bool,
+    limits: Limits,
+    processes: int = 1,
+    store: str | Path | None = None,
+    fresh: bool = False,
 ) -> Result:
     """As `analyse`, with settings that may have any name, `seconds` among them.
+
+    Args:
+        wall, method, settings, isolated, limits, processes, store: see `analyse`.
+        fresh: run what is in the store as well.
 
     Raises:
         InputError: as `analyse`.
@@ -171,33 +181,27 @@ def analyse_by(
         loaded = load_method(method)
     elif isolated:
         raise InputError("an isolated method is called by its name", "Give it an entry point, or run it here", "method")
+    elif store is not None:
+        raise InputError("a method that is not installed keeps no results", "Give it an entry point", "store")
     else:
         loaded = checked_method(method)
     check_shares(loaded, processes)
-    chosen = validate(loaded.Settings, settings, "settings")
-    references = tuple(item for item in wall.case.file.references if loaded.name in item.applies_to)
-    fitting = tuple(item for item in references if item.settings == settings)
-    run = Run(wall.case, loaded.name, settings, limits, fitting, processes)
-    if isolated:
-        (record,) = engine.execute([run], None, 1)
-        return Result.on(wall, record)
-    check_takes(prepared(loaded), wall.assembly)
-    started, clock, work = datetime.now(UTC), time.perf_counter(), time.process_time()
-    with allowing(processes):
-        answer = checked(loaded.solve(wall.assembly, chosen), wall.assembly)
-    cost = {"cpu_seconds": time.process_time() - work, "wall_seconds": time.perf_counter() - clock}
-    record = result_of(
-        answer, wall.assembly, case=wall.name, method=loaded.name, family=loaded.family, traits=loaded.traits
-    ).model_copy(
-        update={
-            **cost,
-            "settings": chosen.model_dump(mode="json"),
-            "versions": versions(),
-            "machine": machine(),
-            "started": started.isoformat(timespec="seconds"),
-        }
+    validate(loaded.Settings, settings, "settings")
+    run = Run(
+        wall.case,
+        loaded.name,
+        settings,
+        limits if isolated else None,
+        tuple(
+            item for item in wall.case.file.references if loaded.name in item.applies_to and item.settings == settings
+        ),
+        processes=processes,
+        kept=isinstance(method, str),
     )
-    return Result.on(wall, engine.judged(run, record, loaded.tolerance))
+    executor = LocalExecutor(1) if isolated else InProcess(loaded)
+    with pipeline.opened_at(store) as opened:
+        (record,) = pipeline.execute([run], opened, 1, fresh=fresh, executor=executor)
+    return Result.on(wall, record)
 
 
 def judge(wall: Wall, answer: Answer | Record, tolerance: float = 1e-9) -> Judgement:

@@ -6,6 +6,7 @@ import functools
 import gzip
 import json
 import math
+import time
 from collections.abc import Sequence
 from dataclasses import replace
 from fractions import Fraction
@@ -14,7 +15,7 @@ from typing import Any
 
 import numpy as np
 
-from harness.engine.plan import Limits, Run
+from harness.engine.run import Limits, Run
 from harness.model.assembly import Assembly
 from harness.model.case import Case, read_case, shipped_cases
 from harness.model.comparison import CaseResults, Certified, ComparisonRun, Gate
@@ -26,8 +27,8 @@ from harness.model.reading import json_of, read_bytes
 from harness.model.result import Result, Verdict
 from harness.model.writing import write_whole
 from methods.proof.same_wall import require_same_wall
-from methods.proof.verify.checker import verify
-from methods.proof.verify.document import MOST_BYTES, unpacked
+from methods.proof.verify.checker import SECONDS, verify
+from methods.proof.verify.document import MOST_BYTES, MOST_VALUES, unpacked
 from methods.proof.verify.exact_wall import CertificateError, number
 from methods.proof.words import in_words
 
@@ -86,7 +87,7 @@ def read_certificate(path: Path) -> Any:
         raise InputError(str(error), "Give the whole file, as `drystone bound` wrote it", source=str(path)) from None
     except UnicodeDecodeError as error:
         raise InputError(f"it cannot be read ({error})", "Give a UTF-8 text file", source=str(path)) from None
-    return json_of(text, str(path))
+    return json_of(text, str(path), MOST_VALUES)
 
 
 def write_certificate(path: Path, document: dict[str, Any]) -> None:
@@ -119,22 +120,35 @@ def checked(case: Case, path: Path) -> Certified:
     return _checked(document, assembly, source)
 
 
-def _checked(document: Any, assembly: Assembly, source: str) -> Certified:
+def _checked(document: Any, assembly: Assembly, source: str, seconds: float = SECONDS) -> Certified:
+    if not isinstance(document, dict):
+        raise CertificateError("it is no certificate as `drystone bound` writes them")
     require_same_wall(document, assembly)
-    return Certified(_not_above(verify(document)[0]), proved(document), source, "windows" in document)
+    return Certified(_not_above(verify(document, seconds)[0]), proved(document), source, "windows" in document)
 
 
-def _of_results(item: CaseResults) -> list[Certified]:
-    """What certificates that methods handed on prove, each checked here: a method's word for its bound is none."""
-    found = []
+def _of_results(item: CaseResults, seconds: float) -> tuple[list[Certified], dict[str, str]]:
+    """What certificates that methods handed on prove, each checked here, and why others are refused, by method.
+
+    A method's word for its bound is none.
+
+    Args:
+        item: the results of a wall.
+        seconds: of CPU time for all of them.
+    """
+    found: list[Certified] = []
+    refused: dict[str, str] = {}
+    until = time.process_time() + seconds
     for result in item.results:
-        if isinstance(result.details.get("certificate"), dict):
-            try:
-                certificate = result.details["certificate"]
-                found.append(_checked(certificate, item.case.assembly, f"certificate of {result.method}"))
-            except (CertificateError, InputError):
-                continue  # it proves nothing of this wall
-    return found
+        document = result.details.get("certificate")
+        if document is None:
+            continue
+        try:
+            left = until - time.process_time()
+            found.append(_checked(document, item.case.assembly, f"certificate of {result.method}", left))
+        except (CertificateError, InputError) as error:
+            refused[result.method] = str(error)
+    return found, refused
 
 
 def _named_as(document: Any, assembly: Assembly) -> Assembly:
@@ -156,6 +170,7 @@ def certificate_line(run: Run, result: Result) -> dict[str, Any]:
         run: one of `certificate_runs`.
         result: of the run.
     """
+    assert isinstance(run.case, Case)
     path = certificate_of(run.case)
     assert path is not None
     lower: float | None = None
@@ -192,16 +207,20 @@ def _held(result: Result, certified: Certified) -> tuple[Verdict, str]:
     return Verdict.AGREES, f"{certified.sentence}; {found}"
 
 
-def with_certificates(run: ComparisonRun) -> ComparisonRun:
+def with_certificates(run: ComparisonRun, seconds: float = 60.0) -> ComparisonRun:
     """The comparison with what the certificates beside its cases prove, each checked in fractions and against the wall.
 
     A gate says whether the least state that was found lies at or above the bound, or that the certificate is refused.
     Nothing that was checked before is taken for checked: what a store holds may have been edited.
+
+    Args:
+        run: the comparison.
+        seconds: of CPU time for the certificates that methods hand on, by wall; one that takes more is refused.
     """
-    return replace(run, cases=[_with_certificate(item) for item in run.cases])
+    return replace(run, cases=[_with_certificate(item, seconds) for item in run.cases])
 
 
-def _with_certificate(item: CaseResults) -> CaseResults:
+def _with_certificate(item: CaseResults, seconds: float) -> CaseResults:
     statement = "no collapse state lies below the bound that the certificate of the wall proves in fractions"
     certified = None
     for path in certificates_for(item.case):
@@ -214,7 +233,9 @@ def _with_certificate(item: CaseResults) -> CaseResults:
                 name="certificate", statement=statement, passed=False, sentence=f"{path.name} is refused: {error}"
             )
             return replace(item, gates=[*item.gates, gate])
-    known = [*([] if certified is None else [certified]), *_of_results(item)]
+    handed_on, refused = _of_results(item, seconds)
+    item = replace(item, refused=refused)
+    known = [*([] if certified is None else [certified]), *handed_on]
     if not known:
         return item
     certified = max(known, key=lambda each: each.bound)
@@ -231,10 +252,17 @@ def _with_certificate(item: CaseResults) -> CaseResults:
     return replace(item, gates=[*item.gates, gate], certified=certified)
 
 
-def certified_results(case: Case, result: Result) -> CaseResults:
-    """One result of a wall, with what the certificate of the wall proves where one is known and there is a state."""
+def certified_results(case: Case, result: Result, seconds: float = 60.0) -> CaseResults:
+    """One result of a wall, with what the certificate of the wall proves where one is known and there is a state.
+
+    Args:
+        case: the wall.
+        result: of a method on it.
+        seconds: of CPU time for a certificate that the method hands on.
+    """
     item = CaseResults(case, [result])
-    return _with_certificate(item) if is_collapse_state(result) else item
+    asked = is_collapse_state(result) or result.details.get("certificate") is not None
+    return _with_certificate(item, seconds) if asked else item
 
 
 def _below(result: Result, certified: Certified) -> bool:
@@ -245,6 +273,20 @@ def _below(result: Result, certified: Certified) -> bool:
 
 
 def _not_above(bound: Fraction) -> float:
-    """The greatest float that is not above a fraction: what is proved stays so when it is printed."""
-    nearest = float(bound)
-    return nearest if Fraction(nearest) <= bound else math.nextafter(nearest, -math.inf)
+    """The greatest float that is not above a fraction: what is proved stays so when it is printed.
+
+    Raises:
+        CertificateError: it is beyond all floats.
+    """
+    value = nearest(bound)
+    if value is None:
+        raise CertificateError("its bound is larger than any multiplier of a wall")
+    return value if Fraction(value) <= bound else math.nextafter(value, -math.inf)
+
+
+def nearest(value: Fraction) -> float | None:
+    """The float that is nearest to a fraction; None beyond all floats."""
+    try:
+        return float(value)
+    except OverflowError:
+        return None

@@ -3,19 +3,17 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
-from contextlib import nullcontext
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal
 
 from drystone.certificates import certificate_line, certificate_runs
 from drystone.walls import Wall, library_wall, library_walls
-from harness.engine import compare as engine
-from harness.engine import regression
-from harness.engine.plan import Limits, Run, check_methods, gated_runs
-from harness.engine.store import open_store
+from harness.engine import pipeline, regression
+from harness.engine.plan import check_methods, gated_runs
+from harness.engine.run import Limits, Run
+from harness.engine.store import Store
 from harness.model.case import Case
-from harness.model.result import Result as Record
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -62,7 +60,7 @@ def check(
     jobs: int = 1,
     store: str | Path | None = None,
     fresh: bool = False,
-    told: engine.Told | None = None,
+    told: pipeline.Told | None = None,
 ) -> Check:
     """Hold the methods to the gated references of walls.
 
@@ -83,8 +81,8 @@ def check(
     """
     chosen = map(library_wall, library_walls()) if walls is None else [walls] if isinstance(walls, Wall) else walls
     plan = planned([wall.case for wall in chosen], tier)
-    with nullcontext() if store is None else open_store(Path(store)) as opened:
-        return held(plan, engine.execute(plan.runs, opened, jobs, fresh=fresh, told=told))
+    with pipeline.opened_at(store) as opened:
+        return held(plan, opened, jobs, fresh=fresh, told=told)
 
 
 @dataclass(frozen=True)
@@ -100,8 +98,11 @@ class Plan:
         return [*self.gated, *self.certified]
 
 
-def held(plan: Plan, results: Sequence[Record]) -> Check:
-    """What the results of the runs of a plan, in its order, are beside what is known."""
+def held(
+    plan: Plan, store: Store | None, jobs: int, *, fresh: bool = False, told: pipeline.Told | None = None
+) -> Check:
+    """What the runs of a plan find, or the store has of them, beside what is known; arguments as of `check`."""
+    results = pipeline.execute(plan.runs, store, jobs, fresh=fresh, told=told)
     lines = regression.lines(plan.gated, results[: len(plan.gated)])
     rest = zip(plan.certified, results[len(plan.gated) :], strict=True)
     return Check(lines + [certificate_line(run, result) for run, result in rest])

@@ -3,22 +3,23 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
-from contextlib import nullcontext
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from drystone.analysis import Result, analyse_by
+from drystone.analysis import Result
 from drystone.certificates import with_certificates
 from drystone.walls import Wall
 from harness.engine import compare as engine
-from harness.engine.isolate import preload_methods
-from harness.engine.plan import Limits, Run, check_methods, plan_case
+from harness.engine import pipeline
+from harness.engine.executors import Executor, InProcess, LocalExecutor
+from harness.engine.plan import check_methods, plan_case
 from harness.engine.regression import violations
-from harness.engine.store import open_store
+from harness.engine.run import Limits, Run
+from harness.engine.store import Store, open_store
+from harness.model.case import Case
 from harness.model.comparison import ComparisonRun
 from harness.model.errors import InputError
-from harness.model.result import Result as Record
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -92,10 +93,11 @@ def compare(
     store: str | Path | None = None,
     settings: Mapping[str, dict[str, Any]] | None = None,
     fresh: bool = False,
-    told: engine.Told | None = None,
+    told: pipeline.Told | None = None,
     title: str = "",
     command: str = "drystone.compare",
     studies: Sequence[dict[str, Any]] = (),
+    proof_seconds: float = 60.0,
 ) -> Comparison:
     """Run methods on walls, judge every answer, and hold them against references and theory.
 
@@ -110,9 +112,10 @@ def compare(
         store: file in which results and what the comparison consisted of are kept and looked for; None: nowhere.
         settings: of methods, by name, where not the defaults.
         fresh: run again what is in the store.
-        told: called after each isolated run with the run, its result and whether it was stored.
+        told: called after each run with the run, its result and whether it was stored.
         title, command: what the report says was compared, and how to repeat it.
         studies: for the report to draw, as `reports.studies` describes them.
+        proof_seconds: of CPU time, by wall, for checking certificates that methods hand on [s].
 
     Raises:
         InputError: an unknown method, two walls of one name, or a store that is damaged.
@@ -124,31 +127,74 @@ def compare(
         raise InputError(f'two walls are called "{twice}"', 'Give one another name: wall.called("...")', "walls")
     if methods is not None:
         check_methods(methods, "methods")
-    limits = Limits(seconds, memory_bytes)
-    planned = [run for wall in chosen for run in plan_case(wall.case, methods, limits, settings=settings)]
+    limits = Limits(seconds, memory_bytes) if isolated else None
+    runs = [run for wall in chosen for run in plan_case(wall.case, methods, limits, settings=settings)]
+    executor = LocalExecutor(jobs) if isolated else InProcess()
     cases = [wall.case for wall in chosen]
-    with nullcontext() if store is None else open_store(Path(store)) as opened:
-        if isolated:
-            preload_methods(run.method for run in planned)
-            results = engine.execute(planned, opened, jobs, fresh=fresh, told=told)
-        else:
-            results = _here(chosen, planned)
-        run = engine.comparison_run(title or ", ".join(names), command, cases, planned, results)
-        run = with_certificates(run)
-        if studies:
-            run.provenance["studies"] = list(studies)
+    with pipeline.opened_at(store) as opened:
+        run = compared(
+            title or ", ".join(names),
+            command,
+            cases,
+            runs,
+            opened,
+            executor,
+            fresh=fresh,
+            told=told,
+            studies=studies,
+            proof_seconds=proof_seconds,
+        )
         if opened is not None:
-            engine.remember(opened, run, planned)
+            engine.remember(opened, run, runs)
     by_name = {wall.name: wall for wall in chosen}
     rows = [Result.on(by_name[item.case.id], each, item) for item in run.cases for each in item.results]
     return Comparison(chosen, rows, run)
 
 
-def _here(walls: list[Wall], planned: list[Run]) -> list[Record]:
-    by_case = {id(wall.case): wall for wall in walls}
-    return [
-        analyse_by(
-            by_case[id(run.case)], run.method, run.settings, isolated=False, limits=run.limits, processes=run.processes
-        )
-        for run in planned
-    ]
+def compared(
+    title: str,
+    command: str,
+    cases: Sequence[Case],
+    runs: Sequence[Run],
+    store: Store | None,
+    executor: Executor,
+    *,
+    fresh: bool = False,
+    told: pipeline.Told | None = None,
+    studies: Sequence[dict[str, Any]] = (),
+    certified: bool = True,
+    proof_seconds: float = 60.0,
+) -> ComparisonRun:
+    """The comparison that runs make, found or made, and judged, with what the certificates of their walls prove.
+
+    Args:
+        title, command: what the report says was compared, and how to repeat it.
+        cases: in the order of the report.
+        runs: of these cases.
+        store: where results are looked for and kept; None: nowhere.
+        executor: where runs are made.
+        fresh, told: as of `compare`.
+        studies: for the report to draw.
+        certified: whether certificates are looked at; a page that shows nothing of them can leave it.
+        proof_seconds: as of `compare`.
+    """
+    results = pipeline.execute(runs, store, 1, fresh=fresh, told=told, executor=executor)
+    run = engine.comparison_run(title, command, cases, runs, results)
+    if studies:
+        run.provenance["studies"] = list(studies)
+    return with_certificates(run, proof_seconds) if certified else run
+
+
+def recalled(store: str | Path) -> ComparisonRun:
+    """The comparison that a store remembers last, judged and with certificates checked anew; nothing is run.
+
+    Raises:
+        InputError: there is no such store, none in it, or it is damaged.
+    """
+    if not Path(store).exists():
+        raise InputError("there is no such store", "Run `drystone compare` first", source=str(store))
+    with open_store(Path(store), read_only=True) as opened:
+        found = engine.recall(opened)
+    if found is None:
+        raise InputError("no comparison is in the store", "Run `drystone compare` first", source=str(store))
+    return with_certificates(found)

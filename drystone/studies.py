@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Any
 
 from drystone.walls import Wall
 from harness.engine.executors import Executor, LocalExecutor
-from harness.engine.plan import Limits
+from harness.engine.run import Limits
 from harness.engine.store import Store, open_store
 from harness.engine.sweep.expand import Source, SweepRun, expand, sources_of
 from harness.engine.sweep.neighbours import handed_on

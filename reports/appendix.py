@@ -120,7 +120,7 @@ def render(run: ComparisonRun) -> str:
             value=value_in_words(shown) if shown else "",
             reactions=listed,
             balance=balance,
-            warnings=case.warnings,
+            warnings=(*case.warnings, *item.refusals),
             units=case.wall.units,
             style=Markup(files("reports").joinpath("static/appendix.css").read_text(encoding="utf-8")),
             numbers=numbers,

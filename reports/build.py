@@ -5,6 +5,7 @@ from __future__ import annotations
 import base64
 import hashlib
 import json
+from collections.abc import Sequence
 from datetime import datetime
 from importlib.resources import files
 from pathlib import Path
@@ -12,8 +13,9 @@ from typing import Any
 
 from markupsafe import Markup
 
-from harness.model.columns import BY_NAME, LISTED, REPEATED
+from harness.model.columns import COMPARED, LISTED, REPEATED, ResultColumn
 from harness.model.comparison import CaseResults, ComparisonRun
+from harness.model.result_texts import settings_text
 from harness.model.writing import write_whole
 from reports import agreement, numbers, paper, shapes, tables, words
 from reports.curves import curves
@@ -48,12 +50,13 @@ def write_report(run: ComparisonRun, path: Path, *, drawn: bool = False) -> None
     write_whole(path, text)
 
 
-def render(run: ComparisonRun, *, data_folder: str) -> str:
+def render(run: ComparisonRun, *, data_folder: str, listed: Sequence[ResultColumn] = LISTED) -> str:
     """The report as text.
 
     Args:
         run: the comparison.
         data_folder: name of the folder with the data, for the text.
+        listed: columns of the table of every run.
     """
     run = run_in_order(run)
     rows = tables.run_rows(run)
@@ -70,13 +73,14 @@ def render(run: ComparisonRun, *, data_folder: str) -> str:
         findings=tables.findings(run),
         columns=tables.columns(run),
         shown=shown,
-        listed=[BY_NAME[name] for name in LISTED],
-        repeated=[BY_NAME[name] for name in REPEATED],
+        listed=listed,
+        repeated=REPEATED,
         matrix=_matrix(rows, shown),
         rows=[row for case_rows in rows for row in case_rows],
         failures=tables.failures(row for case_rows in rows for row in case_rows),
         failed_runs=sum(row.failed or row.judged == "rejected" for case_rows in rows for row in case_rows),
         references=tables.reference_rows(run),
+        compared=COMPARED,
         purposes=words.PURPOSE,
         gates=[(number, item.case.id, gate) for number, item in enumerate(run.cases) for gate in item.gates],
         paper=paper.paper_comparison(run),
@@ -123,7 +127,10 @@ def _matrix(
 ) -> list[tuple[tables.RunRow, list[tables.RunRow | None]]]:
     """Rows of the overview: one a case, with the run of every method or None."""
     return [
-        (case_rows[0], [next((row for row in case_rows if row.method == column.method), None) for column in columns])
+        (
+            case_rows[0],
+            [next((row for row in case_rows if row.result.method == column.method), None) for column in columns],
+        )
         for case_rows in rows
         if case_rows
     ]
@@ -165,7 +172,7 @@ def _case_data(item: CaseResults, fields: str) -> dict[str, Any]:
 
 def _digest(rows: list[list[tables.RunRow]]) -> str:
     """A hash over the keys of all runs, which stand for wall, method, settings, limits and code."""
-    keys = sorted(row.key for case_rows in rows for row in case_rows)
+    keys = sorted(row.result.key for case_rows in rows for row in case_rows)
     return hashlib.sha256("\n".join(keys).encode()).hexdigest()[:12]
 
 
@@ -173,7 +180,8 @@ def _origins(rows: list[list[tables.RunRow]]) -> list[tuple[str, str, int]]:
     """Machine and versions the runs were made with, and how many runs each; more than one where rows were reused."""
     counted: dict[tuple[str, str], int] = {}
     for row in (row for case_rows in rows for row in case_rows):
-        counted[row.machine, row.versions] = counted.get((row.machine, row.versions), 0) + 1
+        where = tables.machine_text(row.result.machine), settings_text(row.result.versions)
+        counted[where] = counted.get(where, 0) + 1
     return [(machine, versions, number) for (machine, versions), number in counted.items()]
 
 

@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 import math
-from typing import Any
 
 from markupsafe import Markup
 
 from harness.model.comparison import CaseResults
+from harness.model.details import AnswerDetails
 from harness.model.displaced import carried, released
 from harness.model.result import Result
 from reports import charts, numbers, words
@@ -44,7 +44,7 @@ def curves(item: CaseResults) -> list[tuple[str, Markup]]:
             if "residual" in result.path:
                 found.append(_holds(result))
                 found.extend(_orders(result))
-    found.extend(_starts(result) for result in ordered if len(result.details.get("start_values") or []) > 1)
+    found.extend(_starts(result) for result in ordered if len(AnswerDetails(result.details).start_values) > 1)
     history = _history(ordered)
     if history:
         found.append(history)
@@ -56,9 +56,9 @@ def _load_displacement(item: CaseResults, result: Result, moved: list[float], lo
     associated = item.associated
     if associated is not None and associated.multiplier is not None:
         levels.append((f"associated maximum {numbers.multiplier(associated.multiplier)}", associated.multiplier))
-    for name in ("peak", "plateau"):
-        value = result.details.get(name)
-        if isinstance(value, float) and not any(abs(value - level) < 1e-3 * abs(value) for _, level in levels):
+    details = AnswerDetails(result.details)
+    for name, value in (("peak", details.peak), ("plateau", details.plateau)):
+        if value is not None and not any(abs(value - level) < 1e-3 * abs(value) for _, level in levels):
             levels.append((f"{name} {numbers.multiplier(value)}", value))
     shown = _until_plateau(moved, loads)
     chart = charts.Chart(
@@ -93,8 +93,8 @@ def _release(item: CaseResults, result: Result) -> list[tuple[str, Markup]]:
     """The collapse after the bracket: displacement over time, and the wall at the end."""
     found = []
     moved = next((result.path[name] for name in LENGTHS if name in result.path), None)
-    release = result.details.get("release")
-    unit = release.get("time_unit", "") if isinstance(release, dict) else ""
+    release = AnswerDetails(result.details).release
+    unit = "" if release is None else release.time_unit
     if moved is not None and len(moved) > 1:
         chart = charts.Chart(
             title=f"Displacement over time of the released wall, {result.method}",
@@ -116,8 +116,8 @@ def _release(item: CaseResults, result: Result) -> list[tuple[str, Markup]]:
 
 def _holds(result: Result) -> tuple[str, Markup]:
     loads, residuals = result.path["multiplier"], result.path["residual"]
-    reporting = _reporting_order(result.details)
-    held, moving = reporting.get("held"), reporting.get("moving")
+    details = AnswerDetails(result.details)
+    held, moving = details.reported_order.held, details.reported_order.moving
     groups: dict[str, tuple[list[float], list[float]]] = {"held": ([], []), "moving": ([], []), "undecided": ([], [])}
     for number, (load, _) in enumerate(zip(loads, residuals, strict=False), start=1):
         if held is not None and load <= held:
@@ -135,8 +135,8 @@ def _holds(result: Result) -> tuple[str, Markup]:
         series=[charts.Series(name, x, y, line=False) for name, (x, y) in groups.items() if x],
         whole=True,
     )
-    orders = result.details.get("orders")
-    count = f" ({numbers.count(len(orders), 'body order')} tried)" if isinstance(orders, list) else ""
+    orders = details.orders
+    count = "" if orders is None else f" ({numbers.count(len(orders), 'body order')} tried)"
     return (
         f"{result.method}: the holds of the reported body order, which close in on the bracket from both sides{count}.",
         charts.svg(chart),
@@ -145,13 +145,11 @@ def _holds(result: Result) -> tuple[str, Markup]:
 
 def _orders(result: Result) -> list[tuple[str, Markup]]:
     """The bracket of every body order, which shows the spread that rigid contacts leave."""
-    orders = result.details.get("orders")
-    if not isinstance(orders, list):
-        return []
+    orders = AnswerDetails(result.details).orders or ()
     ends = [
-        (float(number), float(order["held"]), float(order["moving"]))
+        (float(number), order.held, order.moving)
         for number, order in enumerate(orders, start=1)
-        if isinstance(order, dict) and order.get("held") is not None and order.get("moving") is not None
+        if order.held is not None and order.moving is not None
     ]
     if len(ends) < 2:
         return []
@@ -172,7 +170,7 @@ def _orders(result: Result) -> list[tuple[str, Markup]]:
         series=[held, moving],
         whole=True,
     )
-    names = ", ".join(f"{number} {order.get('order', '')}" for number, order in enumerate(orders, start=1))
+    names = ", ".join(f"{number} {order.name}" for number, order in enumerate(orders, start=1))
     return [
         (f"{result.method}: held and moving for every order in which blocks were entered ({names}).", charts.svg(chart))
     ]
@@ -180,15 +178,16 @@ def _orders(result: Result) -> list[tuple[str, Markup]]:
 
 def _starts(result: Result) -> tuple[str, Markup]:
     """The collapse states that the starts of a search lead to, and the least known after each of them."""
-    values = [float(value) for value in result.details["start_values"]]
+    details = AnswerDetails(result.details)
+    values = details.start_values
     if max(values) - min(values) <= SAME * abs(min(values)):
         every = f"each of {len(values)} starts of the search leads to {numbers.multiplier(min(values))}"
         return f"{result.method}: {every}.", Markup("")
     number = [float(k) for k in range(1, len(values) + 1)]
     least = [min(values[:k]) for k in range(1, len(values) + 1)]
     levels = []
-    if isinstance(result.details.get("associated"), float):
-        value = result.details["associated"]
+    if details.associated is not None:
+        value = details.associated
         levels.append((f"associated maximum {numbers.multiplier(value)}", value))
     if result.multiplier is not None and result.multiplier < min(values) * (1.0 - 1e-9):
         levels.append((f"least known, by descent {numbers.multiplier(result.multiplier)}", result.multiplier))
@@ -198,20 +197,12 @@ def _starts(result: Result) -> tuple[str, Markup]:
         y_label="multiplier",
         series=[
             charts.Series("least known so far", number, least, step=True, marks=False),
-            charts.Series("found by this start", number, values, line=False),
+            charts.Series("found by this start", number, list(values), line=False),
         ],
         levels=levels,
         whole=True,
     )
     return f"{result.method}: the collapse state each start of the search leads to.", charts.svg(chart)
-
-
-def _reporting_order(details: dict[str, Any]) -> dict[str, Any]:
-    orders = details.get("orders")
-    if not isinstance(orders, list):
-        return {}
-    name = details.get("reporting_order")
-    return next((order for order in orders if isinstance(order, dict) and order.get("order") == name), {})
 
 
 def _history(results: list[Result]) -> tuple[str, Markup] | None:

@@ -3,25 +3,25 @@
 from __future__ import annotations
 
 import csv
-import io
 import json
 import re
 import tempfile
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from importlib.util import find_spec
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from harness.model import columns
+from harness.model.columns import COMPARISONS, RESULTS, ResultColumn, ResultRow
 from harness.model.comparison import CaseResults, ComparisonRun
 from harness.model.proof import Proof, proof_of
 from harness.model.result import Result
+from harness.model.table import Row, TableColumn, types, units, values
 from harness.model.writing import cell, write_whole
 from reports import charts, shapes, vectors, words
 from reports.curves import curves
 from reports.opening import run_in_order
 from reports.studies import studies
-from reports.tables import reference_of
+from reports.tables import compared_rows
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -29,40 +29,21 @@ if TYPE_CHECKING:
 FIGURE_BLOCKS, MOST_PANELS = 400, 4
 """Walls with more blocks are drawn on demand only (`drystone figure`), and a strip holds so many methods."""
 
-COMPARISON_COLUMNS = (
-    "case",
-    "method",
-    "reference",
-    "type",
-    "quantity",
-    "relation",
-    "value",
-    "expected",
-    "tolerance",
-    "gate",
-    "verdict",
-    "sentence",
-    "requirement",
-    "source",
-)
 
-
-def export(run: ComparisonRun, folder: Path, *, drawn: bool = False) -> None:
+def export(run: ComparisonRun, folder: Path, *, drawn: bool = False, columns: Sequence[ResultColumn] = RESULTS) -> None:
     """Write the data of a comparison. Files of an earlier export that are no longer made are removed.
 
     Args:
         run: the comparison.
         folder: `<stem>-data`; only files named in its own index.json are ever removed from it.
         drawn: whether each case gets a figure as PDF too; a figure takes longer than all the rest of its case.
+        columns: of the tables of results.
     """
     folder.mkdir(parents=True, exist_ok=True)
-    rows = [_result_row(result, proof_of(item, result)) for item in run.cases for result in item.results]
-    contents: dict[str, bytes] = {
-        "results.csv": _csv(tuple(columns.TYPES), rows),
-        "comparisons.csv": _csv(COMPARISON_COLUMNS, _comparison_rows(run)),
-    }
+    results = result_frame(((r, proof_of(item, r)) for item in run.cases for r in item.results), columns)
+    contents: dict[str, bytes] = {"results.csv": _csv(results), "comparisons.csv": _csv(comparison_frame(run))}
     if find_spec("pyarrow") is not None:
-        contents["results.parquet"] = _parquet(rows)
+        contents["results.parquet"] = results.to_parquet(index=False)
     for item in run.cases:
         for result in item.results:
             name = f"{_safe(item.case.id)}/{_safe(result.method)}.json"
@@ -151,101 +132,35 @@ def _json(data: Any) -> bytes:
     return (json.dumps(data, indent=1, ensure_ascii=False, default=str) + "\n").encode()
 
 
-def _result_row(result: Result, proof: Proof) -> dict[str, Any]:
-    worst = result.judge.worst
-    row = result.model_dump(mode="json", include=set(columns.TYPES))
-    return row | {
-        "bracket_low": result.bracket[0] if result.bracket else None,
-        "bracket_high": result.bracket[1] if result.bracket else None,
-        "proof": str(proof.standing),
-        "proof_sentence": proof.sentence,
-        "proved_bound": proof.bound,
-        "judge_accepted": result.judge.accepted,
-        "judge_tolerance": result.judge.tolerance,
-        "judge_worst_residual": worst[1] if worst else None,
-        "judge_worst_residual_name": worst[0] if worst else None,
-        "judge_sentence": result.judge.sentence,
-        "settings": _compact(result.settings),
-        "limits": _compact(result.limits),
-        "versions": _compact(result.versions),
-        "machine": _compact(result.machine),
-    }
-
-
-def _compact(values: dict[str, Any]) -> str:
-    return json.dumps(values, sort_keys=True, ensure_ascii=False, default=str)
-
-
-def _comparison_rows(run: ComparisonRun) -> list[dict[str, Any]]:
-    rows = []
-    for item in run.cases:
-        for result in item.results:
-            for comparison in result.comparisons:
-                reference = reference_of(item.case, comparison.reference)
-                rows.append(
-                    {"case": result.case, "method": result.method}
-                    | comparison.model_dump(mode="json")
-                    | {
-                        "type": str(reference.type) if reference else None,
-                        "relation": reference.relation if reference else None,
-                        "requirement": reference.requirement if reference else None,
-                        "source": reference.source if reference else None,
-                    }
-                )
-    return rows
-
-
-def _csv(names: tuple[str, ...], rows: list[dict[str, Any]]) -> bytes:
+def _csv(table: pd.DataFrame) -> bytes:
     """CSV with texts quoted and numbers not, so that a reader does not turn an id of digits into a number."""
-    stream = io.StringIO()
-    writer = csv.writer(stream, quoting=csv.QUOTE_NONNUMERIC, lineterminator="\n")
-    writer.writerow(names)
-    for row in rows:
-        writer.writerow([cell(_field(row.get(name))) for name in names])
-    return stream.getvalue().encode()
+    known = table.astype(object)
+    plain = known.where(known.notna(), None).map(_field)
+    return plain.to_csv(index=False, quoting=csv.QUOTE_NONNUMERIC, lineterminator="\n").encode()
 
 
 def _field(value: Any) -> Any:
-    if value is None:
-        return ""
+    if isinstance(value, list | dict):
+        return json.dumps(value)
     if isinstance(value, bool):
         return "true" if value else "false"
-    return json.dumps(value) if isinstance(value, list | dict) else value
+    return "" if value is None else cell(value)
 
 
-ARROW = {"string": "large_string", "Float64": "float64", "Int64": "int64", "boolean": "bool_"}
-"""Types of columns in Parquet, by those in pandas."""
+def comparison_frame(run: ComparisonRun) -> pd.DataFrame:
+    """Every result held against a reference, with the columns of comparisons.csv; units in `attrs["units"]`."""
+    return _frame(COMPARISONS, [row for item in run.cases for _, row in compared_rows(item)])
 
 
-def _parquet(rows: list[dict[str, Any]]) -> bytes:
-    """The results as Parquet, with the types of their columns; what is missing is null.
-
-    The file is as pandas writes it, and tells pandas its types, but pandas is not loaded, which takes longer than all
-    of the table.
-    """
-    import pyarrow as pa
-    from pyarrow import parquet
-
-    arrays = [pa.array([row[name] for row in rows], getattr(pa, ARROW[t])()) for name, t in columns.TYPES.items()]
-    told = [
-        {"name": name, "field_name": name, "pandas_type": "object", "numpy_type": dtype, "metadata": None}
-        for name, dtype in columns.TYPES.items()
-    ]
-    about = {"index_columns": [], "column_indexes": [], "columns": told, "pandas_version": "3.0"}
-    table = pa.table(arrays, names=list(columns.TYPES), metadata={"pandas": json.dumps(about)})
-    sink = io.BytesIO()
-    parquet.write_table(table, sink)
-    return sink.getvalue()
-
-
-def result_frame(results: Iterable[tuple[Result, Proof]]) -> pd.DataFrame:
+def result_frame(results: Iterable[tuple[Result, Proof]], columns: Sequence[ResultColumn] = RESULTS) -> pd.DataFrame:
     """Results, each with what is proved of it, with the columns of results.csv; units in `attrs["units"]`."""
-    table = _frame([_result_row(result, proof) for result, proof in results])
-    table.attrs["units"] = dict(columns.UNITS)
-    return table
+    return _frame(columns, [ResultRow(result, proof) for result, proof in results])
 
 
-def _frame(rows: list[dict[str, Any]]) -> pd.DataFrame:
+def _frame(columns: Sequence[TableColumn[Row]], rows: Iterable[Row]) -> pd.DataFrame:
     import pandas as pd
 
-    return pd.DataFrame(rows, columns=list(columns.TYPES)).astype(columns.TYPES)
+    listed = [values(columns, row) for row in rows]
+    table = pd.DataFrame(listed, columns=list(types(columns)), dtype=object).astype(types(columns))
+    table.attrs["units"] = units(columns)
+    return table

@@ -6,6 +6,7 @@ import numpy as np
 
 from harness.model.assembly import Assembly, FloatArray
 from harness.model.comparison import CaseResults
+from harness.model.details import AnswerDetails
 from harness.model.method import Status
 from harness.model.proof import least_known
 from harness.model.result import Result, relative_velocities
@@ -130,11 +131,7 @@ def _histories(states: list[Result], *, several: bool) -> list[str]:
     """Where histories of friction lead a method that follows several, if they part or there is anything to explain."""
     told = []
     for result in states:
-        ends = [
-            float(entry["plateau"])
-            for entry in result.details.get("histories") or []
-            if isinstance(entry, dict) and isinstance(entry.get("plateau"), float)
-        ]
+        ends = AnswerDetails(result.details).plateaus
         if len(ends) < 2:
             continue
         low, high = numbers.multiplier(min(ends)), numbers.multiplier(max(ends))

@@ -10,6 +10,7 @@ from markupsafe import Markup
 
 from harness.model.case import Case
 from harness.model.comparison import CaseResults
+from harness.model.details import AnswerDetails
 from harness.model.result import Result
 from reports import flow, numbers, shapes
 from reports.agreement import Agreement
@@ -20,6 +21,7 @@ from reports.joints import joints_in_words, motion, open_with_force
 from reports.mechanism_drawing import mechanism_svg
 from reports.opening import figure_of, is_calm
 from reports.reasons import reasons
+from reports.strength import StrengthRow, strength_rows, strength_text
 from reports.tables import RunRow
 
 
@@ -76,6 +78,7 @@ class CaseSection:
     calm: bool = False
     overlay: Markup = field(default_factory=Markup)
     overlay_caption: str = ""
+    strength: list[StrengthRow] = field(default_factory=list)
 
 
 STILL_BLOCKS = 50
@@ -150,8 +153,9 @@ def case_section(
         stroke=stroke_factor(item.case.assembly),
         loads_drawn=_loads_drawn(item.case),
         through=_through(item),
-        facts=facts(item.case),
-        warnings=(*item.case.warnings, *filter(None, [item.split_on_dead_load])),
+        facts=_facts(item.case),
+        strength=strength_rows(item),
+        warnings=(*item.case.warnings, *item.refusals, *filter(None, [item.split_on_dead_load])),
         rows=rows,
         panels=panels,
         without_drawing=without,
@@ -163,6 +167,12 @@ def case_section(
         overlay=overlay,
         overlay_caption=caption,
     )
+
+
+def _facts(case: Case) -> list[tuple[str, str]]:
+    """The facts of a case, with the strength of its joints where they have any."""
+    strength = strength_text(case.assembly, case.wall.units.force)
+    return facts(case) + ([("Strength of joints", strength)] if strength else [])
 
 
 def _loads_drawn(case: Case) -> str:
@@ -207,19 +217,17 @@ def _still(case: Case, result: Result, fields: str) -> Markup:
 
 
 def origin(result: Result) -> str:
-    """Which source of a search found the state, and when, of methods whose details keep their `improvements`.
+    """Which source of a search found the state, and when, of methods that keep their improvements.
 
     Nothing of a state that is lower than the last of these, as one that a proof came across.
     """
-    improvements = result.details.get("improvements")
-    last = improvements[-1] if isinstance(improvements, list) and improvements else None
-    if not isinstance(last, dict) or not isinstance(last.get("source"), str) or result.multiplier is None:
+    last = AnswerDetails(result.details).last_improvement
+    if last is None or last.multiplier is None or result.multiplier is None:
         return ""
-    value, spent = last.get("multiplier"), last.get("cpu_seconds")
-    if not isinstance(value, int | float) or not math.isclose(value, result.multiplier, rel_tol=1e-7, abs_tol=1e-9):
+    if not math.isclose(last.multiplier, result.multiplier, rel_tol=1e-7, abs_tol=1e-9):
         return ""
-    after = f" after {numbers.seconds(float(spent))} of CPU time" if isinstance(spent, int | float) else ""
-    return f"found by “{last['source']}”{after}"
+    after = "" if last.cpu_seconds is None else f" after {numbers.seconds(last.cpu_seconds)} of CPU time"
+    return f"found by “{last.source}”{after}"
 
 
 def _forces_are(result: Result) -> str:

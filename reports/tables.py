@@ -2,18 +2,21 @@
 
 from __future__ import annotations
 
-import json
 from collections import Counter
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass
+from functools import cached_property
 from typing import Any
 
 from harness.model.case import Case, Reference
+from harness.model.columns import COMPARISONS, ComparedRow, ComparisonColumn, ResultColumn, ResultRow, chosen
 from harness.model.comparison import CaseResults, ComparisonRun
 from harness.model.library import library
 from harness.model.method import Status
 from harness.model.proof import Standing, proof_of
 from harness.model.result import Comparison, Result, Verdict
+from harness.model.result_texts import settings_text
+from harness.model.table import Row, TableColumn
 from reports import numbers, words
 
 
@@ -28,44 +31,69 @@ class Cell:
 
 @dataclass(frozen=True)
 class RunRow:
-    """One run of one method on one case, ready to print."""
+    """One run of one method on one case, ready to print.
+
+    Attributes:
+        anchor: its id in the page.
+        item: the case with all of its results.
+        result: the run.
+    """
 
     anchor: str
-    case: str
-    case_title: str
-    method: str
-    family: str
-    failed: bool
-    trouble: bool
-    multiplier: Cell
-    proved: bool
-    bracket: Cell
-    bracket_meaning: str
-    reference: Cell
-    verdict: Verdict
-    verdict_glyph: str
-    verdict_word: str
-    status_glyph: str
-    status_word: str
-    finding: str
-    sentence: str
-    cpu: Cell
-    wall: Cell
-    memory: Cell
-    residual: Cell
-    judged: str
-    judge_sentence: str
-    key: str
-    started: str
-    iterations: int
-    unknowns: int | None
-    settings: str
-    limits: str
-    versions: str
-    machine: str
-    command: str
-    blocks: int
-    interfaces: int
+    item: CaseResults
+    result: Result
+
+    @cached_property
+    def row(self) -> ResultRow:
+        """What columns are functions of."""
+        return ResultRow(self.result, proof_of(self.item, self.result))
+
+    def cell(self, column: str | ResultColumn) -> Cell:
+        """What the report prints of a column, which may be named."""
+        (found,) = chosen(column) if isinstance(column, str) else (column,)
+        own = CELLS.get(found.name)
+        return plain_cell(found, self.row) if own is None else own(self)
+
+    @property
+    def failed(self) -> bool:
+        """Whether it ended without an answer."""
+        return self.result.status is not Status.OK
+
+    @property
+    def trouble(self) -> bool:
+        """Whether it failed, disagrees, or was not accepted."""
+        disagrees = self.result.verdict in (Verdict.OUTSIDE_TOLERANCE, Verdict.VIOLATES_BOUND)
+        return self.failed or not self.result.judge.accepted or disagrees
+
+    @property
+    def proved(self) -> bool:
+        """Whether its multiplier is the minimum, proved."""
+        return self.row.proof.standing is Standing.MINIMUM
+
+    @property
+    def verdict(self) -> tuple[str, str]:
+        """Glyph and words."""
+        return words.VERDICT[self.result.verdict]
+
+    @property
+    def status(self) -> tuple[str, str]:
+        """Glyph and words."""
+        return words.STATUS[self.result.status]
+
+    @property
+    def finding(self) -> str:
+        """In words."""
+        return words.FINDING[self.result.finding]
+
+    @property
+    def judged(self) -> str:
+        """The judge's word."""
+        return self.result.judge.outcome.replace("_", " ")
+
+    @property
+    def command(self) -> str:
+        """How to repeat it."""
+        return f"drystone run {self.result.method} {self.result.case}"
 
 
 def anchor_of(case_number: int, result_number: int) -> str:
@@ -89,7 +117,7 @@ def expected_text(comparison: Comparison, relation: str) -> str:
     return sign + numbers.given(expected)
 
 
-def _reference_cell(case: Case, result: Result) -> Cell:
+def _reference_cell(row: RunRow) -> Cell:
     """The reference that matters most: the worst verdict, gated before not, multiplier before others."""
     severity = [
         Verdict.VIOLATES_BOUND,
@@ -99,13 +127,13 @@ def _reference_cell(case: Case, result: Result) -> Cell:
         Verdict.NO_REFERENCE,
     ]
     ranked = sorted(
-        result.comparisons,
+        row.result.comparisons,
         key=lambda item: (severity.index(item.verdict), item.quantity != "multiplier", not item.gate),
     )
     if not ranked:
         return Cell(numbers.NOTHING)
     first = ranked[0]
-    reference = reference_of(case, first.reference)
+    reference = reference_of(row.item.case, first.reference)
     text = expected_text(first, reference.relation if reference else "equal")
     if first.quantity != "multiplier" and not isinstance(first.expected, str):
         text = f"{first.quantity.removeprefix('details.').replace('_', ' ')} {text}"
@@ -115,7 +143,8 @@ def _reference_cell(case: Case, result: Result) -> Cell:
     return Cell(text + more, title, first.expected if isinstance(first.expected, float) else None)
 
 
-def _multiplier_cell(result: Result) -> Cell:
+def _multiplier_cell(row: RunRow) -> Cell:
+    result = row.result
     if result.status is not Status.OK and result.multiplier is None:
         return Cell(words.STATUS[result.status][1])
     if result.multiplier is None:
@@ -128,75 +157,62 @@ def _multiplier_cell(result: Result) -> Cell:
     )
 
 
-def run_row(case_number: int, result_number: int, item: CaseResults) -> RunRow:
-    """The row of one result."""
-    case, result = item.case, item.results[result_number]
-    worst = result.judge.worst
-    accepted = result.judge.accepted
-    failed = result.status is not Status.OK
-    return RunRow(
-        anchor=anchor_of(case_number, result_number),
-        case=result.case,
-        case_title=case.file.title,
-        method=result.method,
-        family=result.family,
-        failed=failed,
-        trouble=failed or not accepted or result.verdict in (Verdict.OUTSIDE_TOLERANCE, Verdict.VIOLATES_BOUND),
-        multiplier=_multiplier_cell(result),
-        proved=proof_of(item, result).standing is Standing.MINIMUM,
-        bracket=Cell(
-            numbers.interval(result.bracket),
-            numbers.every_digit(result.bracket) if result.bracket else "",
-            result.bracket[0] if result.bracket else None,
-        ),
-        bracket_meaning=result.bracket_meaning,
-        reference=_reference_cell(case, result),
-        verdict=result.verdict,
-        verdict_glyph=words.VERDICT[result.verdict][0],
-        verdict_word=words.VERDICT[result.verdict][1],
-        status_glyph=words.STATUS[result.status][0],
-        status_word=words.STATUS[result.status][1],
-        finding=words.FINDING[result.finding],
-        sentence=result.sentence,
-        cpu=_number_cell(result.cpu_seconds, numbers.seconds(result.cpu_seconds), "s"),
-        wall=_number_cell(result.wall_seconds, numbers.seconds(result.wall_seconds), "s"),
-        memory=_number_cell(result.peak_memory_bytes, numbers.memory(result.peak_memory_bytes), "bytes"),
-        residual=Cell(numbers.NOTHING)
+def _bracket_cell(row: RunRow) -> Cell:
+    bracket = row.result.bracket
+    if bracket is None:
+        return Cell(numbers.NOTHING)
+    return Cell(numbers.interval(bracket), numbers.every_digit(bracket), bracket[0])
+
+
+def _residual_cell(row: RunRow) -> Cell:
+    worst = row.result.judge.worst
+    return (
+        Cell(numbers.NOTHING)
         if worst is None
-        else Cell(numbers.residual(worst[1]), f"{worst[0]} {worst[1]!r}", worst[1]),
-        judged={None: "not judged", True: "accepted", False: "rejected"}[accepted],
-        judge_sentence=result.judge.sentence,
-        key=result.key,
-        started=result.started,
-        iterations=result.iterations,
-        unknowns=result.unknowns,
-        settings=_pairs(result.settings),
-        limits=_pairs(result.limits),
-        versions=_pairs(result.versions),
-        machine=_machine(result.machine),
-        command=f"drystone run {result.method} {result.case}",
-        blocks=result.blocks,
-        interfaces=result.interfaces,
+        else Cell(numbers.residual(worst[1]), f"{worst[0]} {worst[1]!r}", worst[1])
     )
 
 
-def _number_cell(value: float | int | None, text: str, unit: str) -> Cell:
-    return Cell(text) if value is None else Cell(text, f"{value!r} {unit}", float(value))
+CELLS: dict[str, Callable[[RunRow], Cell]] = {
+    "multiplier": _multiplier_cell,
+    "bracket": _bracket_cell,
+    "reference": _reference_cell,
+    "judge_worst_residual": _residual_cell,
+}
+"""Cells of columns whose text in the report is not that of the value alone, by the name of the column."""
+
+QUANTITIES: dict[str, tuple[Callable[[float], str], str]] = {
+    "s": (numbers.seconds, "s"),
+    "B": (numbers.memory, "bytes"),
+}
+"""How numbers of a unit are written, and the unit in full."""
 
 
-def _pairs(values: dict[str, Any]) -> str:
-    """Names and values in one line."""
-    return ", ".join(
-        f"{name} = {value if isinstance(value, str) else json.dumps(value, default=str, ensure_ascii=False)}"
-        for name, value in values.items()
-    )
+def plain_cell(column: TableColumn[Row], row: Row) -> Cell:
+    """A cell of any column: a number with its digits for hovering and sorting, a text as it is, a dash for nothing."""
+    value = column.value(row)
+    if value is None or value == "":
+        return Cell(numbers.NOTHING)
+    if not column.numeric:
+        return Cell(column.text(row) or numbers.NOTHING)
+    if column.unit in QUANTITIES:
+        text, unit = QUANTITIES[column.unit]
+        return Cell(text(value), f"{value!r} {unit}", float(value))
+    if isinstance(value, int):
+        return Cell(str(value), "", float(value))
+    return Cell(numbers.plain(value), repr(value), value)
 
 
-def _machine(values: dict[str, Any]) -> str:
+def machine_text(values: dict[str, Any]) -> str:
     """Where a run was made, its memory in units that people read."""
     size = values.get("memory_bytes")
     known = values if not isinstance(size, int) else values | {"memory_bytes": numbers.memory(size)}
     return ", ".join(f"{name.removesuffix('_bytes')} {value}" for name, value in known.items())
+
+
+def run_row(case_number: int, result_number: int, item: CaseResults) -> RunRow:
+    """The row of one result."""
+    return RunRow(anchor_of(case_number, result_number), item, item.results[result_number])
 
 
 def run_rows(run: ComparisonRun) -> list[list[RunRow]]:
@@ -241,78 +257,99 @@ def overview_columns(run: ComparisonRun) -> list[Column]:
 
 
 @dataclass(frozen=True)
-class ReferenceRow:
-    """One result held against one reference."""
+class HeldRow:
+    """One result held against one reference, ready to print.
+
+    Attributes:
+        anchor: of the run in the page.
+        row: what columns are functions of.
+    """
 
     anchor: str
-    case: str
-    method: str
-    quantity: str
-    type: str
-    value: Cell
-    expected: Cell
-    tolerance: str
-    gate: bool
-    glyph: str
-    word: str
-    verdict: Verdict
-    sentence: str
-    source: str
-    requirement: str
-    reason: str
-    settings: str
+    row: ComparedRow
+
+    def cell(self, column: str | ComparisonColumn) -> Cell:
+        """What the report prints of a column, which may be named."""
+        found = next(item for item in COMPARISONS if item.name == column) if isinstance(column, str) else column
+        own = HELD_CELLS.get(found.name)
+        return plain_cell(found, self.row) if own is None else own(self.row)
+
+    @property
+    def verdict(self) -> str:
+        """The name of the verdict."""
+        return str(self.row.comparison.verdict)
+
+    @property
+    def words(self) -> tuple[str, str]:
+        """Glyph and words of the verdict."""
+        return words.VERDICT[self.row.comparison.verdict]
+
+    @property
+    def settings(self) -> str:
+        """That the reference asks for."""
+        return settings_text(self.row.reference.settings) if self.row.reference else ""
 
 
-def reference_rows(run: ComparisonRun) -> dict[str, list[ReferenceRow]]:
+def compared_rows(item: CaseResults) -> Iterable[tuple[int, ComparedRow]]:
+    """Every comparison of a case with a reference, and the number of its result."""
+    for number, result in enumerate(item.results):
+        for comparison in result.comparisons:
+            yield number, ComparedRow(result, comparison, reference_of(item.case, comparison.reference))
+
+
+def reference_rows(run: ComparisonRun) -> dict[str, list[HeldRow]]:
     """Rows of the tables of references, by purpose: verification, benchmark, validation, regression."""
-    tables: dict[str, list[ReferenceRow]] = {purpose: [] for purpose in words.PURPOSE}
+    tables: dict[str, list[HeldRow]] = {purpose: [] for purpose in words.PURPOSE}
     for case_number, item in enumerate(run.cases):
-        for number, result in enumerate(item.results):
-            for comparison in result.comparisons:
-                reference = reference_of(item.case, comparison.reference)
-                if reference is None:
-                    continue
-                purpose = next(name for name, entry in words.PURPOSE.items() if reference.type in entry[1])
-                tables[purpose].append(_reference_row(anchor_of(case_number, number), result, comparison, reference))
+        for number, row in compared_rows(item):
+            if row.reference is not None:
+                kind = row.reference.type
+                purpose = next(name for name, entry in words.PURPOSE.items() if kind in entry[1])
+                tables[purpose].append(HeldRow(anchor_of(case_number, number), row))
     return tables
 
 
-def _reference_row(anchor: str, result: Result, comparison: Comparison, reference: Reference) -> ReferenceRow:
-    value = comparison.value
+def _quantity_cell(row: ComparedRow) -> Cell:
+    return Cell(row.comparison.quantity.removeprefix("details.").replace("_", " "))
+
+
+def _value_cell(row: ComparedRow) -> Cell:
+    value = row.comparison.value
     if value is None:
-        shown = Cell(numbers.NOTHING)
-    elif isinstance(value, str):
-        shown = Cell(value)
-    elif isinstance(value, list):
-        shown = Cell(numbers.interval(value), numbers.every_digit(value))
-    else:
-        shown = Cell(_count_or_number(value, comparison.quantity), repr(value), value)
-    expected = expected_text(comparison, reference.relation)
-    if isinstance(comparison.expected, float) and comparison.quantity in ("blocks", "interfaces", "unknowns"):
-        expected = f"{comparison.expected:.0f}"
-    return ReferenceRow(
-        anchor=anchor,
-        case=result.case,
-        method=result.method,
-        quantity=comparison.quantity.removeprefix("details.").replace("_", " "),
-        type=str(reference.type),
-        value=shown,
-        expected=Cell(expected, numbers.every_digit(comparison.expected)),
-        tolerance=numbers.NOTHING if isinstance(comparison.expected, str) else numbers.given(comparison.tolerance, 2),
-        gate=comparison.gate,
-        glyph=words.VERDICT[comparison.verdict][0],
-        word=words.VERDICT[comparison.verdict][1],
-        verdict=comparison.verdict,
-        sentence=comparison.sentence,
-        source=reference.source,
-        requirement=reference.requirement,
-        reason=reference.tolerance_reason,
-        settings=_pairs(reference.settings),
-    )
+        return Cell(numbers.NOTHING)
+    if isinstance(value, str):
+        return Cell(value)
+    if isinstance(value, list):
+        return Cell(numbers.interval(value), numbers.every_digit(value))
+    return Cell(_count_or_number(value, row.comparison.quantity), repr(value), value)
+
+
+def _expected_cell(row: ComparedRow) -> Cell:
+    expected = row.comparison.expected
+    text = expected_text(row.comparison, row.reference.relation if row.reference else "equal")
+    if isinstance(expected, float) and row.comparison.quantity in COUNTS:
+        text = f"{expected:.0f}"
+    return Cell(text, numbers.every_digit(expected))
+
+
+def _tolerance_cell(row: ComparedRow) -> Cell:
+    words_only = isinstance(row.comparison.expected, str)
+    text = numbers.NOTHING if words_only else numbers.given(row.comparison.tolerance, 2)
+    return Cell(text, row.reference.tolerance_reason if row.reference else "")
+
+
+COUNTS = ("blocks", "interfaces", "unknowns")
+HELD_CELLS: dict[str, Callable[[ComparedRow], Cell]] = {
+    "quantity": _quantity_cell,
+    "value": _value_cell,
+    "expected": _expected_cell,
+    "tolerance": _tolerance_cell,
+}
+"""Cells of references whose text in the report is not that of the value alone, by the name of the column."""
 
 
 def _count_or_number(value: float, quantity: str) -> str:
-    return f"{value:.0f}" if quantity in ("blocks", "interfaces", "unknowns") else numbers.plain(value)
+    return f"{value:.0f}" if quantity in COUNTS else numbers.plain(value)
 
 
 @dataclass(frozen=True)
@@ -331,9 +368,10 @@ def failures(rows: Iterable[RunRow]) -> list[Failure]:
     groups: dict[tuple[str, str, str, str], list[RunRow]] = {}
     for row in rows:
         if row.failed:
-            groups.setdefault((row.method, row.status_glyph, row.status_word, row.sentence), []).append(row)
+            groups.setdefault((row.result.method, *row.status, row.result.sentence), []).append(row)
         elif row.judged == "rejected":
-            groups.setdefault((row.method, "✗", "rejected by the judge", row.judge_sentence), []).append(row)
+            rejected = (row.result.method, "✗", "rejected by the judge", row.result.judge.sentence)
+            groups.setdefault(rejected, []).append(row)
     return [Failure(*words_of, runs) for words_of, runs in groups.items()]
 
 

@@ -75,7 +75,7 @@ def _moves(wall: Assembly, states: States) -> bool:
 
 
 def _least_multiplier(wall: Assembly, states: States) -> float | None:
-    """The least multiplier of forces without compression at open ends, at the friction limit against each slip.
+    """The least multiplier of forces at the tensile strength of open ends, at the shear limit against each slip.
 
     Interfaces without a state carry any forces within yield.
     """
@@ -83,21 +83,25 @@ def _least_multiplier(wall: Assembly, states: States) -> float | None:
     m = wall.n_interfaces
     cone: list[FloatArray] = []
     limit: list[FloatArray] = []
+    within: list[float] = []
+    reached: list[float] = []
     bounds: list[tuple[float | None, float | None]] = []
     anything = [((False, False), 0)] * (m - len(states))
     for p, (ends, slip) in enumerate([*states, *anything]):
-        bounds += [(0.0, 0.0 if free else None) for free in ends] + [(None, None)]
-        for sense in (1, -1):
+        tension, cohesion = wall.constant[p, :2], wall.constant[p, 2:]
+        bounds += [(-t, -t if free else None) for t, free in zip(tension, ends, strict=True)] + [(None, None)]
+        for sense, bond in zip((1, -1), cohesion, strict=True):
             row = np.zeros(3 * m + 1)
             row[3 * p : 3 * p + 2] = -wall.friction[p]
             row[3 * p + 2] = -sense
             (limit if slip == sense else cone).append(row)
+            (reached if slip == sense else within).append(bond)
     answer = linprog(
         np.append(np.zeros(3 * m), 1.0),
         A_ub=np.array(cone),
-        b_ub=np.zeros(len(cone)),
+        b_ub=np.array(within),
         A_eq=np.vstack([np.column_stack([wall.kinematic_matrix.toarray().T, live]), *limit]),
-        b_eq=np.append(-dead, np.zeros(len(limit))),
+        b_eq=np.append(-dead, reached),
         bounds=[*bounds, (0.0, None)],
     )
     return float(answer.fun) if answer.fun is not None and answer.status == 0 else None

@@ -25,7 +25,8 @@ import psutil
 
 from cases.useful import irregular_stones
 from harness.engine import compare as comparing
-from harness.engine.plan import Limits, Run
+from harness.engine import pipeline
+from harness.engine.run import Limits, Run
 from harness.engine.store import Store, open_store
 from harness.model.case import Case, CaseFile
 from harness.model.errors import InputError
@@ -169,7 +170,7 @@ def soak_wall(record: Record, seed: int, methods: list[str], limits: Limits, sto
     try:
         case = wall_case(seed)
         runs = [Run(case, method, {}, limits) for method in methods]
-        results = comparing.execute(runs, store, 1)
+        results = pipeline.execute(runs, store, 1)
         failed = list(failures_of(case, results, runs))
         record.runs += len(results)
         record.status = dict(Counter(record.status) + Counter(str(result.status) for result in results))

@@ -8,7 +8,7 @@ from pathlib import Path
 import psutil
 import pytest
 
-from harness.engine.plan import Limits
+from harness.engine.run import Limits
 from harness.engine.store import open_store
 from harness.model.build import build
 from harness.model.library import library

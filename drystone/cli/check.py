@@ -25,8 +25,9 @@ from drystone.cli.options import (
     warn,
 )
 from harness.engine import baseline as recording
-from harness.engine import compare as comparing
-from harness.engine.plan import Limits, find_cases, plan_case
+from harness.engine import pipeline
+from harness.engine.plan import find_cases, plan_case
+from harness.engine.run import Limits
 from harness.engine.store import open_store
 from harness.model.case import shipped_cases
 from harness.model.errors import InputError
@@ -63,7 +64,7 @@ def check(
         warn(case)
     plan = planned(chosen, tier)
     with open_store(store) as opened, terminal.progress(len(plan.runs), quiet=as_json) as told:
-        checked = held(plan, comparing.execute(plan.runs, opened, jobs, fresh=fresh, told=told))
+        checked = held(plan, opened, jobs, fresh=fresh, told=told)
     lines = checked.lines
     if junit is not None:
         write_junit(f"drystone check, {tier} tier", tests_of_check(lines), junit)
@@ -111,7 +112,7 @@ def baseline(
     recorded = recording.read_baseline(recorded_in)
     runs = [run for case in chosen for run in plan_case(case, None, Limits())]
     with open_store(store) as opened, terminal.progress(len(runs), quiet=as_json) as told:
-        results = comparing.execute(runs, opened, jobs, told=told)
+        results = pipeline.execute(runs, opened, jobs, told=told)
     rows = recording.compare_with(recorded, runs, results)
     if as_json:
         print_json({"action": action, "rows": rows})

@@ -9,7 +9,6 @@ from pathlib import Path
 
 import click
 
-from drystone.certificates import with_certificates
 from drystone.cli import terminal
 from drystone.cli.junit import tests_of_comparison, write_junit
 from drystone.cli.options import (
@@ -31,11 +30,13 @@ from drystone.cli.printing import PrintError, print_pdf
 from drystone.cli.settings import method_settings
 from drystone.cli.studies import curve_of_shipped
 from drystone.comparing import compare as make_comparison
+from drystone.comparing import compared, recalled
 from drystone.walls import Wall
-from harness.engine import compare as comparing
 from harness.engine import regression
+from harness.engine.executors import LocalExecutor
 from harness.engine.isolate import preload_methods
-from harness.engine.plan import Limits, check_methods, find_cases, plan_case
+from harness.engine.plan import check_methods, find_cases, plan_case
+from harness.engine.run import Limits
 from harness.engine.store import open_store
 from harness.model.comparison import ComparisonRun
 from harness.model.errors import InputError
@@ -105,7 +106,7 @@ def compare(
     preload_methods(run.method for run in planned)
     study = [] if studied is None else [curve_of_shipped(studied, jobs, store, fresh=fresh, quiet=as_json)]
     with terminal.progress(len(planned), quiet=as_json) as told:
-        compared = make_comparison(
+        made = make_comparison(
             [Wall(case) for case in chosen],
             names,
             jobs=jobs,
@@ -120,14 +121,14 @@ def compare(
             studies=study,
         ).run
     if written is not None:
-        _write_report(compared, written)
+        _write_report(made, written)
     if junit is not None:
-        write_junit(f"drystone compare, {title}", tests_of_comparison(compared), junit)
+        write_junit(f"drystone compare, {title}", tests_of_comparison(made), junit)
     if as_json:
-        print_json(terminal.comparison_json(compared, written))
+        print_json(terminal.comparison_json(made, written))
     else:
-        terminal.print_comparison(compared, written)
-    sys.exit(1 if regression.violations(compared) else 0)
+        terminal.print_comparison(made, written)
+    sys.exit(1 if regression.violations(made) else 0)
 
 
 def _command_line() -> str:
@@ -160,13 +161,7 @@ def report(report: Path, figures: bool, appendix: str | None, store: Path) -> No
     if appendix is not None:
         _appendix(appendix, report.parent, store)
         return
-    if not store.exists():
-        raise InputError("there is no such store", "Run `drystone compare` first", source=str(store))
-    with open_store(store, read_only=True) as opened:
-        compared = comparing.recall(opened)
-    if compared is None:
-        raise InputError("no comparison is in the store", "Run `drystone compare` first", source=str(store))
-    _write_report(with_certificates(compared), report, drawn=figures)
+    _write_report(recalled(store), report, drawn=figures)
     say(f"Report: {report}")
 
 
@@ -183,12 +178,11 @@ def _appendix(wall: str, folder: Path, store: Path) -> None:
     if is_horizontal(chosen[0]):
         chosen = [*chosen, reversed_live(chosen[0])]
     runs = [planned for case in chosen for planned in plan_case(case, None, Limits())]
-    preload_methods(planned.method for planned in runs)
+    executor = LocalExecutor(os.cpu_count() or 1)
     with open_store(store) as opened, terminal.progress(len(runs), quiet=False) as told:
-        results = comparing.execute(runs, opened, os.cpu_count() or 1, told=told)
-    compared = with_certificates(comparing.comparison_run(title, _command_line(), chosen, runs, results))
+        made = compared(title, _command_line(), chosen, runs, opened, executor, told=told)
     page = folder / f"{title}-appendix.html"
-    write_appendix(compared, page)
+    write_appendix(made, page)
     say(f"Appendix: {page}")
     try:
         print_pdf(page, page.with_suffix(".pdf"))

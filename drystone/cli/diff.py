@@ -14,7 +14,8 @@ from drystone.cli.junit import tests_of_difference, write_junit
 from drystone.cli.options import OUTPUT, catching, json_flag, junit_option, print_json, say
 from harness.engine.diff import difference, read_answers
 from harness.model.case import shipped_cases
-from harness.model.difference import Difference, Slower
+from harness.model.difference import DIFFERENCE, Difference, Slower
+from harness.model.table import values
 
 
 @click.command()
@@ -65,6 +66,6 @@ def _json(found: Difference) -> dict[str, Any]:
         "not_run": found.not_run,
         "slower": asdict(found.slower),
         "remarks": found.remarks,
-        "rows": [asdict(row) | {"kind": str(row.kind)} for row in found.rows],
+        "rows": [values(DIFFERENCE, row) for row in found.rows],
         "pairs": [asdict(pair) for pair in found.pairs],
     }

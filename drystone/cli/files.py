@@ -23,10 +23,12 @@ from drystone.cli.options import (
     warn,
 )
 from drystone.cli.settings import settings_of
-from harness.engine import compare as comparing
-from harness.engine.plan import Limits, Run, check_methods, find_cases
+from harness.engine import pipeline
+from harness.engine.plan import check_methods, find_cases
+from harness.engine.run import Limits, Run
 from harness.engine.sensitivity import advised
 from harness.engine.store import open_store
+from harness.formats.registry import FORMATS, format_written
 from harness.model import inspection
 from harness.model.errors import InputError
 from harness.model.load_steps import NAME as LOAD_STEPS
@@ -40,7 +42,13 @@ KEPT = 50
 """Load steps of a series, unless a setting says otherwise: two seconds of a film."""
 
 
-@click.command("import")
+def _endings(use: str, told: str) -> str:
+    """The formats that are read or written, for a help text: a row each."""
+    rows = [f"{' '.join(item.suffixes):<10s}{getattr(item, told)}" for item in FORMATS if getattr(item, use)]
+    return "\n".join(["\b", *rows])
+
+
+@click.command("import", epilog=_endings("reader", "stones"))
 @click.argument("drawing", type=click.Path(path_type=Path))
 @click.option("-o", "--output", type=OUTPUT, help="A file instead of standard output.")
 @click.option(
@@ -62,7 +70,7 @@ KEPT = 50
 @click.option("--at", type=float, help="Where the plane lies on the third axis.  [default: the middle]")
 @catching
 def import_(drawing: Path, output: Path | None, mapping: Path | None, **said: Any) -> None:
-    """Make a WALL.json of DRAWING: DXF, SVG, GeoJSON, WKT, shapefile, CSV, gmsh (.msh, .geo) or COMPAS JSON.
+    """Make a WALL.json of DRAWING.
 
     What was read, what was left out and why, and what is taken because the drawing does not say it stands on standard
     error, in the wall's metadata, and, where it is left out or guessed, in its doubts, which every command repeats. A
@@ -93,7 +101,7 @@ def _write(text: str, output: Path | None) -> None:
         say(str(output))
 
 
-@click.command()
+@click.command(epilog=_endings("writer", "holds"))
 @click.argument("case")
 @click.option("--method", help="Whose answer goes along; the wall alone if absent.")
 @click.option("-o", "--output", type=OUTPUT, required=True, help="Its ending says the format.")
@@ -104,34 +112,23 @@ def _write(text: str, output: Path | None) -> None:
 def export(
     case: str, method: str | None, output: Path, settings: tuple[str, ...], store: Path, folders: tuple[Path, ...]
 ) -> None:
-    """Write CASE (an id, a WALL.json or a drawing) for other programs, with the answer of a method.
-
-    \b
-    .vtu         ParaView: blocks, joints, velocities, forces, states
-    .pvd         a series of these: the collapse of de-tilt, the load steps of fe, or a mechanism that grows
-    .dxf, .svg   the wall and the mechanism, in layers
-    .geojson     blocks and joints with their numbers
-    .csv         a row a vertex
-    .json        meshes that compas.json_load reads
-    .npz, .mat   the matrices for a solver of one's own
-    """
-    from harness.formats.exporting import writer_of
-
-    write = writer_of(output)
+    """Write CASE (an id, a WALL.json or a drawing) for other programs, with the answer of a method."""
+    written = format_written(output)
     chosen = {} if method is None else _settings(method, settings, output)
     (found,) = find_cases([case], None, folders)
     warn(found)
     result = None
     if method is not None:
         with open_store(store) as opened, terminal.progress(1, quiet=True) as told:
-            (result,) = comparing.execute([Run(found, method, chosen, Limits())], opened, 1, told=told)
+            (result,) = pipeline.execute([Run(found, method, chosen, Limits())], opened, 1, told=told)
         if result.status is not Status.OK or result.finding is Finding.NONE:
             raise InputError(f"{result.method} has no answer to write: {result.sentence}", element=found.id)
         say(f"drystone: {found.id}: {result.sentence}", err=True)
     try:
-        write(found.built, result, output)
+        written.write(found.built, result, output)
     except ImportError as error:
-        raise InputError(f"the package {error.name} is not installed", f"pip install {error.name}") from None
+        remedy = f"pip install {written.package or error.name}"
+        raise InputError(f"the package {error.name} is not installed", remedy) from None
     say(str(output))
 
 

@@ -10,9 +10,10 @@ import click
 
 from drystone.cli import terminal
 from drystone.cli.options import OUTPUT, catching, jobs_option, say, store_option
-from harness.engine import compare as comparing
-from harness.engine.isolate import preload_methods
-from harness.engine.plan import Limits, find_cases, plan_case
+from drystone.comparing import compared
+from harness.engine.executors import LocalExecutor
+from harness.engine.plan import find_cases, plan_case
+from harness.engine.run import Limits
 from harness.engine.store import open_store
 from harness.model.library import library
 
@@ -34,9 +35,8 @@ def learn(output: Path, jobs: int, store: Path) -> None:
 
     chosen = find_cases(("single-block", *WALLS), None, ())
     runs = [planned for case in chosen for planned in plan_case(case, list(library().methods.compare), Limits())]
-    preload_methods(planned.method for planned in runs)
+    command, title = shlex.join(["drystone", *sys.argv[1:]]), "Why three methods differ"
     with open_store(store) as opened, terminal.progress(len(runs), quiet=False) as told:
-        results = comparing.execute(runs, opened, jobs, told=told)
-    command = shlex.join(["drystone", *sys.argv[1:]])
-    write_learn(comparing.comparison_run("Why three methods differ", command, chosen, runs, results), output)
+        made = compared(title, command, chosen, runs, opened, LocalExecutor(jobs), told=told, certified=False)
+    write_learn(made, output)
     say(f"Page: {output}")

@@ -23,11 +23,12 @@ COMMANDS = {
     "check": ("check", "check", "Hold the methods to their gated references."),
     "diff": ("diff", "diff", "Compare the answers of two stores or baselines."),
     "baseline": ("check", "baseline", "Show how today's values stand to the recorded ones."),
-    "list": ("walls", "list_", "List the cases, the methods or the suites there are."),
+    "list": ("walls", "list_", "List the cases, the methods, the suites or the formats there are."),
     "expand": ("walls", "expand", "Print WALL.json in explicit form."),
     "judge": ("walls", "judge", "Judge RESULT.json, an answer from anywhere."),
     "bound": ("proof", "bound", "Write a certificate that no collapse state lies lower."),
     "verify-bound": ("proof", "verify_bound", "Check a certificate in fractions."),
+    "reaction": ("reaction", "reaction", "Print the reactions of the supports of CASE that move."),
     "schema": ("walls", "schema", "Print the JSON Schema of the wall format."),
     "validate": (
         "drawings",

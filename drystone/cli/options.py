@@ -15,7 +15,7 @@ from typing import Any
 
 import click
 
-from harness.engine.plan import Limits
+from harness.engine.run import Limits
 from harness.model.case import Case
 from harness.model.errors import InputError, visible
 from harness.model.writing import check_output

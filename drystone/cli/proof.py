@@ -8,7 +8,7 @@ from typing import Literal
 
 import click
 
-from drystone.certificates import proved, read_certificate, write_certificate
+from drystone.certificates import nearest, proved, read_certificate, write_certificate
 from drystone.cli.options import OUTPUT, cases_option, catching, json_flag, print_json, say, warn
 from harness.engine.plan import find_cases
 from harness.model.errors import InputError
@@ -49,6 +49,9 @@ def bound(
         raise InputError("the wall has no live load", 'Give "loads": {"live": ...}', case)
     if found.assembly.dilates:
         raise InputError("some joints lift as they slide", "Leave dilatancy out: certificates are without", case)
+    if found.assembly.strong:
+        remedy = "Leave cohesion and tensile strength out: certificates are of dry joints"
+        raise InputError("some joints have cohesion or tensile strength", remedy, case)
     search = SearchSettings(effort=effort)
     attempt = find_certificate(found.assembly, seconds, search, nodes, lambda sentence: say(sentence, err=True))
     if attempt.document is None:
@@ -84,7 +87,7 @@ def verify_bound(certificate: Path, wall: str | None, as_json: bool, folders: tu
             say(f"Refused: {error}.")
         sys.exit(1)
     if as_json:
-        at = {} if upper is None else {"multiplier": str(upper), "value": float(upper)}
+        at = {} if upper is None else {"multiplier": str(upper), "value": nearest(upper)}
         print_json({"holds": True, "bound": str(lower)} | at)
     else:
         say(f"{proved(document).capitalize()}.")

@@ -12,6 +12,7 @@ from drystone.cli import terminal
 from drystone.cli.options import (
     cases_option,
     catching,
+    fresh_flag,
     json_flag,
     memory_option,
     print_json,
@@ -21,7 +22,8 @@ from drystone.cli.options import (
 )
 from drystone.cli.settings import settings_of
 from drystone.walls import Wall
-from harness.engine.plan import Limits, check_methods, find_cases
+from harness.engine.plan import check_methods, find_cases
+from harness.engine.run import Limits
 from harness.model.method import Status
 
 
@@ -36,6 +38,12 @@ from harness.model.method import Status
     show_default=True,
     help="Processes for the parts of this one run, where its method can make them side by side; others refuse.",
 )
+@click.option(
+    "--store",
+    type=click.Path(path_type=Path),
+    help="Where the result is kept, and looked for first.  [default: nowhere]",
+)
+@fresh_flag
 @click.option("--fields", is_flag=True, help="With --json: contact forces, mechanism, states and path too.")
 @json_flag
 @cases_option
@@ -47,6 +55,8 @@ def run(
     case: str,
     settings: tuple[str, ...],
     jobs: int,
+    store: Path | None,
+    fresh: bool,
     fields: bool,
     as_json: bool,
     folders: tuple[Path, ...],
@@ -59,7 +69,9 @@ def run(
     chosen = settings_of(method, settings)
     warn(found)
     limits = Limits(seconds, memory * 2**20)
-    result = analyse_by(Wall(found), method, chosen, isolated=True, limits=limits, processes=jobs)
+    result = analyse_by(
+        Wall(found), method, chosen, isolated=True, limits=limits, processes=jobs, store=store, fresh=fresh
+    )
     if as_json:
         print_json(terminal.result_json(result, result.proof, fields=fields))
     else:

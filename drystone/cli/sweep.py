@@ -29,7 +29,7 @@ from drystone.cli.studies import duration, progress
 from drystone.cli.terminal import print_rows
 from drystone.studies import Sweep, changed, rows_of, shipped_studies, study_file
 from harness.engine.executors import Executor, LocalExecutor
-from harness.engine.plan import Limits
+from harness.engine.run import Limits
 from harness.engine.store import open_store
 from harness.engine.sweep.expand import SweepRun, expand, sources_of
 from harness.engine.sweep.quick import quick_study

@@ -2,24 +2,24 @@
 
 from __future__ import annotations
 
-import math
 import shutil
 import sys
 import textwrap
 from collections import Counter
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
-from harness.engine.compare import Told
-from harness.engine.plan import Run
+from harness.engine.pipeline import Told
 from harness.engine.regression import violations
+from harness.engine.run import Run
 from harness.model.assembly import Assembly
 from harness.model.case import Case
-from harness.model.columns import BY_NAME, PRINTED
+from harness.model.columns import PRINTED, ResultColumn, ResultRow
 from harness.model.comparison import CaseResults, ComparisonRun
 from harness.model.difference import Difference, Kind
 from harness.model.errors import InputError, first_few, visible
@@ -27,20 +27,11 @@ from harness.model.fields import LARGEST
 from harness.model.live_load import direction_in_words
 from harness.model.method import Answer, Finding, Status
 from harness.model.proof import LABELS, Proof, Standing, least_known, proof_of
-from harness.model.result import Judgement, Result
+from harness.model.result import Judgement, Result, Verdict, residual_of
+from harness.model.result_texts import PROVED, VERDICT_TEXTS, answer_text
 
 JUDGED = {True: 0, False: 1, None: 3}
 """Exit codes for an answer that is accepted, rejected, or shows nothing that proves or refutes its claim."""
-
-PROVED = "∎"
-"""Before the multiplier of a proved minimum, as in the report."""
-MARKS = {
-    "agrees": "✓ agrees",
-    "not_tested": "· not tested",
-    "outside_tolerance": "✗ outside tolerance",
-    "violates_bound": "✗ violates bound",
-    "no_reference": "· no reference",
-}
 
 
 def escape(text: str) -> str:
@@ -61,7 +52,7 @@ def progress(total: int, *, quiet: bool = False) -> Iterator[Told]:
         def tell(run: Run, result: Result, stored: bool) -> None:
             if not quiet:
                 how = "stored" if stored else f"{result.cpu_seconds or 0.0:.2f} s"
-                line = f"{run.case.id} {run.method}: {_value(result)} ({how})"
+                line = f"{run.case.id} {run.method}: {answer_text(result)} ({how})"
                 print(visible(line), file=sys.stderr, flush=True)
 
         yield tell
@@ -78,52 +69,7 @@ def progress(total: int, *, quiet: bool = False) -> Iterator[Told]:
         yield advance
 
 
-def _value(result: Result) -> str:
-    if result.status is not Status.OK:
-        return str(result.status).replace("_", " ")
-    if result.finding is not Finding.COLLAPSES:
-        return str(result.finding)
-    if result.traits.brackets and result.bracket is not None:
-        return f"[{_number(result.bracket[0], 5)}, {_number(result.bracket[1], 5)}]{result.width_in_words}"
-    return "-" if result.multiplier is None else _number(result.multiplier, 7, result.judge.decimals)
-
-
-def _number(value: float, decimals: int, known: int | None = None) -> str:
-    """A multiplier with so many decimals; by powers of ten where those would show nothing or pretend too much.
-
-    Args:
-        value: the multiplier.
-        decimals: as many at most.
-        known: as many are within its error; None: nothing is known of it.
-    """
-    usual = value == 0.0 or 1e-3 <= abs(value) < 1e6
-    if known is not None:
-        decimals = max(0, min(decimals, known if usual else known + math.floor(math.log10(abs(value)))))
-    return f"{value:.{decimals}f}" if usual else f"{value:.{decimals}e}"
-
-
-def _expected(result: Result) -> str:
-    shown = []
-    for comparison in result.comparisons:
-        if comparison.quantity not in ("multiplier", "finding"):
-            continue
-        expected = comparison.expected
-        if isinstance(expected, list):
-            text = f"[{expected[0]:.5g}, {expected[1]:.5g}]"
-        else:
-            text = expected if isinstance(expected, str) else f"{expected:.7g}"
-        own = (result.multiplier, list(result.bracket or ()), str(result.finding))
-        shown.append(text if comparison.value in own else f"{text} (other settings)")
-    return ", ".join(dict.fromkeys(shown))
-
-
-def _residual(result: Result) -> str:
-    worst = result.judge.worst
-    mark = {True: "", False: " ✗", None: " not judged" if result.status is Status.OK else ""}[result.judge.accepted]
-    return ("-" if worst is None and not mark else "" if worst is None else f"{worst[1]:.1e}") + mark
-
-
-def print_comparison(compared: ComparisonRun, report: Path | None) -> None:
+def print_comparison(compared: ComparisonRun, report: Path | None, columns: Sequence[ResultColumn] = PRINTED) -> None:
     """The table of a comparison, what does not hold, and where the report is."""
     from rich.console import Console
     from rich.table import Table
@@ -132,23 +78,19 @@ def print_comparison(compared: ComparisonRun, report: Path | None) -> None:
     if not console.is_terminal:
         console = Console(width=140)
     table = Table(title=f"Drystone: {escape(compared.title)}", title_justify="left", caption_justify="left")
-    for column in (BY_NAME[name] for name in PRINTED):
+    for column in columns:
         whole = column.name in ("multiplier", "method")
         table.add_column(escape(column.head), justify="right" if column.numeric else "left", no_wrap=whole)
     for case in compared.cases:
         for number, result in enumerate(case.results):
+            row = ResultRow(result, proof_of(case, result))
             table.add_row(
-                escape(case.case.id) if number == 0 else "",
-                escape(result.method),
-                f"{PROVED} {_value(result)}" if _is_minimum(case, result) else _value(result),
-                escape(_expected(result)),
-                MARKS[str(result.verdict)],
-                _residual(result),
-                "-" if result.cpu_seconds is None else f"{result.cpu_seconds:.2f}",
+                *["" if number and column.name == "case" else escape(column.text(row)) for column in columns],
                 end_section=number == len(case.results) - 1,
             )
     console.print(table)
-    for sentence in _proofs(compared):
+    refusals = [f"{case.case.id}: {sentence}" for case in compared.cases for sentence in case.refusals]
+    for sentence in (*_proofs(compared), *refusals):
         console.print(escape(sentence), highlight=False)
     units: dict[str, list[str]] = {}
     for case in compared.cases:
@@ -162,6 +104,9 @@ def print_comparison(compared: ComparisonRun, report: Path | None) -> None:
                 console.print(escape(f"{case.case.id}, {result.method}: {result.sentence}"), highlight=False)
         if case.split_on_dead_load:
             console.print(f"{escape(f'{case.case.id}: {case.split_on_dead_load}')}.", highlight=False)
+    for case in compared.cases:
+        for sentence in _strength(case):
+            console.print(escape(sentence), highlight=False)
     broken = violations(compared)
     gated = sum(item.gate for case in compared.cases for result in case.results for item in result.comparisons)
     gates = sum(gate.passed is not None for case in compared.cases for gate in case.gates)
@@ -178,6 +123,21 @@ def print_comparison(compared: ComparisonRun, report: Path | None) -> None:
         print(visible(f"Report: {report}"))
 
 
+def _strength(case: CaseResults) -> Iterator[str]:
+    """Plastic and residual values of a wall whose joints have cohesion or tension, and which of them is safe."""
+    found = []
+    for result in case.results:
+        residual = residual_of(result)
+        if residual is not None and result.status is Status.OK:
+            bound = ", an upper bound" if result.traits.bounds_above else ""
+            found.append(f"{result.method} {answer_text(result)} plastic, {answer_text(residual)} residual{bound}")
+    if found:
+        yield (
+            f"{case.case.id}, strength of joints: {'; '.join(found)}. Joints of mortar are brittle: rely on the "
+            "residual value of a method that is no upper bound."
+        )
+
+
 def _is_minimum(case: CaseResults, result: Result) -> bool:
     return proof_of(case, result).standing is Standing.MINIMUM
 
@@ -188,7 +148,7 @@ def _proofs(compared: ComparisonRun) -> Iterator[str]:
         (case,) = compared.cases
         least = least_known(case)
         if least is not None:
-            yield f"{least.method}: {proof_of(case, least).sentence}"
+            yield f"{least.method}: {replace(proof_of(case, least), refused='').sentence}"
     elif any(_is_minimum(case, result) for case in compared.cases for result in case.results):
         yield f"{PROVED} {LABELS[Standing.MINIMUM]}: an exact certificate proves that no collapse state lies lower."
 
@@ -235,9 +195,11 @@ def print_result(result: Result, case: Case, proof: Proof) -> None:
         ("units", case.wall.units_sentence),
         ("live load", direction_in_words(case) or "none"),
         ("method", result.method),
-        ("finding", _value(result) if result.finding is Finding.COLLAPSES else str(result.finding)),
+        ("finding", answer_text(result) if result.finding is Finding.COLLAPSES else str(result.finding)),
         ("", result.sentence),
     ]
+    if (residual := residual_of(result)) is not None:
+        rows.append(("residual", f"{answer_text(residual)}, without cohesion and tensile strength"))
     if result.bracket is not None:
         rows.append(("bracket", f"[{result.bracket[0]:.7g}, {result.bracket[1]:.7g}] {result.bracket_meaning}"))
     if proof.sentence:
@@ -245,7 +207,9 @@ def print_result(result: Result, case: Case, proof: Proof) -> None:
     rows += [("status", str(result.status)), ("judge", result.judge.sentence)]
     rows += [("", f"{name} {value:.2e}") for name, value in result.judge.residuals.items()]
     for comparison in result.comparisons:
-        rows.append(("reference", f"{MARKS[str(comparison.verdict)]}: {comparison.reference}: {comparison.sentence}"))
+        rows.append(
+            ("reference", f"{VERDICT_TEXTS[comparison.verdict]}: {comparison.reference}: {comparison.sentence}")
+        )
     if result.cpu_seconds is not None:
         memory = (result.peak_memory_bytes or 0) / 2**20
         rows.append(("cost", f"{result.cpu_seconds:.3f} s of CPU, {memory:.0f} MiB"))
@@ -272,7 +236,7 @@ def print_judgement(judgement: Judgement) -> None:
 def print_check(lines: list[dict[str, Any]]) -> None:
     """One line a reference, and a count."""
     for line in lines:
-        mark = MARKS[line["verdict"]]
+        mark = VERDICT_TEXTS[Verdict(line["verdict"])]
         where = line["method"] + (f" {line['settings']}" if line["settings"] else "")
         told = f"{mark}  {line['case']}  {line['quantity']}  {where}: {line['sentence']}  [{line['source']}]"
         print(visible(told))

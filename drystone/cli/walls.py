@@ -22,9 +22,11 @@ from drystone.cli.options import (
     warn,
 )
 from drystone.walls import read_wall as wall_of_file
-from harness.engine import compare as comparing
-from harness.engine.plan import Limits, Run, check_methods, find_cases
+from harness.engine import pipeline
+from harness.engine.plan import check_methods, find_cases
+from harness.engine.run import Limits, Run
 from harness.engine.store import open_store
+from harness.formats.registry import FORMATS
 from harness.model.case import Case, case_folders, read_case, shipped_cases
 from harness.model.errors import InputError
 from harness.model.library import library
@@ -36,14 +38,16 @@ from harness.model.writing import write_whole
 
 
 @click.command(name="list")
-@click.argument("what", type=click.Choice(["cases", "methods", "suites"]))
+@click.argument("what", type=click.Choice(["cases", "methods", "suites", "formats"]))
 @json_flag
 @cases_option
 @catching
 def list_(what: str, as_json: bool, folders: tuple[Path, ...]) -> None:
-    """List the cases, the methods or the suites there are."""
+    """List the cases, the methods, the suites or the file formats there are."""
     if what == "methods":
         rows = [_method_row(name) for name in method_names()]
+    elif what == "formats":
+        rows = [item.row() for item in FORMATS]
     else:
         cases = [read_case(folder) for folder in case_folders([shipped_cases(), *folders]).values()]
         if what == "cases":
@@ -183,7 +187,7 @@ def _answers(case: str, methods: tuple[str, ...], store: Path, folders: tuple[Pa
     (found,) = find_cases([case], None, folders)
     warn(found)
     with open_store(store) as opened, terminal.progress(len(methods), quiet=True) as told:
-        results = comparing.execute([Run(found, name, {}, Limits()) for name in methods], opened, 1, told=told)
+        results = pipeline.execute([Run(found, name, {}, Limits()) for name in methods], opened, 1, told=told)
     for result in results:
         if result.status is not Status.OK or result.finding in (Finding.NONE,):
             raise InputError(f"{result.method} has no answer to draw: {result.sentence}", element=found.id)

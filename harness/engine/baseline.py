@@ -15,7 +15,7 @@ from typing import Any
 
 from pydantic import BaseModel, ConfigDict, Field
 
-from harness.engine.plan import Run
+from harness.engine.run import Run
 from harness.model.method import Status
 from harness.model.reading import read_json, validate
 from harness.model.result import Result

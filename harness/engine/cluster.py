@@ -16,8 +16,9 @@ from contextlib import contextmanager, suppress
 from typing import Any
 
 from harness.engine.executors import Job, Slots
-from harness.engine.isolate import LOOK_SECONDS, TimedResult, ended_run, start_context
+from harness.engine.isolate import LOOK_SECONDS, ended_run, start_context
 from harness.engine.provenance import code_version, versions
+from harness.engine.run import TimedResult
 from harness.engine.worker import Task
 from harness.model.errors import InputError
 

@@ -3,15 +3,21 @@
 from __future__ import annotations
 
 import itertools
+import time
 from collections.abc import Collection, Generator, Iterable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from datetime import UTC, datetime
 from multiprocessing.connection import wait
 from multiprocessing.context import BaseContext
 from typing import Protocol
 
 from harness.engine import preload
-from harness.engine.isolate import LOOK_SECONDS, Child, Retry, TimedResult, own_context, start_context
-from harness.engine.worker import Task
+from harness.engine.isolate import LOOK_SECONDS, Child, Retry, own_context, start_context
+from harness.engine.run import TimedResult, measured_result
+from harness.engine.worker import Task, solved
+from harness.model.answer_check import checked
+from harness.model.method import Method, allowing, check_takes, load_method, prepared
+from harness.model.reading import validate
 
 RUNS_A_CHILD = 500
 """Runs after which a child process is replaced, so that nothing grows without end."""
@@ -79,6 +85,43 @@ class LocalExecutor:
             for child in busy:
                 child.end()
             slots.end()
+
+
+class InProcess:
+    """This process, one run after another and without limits; what a method raises is raised.
+
+    Args:
+        method: makes all runs; None: those that the tasks name.
+    """
+
+    def __init__(self, method: Method | None = None) -> None:
+        self._method = method
+
+    def map(self, jobs: Iterable[Job], methods: Collection[str]) -> Generator[tuple[int, TimedResult]]:
+        """See `Executor`."""
+        for job in jobs:
+            yield job.number, self._measured(job)
+
+    def _measured(self, job: Job) -> TimedResult:
+        task = job.task
+        method = prepared(self._method or load_method(task.method))
+        settings = validate(method.Settings, task.settings, "settings")
+        check_takes(method, task.assembly)
+        own = replace(task, assembly=task.assembly.copied())  # what a method does to its wall is its own
+        begun, clock, work = datetime.now(UTC), time.perf_counter(), time.process_time()
+        with allowing(task.processes):
+            answer = checked(solved(method, own, settings), task.assembly)
+        record = {
+            "answer": answer,
+            "cpu_seconds": time.process_time() - work,
+            "wall_seconds": time.perf_counter() - clock,
+            "peak_memory_bytes": None,
+            "settings": settings.model_dump(mode="json"),
+            "family": method.family,
+            "traits": method.traits.model_dump(),
+            "tolerance": method.tolerance,
+        }
+        return measured_result(record, task, job.case, begun.isoformat(timespec="seconds"), {})
 
 
 class Slots:

@@ -12,7 +12,6 @@ import sys
 import tempfile
 import time
 from collections.abc import Iterable, Iterator
-from dataclasses import dataclass
 from datetime import UTC, datetime
 from enum import Enum
 from multiprocessing import forkserver
@@ -23,15 +22,14 @@ from types import ModuleType
 from typing import Any
 
 from harness.engine import preload, worker
-from harness.engine.provenance import machine, versions
 from harness.engine.resource_use import resource_use
+from harness.engine.run import Limits, TimedResult, measured_result
 from harness.engine.threads import pin
 from harness.engine.worker import Task
 from harness.model.answer_check import checked
 from harness.model.errors import InputError, visible
-from harness.model.method import Answer, Finding, Status, Traits
+from harness.model.method import Answer, Finding, Status
 from harness.model.reading import LARGEST_FILE
-from harness.model.result import Result, result_of
 
 LOOK_SECONDS, LOOKS_AT_CHILDREN = 0.05, 10
 """How often memory and time of a run are looked at, and at which look those of what it started as well."""
@@ -45,14 +43,6 @@ LONG_SECONDS = 10.0
 
 MOST_READ = 4096
 """Bytes that are read at the end of what a run printed."""
-
-
-@dataclass(frozen=True)
-class TimedResult:
-    """A result with the tolerance its method asks the judge for."""
-
-    result: Result
-    tolerance: float
 
 
 @functools.cache
@@ -359,26 +349,8 @@ class _RunningJob:
 
     def measured(self, record: dict[str, Any]) -> TimedResult:
         """The result of a record, with where, when and under which limits it was made."""
-        task = self.task
-        result = result_of(
-            record["answer"],
-            task.assembly,
-            case=self.case,
-            method=task.method,
-            family=record.get("family") or task.method.split("-", maxsplit=1)[0],
-            traits=Traits.model_validate(record.get("traits") or {}),
-        )
-        update = {
-            "cpu_seconds": record["cpu_seconds"],
-            "wall_seconds": record["wall_seconds"],
-            "peak_memory_bytes": record["peak_memory_bytes"],
-            "settings": record.get("settings") or task.settings,
-            "limits": {"seconds": task.seconds, "memory_bytes": float(task.memory_bytes)},
-            "versions": versions(),
-            "machine": machine(),
-            "started": self.begun,
-        }
-        return TimedResult(result.model_copy(update=update), float(record.get("tolerance") or 0.0))
+        limits = Limits(self.task.seconds, self.task.memory_bytes).as_dict()
+        return measured_result(record, self.task, self.case, self.begun, limits)
 
 
 def _last_words(folder: Path) -> str:

@@ -6,21 +6,26 @@ collapses at lambda  forces in equilibrium with dead + lambda x live at the mult
                      a mechanism at rest on the supports, without interpenetration, of the stated flow rule,
                      complementary to the forces, on which the live load does positive work
 bracket              (flow "approximate") a live load; forces in equilibrium within yield at its lower end or above;
-                     the upper end is measured and is not judged; nor is it shown that the motion is the one at
-                     collapse, but it must be one that the joints allow (`harness.engine.measured_motion`)
+                     the upper end is measured and is not judged, but it lies no lower than what these forces bear;
+                     nor is it shown that the motion is the one at collapse, but it must be one that the joints allow
+                     and the loads drive (`harness.engine.measured_motion`); without a bracket, not judged
 at its limit         multiplier 0; forces in equilibrium within yield under the dead load, and a dilatant mechanism of a
                      multiplier that the numbers of the wall do not tell from zero (`harness.model.limit`): no forces
                      bear more, whatever the flow
 stands               forces in equilibrium within yield under the dead load, where no live load was given; with a live
                      load they show no multiplier, and the answer is not judged
-falls                a dilatant mechanism, at rest on the supports, on which the dead load does positive work, more than
-                     immense forces could do on its closings: no equilibrium exists (Farkas); a measured motion is no
-                     proof and is not judged
-unbounded            forces within yield that balance the live load alone, besides forces under the dead load: their sum
-                     bears any multiplier
+falls                a dilatant mechanism, at rest on the supports, on which the dead load does more work than the
+                     cohesion and tensile strength of the joints take and immense forces could do on its closings: no
+                     equilibrium exists (Farkas); a measured motion is no proof and is not judged
+unbounded            forces within the yield of dry joints that balance the live load alone, besides forces under the
+                     dead load: their sum bears any multiplier
 
-No multiplier that is claimed lies below zero. What proves nothing either way is not judged (`Judgement.accepted` is
-None), which never means accepted.
+A wall with strength of its joints may come with the answer for the same wall without, in the detail
+`without_strength`; it is judged on that wall by the same rules, and where it is rejected the whole answer is.
+
+No multiplier that is claimed lies below zero, and none is claimed beside a finding that has none or outside its
+bracket. A tolerance above `COARSEST` shows nothing. What proves nothing either way is not judged
+(`Judgement.accepted` is None), which never means accepted.
 
 The residuals are those of `harness.engine.residuals`.
 """
@@ -37,15 +42,17 @@ from harness.engine.residuals import (
     collapse_residuals,
     displaced_fault,
     displaced_residuals,
+    dissipated_by_strength,
     force_residuals,
+    moved_far,
     moving_parts,
     power,
 )
 from harness.model.assembly import Assembly, FloatArray
 from harness.model.displaced import DisplacedState
-from harness.model.limit import accuracy, least_told
+from harness.model.limit import accuracy, gross_power, least_told
 from harness.model.method import Finding, Method, Status, check_takes
-from harness.model.result import Judgement, Result, relative_velocities, result_of
+from harness.model.result import Judgement, Result, relative_velocities, residual_of, result_of
 
 
 def judge(assembly: Assembly, result: Result, tolerance: float) -> Judgement:
@@ -65,9 +72,16 @@ def judge(assembly: Assembly, result: Result, tolerance: float) -> Judgement:
     for name, value in numbers.items():
         if value is not None and not _countable(value):
             return _said(tolerance, False, f"Its {name}: not finite, or larger than {COUNTABLE:g}.")
+    if fault := _contradiction(assembly, result, tolerance):
+        return _said(tolerance, False, fault)
     said = _judge_finding(assembly, forces, mechanism, result, tolerance)
+    if assembly.strong and "without_strength" in result.details:
+        said = _with_residual(said, assembly.without_strength, residual_of(result))
+    if said.accepted and tolerance > COARSEST:
+        said.accepted = None
+        said.sentence += f" A tolerance above {COARSEST:g} shows nothing."
     if result.flow == "approximate" and mechanism is not None and len(mechanism) == assembly.n_blocks:
-        return _with_motion(said, *motion_faults(assembly, mechanism, result.multiplier or 0.0, result.details))
+        return _with_motion(said, *motion_faults(assembly, mechanism, _driving(result), result.details))
     return said
 
 
@@ -84,11 +98,55 @@ def _judge_finding(
             return _judge_unbounded(assembly, forces, result, tolerance)
         case Finding.AT_LIMIT:
             return _judge_limit(assembly, forces, mechanism, result, tolerance)
-    if result.multiplier is not None and result.multiplier < 0.0:
-        return _said(tolerance, False, "Its multiplier lies below zero: the live load brings no such collapse about.")
     if result.flow == "approximate":
         return _judge_bracket(assembly, forces, result, tolerance)
     return _judge_collapse(assembly, forces, mechanism, result, tolerance)
+
+
+def _with_residual(said: Judgement, dry: Assembly, residual: Result | None) -> Judgement:
+    """The judgement of a wall with its strength, no better than that of the same wall without, if that claims a thing.
+
+    Args:
+        said: of the wall with its strength; dry: the wall without; residual: what is claimed of it, None if unreadable.
+    """
+    sizes = {"forces": dry.n_interfaces, "mechanism": dry.n_blocks}
+    own = Judgement(accepted=False, sentence="The residual answer is none of this wall.")
+    if residual is not None and all(len(getattr(residual, name) or [()] * n) == n for name, n in sizes.items()):
+        if residual.status is not Status.OK:
+            return said
+        own = judge(dry, residual, said.tolerance)
+    both = (said.accepted, own.accepted)
+    accepted = False if False in both else None if None in both else True
+    sentence = f"{said.sentence} Without cohesion and tensile strength: {own.sentence}"
+    return said.model_copy(update={"accepted": accepted, "sentence": sentence})
+
+
+def _contradiction(assembly: Assembly, result: Result, tolerance: float) -> str:
+    """What parts of a result say against each other or against the question, in words; empty where nothing does."""
+    multiplier, bracket = result.multiplier, result.bracket
+    if not result.finding.has_multiplier:
+        if result.finding is Finding.UNBOUNDED and not assembly.has_live_load:
+            return "It speaks of a live load that the wall does not have."
+        if multiplier is not None or bracket is not None:
+            return f'It gives a multiplier or a bracket beside the finding "{result.finding}", which has none.'
+        return ""
+    if not assembly.has_live_load:
+        return "It gives a multiplier of a live load that the wall does not have."
+    lowest = min(0.0 if multiplier is None else multiplier, 0.0 if bracket is None else bracket[0])
+    if lowest < 0.0:
+        return (
+            "Its multiplier or the lower end of its bracket lies below zero: no live load brings such a collapse about."
+        )
+    if bracket is not None and multiplier is not None:
+        slack = tolerance * max(abs(bracket[0]), abs(bracket[1]))
+        if not bracket[0] - slack <= multiplier <= bracket[1] + slack:
+            return f"Its multiplier {multiplier:.6g} lies outside its bracket [{bracket[0]:.6g}, {bracket[1]:.6g}]."
+    return ""
+
+
+def _driving(result: Result) -> float:
+    """The multiplier under which the motion of a result was measured: the upper end of its bracket."""
+    return (result.multiplier or 0.0) if result.bracket is None else result.bracket[1]
 
 
 def _with_motion(said: Judgement, residuals: dict[str, float], fault: str) -> Judgement:
@@ -103,7 +161,7 @@ def _with_motion(said: Judgement, residuals: dict[str, float], fault: str) -> Ju
 def answered(method: Method, assembly: Assembly, **settings: Any) -> tuple[Result, Judgement]:
     """What a method answers in this process, and what the judge says of it."""
     check_takes(method, assembly)
-    answer = method.solve(assembly, method.Settings.model_validate(settings))
+    answer = method.solve(assembly.copied(), method.Settings.model_validate(settings))
     result = result_of(
         answer, assembly, case=assembly.name, method=method.name, family=method.family, traits=method.traits
     )
@@ -127,6 +185,15 @@ WITHOUT_END = 1e-12
 """Largest residual of forces that balance the live load alone: what is violated by more ends, if far away."""
 COUNTABLE = 1e100
 """Largest number of an answer: sums of products of such numbers are finite, so that no residual is lost in them."""
+COARSEST = 1e-2
+"""Largest tolerance that shows something: a hundredth of the loads. Ten times the coarsest of the library's methods."""
+MOST_OPEN = 4.0
+"""Largest multiplier that a wall at its limit can have, in load units times the accuracy of its numbers.
+
+A block that turns about its corner leaves three times its weight open; more is a motion beside the point."""
+GAIN = 1e-12
+"""Share of the power that the dead load would have if nothing cancelled, up to which its power is rounding."""
+MOVED_FAR = " Its blocks rest so far from where they were drawn that this shows nothing of the wall as drawn."
 NO_FORCES = "It gives no contact forces, so it cannot be checked."
 
 
@@ -158,8 +225,9 @@ def _judge_bracket(assembly: Assembly, forces: FloatArray | None, result: Result
     at = result.multiplier if result.forces_multiplier is None else result.forces_multiplier
     if lower is None or at is None:
         return _said(tolerance, False, "It gives no multiplier.")
-    if not assembly.has_live_load:
-        return _said(tolerance, False, "It gives a multiplier of a live load that the wall does not have.")
+    if result.bracket is not None and at > result.bracket[1] + tolerance * abs(at):
+        return _said(tolerance, False, f"Its forces bear {at:.6g}, above the upper end of its bracket.")
+    far = False
     if forces is not None:
         residuals = force_residuals(assembly, forces, at)
         what = f"Equilibrium and yield of the contact forces at multiplier {at:.6g}"
@@ -169,31 +237,38 @@ def _judge_bracket(assembly: Assembly, forces: FloatArray | None, result: Result
             return _said(tolerance, None, NO_FORCES)
         if fault := displaced_fault(assembly, moved):
             return _said(tolerance, False, f"The state of rest proves nothing: {fault}.")
-        residuals = displaced_residuals(assembly, moved, at)
+        residuals, far = displaced_residuals(assembly, moved, at), moved_far(assembly, moved)
         what = f"Equilibrium and yield of the contact forces where the blocks have moved to, at multiplier {at:.6g},"
     residuals["multiplier"] = apart(lower, at) if lower > at else 0.0
     said = _decide(residuals, tolerance, what)
-    if said.accepted:
+    if said.accepted and far:
+        said.accepted, said.sentence = None, said.sentence + MOVED_FAR
+    elif said.accepted and result.bracket is None:
+        said.accepted = None
+        said.sentence += " It gives no bracket: how far above them the wall collapses was not measured."
+    elif said.accepted:
         said.sentence += " They show the lower end; that the wall collapses above it is measured and not judged."
     return said
 
 
 def _judge_standing(assembly: Assembly, forces: FloatArray | None, result: Result, tolerance: float) -> Judgement:
     """Stands under its dead load, where nothing more was asked."""
-    what = "Equilibrium and yield of the contact forces under the dead load"
+    what, far = "Equilibrium and yield of the contact forces under the dead load", False
     if forces is not None:
         residuals = force_residuals(assembly, forces, 0.0)
     elif (moved := DisplacedState.of(result.details)) is not None:
         if fault := displaced_fault(assembly, moved):
             return _said(tolerance, False, f"The state of rest proves nothing: {fault}.")
-        residuals = displaced_residuals(assembly, moved, 0.0)
+        residuals, far = displaced_residuals(assembly, moved, 0.0), moved_far(assembly, moved)
         what += ", where the blocks have moved to,"
     elif assembly.n_free == 0:
         return _said(tolerance, True, "Every block is fixed: nothing can move.")
     else:
         return _said(tolerance, False, NO_FORCES)
     said = _decide(residuals, tolerance, what)
-    if said.accepted and assembly.has_live_load:
+    if said.accepted and far:
+        said.accepted, said.sentence = None, said.sentence + MOVED_FAR
+    elif said.accepted and assembly.has_live_load:
         said.accepted = None
         said.sentence = "The wall stands under its dead load; no multiplier of the live load was shown."
     return said
@@ -209,7 +284,7 @@ def _judge_unbounded(assembly: Assembly, forces: FloatArray | None, result: Resu
     if ray.shape != forces.shape or not _countable(ray):
         return _said(tolerance, False, f"`live_forces` are not {len(forces)} finite triples.")
     residuals = force_residuals(assembly, forces, 0.0)
-    alone = replace(assembly, dead=np.zeros_like(assembly.dead))
+    alone = replace(assembly, dead=np.zeros_like(assembly.dead), constant=np.zeros_like(assembly.constant))
     residuals |= {f"live_{name}": value for name, value in force_residuals(alone, ray, 1.0).items()}
     what = "Forces under the dead load and forces that balance the live load alone"
     return _decide(residuals, tolerance, what, dict.fromkeys(("live_equilibrium", "live_yield"), WITHOUT_END))
@@ -222,7 +297,8 @@ def _judge_limit(
 
     No forces bear a multiplier above that of such a mechanism. Both may be those of statics, beside the forces and the
     motion of the method: `details["dead_forces"]` and `details["dilatant_mechanism"]`. What is tolerated is what the
-    numbers of the wall leave open, whatever the tolerance of the method.
+    numbers of the wall leave open, whatever the tolerance of the method; so the forces may be those of the multiplier
+    of the mechanism instead of zero, if it is as small as that.
     """
     if result.multiplier != 0.0:
         return _said(tolerance, False, "A wall at its limit has the multiplier 0.")
@@ -237,10 +313,28 @@ def _judge_limit(
     if [forces.shape, mechanism.shape] != sizes or not (np.isfinite(forces).all() and np.isfinite(mechanism).all()):
         return _said(tolerance, False, "Its forces or its mechanism are not finite triples of all joints and blocks.")
     within, told = accuracy(assembly), least_told(assembly, mechanism)
+    what = "The collapse state (associated flow) under the dead load"
     residuals = collapse_residuals(assembly, forces, 0.0, mechanism, "associated")
     if told > 0.0:
         residuals["virtual_work"] *= within * assembly.load_unit / told
-    return _decide(residuals, within, "The collapse state (associated flow) under the dead load")
+    said = _decide(residuals, within, what)
+    at = _multiplier_of(assembly, mechanism)
+    if said.accepted or not 0.0 < abs(at) <= min(told, MOST_OPEN * within * assembly.load_unit):
+        return said
+    return _decide(
+        collapse_residuals(assembly, forces, at, mechanism, "associated"), within, f"{what}, but for {at:.1g}"
+    )
+
+
+def _multiplier_of(assembly: Assembly, mechanism: FloatArray) -> float:
+    """The multiplier of a dilatant mechanism (n, 3) by virtual work; zero without live work.
+
+    Dry joints dissipate nothing then, others by their cohesion and tensile strength.
+    """
+    live = power(assembly.live, mechanism)
+    opening, slip = relative_velocities(assembly, mechanism)
+    taken = dissipated_by_strength(assembly, opening - (assembly.friction * abs(slip))[:, None], slip)
+    return (taken - power(assembly.dead, mechanism)) / live if live > 0.0 else 0.0
 
 
 def _judge_fall(assembly: Assembly, mechanism: FloatArray | None, result: Result, tolerance: float) -> Judgement:
@@ -274,17 +368,20 @@ def _judge_fall(assembly: Assembly, mechanism: FloatArray | None, result: Result
 def _fall_of(part: Assembly, motion: FloatArray, tolerance: float) -> tuple[bool, float, float, float]:
     """Whether the motion (n, 3) of a component proves its fall; its gain, its largest closing, and `closing_work`.
 
-    Were there forces in equilibrium under the dead load, within yield, their work on the motion would be minus the
-    gain: gain <= sum of n c over the contact points, n their normal forces and c their closings beyond dilatant flow.
+    The gain is the dead work less what cohesion and tensile strength take. Were there forces in equilibrium under the
+    dead load, within yield, then gain <= sum of n c over the contact points, n their normal forces and c their closings
+    beyond dilatant flow.
     So the forces of any equilibrium would have to exceed gain / sum of c. Where that is `IMMENSE` times the dead load
     there is none. `closing_work` is what forces so large may do on the closings, in dead loads like the gain.
     """
     opening, slip = relative_velocities(part, motion)
-    closings = np.maximum(0.0, (part.friction * abs(slip))[:, None] - opening)
+    lift = (part.friction * abs(slip))[:, None]
+    closings = np.maximum(0.0, lift - opening)
     closing = float(closings.max(initial=0.0))
-    gain = power(part.dead, motion) / part.force_scale
+    gain = (power(part.dead, motion) - dissipated_by_strength(part, opening - lift, slip)) / part.force_scale
     work = IMMENSE * float(closings.sum())
-    return closing <= tolerance < gain and work < gain, gain, closing, work
+    beyond_rounding = gain * part.force_scale > GAIN * gross_power(part, motion)
+    return closing <= tolerance and beyond_rounding and work < gain, gain, closing, work
 
 
 def apart(multiplier: float, other: float) -> float:

@@ -4,7 +4,8 @@ A method that measures (flow "approximate") proves its multiplier by forces at r
 pictures, joint states and comparisons of mechanisms are made of. It is held against the law of the joints: rigid blocks
 on supports at rest do not penetrate each other; and where the contact forces of the motion itself are given
 (`details["moving_forces"]`, (m, 3)), a contact that opens carries none of them, and a joint slips only where friction
-is at its limit, against it. The forces at rest below are not those: they change before a wall moves.
+is at its limit, against it; strength
+counts as force. The forces at rest below are not those: they change before a wall moves.
 
 All are relative: velocities to the fastest vertex of the component, forces to the loads and contact forces on the
 lighter of the two blocks. A force times nothing and a velocity under no force count for nothing, so of each force and
@@ -14,6 +15,7 @@ motion_supports         fastest vertex of a fixed block
 motion_interpenetration closing velocity at a contact point
 motion_opening          opening of a contact point that carries force: min(force, velocity)
 motion_sliding          slip of a joint whose friction is not at its limit against it: min(slack, velocity)
+motion_against_loads    power that the loads lose, to what they would have if nothing cancelled: only they drive a wall
 
 Source: the conditions of Signorini and Coulomb in velocities; J. J. Moreau, Unilateral contact and dry friction in
 finite freedom dynamics, 1988.
@@ -21,13 +23,15 @@ finite freedom dynamics, 1988.
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
 
 from harness.engine.measures import Measures, between
-from harness.engine.residuals import moving_parts
+from harness.engine.residuals import moving_parts, power
 from harness.model.assembly import Assembly, FloatArray
+from harness.model.limit import gross_power
 from harness.model.method import MOVING_FORCES
 from harness.model.result import relative_velocities
 
@@ -37,6 +41,9 @@ chatter in between. A block that rocks with its rotation wrong by a quarter exce
 TOLERANCE_ALONE = 0.1
 """Of a field without: it may stand for a displacement of a quarter of a block, in which contacts of blocks that
 turn and slide seem to close by the product of both."""
+
+NOISE = 1e-4
+"""Speed of a component, beside the fastest of the wall, up to which its measured motion is the noise of rest."""
 
 
 class NotOfThisWall(ValueError):
@@ -59,6 +66,8 @@ def motion_faults(
         forces = None if given is None else _forces(assembly, given)
     except NotOfThisWall as error:
         return {}, str(error)
+    if not mechanism.any():
+        return {}, "Its measured motion moves no block."
     residuals = motion_residuals(assembly, mechanism, multiplier, forces)
     tolerance = TOLERANCE_ALONE if forces is None else TOLERANCE
     failed = [f"{name} {value:.3g}" for name, value in residuals.items() if not value <= tolerance]
@@ -92,24 +101,37 @@ def motion_residuals(
         assembly: the wall; mechanism, multiplier: as for `motion_faults`.
         forces: (m, 3) contact forces (n1, n2, s) measured with the motion [force], or None.
     """
-    supports, parts = moving_parts(assembly, mechanism)
-    residuals = {"motion_supports": supports, "motion_interpenetration": 0.0}
+    supports, parts = moving_parts(assembly, mechanism, NOISE)
+    loaded = replace(assembly, dead=assembly.dead + multiplier * assembly.live)
+    gross = gross_power(loaded, mechanism)
+    lost = max(0.0, -power(loaded.dead, mechanism)) / gross if gross > 0.0 else 0.0
+    residuals = {"motion_supports": supports, "motion_interpenetration": 0.0, "motion_against_loads": lost}
     scale = None if forces is None else between(assembly, Measures.of(assembly, forces, multiplier).acting)
     for part, interfaces, motion in parts:
         opening, slip = relative_velocities(part, motion)
         found = {"motion_interpenetration": max(0.0, float((-opening).max(initial=0.0)))}
         if forces is not None and scale is not None:
-            found |= _under_force(part, forces[interfaces] / scale[interfaces, None], opening, slip)
+            own = scale[interfaces, None]
+            found |= _under_force(part, forces[interfaces] / own, part.constant / own, opening, slip)
         for name, value in found.items():
             residuals[name] = max(residuals.get(name, 0.0), value)
     return residuals
 
 
-def _under_force(assembly: Assembly, forces: FloatArray, opening: FloatArray, slip: FloatArray) -> dict[str, float]:
-    """What opens under force and what slips within friction, of relative forces (m, 3) and velocities (m, 2), (m,)."""
-    # Friction opposes slip: slip > 0 goes with s = -mu (n1 + n2).
+def _under_force(
+    assembly: Assembly, forces: FloatArray, strength: FloatArray, opening: FloatArray, slip: FloatArray
+) -> dict[str, float]:
+    """What opens under force and what slips within its strength.
+
+    Args:
+        assembly: the wall; forces: (m, 3) and strength: (m, 4) tension and cohesion, relative; opening: (m, 2) and
+            slip: (m,) velocities.
+    """
+    # Friction opposes slip: slip > 0 goes with s = -mu (n1 + n2) - c A.
     slack = assembly.friction * forces[:, :2].sum(axis=1) + np.sign(slip) * forces[:, 2]
+    slack = slack + np.where(slip > 0.0, strength[:, 2], strength[:, 3])
+    pressed = abs(forces[:, :2] + strength[:, :2])
     return {
-        "motion_opening": float(np.minimum(abs(forces[:, :2]), np.maximum(opening, 0.0)).max(initial=0.0)),
+        "motion_opening": float(np.minimum(pressed, np.maximum(opening, 0.0)).max(initial=0.0)),
         "motion_sliding": float(np.minimum(abs(slack), abs(slip)).max(initial=0.0)),
     }

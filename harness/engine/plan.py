@@ -4,79 +4,22 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field, replace
-from functools import cached_property
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
-from harness.engine.executors import Job
-from harness.engine.provenance import code_version, run_key
-from harness.engine.worker import Task
-from harness.model.case import Case, Reference, case_folders, case_of_wall, id_of, read_case, shipped_cases
+from harness.engine.run import Limits, Run
+from harness.model.case import Case, case_folders, case_of_wall, id_of, read_case, shipped_cases
 from harness.model.errors import InputError, did_you_mean
 from harness.model.library import library
 from harness.model.method import Method, method_names
-from harness.model.reading import DRAWINGS, wall_json
-
-
-@dataclass(frozen=True)
-class Limits:
-    """What one run may use: wall-clock time [s] and resident memory [bytes]."""
-
-    seconds: float = 120.0
-    memory_bytes: int = 4 * 2**30
-
-    def as_dict(self) -> dict[str, float]:
-        """The limits as JSON values."""
-        return {"seconds": self.seconds, "memory_bytes": float(self.memory_bytes)}
-
-
-@dataclass(frozen=True)
-class Run:
-    """One run to be made or found in the store. `references` are those it is held against.
-
-    `processes` are those that it may use side by side; they change no answer.
-    """
-
-    case: Case
-    method: str
-    settings: dict[str, Any]
-    limits: Limits
-    references: tuple[Reference, ...] = field(default=())
-    processes: int = 1
-
-    @cached_property
-    def key(self) -> str:
-        """The content hash under which its result is stored."""
-        return run_key(
-            wall_json(self.case.built.wall),
-            self.method,
-            self.settings,
-            self.limits.as_dict(),
-            code_version(self.method),
-        )
-
-    def job(self, number: int) -> Job:
-        """The run as an executor makes it, under its number in the plan."""
-        return Job(number, self.case.id, self.task())
-
-    def task(self) -> Task:
-        """What the child process is given."""
-        limits = self.limits
-        return Task(
-            self.method,
-            self.case.assembly,
-            self.settings,
-            limits.seconds,
-            limits.memory_bytes,
-            processes=self.processes,
-        )
+from harness.model.reading import DRAWINGS
 
 
 def plan_case(
     case: Case,
     methods: Sequence[str] | None,
-    limits: Limits,
+    limits: Limits | None,
     tier: str = "quick",
     settings: Mapping[str, dict[str, Any]] | None = None,
 ) -> list[Run]:
@@ -85,7 +28,7 @@ def plan_case(
     Args:
         case: the case.
         methods: names given by the user, or None for the case's own choice.
-        limits: of each run.
+        limits: of each run; None: none, in this process.
         tier: "quick" leaves out references of the full tier.
         settings: of methods by name, where they are not the defaults; references to other settings do not apply.
     """

@@ -5,7 +5,6 @@ from __future__ import annotations
 import functools
 import hashlib
 import importlib.util
-import json
 import os
 import platform
 import subprocess
@@ -104,16 +103,14 @@ def sources_version(*packages: str, others: Sequence[str] = ()) -> str:
     return digest.hexdigest()[:16]
 
 
-def run_key(wall: str, method: str, settings: dict[str, Any], limits: dict[str, float], code: str, *given: str) -> str:
-    """Content hash that stands for one run: explicit wall, method, settings, limits, code version, what was given."""
-    text = json.dumps([wall, method, settings, limits, code, *given], sort_keys=True, allow_nan=False)
-    return hashlib.sha256(text.encode()).hexdigest()[:32]
+JUDGE = tuple(f"harness.engine.{name}" for name in ("judge", "measured_motion", "measures", "residuals"))
+"""The modules that judge, besides `harness.model`."""
 
 
 @functools.cache
 def judge_version() -> str:
     """Hash over the sources of the judge, for results that are kept with its word."""
-    return sources_version("harness.engine.judge", "harness.engine.measured_motion", "harness.engine.residuals")
+    return sources_version(*JUDGE)
 
 
 def _sources(package: str) -> list[Path]:

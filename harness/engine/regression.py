@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import Any
 
-from harness.engine.plan import Run
+from harness.engine.run import Run
 from harness.model.comparison import ComparisonRun
 from harness.model.method import Status
 from harness.model.result import Result, Verdict

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import hashlib
 import json
+import re
 import shutil
 import sqlite3
 import stat
@@ -64,6 +65,9 @@ file 210 MB instead of 140, as two of them filled a page instead of three."""
 SOME_KEYS = 500
 """Up to so many results are looked for one by one; above, the whole table is read."""
 
+
+SEAL = re.compile(r',"seal":"([0-9a-f]{32})([0-9a-f]{32})"\}\Z')
+"""End of a text that is kept: the digest of what lies beside it, and that of both. It tells an edit, not a forger."""
 
 DAMAGE = (ValidationError, ValueError, TypeError, RecursionError, zlib.error)
 """What reading a result raises where another hand has changed it."""
@@ -170,7 +174,8 @@ class Store:
         except UnicodeDecodeError:  # of a name in the schema, or of an error that quotes one
             raise InputError("it is damaged (a name in it is no text)", OTHER_FILE, source=str(self.path)) from None
 
-    def _damaged(self, element: str, error: Exception) -> InputError:
+    def damaged(self, element: str, error: Exception) -> InputError:
+        """The fault of something in it that another hand has changed."""
         reason = str(error).splitlines()[0] if str(error) else type(error).__name__
         return InputError(
             f"it is damaged ({reason})", f"Run with --fresh to make it again; the rest is whole. {OTHER_FILE}, or that",
@@ -185,23 +190,26 @@ class Store:
         """
         with self._told():
             query = (
-                "SELECT method, case_id, length(result), result, tolerance, environment.content, fields "
-                "FROM run LEFT JOIN environment ON environment.id = run.environment WHERE key = ?"
+                "SELECT method, case_id, length(result), result, tolerance, run.environment, environment.content, "
+                "fields FROM run LEFT JOIN environment ON environment.id = run.environment WHERE key = ?"
             )
             row = self._open.execute(query, (key,)).fetchone()
         if row is None:
             return None
-        method, case, size, text, tolerance, environment, fields = row
+        method, case, size, text, tolerance, shared, environment, fields = row
         element = f"the result of {method} on {case} in it"
         try:
             if size > LARGEST_FILE:
                 raise ValueError(f"{size:,} characters")
+            text = _opened(text, (key, method, case, tolerance, shared), fields)
+            if shared is not None and environment is not None and _digest(environment)[:16] != shared:
+                raise ValueError(EDITED)
             whole = json.loads(text) | json.loads(environment or "{}") | _unpacked(fields)
             if nested_deeper(whole, MOST_NESTED):
                 raise ValueError(f"it is nested more than {MOST_NESTED} deep")
             return Result.model_validate(whole, strict=False), float(tolerance)
         except DAMAGE as error:
-            raise self._damaged(element, error) from None
+            raise self.damaged(element, error) from None
 
     def missing(self, element: str) -> InputError:
         """The fault of a result that ought to be here: an index of the file is damaged, or the run was taken out."""
@@ -221,37 +229,46 @@ class Store:
         data = result.model_dump(mode="json")
         fields = {name: data.pop(name) for name in FIELDS}
         shared = json.dumps({name: data.pop(name) for name in ENVIRONMENT}, sort_keys=True)
-        environment = hashlib.sha256(shared.encode()).hexdigest()[:16]
+        environment = _digest(shared)[:16]
+        packed = zlib.compress(json.dumps(fields, separators=(",", ":")).encode())
+        text = json.dumps(data, ensure_ascii=False, allow_nan=False, separators=(",", ":"))
         with self._told(), self._open:
             self._open.execute("INSERT OR IGNORE INTO environment (id, content) VALUES (?, ?)", (environment, shared))
             self._open.execute(
                 f"INSERT OR REPLACE INTO run ({', '.join(COLUMNS['run'])}) VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)",
                 (
                     *(key, result.case, result.method, result.started, tolerance),
-                    json.dumps(data, ensure_ascii=False, allow_nan=False, separators=(",", ":")),
+                    _sealed(text, (key, result.method, result.case, tolerance, environment), packed),
                     *(str(result.status), str(result.finding), result.multiplier, result.cpu_seconds, environment),
-                    zlib.compress(json.dumps(fields, separators=(",", ":")).encode()),
+                    packed,
                 ),
             )
 
     def summaries(self, keys: Collection[str]) -> dict[str, dict[str, Any]]:
-        """Results under keys as JSON values, without `FIELDS` and `ENVIRONMENT`; keys that are not there left out.
+        """Results under keys as JSON values, without `FIELDS`; keys that are not there left out.
 
         Raises:
             InputError: the store or one of the results is damaged.
         """
         found: dict[str, dict[str, Any]] = {}
+        environments: dict[str, dict[str, Any]] = {}
         with self._told():
             some = sorted(keys) if len(keys) <= SOME_KEYS else None
-            query = "SELECT key, method, case_id, result FROM run"
+            query = (
+                "SELECT key, method, case_id, tolerance, result, run.environment, environment.content "
+                "FROM run LEFT JOIN environment ON environment.id = run.environment"
+            )
             marks = f" WHERE key IN ({', '.join('?' * len(some))})" if some is not None else ""
-            for key, method, case, text in self._open.execute(query + marks, some or ()):
+            for key, method, case, tolerance, text, shared, content in self._open.execute(query + marks, some or ()):
                 if key not in keys:
                     continue
                 try:
-                    found[key] = json.loads(text)
+                    if shared not in environments:
+                        environments[shared] = json.loads(content or "{}")
+                    whole = _opened(text, (key, method, case, tolerance, shared))
+                    found[key] = json.loads(whole) | environments[shared]
                 except (ValueError, TypeError, RecursionError) as error:
-                    raise self._damaged(f"the result of {method} on {case} in it", error) from None
+                    raise self.damaged(f"the result of {method} on {case} in it", error) from None
         return found
 
     def table(self) -> list[tuple[str, str, str, str, str, str, float | None, float | None]]:
@@ -295,7 +312,7 @@ class Store:
         with self._told(), self._open:
             self._open.execute(
                 "INSERT INTO comparison (created, content) VALUES (?, ?)",
-                (created, json.dumps(content, allow_nan=False)),
+                (created, _sealed(json.dumps(content, allow_nan=False), (created,))),
             )
 
     def last_comparison(self) -> dict[str, Any] | None:
@@ -305,14 +322,18 @@ class Store:
             InputError: the store or the comparison is damaged.
         """
         with self._told():
-            row = self._open.execute("SELECT content FROM comparison ORDER BY number DESC LIMIT 1").fetchone()
+            row = self._open.execute("SELECT content, created FROM comparison ORDER BY number DESC LIMIT 1").fetchone()
         if row is None:
             return None
         if not isinstance(row[0], str) or len(row[0]) > LARGEST_FILE:
-            raise self._damaged("the last comparison in it", ValueError("it is no text of a usual size"))
-        content = json_of(row[0], f"{self.path}: the last comparison in it")
+            raise self.damaged("the last comparison in it", ValueError("it is no text of a usual size"))
+        try:
+            text = _opened(row[0], (row[1],))
+        except ValueError as error:
+            raise self.damaged("the last comparison in it", error) from None
+        content = json_of(text, f"{self.path}: the last comparison in it")
         if not isinstance(content, dict):
-            raise self._damaged("the last comparison in it", ValueError("it is no object"))
+            raise self.damaged("the last comparison in it", ValueError("it is no object"))
         return content
 
     def close(self) -> None:
@@ -321,6 +342,40 @@ class Store:
             self._connection.close()
         if self._copy is not None:
             self._copy.cleanup()
+
+
+EDITED = "it was changed after it was stored: its digest is another"
+
+
+def _digest(text: str | bytes) -> str:
+    return hashlib.sha256(text if isinstance(text, bytes) else text.encode("utf-8", "replace")).hexdigest()
+
+
+def _sealed(text: str, row: tuple[Any, ...], fields: bytes = b"") -> str:
+    """A JSON object as text with the digests of what lies beside it in its row, and of all."""
+    beside = _digest(fields)[:32]
+    return f'{text[:-1]},"seal":"{beside}{_digest(repr((row, beside, text)))[:32]}"}}'
+
+
+def _opened(text: Any, row: tuple[Any, ...], fields: bytes | None = None) -> str:
+    """The text that was sealed. A text without a seal is of an earlier release.
+
+    Args:
+        text: as it is kept; row: what is beside it; fields: what is kept compressed beside it, where that is read too.
+
+    Raises:
+        ValueError: the text or what is beside it was changed since.
+    """
+    if not isinstance(text, str):
+        raise ValueError("it is no text")
+    seal = SEAL.search(text)
+    if seal is None:
+        return text
+    beside, all_of_it = seal.groups()
+    whole = f"{text[: seal.start()]}}}"
+    if _digest(repr((row, beside, whole)))[:32] != all_of_it or (fields is not None and _digest(fields)[:32] != beside):
+        raise ValueError(EDITED)
+    return whole
 
 
 def _unpacked(fields: bytes | None) -> dict[str, Any]:

@@ -14,7 +14,7 @@ from harness.model.method import Finding, Status
 from harness.model.result import Comparison, Result, Verdict
 
 BOUND_TOLERANCE = 1e-6
-"""Relative tolerance of bounds between methods: solver accuracy of the associated maximum, with a margin."""
+"""Tolerance of bounds between methods, of the multiplier or of the unit of the load: solver accuracy, with a margin."""
 
 
 def compare(reference: Reference, result: Result) -> Comparison:
@@ -114,6 +114,7 @@ def theory_gates(results: CaseResults) -> list[Gate]:
         result.method: result for result in results.results if result.status is Status.OK and result.judge.accepted
     }
     gates: list[Gate] = []
+    unit = _unit(results)
 
     def below(name: str, statement: str, lower: Result, upper: Result | None, *, of_search: bool = False) -> None:
         if upper is None:
@@ -122,7 +123,7 @@ def theory_gates(results: CaseResults) -> list[Gate]:
         limit = upper.multiplier if upper.bracket is None else upper.bracket[1]
         if value is None or limit is None:
             return
-        slack = (BOUND_TOLERANCE + lower.traits.held_accuracy) * max(1.0, abs(limit))
+        slack = (BOUND_TOLERANCE + lower.traits.held_accuracy) * max(unit, abs(limit))
         gates.append(
             Gate(
                 name=name,
@@ -195,10 +196,17 @@ def _unique(results: CaseResults, usable: dict[str, Result]) -> tuple[Result | N
     bounding = next((result for result in collapses if result.traits.bounds_above), None)
     if least is None or bounding is None or least.multiplier is None or bounding.multiplier is None:
         return None, ""
-    equal = abs(bounding.multiplier - least.multiplier) <= BOUND_TOLERANCE * max(1.0, abs(bounding.multiplier))
+    equal = abs(bounding.multiplier - least.multiplier) <= BOUND_TOLERANCE * max(
+        _unit(results), abs(bounding.multiplier)
+    )
     if not equal or _slips(results, least) or _slips(results, bounding):
         return None, ""
     return least, "where nothing slides the associated maximum is the only one"
+
+
+def _unit(results: CaseResults) -> float:
+    """What is small of a multiplier of this case: see `Assembly.load_unit`; one where its wall is not known."""
+    return 1.0 if results.case.assembly is None else results.case.assembly.load_unit
 
 
 def _slips(results: CaseResults, result: Result) -> bool:

@@ -149,7 +149,7 @@ def _record(task: Task, method: Method | None, failure: Answer | None) -> dict[s
             check_takes(method, task.assembly)
             started, before = time.perf_counter(), _cpu_seconds()
             with allowing(task.processes), _warned_of_the_limit(task.seconds, started):
-                answer = _answer(method, task, chosen)
+                answer = solved(method, task, chosen)
             answer = checked(answer, task.assembly)
     except OutOfTime:
         answer = _failure(Status.TIMEOUT, f"It was stopped at the limit of {task.seconds:g} s.")
@@ -197,7 +197,12 @@ def _about(method: Method) -> dict[str, Any]:
     return {"family": encodable(family, "family"), "traits": traits.model_dump(), "tolerance": float(tolerance)}
 
 
-def _answer(method: Method, task: Task, settings: Settings) -> Answer:
+def solved(method: Method, task: Task, settings: Settings) -> Answer:
+    """What a method answers: by itself, or from the motions that it is given.
+
+    Raises:
+        InputError: it takes up no motions.
+    """
     if not task.motions:
         return method.solve(task.assembly, settings)
     if not method.follows_motions:

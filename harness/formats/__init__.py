@@ -1,4 +1,4 @@
-"""Drawings in and answers out: DXF, SVG, GeoJSON, WKT, shapefile, CSV, COMPAS, gmsh; VTU, NumPy and MATLAB.
+"""Drawings in and answers out; `registry` has a row a format.
 
 Knows the wall description and nothing of methods or the engine. The model asks it for a wall through
 `harness.model.reading.DRAWINGS`, which `register` fills.
@@ -9,14 +9,13 @@ from __future__ import annotations
 from pathlib import Path
 from typing import Any
 
-SUFFIXES = (".dxf", ".svg", ".geojson", ".wkt", ".shp", ".csv", ".msh", ".geo", ".ifc", ".dwg", ".step", ".stp", ".pdf")
-
 
 def register() -> None:
     """Let every command that takes a wall file take a drawing too."""
+    from harness.formats.registry import drawings
     from harness.model import reading
 
-    reading.DRAWINGS.update(dict.fromkeys(SUFFIXES, _document))
+    reading.DRAWINGS.update(dict.fromkeys(drawings(), _document))
 
 
 def _document(path: Path) -> dict[str, Any]:

@@ -1,19 +1,17 @@
-"""A wall and its answer for other programs: VTU, DXF, SVG, GeoJSON, CSV, COMPAS JSON, NumPy and MATLAB matrices."""
+"""A wall and its answer for other programs: DXF, SVG, GeoJSON, CSV, COMPAS JSON, NumPy and MATLAB matrices."""
 
 from __future__ import annotations
 
 import csv
 import io
 import json
-from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
-from harness.formats.paraview import moved, write_pvd, write_vtu
+from harness.formats.paraview import moved
 from harness.model.build import Built
-from harness.model.errors import InputError, did_you_mean
 from harness.model.result import Result, vertex_velocities
 from harness.model.rings import rings_of
 from harness.model.writing import cell, replacing, write_whole
@@ -86,7 +84,10 @@ def write_svg(built: Built, result: Result | None, path: Path) -> None:
 
 
 def write_geojson(built: Built, result: Result | None, path: Path) -> None:
-    """A feature a block (id, material, fixed, weight, motion) and one a joint (blocks, friction, forces, state)."""
+    """A feature a block (id, material, fixed, weight, motion) and one a joint (blocks, friction, forces, state).
+
+    Joints with strength have the tension and the cohesion that they bear besides friction too [force].
+    """
     assembly = built.assembly
     features: list[dict[str, Any]] = []
     for number, (name, polygon) in enumerate(zip(assembly.block_ids, assembly.polygons, strict=True)):
@@ -106,6 +107,9 @@ def write_geojson(built: Built, result: Result | None, path: Path) -> None:
             "between": [assembly.block_ids[assembly.block_a[number]], assembly.block_ids[assembly.block_b[number]]],
             "friction": float(assembly.friction[number]),
         }
+        if assembly.strong:
+            joint["tension"] = 2.0 * float(assembly.constant[number, 0])
+            joint["cohesion"] = float(assembly.constant[number, 2])
         if result is not None and result.forces is not None:
             joint["n1"], joint["n2"], joint["s"] = result.forces[number]
         if result is not None and result.states is not None:
@@ -169,6 +173,7 @@ def matrices(built: Built, result: Result | None) -> dict[str, Any]:
 
     Rows of C are (opening 1, opening 2, slip) of every joint, columns (ux, uy, omega) of every free block, so that
     C^T (n1, n2, s) + dead + multiplier x live = 0, with compression positive and |s| <= friction (n1 + n2).
+    Where joints have strength, `constant` holds what is added to n1, n2 and to both limits of s.
     """
     assembly = built.assembly
     dead, live = assembly.free_loads()
@@ -187,6 +192,8 @@ def matrices(built: Built, result: Result | None) -> dict[str, Any]:
         "end2": assembly.end2,
         "normal": assembly.normal,
     }
+    if assembly.strong:
+        arrays["constant"] = assembly.constant
     if result is not None and result.multiplier is not None:
         arrays["multiplier"] = np.array(result.multiplier)
     if result is not None and result.forces is not None:
@@ -214,30 +221,3 @@ def write_mat(built: Built, result: Result | None, path: Path) -> None:
     arrays["block_ids"] = arrays["block_ids"].astype(object)
     with replacing(path) as draft:
         savemat(draft, arrays, oned_as="column", do_compression=True)
-
-
-WRITERS: dict[str, Callable[[Built, Result | None, Path], None]] = {
-    ".vtu": write_vtu,
-    ".pvd": write_pvd,
-    ".dxf": write_dxf,
-    ".svg": write_svg,
-    ".geojson": write_geojson,
-    ".csv": write_csv,
-    ".json": write_compas,
-    ".npz": write_npz,
-    ".mat": write_mat,
-}
-"""Writers by the ending of the file's name."""
-
-
-def writer_of(path: Path) -> Callable[[Built, Result | None, Path], None]:
-    """The writer that the ending of a name asks for.
-
-    Raises:
-        InputError: none, naming those there are.
-    """
-    suffix = path.suffix.lower()
-    if suffix not in WRITERS:
-        hint = f"{did_you_mean(suffix, WRITERS)} There are: {', '.join(WRITERS)}".strip()
-        raise InputError(f'a file that ends in "{suffix}" is not written', hint, source=str(path))
-    return WRITERS[suffix]

@@ -3,13 +3,12 @@
 from __future__ import annotations
 
 import contextlib
-import importlib
 import io
 import math
 import tomllib
 import warnings
 from collections import Counter
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
@@ -20,33 +19,13 @@ from pydantic import BeforeValidator, Field
 
 from harness.formats.drawing import LINES, Asked, Drawing, Outline
 from harness.formats.places import across, down_of, refuse_degrees, refuse_frame
+from harness.formats.registry import format_read
 from harness.model.assembly import FloatArray
-from harness.model.errors import InputError, did_you_mean, first_few
+from harness.model.errors import InputError, first_few
 from harness.model.fields import Coefficient, Name, NonNegative, Point, Positive, Strict
 from harness.model.reading import parse_wall, read_text, validate
 from harness.model.units import METRES, LengthUnit
 from harness.model.wall import FrictionRule, Wall
-
-READERS = {
-    ".dxf": ("dxf", "read_dxf", "ezdxf"),
-    ".svg": ("svg", "read_svg", "svgelements"),
-    ".geojson": ("polygons", "read_geojson", "shapely"),
-    ".wkt": ("polygons", "read_wkt", "shapely"),
-    ".shp": ("polygons", "read_shapefile", "pyshp"),
-    ".csv": ("polygons", "read_csv", "shapely"),
-    ".msh": ("mesh", "read_msh", "meshio"),
-    ".geo": ("mesh", "read_geo", "shapely"),
-    ".json": ("compas", "read_compas", "shapely"),
-}
-"""Module, function and package of every kind of drawing, by the ending of its name."""
-
-REFUSED = {
-    ".ifc": "IFC describes walls as wholes, not their stones; export the stones as DXF, or as COMPAS JSON",
-    ".dwg": "DWG is a closed format; save the drawing as DXF",
-    ".step": "STEP describes solids; export their outlines as DXF",
-    ".stp": "STEP describes solids; export their outlines as DXF",
-    ".pdf": "a PDF holds no outlines that can be told from its lettering; open it in Inkscape and save it as SVG",
-}
 
 FRICTION = 0.6
 UNIT_WEIGHT = 20.0
@@ -148,7 +127,7 @@ def import_drawing(path: Path, mapping: Mapping | None = None) -> Imported:
     """The wall that a drawing shows.
 
     Args:
-        path: a drawing of a kind in `READERS`, or a COMPAS JSON.
+        path: a drawing of a format that `harness.formats.registry` reads.
         mapping: what the drawing does not say; of the file beside it if None.
 
     Raises:
@@ -242,28 +221,19 @@ def _imported(path: Path, chosen: Mapping, drawing: Drawing) -> Imported:
 
 
 def _read(path: Path, mapping: Mapping) -> Drawing:
-    suffix = path.suffix.lower()
-    if suffix in REFUSED:
-        raise InputError(f"{suffix} is not read", REFUSED[suffix][0].upper() + REFUSED[suffix][1:], source=str(path))
+    found = format_read(path)
     accuracy = Asked().accuracy if mapping.accuracy is None else mapping.accuracy
     asked = Asked(accuracy, mapping.units or "", mapping.scale or 1.0, mapping.plane, mapping.at)
-    if suffix not in READERS:
-        raise InputError(
-            f'a file that ends in "{suffix}" is not read',
-            f"{did_you_mean(suffix, READERS)} There are: {', '.join(READERS)} (of COMPAS)".strip(),
-            source=str(path),
-        )
-    module, name, package = READERS[suffix]
     try:
-        reader: Callable[[Path, Asked], Drawing] = getattr(importlib.import_module(f"harness.formats.{module}"), name)
+        reader = found.read
         with _heard() as told:
             drawing = reader(path, asked)
         drawing.notes += told
         return drawing
     except ImportError as error:
         raise InputError(
-            f"the package {error.name or package} is not installed",
-            f"pip install {package}",
+            f"the package {error.name or found.package} is not installed",
+            f"pip install {found.package or error.name}",
             source=str(path),
         ) from None
     except InputError:
@@ -271,7 +241,7 @@ def _read(path: Path, mapping: Mapping) -> Drawing:
     except Exception as error:  # parsers of other people's formats fail in as many ways as they have lines
         reason = " ".join(str(error).split())[:MOST_REASON] or type(error).__name__
         raise InputError(
-            f"it is no {suffix} that can be read ({reason})",
+            f"it is no {path.suffix.lower()} that can be read ({reason})",
             "Save it again from the program that made it",
             source=str(path),
         ) from None

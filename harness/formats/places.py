@@ -11,7 +11,7 @@ import shapely
 from harness.formats.drawing import Drawing, Outline
 from harness.model.assembly import FloatArray
 from harness.model.errors import InputError
-from harness.model.slips import SIZES
+from harness.model.input_checks import SIZES
 
 REMEDY = "Project it (QGIS: Export, Save Features As, a CRS in metres such as your UTM zone), and import that"
 MOST_NAMED = 10_000

@@ -12,13 +12,13 @@ from enum import StrEnum
 from typing import Any, TypeVar
 
 import numpy as np
-from pydantic import BaseModel, ConfigDict, ValidationError
+from pydantic import BaseModel, ConfigDict, Field, ValidationError
 
 from harness.model.assembly import Assembly
 from harness.model.errors import InputError
 from harness.model.method import Answer, Finding, Status
 
-DEEPEST = 20
+DEEPEST = 33
 """Depth to which details may be nested. A document that holds a result may have `reading.MOST_NESTED` levels in all."""
 FLOWS = ("non-associated", "associated", "approximate")
 """Flow rules that an answer may name."""
@@ -67,6 +67,21 @@ class _Order(BaseModel, defer_build=True):
     moving: float | None = None
 
 
+class _Residual(BaseModel, defer_build=True):
+    """The answer for the wall without cohesion and tensile strength, as `Answer` has it."""
+
+    model_config = ConfigDict(extra="forbid")
+    status: Status
+    finding: Finding
+    sentence: str
+    multiplier: float | None = None
+    forces: list[Triple] | None = None
+    forces_multiplier: float | None = None
+    mechanism: list[Triple] | None = None
+    flow: str = FLOWS[0]
+    details: dict[str, Any] = Field(default_factory=dict)
+
+
 class _KnownDetails(BaseModel, defer_build=True):
     """Details that others than their method read: the judge, the verdict, the report. Any further name is free."""
 
@@ -84,6 +99,7 @@ class _KnownDetails(BaseModel, defer_build=True):
     displaced_state: _Displaced | None = None
     load_steps: _Steps | None = None
     release: _Release | None = None
+    without_strength: _Residual | None = None
 
 
 def checked(answer: Any, assembly: Assembly) -> Answer:

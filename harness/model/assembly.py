@@ -38,7 +38,7 @@ OF_JOINTS = ("block_a", "block_b", "end1", "end2", "face1", "face2", "normal", "
 
 @dataclass(frozen=True, eq=False)
 class Assembly:
-    """Blocks in dry contact, as arrays. n = number of blocks, m = number of interfaces.
+    """Blocks in contact, as arrays. n = number of blocks, m = number of interfaces.
 
     Attributes:
         name: what the wall is called, for messages.
@@ -109,10 +109,26 @@ class Assembly:
         arrays = {name: getattr(self, name)[index] for name in OF_JOINTS}
         return replace(self, joint=tuple(self.joint[p] for p in index), **arrays)
 
+    def copied(self) -> Assembly:
+        """The same wall in arrays of its own: what a method does to them changes no other."""
+        names = (*OF_BLOCKS, *OF_JOINTS)
+        arrays = {name: getattr(self, name).copy() for name in names if name != "polygons"}
+        return replace(self, polygons=tuple(polygon.copy() for polygon in self.polygons), **arrays)
+
     @property
     def dilates(self) -> bool:
         """Whether any joint has a dilatancy."""
         return bool(np.any(self.dilatancy != 0.0))
+
+    @property
+    def strong(self) -> bool:
+        """Whether any joint has cohesion or tensile strength."""
+        return not self.law.is_cone
+
+    @property
+    def without_strength(self) -> Assembly:
+        """The same wall without cohesion and tensile strength: what is left of brittle joints that have moved."""
+        return replace(self, constant=np.zeros_like(self.constant))
 
     @property
     def n_blocks(self) -> int:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property, partial
 
 import numpy as np
@@ -13,14 +13,13 @@ from harness.model import geometry
 from harness.model.assembly import Assembly, BoolArray, FloatArray, polygon_area
 from harness.model.errors import InputError, Spot, of_each, raise_faults
 from harness.model.fields import MOST_BLOCKS
+from harness.model.input_checks import input_warnings, thickness_of
 from harness.model.interfaces import check_held, faces_of, find_joints, normals_of
-from harness.model.joint_law import JointLaw
 from harness.model.names import faults_of_wall
 from harness.model.pattern import blocks_of, count_of
 from harness.model.pattern_fields import PatternBase
 from harness.model.plausibility import contact_warnings, force_warnings, interface_warnings, near_misses
 from harness.model.rings import hole_faults, ringed
-from harness.model.slips import slip_warnings, thickness_of
 from harness.model.wall import (
     Block,
     BodyForce,
@@ -32,6 +31,7 @@ from harness.model.wall import (
     Loads,
     Wall,
     coefficient_of,
+    stresses_of,
 )
 
 SMALLEST = float(np.finfo(float).tiny / np.finfo(float).eps)
@@ -85,7 +85,7 @@ def build(wall: Wall, name: str = "wall") -> Built:
     across, up = np.abs((face2 - face1) @ _level_and_upright(wall.loads).T).T
     inclined = np.where(across >= up, "bed", "head").tolist()
     joints = tuple(interface.joint or name for interface, name in zip(interfaces, inclined, strict=True))
-    friction, dilatancy = _law(wall, interfaces, joints, blocks, index)
+    laws = _laws(wall, interfaces, joints, blocks, index)
     end1, end2 = _set_in(interfaces, wall.contact_inset, face1, face2)
     assembly = Assembly(
         name=name,
@@ -101,12 +101,17 @@ def build(wall: Wall, name: str = "wall") -> Built:
         face1=face1,
         face2=face2,
         normal=normal,
-        friction=friction,
-        dilatancy=dilatancy,
+        friction=laws.friction,
+        dilatancy=laws.dilatancy,
         joint=joints,
         dead=_dead_load(wall.loads, blocks, index, weight, centroids, fixed),
         live=_load(wall.loads.live or Load(), blocks, index, weight, centroids, fixed),
     )
+    if wall.settlements:
+        assembly = replace(assembly, support_motion=_support_motion(wall, blocks, assembly))
+    if laws.strong:
+        area = _areas(wall, blocks, assembly)
+        assembly = replace(assembly, constant=laws.constant(area))
     if wall.loads.live is not None and not assembly.has_live_load:
         raise InputError(
             "the live load puts no force on any free block",
@@ -119,11 +124,11 @@ def build(wall: Wall, name: str = "wall") -> Built:
         *contact_warnings(assembly, joints_found.corners, size),
         *near_misses(names, joints_found.missed, joints_found.missed_gap, joints_found.gap),
         *force_warnings(assembly, wall.loads, size),
-        *slip_warnings(wall, blocks, assembly),
+        *input_warnings(wall, blocks, assembly),
     ]
     if trusted < len(interfaces):
         warnings += interface_warnings(assembly, size, trusted)
-    explicit = partial(_explicit, wall, blocks, weight, interfaces, joints, assembly.law)
+    explicit = partial(_explicit, wall, blocks, weight, interfaces, joints, laws)
     return Built(assembly, tuple(warnings), explicit)
 
 
@@ -143,6 +148,14 @@ def _check_sizes(assembly: Assembly) -> None:
     if assembly.has_live_load:
         check("loads.live", "beside the dead load it is", 1.0 / assembly.load_unit)
         check("loads.live", "it is", assembly.force_scale / assembly.load_unit)
+    if assembly.constant.max(initial=0.0) > 1e9 * assembly.force_scale:
+        joint = int(assembly.constant.max(axis=1).argmax())
+        between = f"{assembly.block_ids[assembly.block_a[joint]]} and {assembly.block_ids[assembly.block_b[joint]]}"
+        raise InputError(
+            "its strength is more than a thousand million times the dead load: too large to compute with",
+            "Check the units: cohesion and tensile strength are in force/length^2 of the file",
+            f"interface between {between}",
+        )
 
 
 def _level_and_upright(loads: Loads) -> FloatArray:
@@ -244,23 +257,50 @@ def weight_of(block: Block, wall: Wall) -> float:
     return per_area if wall.units.unit_weight is None else per_area * wall.units.unit_weight_factor
 
 
-def _law(
+@dataclass(frozen=True, eq=False)
+class _Laws:
+    """What was given for the joints: (m, 4) friction, dilatancy, cohesion and tensile strength [force/length^2]."""
+
+    given: FloatArray
+
+    @property
+    def friction(self) -> FloatArray:
+        """(m,) coefficients of friction."""
+        return np.ascontiguousarray(self.given[:, 0])
+
+    @property
+    def dilatancy(self) -> FloatArray:
+        """(m,) coefficients by which a slip lifts."""
+        return np.ascontiguousarray(self.given[:, 1])
+
+    @property
+    def strong(self) -> bool:
+        """Whether any joint has cohesion or tensile strength."""
+        return bool(self.given[:, 2:].any())
+
+    def constant(self, area: FloatArray) -> FloatArray:
+        """(m, 4) constant parts T/2, T/2, c A, c A of the yield slacks of joints with areas A (m,), T = f_t A."""
+        cohesion, tension = area * self.given[:, 2], area * self.given[:, 3]
+        return np.column_stack([0.5 * tension, 0.5 * tension, cohesion, cohesion])
+
+
+def _laws(
     wall: Wall, interfaces: list[Interface], joints: tuple[str, ...], blocks: list[Block], index: dict[str, int]
-) -> tuple[FloatArray, FloatArray]:
-    """Friction and dilatancy (m,) of the interfaces."""
-    pairs = [_pair(wall, interface, joint, blocks, index) for interface, joint in zip(interfaces, joints, strict=True)]
-    friction, dilatancy = np.ascontiguousarray(np.array(pairs, dtype=float).reshape(-1, 2).T)
-    return friction, dilatancy
+) -> _Laws:
+    """Friction, dilatancy and strength of the interfaces."""
+    given = [_law(wall, interface, joint, blocks, index) for interface, joint in zip(interfaces, joints, strict=True)]
+    return _Laws(np.array(given, dtype=float).reshape(-1, 4))
 
 
-def _pair(
+def _law(
     wall: Wall, interface: Interface, joint: str, blocks: list[Block], index: dict[str, int]
-) -> tuple[float, float]:
-    """Friction and dilatancy of an interface, both from the most particular of what is given."""
+) -> tuple[float, float, float, float]:
+    """Friction, dilatancy, cohesion and tensile strength, all from the most particular that holds for an interface."""
     if interface.friction is not None or interface.friction_angle is not None:
-        return coefficient_of(interface.friction, interface.friction_angle), interface.dilatancy or 0.0
+        friction = coefficient_of(interface.friction, interface.friction_angle)
+        return friction, interface.dilatancy or 0.0, *stresses_of(interface)
     if not isinstance(wall.friction, Friction):
-        return float(coefficient_of(wall.friction, wall.friction_angle)), 0.0
+        return float(coefficient_of(wall.friction, wall.friction_angle)), 0.0, *stresses_of(wall)
     pair = set(interface.between)
     materials = sorted(blocks[index[block_id]].material for block_id in interface.between)
     by_kind: dict[str, FrictionRule] = {}
@@ -273,8 +313,45 @@ def _pair(
             by_kind["materials"] = rule
     for kind in ("between", "joint", "materials"):
         if kind in by_kind:
-            return by_kind[kind].coefficient, by_kind[kind].dilatancy or 0.0
-    return float(wall.friction.coefficient), wall.friction.dilatancy or 0.0
+            rule = by_kind[kind]
+            return rule.coefficient, rule.dilatancy or 0.0, *stresses_of(rule)
+    return float(wall.friction.coefficient), wall.friction.dilatancy or 0.0, *stresses_of(wall.friction)
+
+
+def _support_motion(wall: Wall, blocks: list[Block], assembly: Assembly) -> FloatArray:
+    """(n, 3) motions of the supports, those of several settlements of a block added up.
+
+    Raises:
+        InputError: a settlement names a block that is not fixed, or a group that there is not.
+    """
+    motion = np.zeros((len(blocks), 3))
+    for number, settlement in enumerate(wall.settlements):
+        place = f"settlements[{number}]"
+        named = set(settlement.blocks or ())
+        chosen = [k for k, block in enumerate(blocks) if block.id in named or settlement.group in block.groups]
+        if not chosen:
+            raise InputError(f'no block is in a group "{settlement.group}"', "Name a group of fixed blocks", place)
+        for k in chosen:
+            if not blocks[k].fixed:
+                raise InputError(
+                    f'block "{blocks[k].id}" is not fixed', "Name supports: only they have a prescribed motion", place
+                )
+            x, y = assembly.centroid[k] - (settlement.about or assembly.centroid[k])
+            turn = settlement.rotation
+            motion[k] += [settlement.translation[0] - turn * y, settlement.translation[1] + turn * x, turn]
+    return motion
+
+
+def _areas(wall: Wall, blocks: list[Block], assembly: Assembly) -> FloatArray:
+    """(m,) areas of the interfaces: their whole length times the thickness of the thinner block [length^2].
+
+    A support that gives no thickness is as thick as what stands on it.
+    """
+    thickness = np.array([thickness_of(block, wall) for block in blocks])
+    given = np.array([block.thickness is not None for block in blocks])
+    thickness[assembly.fixed & ~given] = np.inf
+    thinner = np.minimum(thickness[assembly.block_a], thickness[assembly.block_b])
+    return np.asarray(np.linalg.norm(assembly.face2 - assembly.face1, axis=1) * thinner)
 
 
 def _set_in(
@@ -360,25 +437,30 @@ def _explicit(
     weight: FloatArray,
     interfaces: list[Interface],
     joints: tuple[str, ...],
-    law: JointLaw,
+    laws: _Laws,
 ) -> Wall:
+    dropped = () if laws.strong else ("thickness",)  # the areas of joints with strength depend on it
     return wall.model_copy(
         update={
             "pattern": None,
             "blocks": [
-                block.model_copy(update={"weight": float(w), "unit_weight": None, "thickness": None})
+                block.model_copy(update={"weight": float(w), "unit_weight": None, **dict.fromkeys(dropped)})
                 for block, w in zip(blocks, weight, strict=True)
             ],
             "interfaces": [
                 interface.model_copy(
                     update={
                         "joint": joint,
-                        "friction": float(mu),
+                        "friction": mu,
                         "friction_angle": None,
-                        "dilatancy": float(psi) or None,
+                        "dilatancy": psi or None,
+                        "cohesion": cohesion or None,
+                        "tensile_strength": tension or None,
                     }
                 )
-                for interface, joint, mu, psi in zip(interfaces, joints, law.friction, law.dilatancy, strict=True)
+                for interface, joint, (mu, psi, cohesion, tension) in zip(
+                    interfaces, joints, laws.given.tolist(), strict=True
+                )
             ],
         }
     )

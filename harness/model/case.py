@@ -13,6 +13,7 @@ from pydantic import Field, model_validator
 
 from harness.model.assembly import Assembly
 from harness.model.build import Built, build
+from harness.model.content import hash_of
 from harness.model.errors import InputError
 from harness.model.fields import Strict
 from harness.model.method import method_names
@@ -122,6 +123,11 @@ class Case:
     def assembly(self) -> Assembly:
         """The numeric view of the wall."""
         return self.built.assembly
+
+    @cached_property
+    def content(self) -> str:
+        """Hash of what decides an answer about it."""
+        return hash_of(self.wall)
 
     @property
     def id(self) -> str:

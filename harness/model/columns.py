@@ -1,46 +1,75 @@
-"""The columns of results, declared once: for CSV, Parquet, pandas, tables of studies, terminal, report and docs."""
+"""The columns of results and of comparisons with references: for files, pandas, studies, terminal, report and docs."""
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+import json
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from operator import attrgetter
+from typing import Any
+
+from harness.model.case import Reference
+from harness.model.proof import Proof
+from harness.model.result import Comparison, Result, exceeds_accuracy, residual_of
+from harness.model.result_texts import VERDICT_TEXTS, multiplier_text, references_text, residual_text, settings_text
+from harness.model.table import TableColumn
 
 
 @dataclass(frozen=True)
-class ResultColumn:
-    """One column.
+class ResultRow:
+    """What a column of results is a function of: a result, and what is proved of it."""
 
-    Attributes:
-        name: in files.
-        dtype: in pandas.
-        unit: "1" where it is dimensionless, empty where it is no quantity.
-        meaning: what it holds.
-        title: how people read its name, where that is more than its words.
-    """
-
-    name: str
-    dtype: str
-    unit: str
-    meaning: str
-    title: str = ""
-
-    @property
-    def label(self) -> str:
-        """The head of the column for people."""
-        return self.title or self.name.replace("_", " ")
-
-    @property
-    def head(self) -> str:
-        """The head with the unit, where there is one to tell."""
-        return self.label if self.unit in ("", "1") else f"{self.label} [{self.unit}]"
-
-    @property
-    def numeric(self) -> bool:
-        """Whether its values are numbers, which stand on the right."""
-        return self.dtype in ("Float64", "Int64")
+    result: Result
+    proof: Proof = field(default_factory=Proof)
 
 
-def _text(name: str, meaning: str, title: str = "") -> ResultColumn:
-    return ResultColumn(name, "string", "", meaning, title)
+ResultColumn = TableColumn[ResultRow]
+
+
+def _field(name: str, dtype: str, unit: str, meaning: str, title: str = "") -> ResultColumn:
+    """A column that is a field of the result."""
+    return ResultColumn(name, dtype, unit, meaning, attrgetter(f"result.{name}"), title)
+
+
+def _text(name: str, meaning: str, value: Callable[[ResultRow], Any] | None = None, title: str = "") -> ResultColumn:
+    """A column of texts; without `value` it is a field of the result."""
+
+    def named(row: ResultRow) -> str:
+        return str(getattr(row.result, name))
+
+    return ResultColumn(name, "string", "", meaning, value or named, title)
+
+
+def _facts(name: str, meaning: str) -> ResultColumn:
+    """A column of names with values, as JSON in files."""
+
+    def compact(row: ResultRow) -> str:
+        return json.dumps(getattr(row.result, name), sort_keys=True, ensure_ascii=False, default=str)
+
+    def words(row: ResultRow) -> str:
+        return settings_text(getattr(row.result, name))
+
+    return ResultColumn(name, "string", "", meaning, compact, words=words)
+
+
+def _end(number: int) -> Callable[[ResultRow], float | None]:
+    """The lower (0) or upper (1) end of the bracket."""
+    return lambda row: row.result.bracket[number] if row.result.bracket else None
+
+
+def _worst(number: int) -> Callable[[ResultRow], Any]:
+    """The name (0) or the value (1) of the worst residual."""
+
+    def worst(row: ResultRow) -> Any:
+        found = row.result.judge.worst
+        return None if found is None else found[number]
+
+    return worst
+
+
+def _exceeds(row: ResultRow) -> bool | None:
+    bracket = row.result.bracket if row.result.flow == "approximate" else None
+    return None if bracket is None else exceeds_accuracy(bracket, row.result.traits)
 
 
 RESULTS: tuple[ResultColumn, ...] = (
@@ -50,43 +79,106 @@ RESULTS: tuple[ResultColumn, ...] = (
     _text("status", "how the run ended"),
     _text("finding", "what the answer says about the wall"),
     _text("sentence", "the answer in a sentence"),
-    ResultColumn("multiplier", "Float64", "1", "of the live load at collapse"),
-    ResultColumn("bracket_low", "Float64", "1", "lower end of the bracket"),
-    ResultColumn("bracket_high", "Float64", "1", "upper end of the bracket"),
+    ResultColumn(
+        "multiplier",
+        "Float64",
+        "1",
+        "of the live load at collapse",
+        attrgetter("result.multiplier"),
+        words=lambda row: multiplier_text(row.result, row.proof),
+    ),
+    ResultColumn("bracket_low", "Float64", "1", "lower end of the bracket", _end(0)),
+    ResultColumn("bracket_high", "Float64", "1", "upper end of the bracket", _end(1)),
     _text("bracket_meaning", "what the ends of the bracket are"),
-    ResultColumn("bracket_width", "Float64", "1", "of a measured bracket, as a share of its upper end"),
-    ResultColumn("bracket_wide", "boolean", "", "whether a measured bracket is so wide that its middle says little"),
-    _text("proof", "how the multiplier stands to the minimum: minimum, minimum_to_rounding, least_known or none"),
-    _text("proof_sentence", "what is known of lower collapse states"),
-    ResultColumn("proved_bound", "Float64", "1", "no collapse state lies from zero to below it, proved in fractions"),
-    _text("verdict", "how the value stands to its references"),
-    ResultColumn("judge_accepted", "boolean", "", "whether the judge accepts the answer; missing: not judged"),
-    ResultColumn("judge_tolerance", "Float64", "1", "the largest relative residual that was acceptable"),
-    ResultColumn("judge_worst_residual", "Float64", "1", "the worst relative residual found", "judge residual"),
-    _text("judge_worst_residual_name", "which residual that is"),
-    _text("judge_sentence", "what was judged, and what failed"),
-    ResultColumn("cpu_seconds", "Float64", "s", "processor time of the method alone", "CPU time"),
-    ResultColumn("wall_seconds", "Float64", "s", "time on the clock"),
-    ResultColumn("peak_memory_bytes", "Int64", "B", "largest resident memory", "peak memory"),
-    ResultColumn("blocks", "Int64", "1", "free blocks"),
-    ResultColumn("interfaces", "Int64", "1", "interfaces"),
-    ResultColumn("iterations", "Int64", "1", "of the method's main loop"),
-    ResultColumn("unknowns", "Int64", "1", "of the method's largest problem"),
+    _field("bracket_width", "Float64", "1", "of a measured bracket, as a share of its upper end"),
+    _field("bracket_wide", "boolean", "", "whether a measured bracket is so wide that its middle says little"),
+    ResultColumn(
+        "residual_multiplier",
+        "Float64",
+        "1",
+        "of the same wall without cohesion and tensile strength",
+        lambda row: None if (residual := residual_of(row.result)) is None else residual.multiplier,
+    ),
+    _text(
+        "residual_finding",
+        "what the answer says about the wall without cohesion and tensile strength",
+        lambda row: None if (residual := residual_of(row.result)) is None else str(residual.finding),
+    ),
+    _text(
+        "proof",
+        "how the multiplier stands to the minimum: minimum, minimum_to_rounding, least_known or none",
+        lambda row: str(row.proof.standing),
+    ),
+    _text("proof_sentence", "what is known of lower collapse states", attrgetter("proof.sentence")),
+    ResultColumn(
+        "proved_bound",
+        "Float64",
+        "1",
+        "no collapse state lies from zero to below it, proved in fractions",
+        attrgetter("proof.bound"),
+    ),
+    ResultColumn(
+        "verdict",
+        "string",
+        "",
+        "how the value stands to its references",
+        lambda row: str(row.result.verdict),
+        words=lambda row: VERDICT_TEXTS[row.result.verdict],
+    ),
+    ResultColumn(
+        "judge_accepted",
+        "boolean",
+        "",
+        "whether the judge accepts the answer; missing: not judged",
+        attrgetter("result.judge.accepted"),
+    ),
+    ResultColumn(
+        "judge_tolerance",
+        "Float64",
+        "1",
+        "the largest relative residual that was acceptable",
+        attrgetter("result.judge.tolerance"),
+    ),
+    ResultColumn(
+        "judge_worst_residual",
+        "Float64",
+        "1",
+        "the worst relative residual found",
+        _worst(1),
+        "judge residual",
+        lambda row: residual_text(row.result),
+    ),
+    _text("judge_worst_residual_name", "which residual that is", _worst(0)),
+    _text("judge_sentence", "what was judged, and what failed", attrgetter("result.judge.sentence")),
+    _field("cpu_seconds", "Float64", "s", "processor time of the method alone", "CPU time"),
+    _field("wall_seconds", "Float64", "s", "time on the clock"),
+    _field("peak_memory_bytes", "Int64", "B", "largest resident memory", "peak memory"),
+    _field("blocks", "Int64", "1", "free blocks"),
+    _field("interfaces", "Int64", "1", "interfaces"),
+    _field("iterations", "Int64", "1", "of the method's main loop"),
+    _field("unknowns", "Int64", "1", "of the method's largest problem"),
     _text("flow", "flow rule of the mechanism"),
     _text("started", "when the run began"),
-    _text("key", "under which the result is stored", "key in the store"),
-    _text("settings", "of the method, as JSON"),
-    _text("limits", "of the run, as JSON"),
-    _text("versions", "of the programme and its libraries, as JSON"),
-    _text("machine", "on which the run was made, as JSON"),
+    _text("key", "under which the result is stored", title="key in the store"),
+    _facts("settings", "of the method, as JSON"),
+    _facts("limits", "of the run, as JSON"),
+    _facts("versions", "of the programme and its libraries, as JSON"),
+    _facts("machine", "on which the run was made, as JSON"),
 )
 """Columns of results.csv, results.parquet and `Comparison.to_pandas`, in their order."""
 
-NUMBERED = (
-    ResultColumn("number", "Int64", "1", "of the run in its study"),
-    ResultColumn("draw", "Int64", "1", "of a distribution; missing on a grid"),
+IN_TABLES: tuple[ResultColumn, ...] = (
     ResultColumn(
-        "from_neighbour", "boolean", "", "whether a mechanism of a neighbouring wall led to it; missing: none given"
+        "bracket",
+        "Float64",
+        "1",
+        "the pair of values that the method vouches for",
+        lambda row: None if row.result.bracket is None else list(row.result.bracket),
+    ),
+    _text(
+        "reference",
+        "the value of another source that matters most; all are in comparisons.csv",
+        lambda row: references_text(row.result),
     ),
     ResultColumn(
         "exceeds_accuracy",
@@ -94,24 +186,69 @@ NUMBERED = (
         "",
         "whether the multiplier is only known to lie in the bracket, which is wider than the method's stated accuracy; "
         "missing: it is not measured between two loads",
+        _exceeds,
     ),
-    ResultColumn("multiplier_alone", "Float64", "1", "what the run had found by itself, where a neighbour led lower"),
 )
-"""What tables of studies have besides."""
+"""What tables for people and tables of studies show of several columns, or of other tables, in one."""
 
-IN_TABLES = (
-    ResultColumn("bracket", "Float64", "1", "the pair of values that the method vouches for"),
-    _text("reference", "the value of another source that matters most; all are in comparisons.csv"),
-)
-"""What tables for people show of several columns, or of other tables, in one."""
 
-BY_NAME = {column.name: column for column in (*RESULTS, *NUMBERED, *IN_TABLES)}
-TYPES = {column.name: column.dtype for column in RESULTS}
-UNITS = {column.name: column.unit for column in RESULTS if column.unit}
+def chosen(*names: str) -> tuple[ResultColumn, ...]:
+    """Columns of results by their names, in this order."""
+    by_name = {column.name: column for column in (*RESULTS, *IN_TABLES)}
+    return tuple(by_name[name] for name in names)
 
-PRINTED = ("case", "method", "multiplier", "reference", "verdict", "judge_worst_residual", "cpu_seconds")
-"""Columns of a comparison in a terminal."""
-LISTED = (*PRINTED[:3], "bracket", "reference", "verdict", "finding", "judge_worst_residual", "cpu_seconds")
-"""Columns of every run in the report."""
-REPEATED = ("settings", "limits", "started", "peak_memory_bytes", "iterations", "unknowns", "key")
+
+PRINTED = chosen("case", "method", "multiplier", "reference", "verdict", "judge_worst_residual", "cpu_seconds")
+"""Columns of a comparison in a terminal, and in the report."""
+LISTED = (*PRINTED[:3], *chosen("bracket"), *PRINTED[3:5], *chosen("finding"), *PRINTED[5:])
+"""Columns of every run in the report: those of the terminal and two more."""
+REPEATED = chosen("settings", "limits", "started", "peak_memory_bytes", "iterations", "unknowns", "key")
 """Columns beside the command that repeats a run, in the report."""
+
+
+@dataclass(frozen=True)
+class ComparedRow:
+    """A result with one of its comparisons, and the reference; None where the case has it no more."""
+
+    result: Result
+    comparison: Comparison
+    reference: Reference | None
+
+
+ComparisonColumn = TableColumn[ComparedRow]
+
+
+def _of_reference(name: str, meaning: str, title: str = "") -> ComparisonColumn:
+    def value(row: ComparedRow) -> str | None:
+        return None if row.reference is None else str(getattr(row.reference, name))
+
+    return ComparisonColumn(name, "string", "", meaning, value, title)
+
+
+COMPARISONS: tuple[ComparisonColumn, ...] = (
+    ComparisonColumn("case", "string", "", "id of the wall", attrgetter("result.case")),
+    ComparisonColumn("method", "string", "", "name of the method", attrgetter("result.method")),
+    ComparisonColumn("reference", "string", "", "id of the reference in its case", attrgetter("comparison.reference")),
+    _of_reference("type", "exact, bound, published, measured or regression"),
+    ComparisonColumn("quantity", "string", "", "what is compared", attrgetter("comparison.quantity")),
+    _of_reference("relation", "how the value has to stand to the reference"),
+    ComparisonColumn("value", "object", "of the quantity", "of the result", attrgetter("comparison.value")),
+    ComparisonColumn(
+        "expected", "object", "of the quantity", "of the reference", attrgetter("comparison.expected"), "reference"
+    ),
+    ComparisonColumn("tolerance", "Float64", "1", "relative difference allowed", attrgetter("comparison.tolerance")),
+    ComparisonColumn(
+        "gate", "boolean", "", "whether `drystone check` fails where it is not met", attrgetter("comparison.gate")
+    ),
+    ComparisonColumn(
+        "verdict", "string", "", "how the value stands to the reference", lambda row: str(row.comparison.verdict)
+    ),
+    ComparisonColumn("sentence", "string", "", "the difference in a sentence", attrgetter("comparison.sentence")),
+    _of_reference("requirement", "what the reference asks for", "source and requirement"),
+    _of_reference("source", "of the reference"),
+)
+"""Columns of comparisons.csv, in their order."""
+
+_COMPARED = ("case", "method", "quantity", "value", "expected", "tolerance", "verdict", "requirement")
+COMPARED = tuple(column for column in COMPARISONS if column.name in _COMPARED)
+"""Columns of the tables of references in the report."""

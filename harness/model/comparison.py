@@ -49,6 +49,11 @@ class Certified:
     from_zero: bool = False
 
 
+def refusal(method: str, why: str) -> str:
+    """A sentence about a certificate that is refused."""
+    return f"The certificate that {method} hands on is refused, and proves nothing: {why.rstrip('.')}."
+
+
 @dataclass(frozen=True)
 class CaseResults:
     """One case with the results of every method asked for, failed ones included.
@@ -58,12 +63,19 @@ class CaseResults:
         results: of every method.
         gates: statements of theory tested on them.
         certified: what the certificate beside the case proves, if there is one that holds.
+        refused: {method: why the certificate that it handed on is refused}.
     """
 
     case: Case
     results: list[Result]
     gates: list[Gate] = field(default_factory=list)
     certified: Certified | None = None
+    refused: dict[str, str] = field(default_factory=dict)
+
+    @property
+    def refusals(self) -> list[str]:
+        """Sentences about certificates that methods handed on and that are refused, as every output prints them."""
+        return [refusal(method, why) for method, why in self.refused.items()]
 
     def of(self, method: str) -> Result | None:
         """The result of a method, or None."""

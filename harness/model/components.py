@@ -13,6 +13,7 @@ from typing import Any
 import numpy as np
 
 from harness.model.assembly import OF_BLOCKS, Assembly, BoolArray, FloatArray, IntArray
+from harness.model.details import AnswerDetails
 from harness.model.errors import first_few
 from harness.model.groups import groups_of
 from harness.model.method import MOVING_FORCES, Answer, Finding, OutOfTime, Status
@@ -117,7 +118,7 @@ def analysed_apart(assembly: Assembly, solve: Solve, bear: Bear) -> Answer:
                 raise
             answers[k] = _not_reached(parts[k])
             stopped = True
-        stopped = stopped or bool(answers[k].details.get("stopped_by_limit"))
+        stopped = stopped or AnswerDetails(answers[k].details).stopped_by_limit
     return joined(assembly, parts, [answers[k] for k in range(len(parts))], bear)
 
 

@@ -205,11 +205,12 @@ def _merge_collinear(
     keep: list[int] = []
     ends = end.copy()
     starts = start.copy()
+    of_pair: list[int] = []
     for k in range(len(a)):
         joined = False
-        for kept in reversed(keep):
-            if a[kept] != a[k] or b[kept] != b[k]:
-                break
+        if of_pair and (a[of_pair[0]] != a[k] or b[of_pair[0]] != b[k]):
+            of_pair = []
+        for kept in _meeting(of_pair, starts, ends, k, tolerance):
             one = (ends[kept] - starts[kept]) / np.linalg.norm(ends[kept] - starts[kept])
             two = ends[k] - starts[k]
             straight = abs(one[0] * two[1] - one[1] * two[0]) <= tolerance and np.dot(one, two) > 0.0
@@ -223,7 +224,20 @@ def _merge_collinear(
                 break
         if not joined:
             keep.append(k)
+            of_pair.append(k)
     return a[keep], b[keep], starts[keep], ends[keep]
+
+
+def _meeting(kept: list[int], starts: FloatArray, ends: FloatArray, k: int, tolerance: float) -> list[int]:
+    """Those of the segments kept that may meet segment k within a tolerance, the last first.
+
+    Faces of thousands of vertices have as many segments in one pair of blocks.
+    """
+    if not kept:
+        return []
+    index = np.array(kept)
+    apart = np.minimum(np.hypot(*(ends[index] - starts[k]).T), np.hypot(*(starts[index] - ends[k]).T))
+    return [int(kept) for kept in index[apart <= tolerance * (1.0 + 1e-9)][::-1]]
 
 
 def _corner_pairs(edges: Edges, fixed: BoolArray, a: IntArray, b: IntArray, tolerance: float) -> IntArray:

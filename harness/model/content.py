@@ -1,20 +1,23 @@
-"""A key of what decides the mechanics of a wall, equal for walls that are written differently."""
+"""Hashes of walls: of what is written, and of what decides the mechanics however it is written."""
 
 from __future__ import annotations
 
 import hashlib
+import json
 
 import numpy as np
 
 from harness.model.assembly import Assembly
+from harness.model.wall import Wall
 
 STEP = 1.37e-6
 """Values are rounded to this part of their size. No round number of a drawing lies on the edge between two steps."""
 
 
 def content_of(assembly: Assembly) -> str:
-    """A hash of free blocks, interfaces, friction and loads; names, place and the unit of force do not enter.
+    """A hash of free blocks, interfaces, what joints bear, loads and settlements; names, place, units apart.
 
+    The order of blocks and interfaces does: walls that differ in it have different keys.
     Walls of one key are equal to a few millionths, and nearly all equal walls have one: it is a way to find a wall,
     and no proof that two are the same.
     """
@@ -23,16 +26,27 @@ def content_of(assembly: Assembly) -> str:
     number[free] = np.arange(len(free))
     points = np.vstack([assembly.centroid[free], assembly.end1, assembly.end2])
     loads = np.hstack([assembly.dead[free, :2], assembly.live[free, :2]])
+    load = float(abs(loads).max(initial=0.0)) or 1.0
     digest = hashlib.sha256()
     for joined in (number[assembly.block_a], number[assembly.block_b]):
         digest.update(np.asarray(joined, dtype="<i8").tobytes() + b";")
     origin = points.min(axis=0) if len(points) else 0.0
+    besides = [(assembly.constant, load)] if assembly.strong else []
+    if np.any(assembly.support_motion):
+        besides.append((assembly.support_motion, float(abs(assembly.support_motion).max())))
     for values, size in (
         (points - origin, assembly.length_scale),
         (assembly.normal, 1.0),
         (assembly.friction, 1.0),
         (assembly.dilatancy, 1.0),
-        (loads, float(abs(loads).max(initial=0.0)) or 1.0),
+        (loads, load),
+        *besides,
     ):
         digest.update(np.rint(values / (STEP * size)).astype("<i8").tobytes() + b";")
     return digest.hexdigest()
+
+
+def hash_of(wall: Wall) -> str:
+    """A hash of all that is written of a wall and decides an answer: title, metadata and doubts do not enter."""
+    written = {name: value for name, value in wall.document().items() if name not in ("title", "metadata", "doubts")}
+    return hashlib.sha256(json.dumps(written, sort_keys=True, allow_nan=False).encode()).hexdigest()

@@ -5,6 +5,9 @@ from __future__ import annotations
 from collections import Counter
 from dataclasses import dataclass
 from enum import StrEnum
+from operator import attrgetter
+
+from harness.model.table import TableColumn
 
 
 class Kind(StrEnum):
@@ -68,6 +71,24 @@ class Pairs:
     number: int
     ratio: float
     slower: int
+
+
+DifferenceColumn = TableColumn[Row]
+
+DIFFERENCE: tuple[DifferenceColumn, ...] = (
+    DifferenceColumn("case", "string", "", "id of the wall", attrgetter("case")),
+    DifferenceColumn("method", "string", "", "name of the method", attrgetter("method")),
+    DifferenceColumn(
+        "kind", "string", "", "how the answer stands to the one before", lambda row: str(row.kind), "stands"
+    ),
+    DifferenceColumn("figures", "string", "", "the values", attrgetter("figures"), "value"),
+    DifferenceColumn("old_seconds", "Float64", "s", "processor time before", attrgetter("old_seconds"), "CPU before"),
+    DifferenceColumn("new_seconds", "Float64", "s", "processor time now", attrgetter("new_seconds"), "CPU now"),
+    DifferenceColumn(
+        "ratio", "Float64", "1", "new time by old time, where the two may be compared", attrgetter("ratio")
+    ),
+)
+"""Columns of two sets of answers, in the page and in JSON."""
 
 
 @dataclass(frozen=True)

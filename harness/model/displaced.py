@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 
 from harness.model.assembly import Assembly, FloatArray, IntArray
+from harness.model.details import AnswerDetails
 from harness.model.result import Result
 
 NAME = "displaced_state"
@@ -50,10 +51,10 @@ class DisplacedState:
 
 def released(result: Result, n_blocks: int) -> FloatArray | None:
     """Frames (k, n, 3) of a collapse that was followed: displacements (x, y) [length] and rotations; or None."""
-    release = result.details.get("release")
-    if not isinstance(release, dict) or not isinstance(release.get("frames"), list):
+    release = AnswerDetails(result.details).release
+    if release is None or release.frames is None:
         return None
-    frames = np.array(release["frames"], dtype=float)
+    frames = release.frames
     return frames if frames.ndim == 3 and frames.shape[0] > 1 and frames.shape[1:] == (n_blocks, 3) else None
 
 

@@ -18,10 +18,10 @@ from harness.model.assembly import BoolArray, FloatArray, IntArray
 from harness.model.build import Built, build, polygons_of, support_faults, weight_of, written_out
 from harness.model.contacts import check_gap
 from harness.model.errors import InputError, Spot, sorted_out
+from harness.model.input_checks import unknown_in_rules
 from harness.model.interfaces import Joints, faults_of_given, floating, floating_groups, joints_of, limits_of
 from harness.model.names import faults_of_wall
 from harness.model.plausibility import NEAR_MISS, allowing, saying, span
-from harness.model.slips import unknown_in_rules
 from harness.model.wall import Block, Detection, Interface, Wall
 
 

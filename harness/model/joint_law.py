@@ -62,6 +62,11 @@ class JointLaw:
         """(m,) interfaces without constant parts, whose yield domain is a cone."""
         return np.asarray(~np.any(self.constant, axis=1))
 
+    @cached_property
+    def is_cone(self) -> bool:
+        """Whether the yield domain of all joints is a cone: any multiple of forces within yield is within yield."""
+        return bool(self.dry.all())
+
     @property
     def least_normal(self) -> FloatArray:
         """(m, 2) least normal forces at both ends: minus half the tensile strength, zero in dry joints."""
@@ -95,6 +100,14 @@ class JointLaw:
         """Forces (m, 3) without the tension and then without the shear that break the law, as rounding leaves them."""
         normal = np.maximum(forces[:, :2], self.least_normal)
         return np.column_stack([normal, np.clip(forces[:, 2], *self.shear_range(normal))])
+
+    def rates(self, strains: FloatArray) -> FloatArray:
+        """(m, 4) smallest rates g with q = E g of strains q (m, 3); openings come out negative where joints close."""
+        slip = strains[:, 2]
+        lift = self.dilatancy * abs(slip)
+        return np.column_stack(
+            [strains[:, 0] - lift, strains[:, 1] - lift, np.maximum(slip, 0.0), np.maximum(-slip, 0.0)]
+        )
 
     def dissipation(self, rates: FloatArray) -> float:
         """Work s0 . g that the constant parts take on rates (m, 4)."""

@@ -6,7 +6,7 @@ import math
 import signal
 from abc import ABC, abstractmethod
 from collections.abc import Iterator, Sequence
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from contextvars import ContextVar
 from dataclasses import dataclass, field
 from enum import StrEnum
@@ -155,6 +155,7 @@ class Traits(BaseModel):
         elastic: its joints are springs, loaded from the dead load on.
         any_self_stress: it lets joints carry any self-stress that statics and friction allow; others start without.
         any_dilatancy: it follows the dilatancy that a wall gives its joints; other methods refuse such a wall.
+        any_strength: it takes joints with cohesion and tensile strength; other methods refuse such a wall.
         moves_no_lower: it measures when rigid blocks on even faces move (`details["lowest_moving"]`): where theory
             knows the least multiplier, moving below it is an error.
         colour: of its curves, as "#rrggbb"; empty: the drawing chooses.
@@ -173,6 +174,7 @@ class Traits(BaseModel):
     elastic: bool = False
     any_self_stress: bool = False
     any_dilatancy: bool = False
+    any_strength: bool = False
     moves_no_lower: bool = False
     colour: str = Field(default="", pattern="^(#[0-9a-f]{6})?$")
     marker: str = ""
@@ -277,8 +279,8 @@ class Listed(Method):
 def check_takes(method: Method, assembly: Assembly) -> None:
     """Refuse a wall with joints or supports that a method does not take.
 
-    Dilatancy is taken by methods that say so; joints with a constant part of their strength and supports that move are
-    taken by none yet, only by the programmes of `methods.la`.
+    Dilatancy and strength of joints are taken by methods whose traits say so; supports that move are taken by none yet,
+    only by the programmes of `methods.la`.
 
     Raises:
         InputError: the wall has such joints or supports.
@@ -295,17 +297,18 @@ def check_takes(method: Method, assembly: Assembly) -> None:
             f"{law.dilatancy[joint]:g}",
             "Take a method of limit analysis (`drystone list methods`), or leave the dilatancy out",
         )
-    if not law.dry.all():
+    if assembly.strong and not method.traits.any_strength:
         raise InputError(
             f"{method.name} takes dry joints only; that between {between(int(np.argmin(law.dry)))} has cohesion or "
             "tensile strength",
-            "Leave the constant part of its strength out",
+            f"Take a method that knows the strength of joints ({', '.join(methods_with('any_strength'))}), or leave "
+            "cohesion and tensile strength out",
         )
     if np.any(assembly.support_motion):
         block = int(np.argmax(np.any(assembly.support_motion, axis=1)))
         raise InputError(
             f"{method.name} takes supports at rest only; {assembly.block_ids[block]} moves",
-            "Leave the motion of the support out",
+            "Ask `drystone reaction`, or leave the settlements out",
         )
 
 
@@ -321,6 +324,16 @@ def method_points() -> tuple[EntryPoint, ...]:
 def method_names() -> list[str]:
     """Names of all installed methods, sorted."""
     return sorted({point.name for point in method_points()})
+
+
+def methods_with(trait: str) -> list[str]:
+    """Names of the installed methods, sorted, whose traits say that they take something, as "any_strength"."""
+    found = []
+    for name in method_names():
+        with suppress(InputError):  # one that cannot be loaded takes nothing
+            if getattr(load_method(name).traits, trait):
+                found.append(name)
+    return found
 
 
 def load_method(name: str) -> Method:

@@ -78,6 +78,9 @@ def _named(wall: Wall) -> Iterator[tuple[str, str]]:
                 yield f"{where}.body[{number}]", name
         for number, point in enumerate(load.points):
             yield f"{where}.points[{number}]", point.block
+    for number, settlement in enumerate(wall.settlements):
+        for name in settlement.blocks or ():
+            yield f"settlements[{number}]", name
 
 
 def faults_of_data(data: dict[str, Any]) -> list[InputError]:

@@ -5,11 +5,13 @@ This is the one place that decides it. Report, appendix, CSV, JSON, terminal and
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from decimal import ROUND_FLOOR, Context
 from enum import StrEnum
 from typing import TYPE_CHECKING, Any
 
+from harness.model.comparison import refusal
 from harness.model.method import Status
 
 if TYPE_CHECKING:
@@ -48,11 +50,15 @@ class Proof:
         standing: of its multiplier.
         bound: no collapse state lies from zero to below it, proved in fractions; None where no certificate is known.
         lower_bound: the same in floating point, from a search; None where it is zero or not above `bound`.
+        by: the method that says so in floating point, of `lower_bound` and of a minimum to rounding.
+        refused: what is said of the certificate that the method handed on, where it is refused.
     """
 
     standing: Standing = Standing.NONE
     bound: float | None = None
     lower_bound: float | None = None
+    by: str = ""
+    refused: str = ""
 
     @property
     def label(self) -> str:
@@ -67,16 +73,17 @@ class Proof:
         if self.standing is Standing.MINIMUM and self.bound is not None:
             return f"an exact certificate proves that no collapse state lies below {_rounded_down(self.bound)}"
         if self.standing is Standing.TO_ROUNDING:
-            return "branch and bound in floating point leaves no collapse state below it"
+            return f"{self.by} finds in floating point that no collapse state lies below it"
         known = [] if self.bound is None else [f"none lies below {_rounded_down(self.bound)}, by an exact certificate"]
         if self.lower_bound is not None:
-            known.append(f"none lies below {_rounded_down(self.lower_bound)}, to rounding")
+            known.append(f"{self.by} finds none below {_rounded_down(self.lower_bound)}, to rounding")
         return "; ".join(["a lower collapse state is not excluded", *known])
 
     @property
     def sentence(self) -> str:
-        """The same as a sentence."""
-        return "" if not self.clause else f"{self.label[0].upper()}{self.label[1:]}: {self.clause}."
+        """The same as a sentence, and a second one where a certificate is refused."""
+        known = "" if not self.clause else f"{self.label[0].upper()}{self.label[1:]}: {self.clause}."
+        return f"{known} {self.refused}".strip()
 
     def as_json(self) -> dict[str, Any]:
         """As JSON values."""
@@ -116,20 +123,41 @@ def least_known(item: CaseResults) -> Result | None:
 def proof_of(item: CaseResults, result: Result) -> Proof:
     """What is proved of a result, by a certificate that was checked here and by what the methods found to rounding.
 
-    A bound that a method says it has certified counts only through its certificate: see `drystone.certificates`.
+    A bound that a method says it has certified counts only through its certificate: see `drystone.certificates`. What
+    a method says in floating point is said in its name. Neither counts where a state is known that it excludes.
 
     Args:
         item: all results of the wall; result: one of them.
     """
+    refused = refusal(result.method, item.refused[result.method]) if result.method in item.refused else ""
     if not is_collapse_state(result):
-        return Proof()
+        return Proof(refused=refused)
     value = result.multiplier or 0.0
+    least = min(each.multiplier or 0.0 for each in [*item.results, result] if is_collapse_state(each))
+    bound = _certified_bound(item, value, least)
     sound = [each for each in item.results if each.status is Status.OK and each.judge.accepted is not False]
-    bound = item.certified.bound if item.certified is not None and item.certified.bound <= value else None
-    floating = max((float(each.details.get("lower_bound") or 0.0) for each in sound), default=0.0)
-    lower = floating if max(0.0, bound or 0.0) < floating <= value else None
+    floating = [(_said(each), each.method) for each in sound if _said(each) <= min(value, least)]
+    lower, by = max(floating, key=lambda pair: pair[0], default=(0.0, ""))
     if bound is not None and value - bound <= CERTIFIED * abs(value):
-        return Proof(Standing.MINIMUM, bound)
-    if result.details.get("proved_least"):
-        return Proof(Standing.TO_ROUNDING, bound)
-    return Proof(Standing.KNOWN, bound, lower) if result is least_known(item) else Proof()
+        return Proof(Standing.MINIMUM, bound, refused=refused)
+    if result.details.get("proved_least") is True and value <= least + EQUAL * abs(least):
+        return Proof(Standing.TO_ROUNDING, bound, by=result.method, refused=refused)
+    if result is not least_known(item):
+        return Proof(refused=refused)
+    above = lower > max(0.0, bound or 0.0)
+    return Proof(Standing.KNOWN, bound, lower if above else None, by if above else "", refused)
+
+
+def _certified_bound(item: CaseResults, value: float, least: float) -> float | None:
+    """What a certificate proves below a state of this value; None where it says nothing of it or is contradicted."""
+    known = item.certified
+    if known is None or known.bound > value or (known.from_zero and value <= 0.0):
+        return None
+    return None if known.bound - least > CERTIFIED * abs(known.bound) else known.bound
+
+
+def _said(result: Result) -> float:
+    """The lower bound that a method says it found in floating point; zero where it says none, or no number."""
+    value = result.details.get("lower_bound")
+    number = isinstance(value, int | float) and not isinstance(value, bool)
+    return float(value) if number and value is not None and math.isfinite(value) else 0.0

@@ -17,6 +17,7 @@ from pydantic import BaseModel, ValidationError
 from harness.model.broken_json import MOST_SHOWN, broken
 from harness.model.build import Built, build
 from harness.model.errors import InputError, did_you_mean, raise_faults
+from harness.model.fields import MOST_BLOCKS
 from harness.model.names import faults_of_data
 from harness.model.scope import SCOPE, outside_the_model
 from harness.model.wall import TAGS, Wall
@@ -25,6 +26,9 @@ ModelType = TypeVar("ModelType", bound=BaseModel)
 
 LARGEST_FILE = 256 * 2**20
 """Bytes that are read from one file at most: 100,000 blocks with their interfaces written out are about 150 MB."""
+MOST_VALUES = 4_000_000
+"""Numbers, texts, lists and objects of a JSON document: 100,000 blocks with interfaces written out have as many. Each
+takes some 200 bytes when it is read, so the document takes less than 1 GB."""
 MOST_NESTED = 40
 """Depth of a JSON document. A wall needs 7 levels; beyond some 200 its readers and writers reach their own limits."""
 HALF_CHARACTER = re.compile(r"\\u[dD][89a-fA-F]")
@@ -56,7 +60,7 @@ PLAIN = {
     "int_type": "it should be a whole number",
     "string_type": "it should be text, in quotes",
     "bool_type": "it should be true or false",
-    "too_long": "it has too many entries",
+    "too_long": "it has {actual_length} entries, and may have {max_length} at most",
     "too_short": "it has {actual_length} entries, and should have at least {min_length}",
     "union_tag_not_found": 'it needs a "type"',
     "union_tag_invalid": 'its type is "{tag}", and should be one of {expected_tags}',
@@ -145,12 +149,22 @@ def read_json(path: Path, limit: int = LARGEST_FILE) -> Any:
     return json_of(read_text(path, limit), str(path))
 
 
-def json_of(text: str, source: str) -> Any:
-    """The value of JSON text; `source` is what errors call it.
+def json_of(text: str, source: str, most_values: int = MOST_VALUES) -> Any:
+    """The value of JSON text.
+
+    Args:
+        text: of the document.
+        source: what errors call it.
+        most_values: values that it may have; commas and brackets are counted for them before anything is made.
 
     Raises:
-        InputError: not JSON, NaN or infinite numbers, a name given twice, half a character, or nested too deeply.
+        InputError: not JSON, NaN or infinite numbers, a name given twice, half a character, or too much or nested too
+            deeply to be read.
     """
+    if 1 + sum(text.count(sign) for sign in ",[{") > most_values:
+        raise InputError(
+            f"it has more than {most_values:,} values", "Check that it is the file you mean", source=source
+        )
 
     def refuse_constant(word: str) -> float:
         raise InputError(f"{word} is not a number", "Give finite numbers", source=source)
@@ -160,11 +174,11 @@ def json_of(text: str, source: str) -> Any:
         return value if math.isfinite(value) else refuse_constant(word)
 
     def unique(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
-        names = [name for name, _ in pairs]
-        if len(set(names)) != len(names):
-            twice = next(name for name, count in Counter(names).items() if count > 1)
+        found = dict(pairs)
+        if len(found) != len(pairs):
+            twice = next(name for name, count in Counter(name for name, _ in pairs).items() if count > 1)
             raise InputError(f'the name "{twice}" is given twice in one object', "Keep one", source=source)
-        return dict(pairs)
+        return found
 
     too_deep = InputError(f"it is nested more than {MOST_NESTED} deep", "Give a wall/1 document", source=source)
     try:
@@ -265,7 +279,8 @@ def _unknown_field(model: type[BaseModel], location: tuple[int | str, ...], plac
     beyond = outside_the_model(name)
     if beyond:
         return InputError(
-            f'"{name}" is outside the model: Drystone has rigid blocks and dry friction in the plane, not {beyond}',
+            f'"{name}" is outside the model: Drystone has rigid blocks, and joints of friction and constant strength, '
+            f"in the plane, not {beyond}",
             f"Leave it out; {SCOPE} says what is modelled, and what to use instead",
             place,
             source,
@@ -327,6 +342,8 @@ def _members(annotation: Any) -> list[Any]:
     return [member for argument in arguments for member in _members(argument)]
 
 
+MOST_ENTRIES = {"blocks": MOST_BLOCKS, "interfaces": 3 * MOST_BLOCKS}
+"""Of a wall: no plane graph has more than three joints a block."""
 DRAWINGS: dict[str, Callable[[Path], Any]] = {}
 """Readers of drawings by the ending of their names: each gives JSON data of a wall.
 
@@ -353,6 +370,11 @@ def parse_wall(data: Any, source: str) -> Wall:
     if data.get("format") != "wall/1":
         given = f"format is {data['format']!r}" if "format" in data else "it has no format"
         raise InputError(given, 'This release reads "format": "wall/1"', "format", source)
+    for entries, most in MOST_ENTRIES.items():
+        listed = data.get(entries)
+        if isinstance(listed, list) and len(listed) > most:
+            problem = f"it has {len(listed):,} {entries}, and at most {most:,} are read"
+            raise InputError(problem, "Model a part", entries, source)
     return validate(Wall, data, source, faults_of_data)
 
 

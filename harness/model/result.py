@@ -7,14 +7,11 @@ from enum import StrEnum
 from typing import Any
 
 import numpy as np
-from pydantic import BaseModel, ConfigDict, Field
+from pydantic import BaseModel, ConfigDict, Field, ValidationError
 
 from harness.model.assembly import Assembly, FloatArray
+from harness.model.details import AnswerDetails
 from harness.model.method import Answer, Finding, Status, Traits
-
-WIDE = 0.02
-"""Width of a measured bracket, as a share of its upper end, above which every output says that it is wide: four times
-the accuracy that methods state, so that it is a finding and not the last step of a search."""
 
 
 class Verdict(StrEnum):
@@ -38,6 +35,7 @@ class Judgement(BaseModel):
         sentence: what was judged, and what failed if anything did.
         multiplier_error: how far, by virtual work, the multiplier of the mechanism can be from the reported one; None
             where that was not shown.
+        code: hash of the judge's code, where the result is kept; another judge judges it again.
     """
 
     model_config = ConfigDict(defer_build=True, extra="forbid")
@@ -46,6 +44,7 @@ class Judgement(BaseModel):
     accepted: bool | None = None
     sentence: str = ""
     multiplier_error: float | None = None
+    code: str = ""
 
     @property
     def worst(self) -> tuple[str, float] | None:
@@ -142,6 +141,21 @@ class Result(BaseModel):
         return self.model_dump(mode="json", exclude={"forces", "mechanism", "states", "path"})
 
 
+def residual_of(result: Result) -> Result | None:
+    """The answer for the same wall without cohesion and tensile strength that comes with a result, as a result.
+
+    None where none comes, or where what comes is no answer.
+    """
+    own = result.details.get("without_strength")
+    if not isinstance(own, dict):
+        return None
+    kept = {name: getattr(result, name) for name in ("case", "method", "family", "blocks", "interfaces", "traits")}
+    try:
+        return Result.model_validate(kept | own)
+    except ValidationError:
+        return None
+
+
 def measured_width(answer: Answer) -> float | None:
     """Width of the bracket of a measured multiplier as a share of its upper end; None without one, or at zero."""
     if answer.flow != "approximate" or answer.bracket is None or not answer.multiplier:
@@ -150,10 +164,17 @@ def measured_width(answer: Answer) -> float | None:
     return abs(high - low) / max(abs(low), abs(high))
 
 
-def exceeds_accuracy(bracket: tuple[float, float], traits: Traits) -> bool:
-    """Whether a measured bracket is wider than its method states, so that its middle is no value of the multiplier.
+def _is_wide(answer: Answer, traits: Traits) -> bool:
+    return (
+        answer.bracket is not None and measured_width(answer) is not None and exceeds_accuracy(answer.bracket, traits)
+    )
 
-    Within the stated accuracy the middle lies at most that far from either end.
+
+def exceeds_accuracy(bracket: tuple[float, float], traits: Traits) -> bool:
+    """Whether a measured bracket is wide: its middle is no value of the multiplier within what its method states.
+
+    Within the stated accuracy the middle lies at most that far from either end. There is no other notion of "wide":
+    every output marks such a bracket, and studies leave it out of means.
     """
     low, high = bracket
     return high - low > max(traits.accuracy * abs(low + high), traits.resolution) * (1.0 + 1e-9)
@@ -223,7 +244,6 @@ def result_of(
         None if answer.mechanism is None else normalised_mechanism(assembly, np.asarray(answer.mechanism, float))
     )
     width = measured_width(answer)
-    unknowns = answer.details.get("unknowns")
     return Result(
         case=case,
         method=method,
@@ -235,11 +255,11 @@ def result_of(
         bracket=answer.bracket,
         bracket_meaning=answer.bracket_meaning,
         bracket_width=width,
-        bracket_wide=width is not None and width > WIDE,
+        bracket_wide=_is_wide(answer, traits or Traits()),
         blocks=assembly.n_free,
         interfaces=assembly.n_interfaces,
         iterations=int(answer.iterations),
-        unknowns=int(unknowns) if unknowns is not None else None,
+        unknowns=AnswerDetails(answer.details).unknowns,
         flow=answer.flow,
         traits=traits or Traits(),
         forces_multiplier=answer.multiplier if answer.forces_multiplier is None else answer.forces_multiplier,

@@ -8,17 +8,16 @@ SCOPE = "docs/scope.md"
 """Where the scope of Drystone is written, from the root of the project."""
 
 _OUTSIDE = {
-    "joints that bear tension or have strength of their own": (
-        "cohesion", "adhesion", "mortar", "mortar_joint", "bond_strength", "joint_tension", "tension_cutoff",
-        "residual_friction", "peak_friction", "roughness", "fracture_energy",
+    "joints that soften, or whose friction falls as they slide (cohesion and tensile_strength are fields)": (
+        "mortar", "mortar_joint", "residual_friction", "peak_friction", "roughness", "fracture_energy",
     ),
     "blocks that crush, crack or deform": (
-        "strength", "compressive_strength", "tensile_strength", "crushing_strength", "crushing", "fc", "fk", "fm", "fd",
-        "ft", "young", "youngs_modulus", "young_modulus", "elastic_modulus", "modulus", "poisson", "poisson_ratio",
+        "strength", "compressive_strength", "crushing_strength", "crushing", "fc", "fk", "fm", "fd",
+        "young", "youngs_modulus", "young_modulus", "elastic_modulus", "modulus", "poisson", "poisson_ratio",
         "shear_modulus", "stiffness", "normal_stiffness", "shear_stiffness", "kn", "ks", "creep",
     ),
-    "supports that settle or move": (
-        "settlement", "settlements", "displacement", "displacements", "prescribed_displacement", "support_movement",
+    "displacements that grow (settlements are a field, for reactions alone)": (
+        "displacement", "displacements", "prescribed_displacement", "support_movement",
         "spread", "spreading", "rotation",
     ),
     "ties, reinforcement and props": (

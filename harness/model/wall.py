@@ -7,14 +7,16 @@ loads, dead and live apart. `harness.model.reading` reads it, `harness.model.bui
 from __future__ import annotations
 
 import math
-from typing import Annotated, Any, Literal
+from typing import Annotated, Any, Literal, Protocol
 
 from pydantic import BaseModel, Discriminator, Field, StrictBool, Tag, model_validator
 
-from harness.model.fields import Angle, Coefficient, Name, NonNegative, Point, Positive, Strict
+from harness.model.fields import Angle, Coefficient, Name, NonNegative, Number, Point, Positive, Strict
 from harness.model.pattern_fields import Pattern
 from harness.model.units import DIMENSIONLESS, KILONEWTONS, METRES, ForceUnit, LengthUnit, unit_weight_in_kn_m3
 
+MOST_VERTICES = 5_000
+"""Of one outline: joints of two faces are found in time that grows with the square of their vertices."""
 TAGS = ONE, MANY, OBJECT, OTHER = "(one)", "(many)", "(object)", "(other)"
 """Alternatives of a field, told apart by what is given, so that only the faults of the one meant are found.
 
@@ -72,8 +74,11 @@ class Block(Strict):
     """A rigid block, with holes or without. Its weight is given, or unit_weight x area x thickness."""
 
     id: Name
-    polygon: Annotated[list[Point], Field(min_length=3, description="vertices in order round the block, either way")]
-    holes: list[Annotated[list[Point], Field(min_length=3)]] = Field(
+    polygon: Annotated[
+        list[Point],
+        Field(min_length=3, max_length=MOST_VERTICES, description="vertices in order round the block, either way"),
+    ]
+    holes: list[Annotated[list[Point], Field(min_length=3, max_length=MOST_VERTICES)]] = Field(
         default_factory=list, description="polygons within it that are not stone, as of a frame"
     )
     weight: NonNegative | None = Field(None, description="weight [force]; else unit_weight x area x thickness")
@@ -83,10 +88,56 @@ class Block(Strict):
     fixed: bool = Field(False, description="cannot move: a support")
     groups: list[Name] = Field(default_factory=list, description="groups a load may name")
 
+    @model_validator(mode="after")
+    def _holes_that_can_be_cut(self) -> Block:
+        """Cuts from outline to holes are sought among all pairs of their vertices, once for every hole."""
+        inside = sum(map(len, self.holes))
+        if len(self.holes) * inside * (len(self.polygon) + inside) > 500_000:
+            raise ValueError(f"its {len(self.holes)} holes have {inside} vertices, too many to be cut: simplify them")
+        return self
+
 
 def coefficient_of(value: float | None, angle: float | None) -> float:
     """A coefficient of friction from whichever is given, itself or the angle phi [degrees]."""
     return value if value is not None else math.tan(math.radians(angle or 0.0))
+
+
+Dilatancy = Annotated[
+    Coefficient | None, Field(description="by which a slip lifts, from 0 (absent) to the friction: associated flow")
+]
+Cohesion = Annotated[
+    NonNegative | None, Field(description="shear strength without compression [force/length^2 of the file]; else none")
+]
+TensileStrength = Annotated[
+    NonNegative | None, Field(description="[force/length^2 of the file], from 0 (absent) to cohesion / friction")
+]
+
+
+class JointStrength(Protocol):
+    """Whatever gives the strength of joints beside their friction: a wall, friction, a rule, an interface."""
+
+    @property
+    def cohesion(self) -> float | None:
+        """Shear strength without compression [force/length^2]."""
+
+    @property
+    def tensile_strength(self) -> float | None:
+        """Tensile strength [force/length^2]."""
+
+
+def stresses_of(given: JointStrength) -> tuple[float, float]:
+    """Cohesion and tensile strength [force/length^2], zero where none is given."""
+    return given.cohesion or 0.0, given.tensile_strength or 0.0
+
+
+def _check_strength(given: JointStrength, friction: float) -> None:
+    """A joint bears no tension at which its shear strength would be used up already, but for rounding."""
+    cohesion, tension = stresses_of(given)
+    if friction * tension > cohesion * (1.0 + 1e-9):
+        raise ValueError(
+            f"the tensile strength {tension:g} is above cohesion / friction = {cohesion / friction:.6g}, where no "
+            "shear strength is left: give one from 0 to that, or more cohesion"
+        )
 
 
 def _check_dilatancy(dilatancy: float | None, friction: float) -> None:
@@ -99,9 +150,9 @@ class FrictionRule(Strict):
 
     value: Coefficient | None = Field(None, description="coefficient of friction, tan(phi)")
     friction_angle: Angle | None = Field(None, description="phi [degrees], instead of `value`")
-    dilatancy: Coefficient | None = Field(
-        None, description="by which a slip lifts, from 0 (absent) to the friction: associated flow"
-    )
+    dilatancy: Dilatancy = None
+    cohesion: Cohesion = None
+    tensile_strength: TensileStrength = None
     materials: tuple[str, str] | None = None
     joint: str | None = Field(None, description='"bed", "head", or a name given in `interfaces`')
     between: tuple[str, str] | None = Field(None, description="ids of the two blocks")
@@ -113,6 +164,7 @@ class FrictionRule(Strict):
         if (self.value is None) == (self.friction_angle is None):
             raise ValueError("a friction rule gives either value or friction_angle")
         _check_dilatancy(self.dilatancy, self.coefficient)
+        _check_strength(self, self.coefficient)
         return self
 
     @property
@@ -122,13 +174,16 @@ class FrictionRule(Strict):
 
 
 class Friction(Strict):
-    """Friction by rules. The most particular rule holds: interface, then between, then joint, then materials."""
+    """Friction by rules, with what joints have beside it where none holds.
+
+    The most particular rule holds: interface, then between, then joint, then materials.
+    """
 
     default: Coefficient | None = Field(None, description="coefficient of friction, tan(phi)")
     friction_angle: Angle | None = Field(None, description="phi [degrees], instead of `default`")
-    dilatancy: Coefficient | None = Field(
-        None, description="by which a slip lifts, where no rule holds, from 0 (absent) to the friction: associated flow"
-    )
+    dilatancy: Dilatancy = None
+    cohesion: Cohesion = None
+    tensile_strength: TensileStrength = None
     rules: list[FrictionRule] = Field(default_factory=list)
 
     @model_validator(mode="after")
@@ -136,6 +191,7 @@ class Friction(Strict):
         if (self.default is None) == (self.friction_angle is None):
             raise ValueError("friction by rules gives either default or friction_angle")
         _check_dilatancy(self.dilatancy, self.coefficient)
+        _check_strength(self, self.coefficient)
         return self
 
     @property
@@ -165,9 +221,9 @@ class Interface(Strict):
     end: Point = Field(alias="to")
     friction: Coefficient | None = None
     friction_angle: Angle | None = Field(None, description="phi [degrees], instead of `friction`")
-    dilatancy: Coefficient | None = Field(
-        None, description="by which a slip lifts, from 0 (absent) to the friction: associated flow"
-    )
+    dilatancy: Dilatancy = None
+    cohesion: Cohesion = None
+    tensile_strength: TensileStrength = None
     joint: str | None = Field(None, description='a name for friction rules; "bed" or "head" by inclination if absent')
     inset: Inset | None = None
 
@@ -176,9 +232,13 @@ class Interface(Strict):
         if self.friction is not None and self.friction_angle is not None:
             raise ValueError("an interface gives either friction or friction_angle")
         if self.friction is not None or self.friction_angle is not None:
-            _check_dilatancy(self.dilatancy, coefficient_of(self.friction, self.friction_angle))
+            friction = coefficient_of(self.friction, self.friction_angle)
+            _check_dilatancy(self.dilatancy, friction)
+            _check_strength(self, friction)
         elif self.dilatancy is not None:
             raise ValueError("an interface gives dilatancy beside a friction of its own")
+        elif self.cohesion is not None or self.tensile_strength is not None:
+            raise ValueError("an interface gives cohesion and tensile strength beside a friction of its own")
         return self
 
 
@@ -238,6 +298,24 @@ class Load(Strict):
     points: list[PointForce] = Field(default_factory=list)
 
 
+class Settlement(Strict):
+    """A prescribed motion of fixed blocks, by which the reaction along it is asked for."""
+
+    blocks: list[Name] | None = Field(None, description="ids of fixed blocks")
+    group: Name | None = Field(None, description="a group of fixed blocks")
+    translation: Point = Field((0.0, 0.0), description="(x, y); a vector of length 1 makes the reaction a force")
+    rotation: Number = Field(0.0, description="counter-clockwise [radian]; of length 1 it makes the reaction a moment")
+    about: Point | None = Field(None, description="centre of the rotation [length]; else the centroid of each block")
+
+    @model_validator(mode="after")
+    def _moves_something(self) -> Settlement:
+        if (self.blocks is None) == (self.group is None):
+            raise ValueError("a settlement names either blocks or a group")
+        if self.translation == (0.0, 0.0) and self.rotation == 0.0:
+            raise ValueError("a settlement that moves nothing: give a translation or a rotation")
+        return self
+
+
 def _vector_or_switch(value: Any) -> str:
     return MANY if isinstance(value, list | tuple) else OTHER
 
@@ -272,7 +350,7 @@ Interfaces = Annotated[
 
 
 class Wall(Strict):
-    """A wall, format `wall/1`."""
+    """A wall, format `wall/1`. Its own cohesion and tensile strength are of all joints."""
 
     format: Literal["wall/1"]
     title: str = ""
@@ -286,11 +364,16 @@ class Wall(Strict):
     thickness: Positive | None = Field(None, description="out of plane [length]; one metre if absent")
     friction: FrictionOfWall | None = Field(None, description="coefficient of friction, tan(phi), or rules")
     friction_angle: Angle | None = Field(None, description="phi [degrees], instead of `friction`")
+    cohesion: Cohesion = None
+    tensile_strength: TensileStrength = None
     pattern: Patterns | None = None
     blocks: list[Block] = Field(default_factory=list)
     interfaces: Interfaces = Field(default_factory=Detection)
     contact_inset: Inset | None = None
     loads: Loads = Field(default_factory=Loads)
+    settlements: list[Settlement] = Field(
+        default_factory=list, description="supports that move; asked about by `drystone reaction` alone"
+    )
 
     @model_validator(mode="after")
     def _one_friction(self) -> Wall:
@@ -298,6 +381,14 @@ class Wall(Strict):
             raise ValueError('it gives no friction: "friction" is tan(phi), "friction_angle" is phi in degrees')
         if self.friction is not None and self.friction_angle is not None:
             raise ValueError("a wall gives either friction or friction_angle")
+        if isinstance(self.friction, Friction):
+            if self.cohesion is not None or self.tensile_strength is not None:
+                raise ValueError(
+                    'friction by rules holds the cohesion and tensile strength too: give them beside "default" or in a '
+                    "rule"
+                )
+        else:
+            _check_strength(self, coefficient_of(self.friction, self.friction_angle))
         return self
 
     @property

@@ -110,8 +110,8 @@ def trace_history(model: WallModel, factor: Factor, start: Equilibrium, plan: Pl
     """Trace one history from the gravity state, or from the rest that another raised the load to.
 
     A lost history with commits is traced again with commits up to 97, then 90, then 80 % of the multiplier scale only:
-    at a commit many breakpoints meet, and near the peak the path from there may run in a closed loop. Where exact ties lead
-    a path without commits astray it is traced again with the initial shears disturbed by 1e-9, 1e-7 and 1e-5 of a
+    at a commit many breakpoints meet, and near the peak the path from there may run in a closed loop. Where exact ties
+    lead a path without commits astray it is traced again with the initial shears disturbed by 1e-9, 1e-7 and 1e-5 of a
     block's weight: data nobody knows, and the end is an exact collapse state all the same. Where a path without
     commits has not ended after so many events, the load is raised in finite steps instead
     (`methods.springs.rest.pseudo_transient`), and the path goes on from there.

@@ -8,8 +8,10 @@ from dataclasses import replace
 from fractions import Fraction
 from typing import Any
 
+from harness.model.answer_check import DEEPEST
 from harness.model.assembly import Assembly
 from harness.model.method import Answer, Finding, Status
+from harness.model.reading import nested_deeper
 from methods.la.certify.tree_certificate import certificate
 from methods.la.certify.window_certificate import certified_bracket
 from methods.la.core.problem import Problem
@@ -35,8 +37,11 @@ def with_bound(assembly: Assembly, problem: Problem, known: Answer, settings: Bo
     multiplier = known.multiplier
     if known.status is not Status.OK or known.finding is not Finding.COLLAPSES or multiplier is None:
         return known
-    if known.details.get("stopped_by_limit") or assembly.dilates:  # certificates are of walls without dilatancy
+    if known.details.get("stopped_by_limit"):
         return known
+    if assembly.dilates or assembly.strong:
+        own, why = known.sentence.rstrip("."), "lift as they slide" if assembly.dilates else "have strength"
+        return replace(known, sentence=f"{own}. No bound below it is sought: some joints {why}.")
     began = time.process_time()
     document = None
     if known.details["proved_least"]:
@@ -54,9 +59,14 @@ def with_bound(assembly: Assembly, problem: Problem, known: Answer, settings: Bo
         return known
     answer = certified(bounded(problem, known, found), document)
     answer = replace(answer, sentence=f"{answer.sentence} {said}".rstrip())
-    if document is not None and len(json.dumps(document)) > settings.largest_certificate:
+    if document is not None and _too_much(document, settings):
         return replace(answer, details={k: v for k, v in answer.details.items() if k != "certificate"})
     return answer
+
+
+def _too_much(document: dict[str, Any], settings: BoundSettings) -> bool:
+    """Whether a certificate is too long, or nested too deeply, for an answer to hold it."""
+    return len(json.dumps(document)) > settings.largest_certificate or nested_deeper(document, DEEPEST - 1)
 
 
 def certified(known: Answer, document: dict[str, Any] | None) -> Answer:

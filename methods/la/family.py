@@ -8,8 +8,8 @@ from dataclasses import replace
 from typing import Any
 
 from harness.model.assembly import Assembly
-from harness.model.method import Answer, Finding, Solver
-from methods.la.answers import dead_load_answer
+from harness.model.method import Answer, Finding, OutOfTime, Solver, Status
+from methods.la.answers import dead_load_answer, not_converged, with_residual
 from methods.la.core.newton_matrix import NewtonMatrix
 from methods.la.core.problem import Problem, make_problem
 from methods.numerics.claims import analysed
@@ -53,7 +53,18 @@ class LimitAnalysisFamily(Solver):
 
     def solve(self, assembly: Assembly, settings: Any) -> Answer:
         """The answer from those for the independent components of the wall, with what is proved of all of them."""
-        return self._of_components(assembly, settings)
+        return self._of_wall(assembly, settings)
+
+    def _of_wall(self, assembly: Assembly, settings: Any, answer: Answering | None = None) -> Answer:
+        """As `solve`, each component answered by `answer`; where joints have strength, with the residual answer."""
+        found = self._of_components(assembly, settings, answer)
+        if not assembly.strong or found.status is not Status.OK:
+            return found
+        try:
+            residual = self._of_components(assembly.without_strength, settings, answer)
+        except OutOfTime:
+            residual = not_converged("The time was over before the wall without strength was solved.")
+        return with_residual(found, residual)
 
     def _of_components(self, assembly: Assembly, settings: Any, answer: Answering | None = None) -> Answer:
         """As `solve`, each component answered by `answer`, by default the method's own."""

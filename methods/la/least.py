@@ -69,7 +69,8 @@ def least_known(
 def _found(search: Search, settings: SearchSettings, tolerance: float) -> Answer:
     """The answer of the whole search."""
     problem = search.problem
-    falling = search.gravity.falling if problem.n_interfaces <= CHOICES.gravity_up_to else []
+    asked = problem.n_interfaces <= CHOICES.gravity_up_to and problem.law.is_cone  # springs bear no tension
+    falling = search.gravity.falling if asked else []
     if not search.record.known:
         return _with_falling_blocks(_nothing_found(search), falling)
     chosen = _chosen(search)
@@ -77,7 +78,8 @@ def _found(search: Search, settings: SearchSettings, tolerance: float) -> Answer
         return not_converged(f"{NOT_EXACT}.", search.budget.spent.newton_steps)
     best, proof = chosen
     details = _details(search, best, proof)
-    if problem.n_interfaces <= settings.rational_interfaces and not problem.dilates:
+    exact = not problem.dilates and problem.law.is_cone  # the equations in fractions are of dry joints
+    if problem.n_interfaces <= settings.rational_interfaces and exact:
         details["rational_confirmation"] = confirm(problem, best)
     answer = collapse_answer(
         problem, best, _sentence(search, best, proof), tolerance, search.budget.spent.newton_steps, details

@@ -41,4 +41,4 @@ class LimitAnalysis(LimitAnalysisFamily):
             sources = from_motions([motion[joints_of(part, assembly)] for motion in motions])
             return least_known(problem, newton, settings, LA.tolerance, sources)
 
-        return self._of_components(assembly, settings, answered)
+        return self._of_wall(assembly, settings, answered)

@@ -9,7 +9,7 @@ from harness.model.assembly import Assembly, FloatArray
 from harness.model.components import analysed_apart
 from harness.model.limit import accuracy, gross_power, least_told, strengthened
 from harness.model.method import Answer, Finding, OutOfTime, Status
-from methods.numerics.statics import admissible_forces, dilatant_mechanism, greatest_multiplier
+from methods.numerics.statics import admissible_forces, dilatant_mechanism, greatest_multiplier, strength_power
 
 SMALL = 1e-3
 """Live load, as a part of the dead load, below which a load that was measured leaves the limit to statics."""
@@ -18,7 +18,7 @@ SMALL = 1e-3
 def bear(assembly: Assembly, answer: Answer, multiplier: float) -> FloatArray | None:
     """Forces (m, 3) with which a component bears its dead load and `multiplier` times the live load; None if none.
 
-    Where the answer holds forces at a higher multiplier, those between it and the dead load do: the cone is convex.
+    Where the answer holds forces at a higher multiplier, those between it and the dead load do: yield is convex.
     """
     highest = answer.forces_multiplier
     if answer.forces is not None and highest is not None and highest > multiplier >= 0.0:
@@ -87,7 +87,7 @@ def _leaves_open(assembly: Assembly, answer: Answer) -> bool:
             return low <= SMALL * assembly.load_unit
         return low <= least_told(assembly, mechanism)
     if answer.finding is Finding.FALLS and answer.flow == "associated" and mechanism is not None:
-        gain = float((assembly.dead * mechanism).sum())
+        gain = float((assembly.dead * mechanism).sum()) - strength_power(assembly, mechanism)
         return gain <= accuracy(assembly) * gross_power(assembly, mechanism)
     stopped = bool(answer.details.get("stopped_by_limit"))
     return answer.finding is Finding.FALLS or (answer.finding is Finding.NONE and not stopped)
@@ -105,6 +105,10 @@ def _at_limit(assembly: Assembly, answer: Answer) -> Answer:
     if answer.multiplier is not None and answer.multiplier < 0.0:
         return _below_zero(assembly, answer)
     if answer.finding is Finding.FALLS and bears > 0.0:
+        if admissible_forces(assembly, assembly.dead) is None:
+            return answer  # the live load holds it up
+        if (assembly.dilatancy >= assembly.friction).all():
+            return _stands_though_joints_give(answer, bears)
         reason = "it falls for want of self-stress in its joints, or because they give"
     elif answer.multiplier == 0.0 and answer.bracket is None and bears > 0.0:
         reason = "what the wall bears hangs on the self-stress in its joints, of which fe and de start without any"
@@ -112,6 +116,26 @@ def _at_limit(assembly: Assembly, answer: Answer) -> Answer:
         return answer
     own = answer.sentence.rstrip(".")
     return replace(answer, sentence=f"{own}. Statics alone would bear up to {bears:.7g}: {reason}.")
+
+
+def _stands_though_joints_give(answer: Answer, bears: float) -> Answer:
+    """The answer where a fall was measured of a wall that stands by theory, as every slip lifts by the whole friction.
+
+    By normality of the flow (Drucker 1954) rigid blocks stand wherever some equilibrium exists; so do smooth ones.
+    """
+    own = answer.sentence.rstrip(".")
+    return replace(
+        answer,
+        status=Status.NOT_CONVERGED,
+        finding=Finding.NONE,
+        sentence=f"Rigid blocks stand under the dead load and bear up to {bears:.7g}, since equilibrium exists and no "
+        f"slip works against friction; only with joints that give does the wall not come to rest: {own}.",
+        multiplier=None,
+        bracket=None,
+        forces=None,
+        forces_multiplier=None,
+        mechanism=None,
+    )
 
 
 def _with_limit(answer: Answer, statics: Statics) -> Answer:
@@ -191,7 +215,8 @@ def with_proof(assembly: Assembly, answer: Answer) -> Answer:
 def _proved(assembly: Assembly, answer: Answer) -> Answer:
     """As `with_proof`; raises OutOfTime where the time is over."""
     if answer.finding is Finding.UNBOUNDED:
-        growth = admissible_forces(assembly, assembly.live)
+        # Cohesion and tension do not grow with the load.
+        growth = admissible_forces(assembly.without_strength, assembly.live)
         forces = answer.forces if answer.forces_multiplier == 0.0 else admissible_forces(assembly, assembly.dead)
         if growth is None or forces is None:
             return answer

@@ -147,6 +147,12 @@ def _vertex_of_forces(
     return (vertex if vertex is not None and vertex.optimal else None), unit
 
 
+def strength_power(assembly: Assembly, mechanism: FloatArray) -> float:
+    """Power that cohesion and tensile strength take on a dilatant mechanism (n, 3) [force x velocity]."""
+    strains = (assembly.kinematic_matrix @ mechanism[assembly.free].ravel()).reshape(-1, 3)
+    return assembly.law.associated.dissipation(assembly.law.associated.rates(strains))
+
+
 def dilatant_mechanism(
     assembly: Assembly, load: FloatArray, about: FloatArray | None = None, within: float = 1.0
 ) -> FloatArray | None:
@@ -154,6 +160,7 @@ def dilatant_mechanism(
 
     It is that of the greatest work near `about`; None where that is `LEAST_WORK` or less, or where the programme
     fails: exactly no work would mean an equilibrium (Farkas' lemma), but the programme holds to its tolerances only.
+    None too where joints have cohesion or tensile strength, whose work is not in the programme.
 
     Args:
         assembly: the wall.
@@ -163,6 +170,8 @@ def dilatant_mechanism(
     """
     from methods.numerics.linear_programme import INFINITY, Programme  # HiGHS, which few answers need
 
+    if assembly.strong:
+        return None
     length = assembly.length_scale or 1.0
     column = np.tile([1.0, 1.0, 1.0 / length], assembly.n_free)
     pull = load[assembly.free].ravel() * column / assembly.force_scale

@@ -15,7 +15,7 @@ import numpy as np
 
 from harness.model.assembly import Assembly, FloatArray
 from methods.proof.search.tuning import ROUNDING
-from methods.proof.verify.exact_wall import CertificateError, fractions_of, number
+from methods.proof.verify.exact_wall import CertificateError, fractions_of, number, refusal_of
 
 
 def require_same_wall(document: Any, assembly: Assembly) -> None:
@@ -30,13 +30,28 @@ def require_same_wall(document: Any, assembly: Assembly) -> None:
     Raises:
         CertificateError: naming the first thing that differs.
     """
+    _require_dry(assembly)
     try:
         _compare_blocks(document["blocks"], assembly)
         _compare_interfaces(document["interfaces"], assembly)
     except (KeyError, TypeError, ValueError, ZeroDivisionError, AttributeError, IndexError, OverflowError) as error:
-        if isinstance(error, CertificateError):
-            raise
-        raise CertificateError(str(error)) from error
+        raise refusal_of(error) from error
+
+
+def _require_dry(assembly: Assembly) -> None:
+    """Refuse a wall that no certificate can describe: its joints are dry, do not dilate, and its supports rest.
+
+    A certificate holds the ends of an interface and a side: its normal is across the ends.
+    """
+    if assembly.dilates:
+        raise CertificateError("it is of a wall without dilatancy, and joints of this one lift as they slide")
+    if not assembly.law.dry.all():
+        raise CertificateError("it is of a wall with dry joints, and joints of this one have strength of their own")
+    if np.any(assembly.support_motion):
+        raise CertificateError("it is of a wall whose supports rest, and supports of this one move")
+    across = np.abs((assembly.tangent * assembly.normal).sum(axis=1))
+    if not np.all(across <= ROUNDING.wall):
+        raise CertificateError("it is of another wall: the normals of the interfaces are not the same")
 
 
 def _compare_blocks(blocks: Any, assembly: Assembly) -> None:
@@ -65,8 +80,6 @@ def _unit_of_loads(blocks: Any, loads: FloatArray) -> Fraction:
 
 
 def _compare_interfaces(items: Any, assembly: Assembly) -> None:
-    if assembly.dilates:
-        raise CertificateError("it is of a wall without dilatancy, and joints of this one lift as they slide")
     place = {int(block): k for k, block in enumerate(assembly.free)}
     joined = [[place.get(int(a)), place.get(int(b))] for a, b in zip(assembly.block_a, assembly.block_b, strict=True)]
     if [[item["a"], item["b"]] for item in items] != joined:

@@ -5,19 +5,24 @@ from __future__ import annotations
 import copy
 import gzip
 import json
+import time
 import tracemalloc
 from collections.abc import Callable
+from dataclasses import replace
 from fractions import Fraction
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pytest
 from click.testing import CliRunner
 
 from drystone.certificates import PACKED, proved, read_certificate
 from drystone.cli.main import main as drystone
+from harness.model.assembly import Assembly
 from harness.model.build import build
-from harness.model.case import shipped_cases
+from harness.model.case import read_case, shipped_cases
+from harness.model.content import content_of
 from harness.model.errors import InputError
 from harness.model.wall import Wall
 from methods.la.certify.tree_certificate import wall_document
@@ -25,7 +30,7 @@ from methods.proof.same_wall import require_same_wall
 from methods.proof.verify import document as documents
 from methods.proof.verify.checker import main, verify
 from methods.proof.verify.document import digest
-from methods.proof.verify.exact_wall import CertificateError
+from methods.proof.verify.exact_wall import CertificateError, ExactWall
 from tests.walls import wall_data
 
 DATA = Path(__file__).parents[1] / "data" / "certificates"
@@ -306,6 +311,27 @@ def test_what_is_too_much_to_be_read_is_refused_at_once(name: str, tmp_path: Pat
     assert CliRunner().invoke(drystone, ["verify-bound", str(file)]).exit_code == 2
 
 
+@pytest.mark.parametrize("packed", [False, True])
+def test_a_certificate_of_exactly_the_limits_is_read_and_of_one_more_is_not(
+    packed: bool, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def read(content: bytes) -> Any:
+        return documents.read(gzip.compress(content) if packed else content)
+
+    content = b'{"a": [1, 2, 30]}'
+    for name, most in (("MOST_BYTES", len(content)), ("MOST_VALUES", 5)):  # an object, a list and three numbers
+        with monkeypatch.context() as limited:
+            limited.setattr(documents, name, most)
+            assert read(content) == {"a": [1, 2, 30]}
+            limited.setattr(documents, name, most - 1)
+            with pytest.raises(CertificateError, match=f"more than {most - 1} "):
+                read(content)
+    digits = documents.MOST_DIGITS
+    assert read(b"1" * digits) == int("1" * digits)
+    with pytest.raises(CertificateError, match=f"more than {digits} digits"):
+        read(b"1" * (digits + 1))
+
+
 def test_a_number_in_powers_of_ten_is_refused_at_once() -> None:
     answer = CliRunner().invoke(drystone, ["verify-bound", str(DATA / "exp.json")])
     assert (answer.exit_code, "is not a fraction" in answer.output) == (1, True)
@@ -332,3 +358,139 @@ def test_a_wall_of_many_blocks_and_joints_takes_no_table_of_both() -> None:
     tracemalloc.stop()
     assert "numbers are needed" in reason
     assert peak < 200 * 2**20
+
+
+def _turned(normal: Any, angle: float) -> Any:
+    turn = np.array([[np.cos(angle), -np.sin(angle)], [np.sin(angle), np.cos(angle)]])
+    return np.vstack([normal[:1] @ turn.T, normal[1:]])
+
+
+NOT_DESCRIBED: dict[str, tuple[Callable[[Assembly], Assembly], str]] = {
+    "cohesion": (lambda a: replace(a, constant=a.constant + np.array([0.0, 0.0, 0.1, 0.1])), "strength of their own"),
+    "tensile strength of one joint": (
+        lambda a: replace(a, constant=a.constant + np.outer([1.0, 0.0], [1e-9, 0.0, 0.0, 0.0])),
+        "strength of their own",
+    ),
+    "dilatancy": (lambda a: replace(a, dilatancy=np.array([0.0, 1e-12])), "lift as they slide"),
+    "a support that moves": (lambda a: replace(a, support_motion=np.outer(a.fixed, [0.0, 1e-9, 0.0])), "move"),
+    "a normal that is not across its joint": (lambda a: replace(a, normal=_turned(a.normal, 1e-6)), "normals"),
+    "a normal without a number": (lambda a: replace(a, normal=a.normal * np.nan), "normals"),
+    "a load without a number": (lambda a: replace(a, dead=a.dead * np.nan), "NaN"),
+}
+
+
+@pytest.mark.parametrize("name", NOT_DESCRIBED)
+def test_a_wall_that_no_certificate_describes_has_none(name: str) -> None:
+    change, reason = NOT_DESCRIBED[name]
+    wall = read_case(shipped_cases() / "two-frictions").assembly
+    require_same_wall(tree(), wall)
+    with pytest.raises(CertificateError, match=reason):
+        require_same_wall(tree(), change(wall))
+
+
+@pytest.mark.parametrize("name", ["cohesion", "a support that moves"])
+def test_walls_of_other_joints_or_moving_supports_have_another_key(name: str) -> None:
+    wall = read_case(shipped_cases() / "two-frictions").assembly
+    assert content_of(NOT_DESCRIBED[name][0](wall)) != content_of(wall)
+
+
+OTHER_WALLS: dict[str, Callable[[Any], Any]] = {
+    "another unit of length": lambda d: _scaled(d, Fraction(1000)),
+    "next to the unit of length": lambda d: _scaled(d, 1 + Fraction(1, 10**9)),
+    "moved": lambda d: _moved(d, 1),
+    "moved by next to nothing": lambda d: _moved(d, Fraction(1, 10**9)),
+    "the live load doubled": lambda d: d["blocks"][0].update(live=_times(d["blocks"][0]["live"], Fraction(2))),
+    "the live load reversed": lambda d: d["blocks"][0].update(live=_times(d["blocks"][0]["live"], Fraction(-1))),
+    "all loads reversed": lambda d: d["blocks"][0].update(
+        live=_times(d["blocks"][0]["live"], Fraction(-1)), dead=_times(d["blocks"][0]["dead"], Fraction(-1))
+    ),
+    "joints in another order": lambda d: d["interfaces"].reverse(),
+    "ends in another order": lambda d: [
+        item.update(ends=[*item["ends"][2:], *item["ends"][:2]]) for item in d["interfaces"]
+    ],
+    "the other side": lambda d: [item.update(side=-item["side"]) for item in d["interfaces"]],
+    "blocks of a joint in another order": lambda d: [item.update(a=item["b"], b=item["a"]) for item in d["interfaces"]],
+    "a joint less": lambda d: d["interfaces"].pop(),
+    "a joint twice": lambda d: d["interfaces"].append(d["interfaces"][0]),
+    "a block more": lambda d: d["blocks"].append(d["blocks"][0]),
+    "another name": lambda d: d["blocks"][0].update(id="another"),
+    "frictions in another order": lambda d: _exchanged(d),
+}
+
+
+def _times(values: list[str], number: Fraction) -> list[str]:
+    return [str(number * Fraction(value)) for value in values]
+
+
+def _scaled(document: Any, number: Fraction) -> None:
+    for block in document["blocks"]:
+        block["centroid"] = _times(block["centroid"], number)
+        for name in ("dead", "live"):
+            block[name] = [*block[name][:2], *_times(block[name][2:], number)]
+    for item in document["interfaces"]:
+        item["ends"] = _times(item["ends"], number)
+
+
+def _moved(document: Any, far: Any) -> None:
+    for values in (*(b["centroid"] for b in document["blocks"]), *(item["ends"] for item in document["interfaces"])):
+        values[::2] = [str(Fraction(x) + far) for x in values[::2]]
+
+
+def _exchanged(document: Any) -> None:
+    first, second = document["interfaces"]
+    first["friction"], second["friction"] = second["friction"], first["friction"]
+
+
+@pytest.mark.parametrize("name", OTHER_WALLS)
+def test_a_certificate_is_of_its_wall_number_by_number_and_in_its_order(name: str) -> None:
+    document, wall = tree(), read_case(shipped_cases() / "two-frictions").assembly
+    OTHER_WALLS[name](document)
+    with pytest.raises(CertificateError, match="another wall"):
+        require_same_wall(document, wall)
+
+
+def beyond_floats() -> dict[str, Any]:
+    """The block under a live load of 1e-400 of its weight: it slides at 2e399."""
+    document, large = tree(), Fraction(10**400)
+    for block in document["blocks"]:
+        block["live"] = _times(block["live"], 1 / large)
+    for leaf in document["leaves"]:
+        if "parts" in leaf:
+            leaf["parts"] = [leaf["parts"][0], str(large * Fraction(leaf["parts"][1]))]
+    document |= {name: str(large * Fraction(document[name])) for name in ("bound", "multiplier")}
+    return document | {"digest": digest(document)}
+
+
+def test_a_multiplier_beyond_all_floats_is_shown_in_digits(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    file = tmp_path / "certificate.json"
+    file.write_text(json.dumps(beyond_floats()))
+    assert main([str(file)]) == 0
+    assert "= 1.999996e+399; one at 2" in capsys.readouterr().out
+    answer = CliRunner().invoke(drystone, ["verify-bound", str(file), "--json"])
+    assert (answer.exit_code, json.loads(answer.output)["value"]) == (0, None)
+
+
+def test_every_sum_of_a_check_ends_when_its_seconds_are_over() -> None:
+    seconds = 0.2
+    wall = ExactWall(tree(), seconds)
+    ones = [Fraction(1)] * 6
+    end = time.process_time() + seconds
+    while time.process_time() <= end:
+        pass
+    for sums in (lambda: wall.work(wall.live, ones[:3]), lambda: wall.resultant(ones), lambda: wall.strains(0, ones)):
+        with pytest.raises(CertificateError, match="seconds"):
+            sums()
+
+
+def test_leaves_of_numbers_without_a_short_common_multiple_do_not_take_long() -> None:
+    """3,000 leaves on 20 joints."""
+    document = tree()
+    del document["state"]
+    document["interfaces"] = [document["interfaces"][0]] * 20
+    forces = [f"1/{10**299 + 2 * k + 1}" for k in range(60)]
+    document["leaves"] = [{"tight": [], "still": [], "forces": forces, "parts": ["1", "0"]}] * 3_000
+    document["digest"] = digest(document)
+    began = time.process_time()
+    with pytest.raises(CertificateError):
+        verify(document, seconds=2.0)
+    assert time.process_time() - began < 4.0

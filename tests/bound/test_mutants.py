@@ -183,7 +183,27 @@ def claim_more(document: Any, draw: random.Random) -> None:
         draw.choice((change_value, change_contact, change_length))(document, draw)
 
 
-CHANGES = (change_value, change_value, change_order, change_length, change_contact, claim_more)
+def change_structure(document: Any, draw: random.Random) -> None:
+    """Parts of the proof in another place: a leaf or a part for another, what one shows for another, contacts moved."""
+    nodes = [(node, key) for node, key in places(document) if isinstance(node[key], dict) and key not in ("state",)]
+    alike = [(node, key) for node, key in nodes if {"tight", "steps", "shows", "low"} & node[key].keys()]
+    (node, key), (other, place) = draw.choice(alike or nodes), draw.choice(alike or nodes)
+    first, second = copy.deepcopy(node[key]), copy.deepcopy(other[place])
+    kind = draw.randrange(4)
+    if kind == 0:
+        node[key] = second
+    elif kind == 1:
+        node[key], other[place] = second, first
+    elif kind == 2:
+        shared = sorted(first.keys() & second.keys())
+        node[key] |= {name: second[name] for name in draw.sample(shared, draw.randint(0, len(shared)))}
+    else:
+        joints = document["interfaces"]
+        p, q = draw.randrange(len(joints)), draw.randrange(len(joints))
+        joints[p], joints[q] = joints[q], joints[p]
+
+
+CHANGES = (change_value, change_value, change_order, change_length, change_contact, change_structure, claim_more)
 
 
 def judged(document: dict[str, Any], wall: Assembly, of: dict[str, Any]) -> tuple[Any, Any]:

@@ -24,14 +24,18 @@ def associated_maximum(assembly: Assembly) -> float | None:
     dead, live = assembly.free_loads()
     scale = assembly.force_scale
     equality = np.hstack([assembly.kinematic_matrix.toarray().T, live[:, None] / scale])
-    slack = np.zeros((2 * count, 3 * count + 1))
+    slack, limit = np.zeros((2 * count, 3 * count + 1)), np.zeros(2 * count)
+    bounds: list[tuple[float | None, float | None]] = []
     for p in range(count):
+        first, second, backward, forward = assembly.constant[p] / scale
+        bounds += [(-first, None), (-second, None), (None, None)]
+        limit[2 * p : 2 * p + 2] = forward, backward
         slack[2 * p, 3 * p : 3 * p + 3] = [-assembly.friction[p], -assembly.friction[p], 1.0]
         slack[2 * p + 1, 3 * p : 3 * p + 3] = [-assembly.friction[p], -assembly.friction[p], -1.0]
-    bounds = [(0, None), (0, None), (None, None)] * count + [(0, None if assembly.has_live_load else 0)]
+    bounds.append((0, None if assembly.has_live_load else 0))
     cost = np.zeros(3 * count + 1)
     cost[-1] = -1.0
-    found = linprog(cost, slack, np.zeros(2 * count), equality, -dead / scale, bounds, method="highs")
+    found = linprog(cost, slack, limit, equality, -dead / scale, bounds, method="highs")
     return float(found.x[-1]) if found.status == 0 else None
 
 

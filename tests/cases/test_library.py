@@ -67,7 +67,9 @@ def test_published_suite_is_complete() -> None:
     assert len(members) == PUBLISHED
 
 
-@pytest.mark.parametrize("suite", ["paper", "small", "closed-form", "friction-family", "matera", "walls", "stability"])
+@pytest.mark.parametrize(
+    "suite", ["paper", "small", "closed-form", "friction-family", "matera", "walls", "stability", "strength"]
+)
 def test_suite_has_members(suite: str) -> None:
     assert any(suite in read_case(folder).file.suites for folder in FOLDERS.values())
 

@@ -6,9 +6,9 @@ from typing import Any
 
 import pytest
 
-from harness.engine.compare import execute
 from harness.engine.judge import judge
-from harness.engine.plan import Limits, Run
+from harness.engine.pipeline import execute
+from harness.engine.run import Limits, Run
 from harness.model.assembly import Assembly
 from harness.model.case import Case, CaseFile
 from harness.model.components import analysed_apart

@@ -56,7 +56,10 @@ def test_the_state_at_rest_is_judged_with_the_contacts_where_they_are():
     wall = assembly(running_bond(6, 3), 0.75)
     answer = closed(wall, size=0.03, seed=2, alone=(), compare=False)
     result = result_of(answer, wall, case="wall", method="de-closed", family="de")
-    assert judge(wall, result, DE_CLOSED.tolerance).accepted is True
+    judgement = judge(wall, result, DE_CLOSED.tolerance)
+    # In equilibrium where they are; uneven blocks have settled by more than the accuracy of a multiplier.
+    assert max(judgement.residuals[name] for name in ("equilibrium", "yield", "multiplier")) <= DE_CLOSED.tolerance
+    assert judgement.accepted is None
     state = DisplacedState.of(answer.details)
     elsewhere = replace(state, point=state.point + np.array([0.0, 0.01]))
     assert displaced_residuals(wall, elsewhere, answer.forces_multiplier)["equilibrium"] > 1e-4

@@ -12,7 +12,8 @@ import psutil
 import pytest
 
 from harness.engine.executors import Job, LocalExecutor, Slots
-from harness.engine.isolate import Child, Retry, TimedResult, run_isolated, start_context
+from harness.engine.isolate import Child, Retry, run_isolated, start_context
+from harness.engine.run import TimedResult
 from harness.engine.worker import Task
 from harness.model.method import Status
 from methods.dummy import Dummy

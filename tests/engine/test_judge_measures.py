@@ -133,8 +133,6 @@ def moved(state: DisplacedState, block: int, by: list[float]) -> DisplacedState:
 
 SPOILED: dict[str, tuple[Callable[[DisplacedState], DisplacedState], str]] = {
     "support": (lambda state: moved(state, 0, [0.0, 1e-9, 0.0]), "supports"),
-    "far": (lambda state: moved(state, 3, [0.3, 0.0, 0.0]), "another wall"),
-    "turned": (lambda state: moved(state, 3, [0.0, 0.0, 0.6]), "another wall"),
     "beside": (lambda state: replace(state, point=state.point + np.array([0.2, 0.0])), "does not touch"),
     "above": (lambda state: replace(state, point=state.point + np.array([0.0, 0.01])), "does not touch"),
     "within": (

@@ -56,7 +56,7 @@ def test_a_block_that_tips_about_its_corner_is_accepted():
     said = judge(wall, result(wall, motion, forces, multiplier), 1e-9)
     assert said.accepted, said.sentence
     motion_only = {name: value for name, value in said.residuals.items() if name.startswith("motion_")}
-    assert len(motion_only) == 4
+    assert len(motion_only) == 5
     assert max(motion_only.values()) < 1e-12  # rounding
     assert said.worst is not None
     assert not said.worst[0].startswith("motion_")

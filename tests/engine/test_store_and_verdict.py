@@ -15,9 +15,11 @@ import numpy as np
 import psutil
 import pytest
 
-from harness.engine.compare import comparison_run, execute, recall, remember
-from harness.engine.plan import Limits, Run, plan_case
+from harness.engine.compare import comparison_run, recall, remember
+from harness.engine.pipeline import execute
+from harness.engine.plan import plan_case
 from harness.engine.regression import violations
+from harness.engine.run import Limits, Run
 from harness.engine.store import Store, open_store
 from harness.engine.verdict import compare, theory_gates
 from harness.model.case import Reference
@@ -224,7 +226,7 @@ def test_killing_the_process_loses_no_finished_run(tmp_path: Path):
     program = f"""
 from pathlib import Path
 from tests.engine.test_store_and_verdict import dummy_run
-from harness.engine.compare import execute
+from harness.engine.pipeline import execute
 from harness.engine.store import open_store
 with open_store(Path({str(tmp_path / "s.sqlite")!r})) as store:
     execute([dummy_run("answer"), dummy_run("hang")], store, 1, told=lambda *_: print("done", flush=True))

@@ -272,6 +272,8 @@ def test_every_shipped_study_expands(name: str):
 def test_quick_forms_mean_what_they_say():
     assert axis_of("0.3:0.5:3", "", None) == {"from": 0.3, "to": 0.5, "count": 3, "log": False}
     assert axis_of("half,full", "", None) == ["half", "full"]
+    from harness.engine.run import Limits
+
     asked = quick_study("walls/My Wall.json", None, {}, Limits(), [], imperfection="0.02:0.12", seeds=50)
     assert asked.name == "my-wall-imperfection-seed"
     assert asked.methods == ["de-uneven"]

@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from drystone.cli.terminal import _expected, print_comparison
-from harness.model.columns import BY_NAME, PRINTED
+from drystone.cli.terminal import print_comparison
+from harness.model.columns import PRINTED
 from harness.model.comparison import ComparisonRun
 from harness.model.method import Finding, Status
 from harness.model.result import Comparison, Result, Verdict
+from harness.model.result_texts import references_text
 
 
 def test_a_reference_that_asks_for_other_settings_is_not_shown_as_that_of_the_value_beside_it():
@@ -27,11 +28,11 @@ def test_a_reference_that_asks_for_other_settings_is_not_shown_as_that_of_the_va
         interfaces=1,
         comparisons=[held(0.52, 0.525), held([0.51, 0.53], [0.5, 0.6]), held(0.49, 0.495)],
     )
-    assert _expected(result) == "0.525, [0.5, 0.6], 0.495 (other settings)"
+    assert references_text(result) == "0.525, [0.5, 0.6], 0.495 (other settings)"
 
 
 def test_heads_are_those_of_the_declared_columns(capsys):
     print_comparison(ComparisonRun("t", "", "", []), None)
     shown = capsys.readouterr().out
-    assert [name for name in PRINTED if BY_NAME[name].head not in shown] == []
+    assert [column.name for column in PRINTED if column.head not in shown] == []
     assert "CPU time [s]" in shown

@@ -15,8 +15,10 @@ from typing import Any
 
 import pytest
 
-from harness.engine.compare import comparison_run, execute, judged, recall, remember
-from harness.engine.plan import Limits, plan_case
+from harness.engine.compare import comparison_run, recall, remember
+from harness.engine.pipeline import execute, judged
+from harness.engine.plan import plan_case
+from harness.engine.run import Limits
 from harness.engine.store import SCHEMA_VERSION, open_store
 from harness.model.errors import InputError
 from tests.commands import drystone
@@ -112,6 +114,45 @@ def test_truncated_json_of_a_run_names_the_run(store: Path, column: str):
     change(store, column)
     with pytest.raises(InputError, match="the result of la on made-up in it: it is damaged"):
         read_all(store, read_only=True)
+
+
+EDITS = {
+    "multiplier": """UPDATE run SET result = json_set(result, '$.multiplier', 9.5)""",
+    "multiplier, text": """UPDATE run SET result = replace(result, '"multiplier":', '"multiplier":1')""",
+    "judgement": """UPDATE run SET result = json_set(result, '$.judge.sentence', 'It is true.')""",
+    "residual": """UPDATE run SET result = replace(result, '"residuals":{', '"residuals":{"own":0.0,')""",
+    "seconds": """UPDATE run SET result = replace(result, '"cpu_seconds":', '"cpu_seconds":1')""",
+    "tolerance": "UPDATE run SET tolerance = 0.009",
+    "method": "UPDATE run SET method = 'fe'",
+    "fields of another": "UPDATE run SET fields = (SELECT fields FROM run WHERE method = 'la-associated')",
+    "row of another": "UPDATE run SET result = (SELECT result FROM run WHERE method = 'la-associated')",
+    "environment": "UPDATE environment SET content = replace(content, 'seeks_least', 'seeks_least')||' '",
+}
+
+
+@pytest.mark.parametrize("how", list(EDITS))
+def test_what_was_edited_by_hand_is_told_and_not_believed(store: Path, how: str):
+    read_all(store, read_only=True)
+    change(store, EDITS[how] + (" WHERE method = 'la'" if "environment" not in how else ""))
+    with pytest.raises(InputError, match=r"the result of .* on made-up in it: it is damaged"):
+        read_all(store, read_only=True)
+    told_in_one_sentence(report(store), "damaged", "--fresh")
+
+
+@pytest.mark.parametrize("how", ["multiplier, text", "judgement", "seconds", "tolerance", "row of another"])
+def test_a_study_does_not_believe_an_edited_row_either(store: Path, how: str):
+    with open_store(store, read_only=True) as opened:
+        keys = {row[0] for row in opened.table()}
+        assert len(opened.summaries(keys)) == 2
+    change(store, EDITS[how] + " WHERE method = 'la'")
+    with open_store(store, read_only=True) as opened, pytest.raises(InputError, match="it is damaged"):
+        opened.summaries(keys)
+
+
+def test_an_edited_comparison_is_told(store: Path):
+    """Its wall, or the value it is held against, is another than the runs were made for."""
+    change(store, """UPDATE comparison SET content = replace(content, '"friction": ', '"friction": 1')""")
+    told_in_one_sentence(report(store), "the last comparison in it", "changed after it was stored")
 
 
 @pytest.mark.parametrize("depth", [60, 300, 100_000])

@@ -160,8 +160,8 @@ ACTS = {act.__name__: act for act in (
 def main() -> None:
     """Every kind by the engine, a sound method after each, in one comparison; rows as JSON."""
     from drystone import library_wall
-    from harness.engine.compare import execute
-    from harness.engine.plan import Limits, Run
+    from harness.engine.pipeline import execute
+    from harness.engine.run import Limits, Run
 
     case, limits, little = library_wall("slide").case, Limits(4.0, 600 * 2**20), Limits(60.0, 150 * 2**20)
     kinds = [*ANSWERS, *ACTS, "nothing", "answer"]

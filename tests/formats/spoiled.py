@@ -26,8 +26,8 @@ import numpy as np
 import shapefile
 import shapely
 
-from harness.formats.exporting import writer_of
 from harness.formats.importing import import_drawing
+from harness.formats.registry import format_written
 from harness.model.build import Built, build
 from harness.model.errors import InputError
 from harness.model.inspection import inspect
@@ -47,7 +47,7 @@ def seeds(folder: Path) -> dict[str, Path]:
     made = {}
     for suffix in (".geojson", ".csv", ".json"):
         made[suffix] = folder / f"seed{suffix}"
-        writer_of(made[suffix])(built, None, made[suffix])
+        format_written(made[suffix]).write(built, None, made[suffix])
     for suffix, write in (
         (".dxf", _dxf), (".svg", _svg), (".wkt", _wkt), (".shp", _shp), (".msh", _msh), (".geo", _geo),
     ):  # fmt: skip

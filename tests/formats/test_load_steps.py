@@ -14,7 +14,7 @@ from click.testing import CliRunner
 
 from drystone.cli.main import main
 from harness.engine.symmetry import beside
-from harness.formats.exporting import WRITERS
+from harness.formats.registry import BY_SUFFIX
 from harness.model.assembly import Assembly
 from harness.model.build import build
 from harness.model.load_steps import STATES, UNKNOWN, LoadSteps
@@ -52,7 +52,7 @@ def of_joints(mesh: meshio.Mesh, name: str) -> Any:
 def test_each_step_is_in_equilibrium_at_its_multiplier_up_to_the_plateau(result: Result, tmp_path: Path) -> None:
     built = build(WALL)
     assembly = built.assembly
-    WRITERS[".pvd"](built, result, tmp_path / "w.pvd")
+    BY_SUFFIX[".pvd"].write(built, result, tmp_path / "w.pvd")
     read = series(tmp_path / "w.pvd")
     assert [time for time, _ in read] == list(range(STEPS))
     multipliers = [float(of_joints(mesh, "multiplier")[0]) for _, mesh in read]
@@ -67,7 +67,7 @@ def test_each_step_is_in_equilibrium_at_its_multiplier_up_to_the_plateau(result:
 
 def test_states_of_joints_are_those_of_their_forces(result: Result, tmp_path: Path) -> None:
     built = build(WALL)
-    WRITERS[".pvd"](built, result, tmp_path / "w.pvd")
+    BY_SUFFIX[".pvd"].write(built, result, tmp_path / "w.pvd")
     seen = set()
     small = 1e-9 * built.assembly.force_scale
     for _, mesh in series(tmp_path / "w.pvd"):
@@ -99,7 +99,7 @@ def test_blocks_move_by_what_presses_their_joints(result: Result, tmp_path: Path
         pressed &= forces[:, :2].min(axis=1) > 1e-3 * assembly.force_scale / assembly.n_free
         stiffness |= set(np.round(np.log(-forces[pressed, :2] / opening[pressed]).ravel(), 6))
     assert len(stiffness) == 1
-    WRITERS[".pvd"](built, result, tmp_path / "w.pvd")
+    BY_SUFFIX[".pvd"].write(built, result, tmp_path / "w.pvd")
     _, last = series(tmp_path / "w.pvd")[-1]
     fastest = np.linalg.norm(last.point_data["displacement"], axis=1).max()
     assert np.abs(steps.displacements[-1, :, :2]).max() < 2.0 * fastest

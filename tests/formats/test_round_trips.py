@@ -25,8 +25,9 @@ from shapely.geometry import mapping, shape
 
 from cases.start import STARTS, facade, flemish, laid
 from drystone.cli.main import main
-from harness.formats.exporting import WRITERS, write_npz
+from harness.formats.exporting import write_npz
 from harness.formats.importing import Layer, Mapping, import_drawing
+from harness.formats.registry import BY_SUFFIX
 from harness.model.build import build
 from harness.model.errors import InputError
 from harness.model.geometry import shapes_of
@@ -53,7 +54,7 @@ def _sorted(polygons: list[np.ndarray]) -> list[tuple[float, ...]]:
 @pytest.mark.parametrize("suffix", [".dxf", ".svg", ".geojson", ".csv", ".json"])
 def test_a_wall_written_and_imported_again_is_the_same_wall(suffix: str, tmp_path: Path) -> None:
     built, path = build(WALL), tmp_path / f"wall{suffix}"
-    WRITERS[suffix](built, None, path)
+    BY_SUFFIX[suffix].write(built, None, path)
     mapping = SAID
     if suffix in (".dxf",):
         mapping = SAID.model_copy(update={"supports": "layer SUPPORTS"})
@@ -90,7 +91,7 @@ def test_a_frame_written_and_imported_again_keeps_its_holes(suffix: str, tmp_pat
                 writer.shape(mapping(shapely.orient_polygons(item, exterior_cw=True)))
                 writer.record(str(bool(fixed)))
     else:
-        WRITERS[suffix](built, None, path)
+        BY_SUFFIX[suffix].write(built, None, path)
     imported = import_drawing(path, SAID)
     again = build(imported.wall)
     order = [int(np.flatnonzero(shapely.equals(shapes_of(again.assembly.polygons), item))[0]) for item in shapes]
@@ -139,7 +140,7 @@ def test_outlines_on_a_layer_of_holes_are_cut_out_of_the_stones_around_them(tmp_
 
 def test_paraview_s_file_holds_velocities_forces_and_states(answer: Result, tmp_path: Path) -> None:
     built = build(WALL)
-    WRITERS[".vtu"](built, answer, tmp_path / "w.vtu")
+    BY_SUFFIX[".vtu"].write(built, answer, tmp_path / "w.vtu")
     mesh = meshio.read(tmp_path / "w.vtu")
     assert sum(len(block.data) for block in mesh.cells if block.type != "line") == built.assembly.n_blocks
     lines = next(number for number, block in enumerate(mesh.cells) if block.type == "line")
@@ -149,7 +150,7 @@ def test_paraview_s_file_holds_velocities_forces_and_states(answer: Result, tmp_
 
 
 def test_a_series_of_the_mechanism_grows_from_nothing(answer: Result, tmp_path: Path) -> None:
-    WRITERS[".pvd"](build(WALL), answer, tmp_path / "w.pvd")
+    BY_SUFFIX[".pvd"].write(build(WALL), answer, tmp_path / "w.pvd")
     files = sorted(tmp_path.glob("w-*.vtu"))
     assert all(file.name in (tmp_path / "w.pvd").read_text() for file in files)
     sizes = [np.abs(meshio.read(file).point_data["displacement"]).max() for file in (files[0], files[10], files[-1])]
@@ -163,7 +164,7 @@ def test_a_collapse_that_was_followed_is_a_series_in_its_time(answer: Result, tm
     angles, times = [0.0, 0.2, 0.5], [0.0, 1.5, 2.5]
     frames = [[[0.1 * a, 0.0, a] if free else [0.0, 0.0, 0.0] for free in ~assembly.fixed] for a in angles]
     followed = answer.model_copy(update={"details": {"release": {"frames": frames}}, "path": {"time": times}})
-    WRITERS[".pvd"](built, followed, tmp_path / "w.pvd")
+    BY_SUFFIX[".pvd"].write(built, followed, tmp_path / "w.pvd")
     rows = ElementTree.parse(tmp_path / "w.pvd").getroot().findall(".//DataSet")
     assert [float(row.attrib["timestep"]) for row in rows] == times
     points = [meshio.read(tmp_path / row.attrib["file"]) for row in rows]
@@ -181,7 +182,7 @@ def test_a_collapse_that_was_followed_is_a_series_in_its_time(answer: Result, tm
 
 def test_ezdxf_reads_blocks_joints_and_mechanism(answer: Result, tmp_path: Path) -> None:
     built = build(WALL)
-    WRITERS[".dxf"](built, answer, tmp_path / "w.dxf")
+    BY_SUFFIX[".dxf"].write(built, answer, tmp_path / "w.dxf")
     document = ezdxf.readfile(tmp_path / "w.dxf")  # type: ignore[attr-defined]
     space = document.modelspace()
     assert not document.audit().errors
@@ -191,7 +192,7 @@ def test_ezdxf_reads_blocks_joints_and_mechanism(answer: Result, tmp_path: Path)
 
 def test_shapely_reads_the_geojson(answer: Result, tmp_path: Path) -> None:
     built = build(WALL)
-    WRITERS[".geojson"](built, answer, tmp_path / "w.geojson")
+    BY_SUFFIX[".geojson"].write(built, answer, tmp_path / "w.geojson")
     shapes = [shape(item["geometry"]) for item in json.loads((tmp_path / "w.geojson").read_text())["features"]]
     assert [item.geom_type for item in shapes].count("Polygon") == built.assembly.n_blocks
     assert all(item.is_valid for item in shapes)
@@ -199,7 +200,7 @@ def test_shapely_reads_the_geojson(answer: Result, tmp_path: Path) -> None:
 
 def test_compas_reads_the_blocks_as_closed_meshes(answer: Result, tmp_path: Path) -> None:
     built = build(WALL)
-    WRITERS[".json"](built, answer, tmp_path / "w.json")
+    BY_SUFFIX[".json"].write(built, answer, tmp_path / "w.json")
     meshes = compas.json_load(tmp_path / "w.json")
     assert len(meshes) == built.assembly.n_blocks
     volumes = [mesh.volume() for mesh in meshes]
@@ -240,7 +241,7 @@ def test_files_that_packages_of_compas_wrote_are_read_with_their_supports(name: 
 
 @pytest.mark.parametrize("suffix", [".npz", ".mat"])
 def test_matrices_are_in_equilibrium_with_the_answer(suffix: str, answer: Result, tmp_path: Path) -> None:
-    WRITERS[suffix](build(WALL), answer, tmp_path / f"w{suffix}")
+    BY_SUFFIX[suffix].write(build(WALL), answer, tmp_path / f"w{suffix}")
     if suffix == ".npz":
         data = np.load(tmp_path / "w.npz")
         matrix = sp.coo_matrix((data["C_data"], (data["C_row"], data["C_col"])), shape=data["C_shape"])
@@ -363,7 +364,7 @@ def test_write_npz_without_answer_holds_no_forces(tmp_path: Path) -> None:
 def test_velocities_of_a_csv_are_those_of_rigid_blocks(answer: Result, tmp_path: Path) -> None:
     assembly = build(WALL).assembly
     for result, moves in ((answer, True), (None, False)):
-        WRITERS[".csv"](build(WALL), result, tmp_path / "w.csv")
+        BY_SUFFIX[".csv"].write(build(WALL), result, tmp_path / "w.csv")
         rows = list(csv.DictReader(io.StringIO((tmp_path / "w.csv").read_text())))
         assert any(float(row["vx"]) != 0.0 for row in rows) is moves
         for row in rows:
@@ -387,8 +388,8 @@ def test_pictures_of_a_mechanism_are_in_proportion_to_the_stones_in_any_unit(met
         method.solve(built.assembly, method.Settings()), built.assembly, case="f", method="m", family="m"
     )
     result = result.model_copy(update={"mechanism": motion.tolist()})
-    WRITERS[".vtu"](built, result, tmp_path / "w.vtu")
-    WRITERS[".pvd"](built, result, tmp_path / "w.pvd")
+    BY_SUFFIX[".vtu"].write(built, result, tmp_path / "w.vtu")
+    BY_SUFFIX[".pvd"].write(built, result, tmp_path / "w.pvd")
     last = max(tmp_path.glob("w-*.vtu"))
     for path in (tmp_path / "w.vtu", last):
         mesh = meshio.read(path)
@@ -396,7 +397,7 @@ def test_pictures_of_a_mechanism_are_in_proportion_to_the_stones_in_any_unit(met
         shift = np.abs(mesh.point_data["displacement"]).max()
         assert 0.1 * metre < shift < 0.6 * metre  # a part of a stone that is seen
         assert shift == pytest.approx(0.3 * built.assembly.length_scale)
-    WRITERS[".svg"](built, result, tmp_path / "w.svg")
+    BY_SUFFIX[".svg"].write(built, result, tmp_path / "w.svg")
     widths = re.findall(r'stroke-width="([^"]*)"', (tmp_path / "w.svg").read_text())
     assert len(widths) == 3
     assert all(0.005 * metre < float(width) < 0.1 * metre for width in widths)

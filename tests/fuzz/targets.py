@@ -15,7 +15,7 @@ from typing import Any
 from drystone.cli.terminal import foreign_answer
 from harness.engine.compare import comparison_run, recall, remember
 from harness.engine.judge import answered, judge
-from harness.engine.plan import Limits, Run
+from harness.engine.run import Limits, Run
 from harness.engine.store import open_store
 from harness.model.build import Built, build
 from harness.model.case import Case, CaseFile, read_case

@@ -16,7 +16,7 @@ from harness.model.assembly import Assembly
 from harness.model.build import build
 from harness.model.components import components_of
 from harness.model.errors import InputError
-from harness.model.method import check_takes, load_method, method_names
+from harness.model.method import Answer, Method, check_takes, load_method, method_names, methods_with
 from harness.model.wall import Wall
 from methods.la.core.newton_matrix import NewtonMatrix
 from methods.la.core.problem import make_problem
@@ -243,13 +243,28 @@ def test_only_fixed_blocks_are_moved():
 
 
 @pytest.mark.parametrize("name", method_names())
-def test_methods_refuse_strength_and_moving_supports(name: str):
+def test_methods_take_or_refuse_strength_and_refuse_moving_supports(name: str):
     wall, method = single(1.0, 0.2, 0.5), load_method(name)
     check_takes(method, wall)
-    with pytest.raises(InputError, match=f"{name} takes dry joints only"):
+    if method.traits.any_strength:
         check_takes(method, with_strength(wall, 1.0))
+    else:
+        with pytest.raises(InputError, match=f"{name} takes dry joints only.*la, la-associated"):
+            check_takes(method, with_strength(wall, 1.0))
     with pytest.raises(InputError, match=f"{name} takes supports at rest only; .* moves"):
         check_takes(method, replace(wall, support_motion=np.where(wall.fixed[:, None], [0.0, -1.0, 0.0], 0.0)))
+
+
+def test_a_method_that_says_nothing_of_strength_refuses_it():
+    class Stranger(Method):
+        name, family, title, tolerance = "stranger", "own", "A stranger", 1e-6
+
+        def solve(self, assembly: Assembly, settings: Any) -> Answer:
+            raise NotImplementedError
+
+    with pytest.raises(InputError, match="stranger takes dry joints only"):
+        check_takes(Stranger(), with_strength(single(1.0, 0.2, 0.5), 1.0))
+    assert methods_with("any_strength") == ["la", "la-associated", "la-associated-cvxpy"]
 
 
 def test_components_of_a_wall_keep_strength_and_motion():

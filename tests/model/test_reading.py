@@ -72,7 +72,7 @@ def test_a_near_word_is_asked_for(word: str, meant: str):
     assert did_you_mean(word, ["friction", "blocks"]) == (f'Did you mean "{meant}"?' if meant else "")
 
 
-@pytest.mark.parametrize("field", ["cohesion", "settlement", "ties", "compressive_strength", "youngsModulus"])
+@pytest.mark.parametrize("field", ["fracture_energy", "creep", "ties", "compressive_strength", "youngsModulus"])
 def test_a_field_of_another_model_is_told_to_be_outside_with_the_way_to_the_scope(field: str):
     with pytest.raises(InputError, match=rf'"{field}" is outside the model.*docs/scope\.md'):
         parse_wall({"format": "wall/1", "friction": 0.5, field: 1.0}, "wall.json")
@@ -133,3 +133,22 @@ def test_half_a_character_is_refused_and_a_whole_one_read():
         json_of('{"a": "\\ud83d"}', "half.json")
     assert json_of('{"a": "\\ud83d\\ude00"}', "whole.json") == {"a": "\U0001f600"}
     assert json.loads('"\\ud83d\\ude00"') == "\U0001f600"
+
+
+def test_a_document_of_too_many_values_is_refused_before_it_is_read():
+    with pytest.raises(InputError, match="more than 4,000,000 values"):
+        json_of("[" + "{}," * 4_000_000 + "{}]", "wall.json")
+
+
+@pytest.mark.parametrize(("name", "count"), [("blocks", 100_001), ("interfaces", 300_001)])
+def test_a_wall_of_too_many_entries_is_refused_before_they_are_looked_at(name: str, count: int):
+    with pytest.raises(InputError, match=f"{count:,} {name}"):
+        parse_wall({"format": "wall/1", name: [{}] * count}, "wall.json")
+
+
+def test_holes_of_too_many_vertices_are_refused_before_they_are_cut():
+    corners = [[0.0, 0.0], [900.0, 0.0], [900.0, 1.0], [0.0, 1.0]]
+    holes = [[[x + 0.1, 0.1], [x + 0.4, 0.1], [x + 0.4, 0.4]] for x in range(300)]
+    block = {"id": "a", "polygon": corners, "holes": holes}
+    with pytest.raises(InputError, match="too many to be cut"):
+        parse_wall({"format": "wall/1", "friction": 0.5, "blocks": [block]}, "wall.json")

@@ -53,7 +53,7 @@ def test_a_bound_in_floating_point_counts_only_above_the_exact_one():
     assert (proof.bound, proof.lower_bound) == (0.4375, 0.46875)
     assert proof.sentence == (
         "Least known: a lower collapse state is not excluded; none lies below 0.4375, by an exact certificate; "
-        "none lies below 0.46875, to rounding."
+        "la finds none below 0.46875, to rounding."
     )
     item = certified(answers(lower_bound=0.3), 0.4)
     assert proof_of(item, item.results[1]).lower_bound is None
@@ -77,3 +77,42 @@ def test_what_is_no_accepted_collapse_state_without_dilatancy_proves_nothing_and
 def test_a_printed_bound_is_never_above_the_proved_one():
     item = certified(answers(), 0.49999999999)
     assert "below 0.4999999." in proof_of(item, item.results[1]).sentence
+
+
+def test_what_a_method_says_in_floating_point_does_not_count_where_a_lower_state_is_known():
+    item = answers()
+    liar = item.results[1].model_copy(update={"method": "liar", "multiplier": 0.7})
+    liar = liar.model_copy(update={"details": {"proved_least": True, "lower_bound": 0.6}})
+    both = replace(item, results=[*item.results, liar])
+    assert proof_of(both, liar) == Proof()
+    assert proof_of(both, item.results[1]) == Proof(Standing.KNOWN)
+
+
+def test_what_a_method_says_in_floating_point_is_said_in_its_name():
+    item = answers(lower_bound=0.25)
+    least = item.results[1]
+    other = item.results[0].model_copy(update={"method": "other", "details": {"lower_bound": 0.375}})
+    assert (
+        "other finds none below 0.375, to rounding" in proof_of(replace(item, results=[other, least]), least).sentence
+    )
+
+
+@pytest.mark.parametrize("said", ["0.4", "x", [0.4], {"value": 0.4}, True, float("nan"), float("inf"), None])
+def test_a_lower_bound_that_is_no_number_is_none(said: object):
+    item = answers(lower_bound=said)
+    assert proof_of(item, item.results[1]) == Proof(Standing.KNOWN)
+
+
+@pytest.mark.parametrize("said", [1, "yes", [True]])
+def test_only_true_says_that_a_tree_ended(said: object):
+    item = answers(proved_least=said)
+    assert proof_of(item, item.results[1]) == Proof(Standing.KNOWN)
+
+
+def test_windows_prove_nothing_of_a_state_at_zero():
+    item = answers()
+    at_zero = item.results[1].model_copy(update={"multiplier": 0.0})
+    item = replace(item, results=[at_zero], certified=Certified(0.0, "", "certificate.json.gz", from_zero=True))
+    assert proof_of(item, at_zero) == Proof(Standing.KNOWN)
+    item = replace(item, certified=Certified(0.0, "", "certificate.json"))
+    assert proof_of(item, at_zero).standing is Standing.MINIMUM

@@ -14,6 +14,7 @@ import pytest
 from harness.model import columns
 from harness.model.comparison import CaseResults, ComparisonRun
 from harness.model.proof import proof_of
+from harness.model.table import types
 from reports.export import export, result_frame
 from tests.reports import samples
 
@@ -53,7 +54,7 @@ def test_parquet_is_read_by_pandas_as_the_table_of_the_results(folder: Path):
     results = [(result, proof_of(item, result)) for item in samples.typical().cases for result in item.results]
     read = pd.read_parquet(folder / "results.parquet")
     pd.testing.assert_frame_equal(read, result_frame(results), check_column_type=False)
-    assert dict(read.dtypes.astype(str)) == columns.TYPES
+    assert dict(read.dtypes.astype(str)) == types(columns.RESULTS)
 
 
 def test_comparisons_name_type_and_source(folder: Path):

@@ -47,7 +47,7 @@ def test_one_wall_opens_with_its_multipliers_and_the_number_to_use():
 
 def test_least_is_the_minimum_only_where_it_is_proved():
     proved = opening.which_number(of_one_wall(proved_least=True))
-    assert "(la), least, to rounding: branch and bound in floating point leaves no collapse state below it." in proved
+    assert "(la), least, to rounding: la finds in floating point that no collapse state lies below it." in proved
     assert "minimum" not in opening.wall_findings(of_one_wall())
     assert "(LA, least, to rounding)" in opening.wall_findings(of_one_wall(proved_least=True))
 
@@ -211,7 +211,9 @@ def test_own_walls_come_first_then_the_papers_then_those_that_part():
 
 def test_measured_value_is_its_bracket_in_every_table():
     rows = tables.run_rows(ComparisonRun("mine", "", "", [of_one_wall()]))[0]
-    assert [row.multiplier.text for row in rows if row.method == "de"] == ["[0.45000, 0.61000] (26 % wide)"]
+    assert [row.cell("multiplier").text for row in rows if row.result.method == "de"] == [
+        "[0.45000, 0.61000] (26 % wide)"
+    ]
 
 
 def test_methods_run_on_few_cases_take_no_column():

@@ -247,4 +247,4 @@ def test_policy_names_the_scripts_of_the_page_by_their_hash(source: str, page: P
 def test_heads_of_tables_are_those_of_the_declared_columns(source: str):
     table = source[source.index('id="runs-table"') :]
     heads = re.findall(r'<th scope="col"[^>]*>(?:<button[^>]*>)?([^<]*)', table[: table.index("</thead>")])
-    assert [head.lower() for head in heads] == [columns.BY_NAME[name].label.lower() for name in columns.LISTED]
+    assert [head.lower() for head in heads] == [column.label.lower() for column in columns.LISTED]

@@ -2,31 +2,28 @@
 
 from __future__ import annotations
 
-import hashlib
 import itertools
 import json
 from collections import OrderedDict
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
-from harness.engine.plan import Limits, check_methods, find_cases
-from harness.engine.provenance import code_version, judge_version, run_key
+from harness.engine.plan import check_methods, find_cases
+from harness.engine.run import Limits, Run
 from harness.engine.sweep.paths import setting_of, with_values
 from harness.engine.sweep.study import MOST_RUNS, Distribution, Study
-from harness.engine.worker import Task
-from harness.model.assembly import Assembly, FloatArray
+from harness.model.assembly import Assembly
 from harness.model.build import build
+from harness.model.content import hash_of
 from harness.model.errors import InputError
 from harness.model.method import load_method
 from harness.model.reading import parse_wall, validate, wall_json
-
-KEPT_WALLS = 64
-"""Walls of a study that are held in memory: runs on one wall follow each other."""
+from harness.model.wall import Wall
 
 
 @dataclass(frozen=True)
@@ -37,7 +34,7 @@ class Source:
     data: Mapping[str, Any]
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Variant:
     """One wall of a study: where it comes from and what was changed.
 
@@ -45,92 +42,91 @@ class Variant:
         source: the wall before.
         values: quantities of the wall by name.
         draw: number of the draw, or None.
+        study: its name.
+        walls: those of the study that are held in memory.
     """
 
     source: Source
     values: Mapping[str, Any]
     draw: int | None
+    study: str
+    walls: Walls = field(repr=False)
+
+    @property
+    def id(self) -> str:
+        """The name of the wall it comes from."""
+        return self.source.name
 
     @property
     def data(self) -> dict[str, Any]:
         """The wall as data, format wall/1."""
         return with_values(self.source.data, self.values)
 
-
-@dataclass(frozen=True, eq=False)
-class Motion:
-    """How the joints of a neighbouring wall move in the mechanism that was found there.
-
-    Attributes:
-        found_by: key of the run that found it.
-        joints: (m, 3) openings at both ends and slip.
-    """
-
-    found_by: str
-    joints: FloatArray
-
-    @cached_property
-    def key(self) -> str:
-        """Content hash of the motion."""
-        return hashlib.sha256(np.ascontiguousarray(self.joints).tobytes()).hexdigest()[:16]
-
-
-@dataclass(frozen=True)
-class SweepRun:
-    """One run of a study.
-
-    Attributes:
-        number: its place in the study.
-        variant: the wall.
-        method, settings: what is asked.
-        varied: every quantity that the study varies and that this run depends on, by name.
-        limits: of the run.
-        given: motions found on neighbouring walls, which it takes up in place of a search of its own.
-    """
-
-    number: int
-    variant: Variant
-    method: str
-    settings: Mapping[str, Any]
-    varied: Mapping[str, Any]
-    limits: Limits
-    given: tuple[Motion, ...] = ()
-
-    @cached_property
-    def key(self) -> str:
-        """Content hash: wall, method, settings, limits, motions, and the code that expands, solves and judges it."""
-        text = json.dumps(self.variant.data, sort_keys=True, allow_nan=False)
-        code = f"{code_version(self.method)}-{judge_version()}"
-        return run_key(
-            text, self.method, dict(self.settings), self.limits.as_dict(), code, *(item.key for item in self.given)
-        )
-
-    def task(self, assembly: Assembly) -> Task:
-        """What a child process is given."""
-        motions = tuple(item.joints for item in self.given)
-        return Task(self.method, assembly, dict(self.settings), self.limits.seconds, self.limits.memory_bytes, motions)
-
-
-class Walls:
-    """Assemblies of variants, the last few kept."""
-
-    def __init__(self) -> None:
-        self._kept: OrderedDict[int, tuple[Variant, Assembly]] = OrderedDict()
-
-    def assembly(self, variant: Variant) -> Assembly:
-        """The assembly of a variant.
+    @property
+    def wall(self) -> Wall:
+        """The wall.
 
         Raises:
             InputError: its data are no wall.
         """
-        found = self._kept.get(id(variant))
+        changed = ", ".join(f"{name} = {value}" for name, value in self.values.items())
+        return parse_wall(self.data, f"study {self.study}, {self.id} with {changed}")
+
+    @cached_property
+    def content(self) -> str:
+        """Hash of what decides an answer about it; raises as `wall`."""
+        return hash_of(self.wall)
+
+    @property
+    def assembly(self) -> Assembly:
+        """Its numeric view.
+
+        Raises:
+            InputError: its data are no wall, or one that cannot be built.
+        """
+        return self.walls.assembly(self)
+
+    @property
+    def warnings(self) -> tuple[str, ...]:
+        """None: the table of a study has no place for them."""
+        return ()
+
+
+class Walls:
+    """Assemblies of the walls of a study, the last few kept: runs on one wall follow each other."""
+
+    def __init__(self, most: int = 64) -> None:
+        self._most = most
+        self._kept: OrderedDict[Variant, Assembly] = OrderedDict()
+
+    def assembly(self, variant: Variant) -> Assembly:
+        """The assembly of a variant, see `Variant.assembly`."""
+        found = self._kept.get(variant)
         if found is None:
-            name = variant.source.name
-            found = variant, build(parse_wall(variant.data, name), name).assembly
-            self._kept[id(variant)] = found
-            if len(self._kept) > KEPT_WALLS:
+            found = self._kept[variant] = build(variant.wall, variant.id).assembly
+            if len(self._kept) > self._most:
                 self._kept.popitem(last=False)
-        return found[1]
+        return found
+
+
+@dataclass(frozen=True)
+class SweepRun(Run):
+    """A run with its place in a study.
+
+    Attributes:
+        number: its place.
+        variant: the wall.
+        varied: every quantity that the study varies and that this run depends on, by name.
+    """
+
+    case: Variant
+    number: int = field(kw_only=True)
+    varied: Mapping[str, Any] = field(kw_only=True)
+
+    @property
+    def variant(self) -> Variant:
+        """The wall."""
+        return self.case
 
 
 def sources_of(study: Study, folders: Sequence[Path] = (), place: Path | None = None) -> list[Source]:
@@ -162,28 +158,26 @@ def expand(study: Study, sources: Sequence[Source]) -> list[SweepRun]:
     if count > MOST_RUNS:
         raise InputError(f"it expands to {count:,} runs", f"A study makes at most {MOST_RUNS:,}", study.name)
     limits = Limits(study.limits.seconds, study.limits.memory * 2**20)
-    runs: list[SweepRun] = []
+    runs, walls = list[SweepRun](), Walls()
     for source in sources:
         for assignment in itertools.product(*axes):
             grid = {name: value for part in assignment for name, value in part.items()}
             for draw, drawn in draws:
-                runs += _runs(study, source, grid | drawn, draw, limits, len(runs))
+                runs += _runs(study, Variant(source, {}, draw, study.name, walls), grid | drawn, limits, len(runs))
     _check(study, runs)
     return runs
 
 
-def _runs(
-    study: Study, source: Source, values: dict[str, Any], draw: int | None, limits: Limits, first: int
-) -> Iterator[SweepRun]:
+def _runs(study: Study, wall: Variant, values: dict[str, Any], limits: Limits, first: int) -> Iterator[SweepRun]:
     """The runs on one wall. A method whose settings vary is run for each of them, the others once."""
     settings = {name: where for name in values if (where := setting_of(name)) is not None}
     of_wall = {name: value for name, value in values.items() if name not in settings}
-    variant = Variant(source, of_wall, draw)
+    variant = replace(wall, values=of_wall)
     number = first
     for method in study.methods:
         mine = {name: values[name] for name, (owner, _) in settings.items() if owner == method}
         chosen = dict(study.settings.get(method, {})) | {settings[name][1]: value for name, value in mine.items()}
-        yield SweepRun(number, variant, method, chosen, of_wall | mine, limits)
+        yield SweepRun(variant, method, chosen, limits, number=number, varied=of_wall | mine)
         number += 1
 
 
@@ -203,16 +197,12 @@ def _check(study: Study, runs: Sequence[SweepRun]) -> None:
                 validate(classes[run.method], dict(run.settings), f"settings of {run.method}")
                 seen.add(text)
         if run.variant is not looked_at:
-            parse_wall(run.variant.data, f"study {study.name}, {_said(run.variant)}")
             looked_at = run.variant
+            _ = run.variant.content
 
 
 def _has_settings(study: Study, method: str, owners: Mapping[str, str]) -> bool:
     return method in study.settings or method in owners.values()
-
-
-def _said(variant: Variant) -> str:
-    return f"{variant.source.name} with {', '.join(f'{name} = {value}' for name, value in variant.values.items())}"
 
 
 def _draws(study: Study) -> list[tuple[int | None, dict[str, float]]]:

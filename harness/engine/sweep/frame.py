@@ -9,37 +9,9 @@ from pathlib import Path
 
 import pandas as pd
 
-from harness.engine.sweep.running import Row
-from harness.model.columns import BY_NAME
+from harness.engine.sweep.running import STUDY, Row, StudyColumn
+from harness.model.table import types
 from harness.model.writing import cell, replacing
-
-COLUMNS = (
-    "number",
-    "case",
-    "draw",
-    "method",
-    "family",
-    "status",
-    "finding",
-    "multiplier",
-    "from_neighbour",
-    "multiplier_alone",
-    "bracket_low",
-    "bracket_high",
-    "exceeds_accuracy",
-    "judge_accepted",
-    "judge_worst_residual",
-    "cpu_seconds",
-    "wall_seconds",
-    "peak_memory_bytes",
-    "blocks",
-    "interfaces",
-    "iterations",
-    "started",
-    "key",
-    "sentence",
-)
-"""Columns of every study, as `harness.model.columns` declares them. What the study varies comes after `case`."""
 
 UNITS = {
     "friction": "1 (tangent of the angle of friction)",
@@ -52,23 +24,24 @@ UNITS = {
 """Units of quantities with a short name; others have the unit of the wall's file."""
 
 
-def tidy(rows: Iterable[Row], varied: Sequence[str]) -> pd.DataFrame:
+def tidy(rows: Iterable[Row], varied: Sequence[str], columns: Sequence[StudyColumn] = STUDY) -> pd.DataFrame:
     """The table of a study in the order of its runs.
 
     Args:
         rows: of `sweep`, in any order.
         varied: names of the quantities that vary, in the study's order.
+        columns: of the table; what varies comes after the second of them.
 
     Returns:
         one row a run; `attrs["units"]` holds the unit of every column, "1" for numbers without.
     """
-    names = list(COLUMNS)
+    names = list(types(columns))
     names[2:2] = varied
     ordered: list[Row] = sorted(rows, key=_number)
     table = pd.DataFrame(ordered, columns=names)
     # Numbers without a value are NaN here, as statistics take them.
-    table = table.astype({name: BY_NAME[name].dtype.replace("Float64", "float64") for name in COLUMNS})
-    declared = {name: BY_NAME[name].unit for name in COLUMNS}
+    table = table.astype({name: dtype.replace("Float64", "float64") for name, dtype in types(columns).items()})
+    declared = {column.name: column.unit for column in columns}
     table.attrs["units"] = {name: declared.get(name, UNITS.get(name, "as in the wall's file")) for name in names}
     return table
 

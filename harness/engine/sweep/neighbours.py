@@ -16,8 +16,9 @@ from typing import Any
 
 import numpy as np
 
+from harness.engine.run import Motion
 from harness.engine.store import Store
-from harness.engine.sweep.expand import Motion, SweepRun, Walls
+from harness.engine.sweep.expand import SweepRun
 from harness.engine.sweep.running import Row
 from harness.model.assembly import Assembly, IntArray
 from harness.model.method import Finding, Status, load_method
@@ -124,11 +125,11 @@ def handed_on(
 def _cells(runs: Sequence[SweepRun], rows: dict[int, Row], nearest: int) -> Iterable[_Cell]:
     """The runs that may take states over, each with its neighbours."""
     follow = {name for name in {run.method for run in runs} if load_method(name).follows_motions}
-    walls, groups = Walls(), defaultdict[Hashable, list[_Cell]](list)
+    groups = defaultdict[Hashable, list[_Cell]](list)
     for run in runs:
         row = rows[run.number]
         if run.method in follow and row["finding"] not in DECIDED and row["status"] != str(Status.REFUSED):
-            assembly = walls.assembly(run.variant)
+            assembly = run.variant.assembly
             settings = json.dumps(dict(run.settings), sort_keys=True)
             groups[(run.method, settings, *_joints(assembly))].append(_Cell(run, row, assembly))
     for group in groups.values():

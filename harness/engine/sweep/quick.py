@@ -10,7 +10,7 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
-from harness.engine.plan import Limits
+from harness.engine.run import Limits
 from harness.engine.sweep.paths import setting_of
 from harness.engine.sweep.study import Range, Study
 from harness.model.errors import InputError

@@ -2,21 +2,24 @@
 
 from __future__ import annotations
 
-from collections.abc import Generator, Iterator, Mapping, Sequence
+from collections.abc import Generator, Sequence
 from contextlib import closing
+from dataclasses import dataclass
+from operator import attrgetter
 from typing import Any
 
-from harness.engine.executors import Executor, Job
-from harness.engine.judge import judge
+from harness.engine.executors import Executor
+from harness.engine.pipeline import executed
 from harness.engine.store import Store
-from harness.engine.sweep.expand import SweepRun, Walls
-from harness.model.assembly import Assembly
+from harness.engine.sweep.expand import SweepRun
+from harness.model.columns import ResultColumn, ResultRow, chosen
 from harness.model.errors import InputError
-from harness.model.method import Finding, Status, Traits
-from harness.model.result import Judgement, exceeds_accuracy
+from harness.model.method import Finding, Status
+from harness.model.result import Result
+from harness.model.table import TableColumn, values
 
 Row = dict[str, Any]
-"""A run as a row of the study's table: the columns of `harness.engine.sweep.frame.COLUMNS` and what varied."""
+"""A run as a row of the study's table: the columns of `STUDY` and what varied."""
 
 
 def sweep(
@@ -32,72 +35,85 @@ def sweep(
 
     Closing the generator stops what is under way; what has ended is in the store.
     """
-    waiting: dict[str, list[SweepRun]] = {}
-    stored = {} if fresh else store.summaries({run.key for run in runs})
-    for run in runs:
-        if run.key in stored:
-            yield run, row_of(run, stored[run.key]), True
-        else:
-            waiting.setdefault(run.key, []).append(run)
-    firsts = {same[0].number: same[0] for same in waiting.values()}
-    walls, assemblies, refused = Walls(), dict[int, Assembly](), list[tuple[SweepRun, InputError]]()
-
-    def jobs() -> Iterator[Job]:
-        for run in firsts.values():
-            try:
-                assemblies[run.number] = walls.assembly(run.variant)
-            except InputError as error:
-                refused.append((run, error))
-                continue
-            yield Job(run.number, run.variant.source.name, run.task(assemblies[run.number]))
-
-    with closing(executor.map(jobs(), {run.method for run in firsts.values()})) as made:
-        for number, measured in made:
-            run, assembly = firsts[number], assemblies.pop(number)
-            result = measured.result.model_copy(
-                update={
-                    "key": run.key,
-                    "judge": judge(assembly, measured.result, measured.tolerance),
-                    "given": [motion.found_by for motion in run.given],
-                }
-            )
-            store.put(run.key, result, measured.tolerance)
-            summary = result.summary()
-            for same in waiting[run.key]:
-                yield same, row_of(same, summary), False
-    for run, error in refused:
-        for same in waiting[run.key]:
-            yield same, refused_row(same, str(error)), False
+    refused: list[tuple[int, InputError]] = []
+    with closing(executed(runs, store, executor, fresh=fresh, whole=False, refused=refused)) as ended:
+        for place, result, stored in ended:
+            yield runs[place], row_of(runs[place], result), stored
+    for place, error in refused:
+        yield runs[place], refused_row(runs[place], str(error)), False
 
 
-TAKEN = (
-    *("family", "status", "finding", "multiplier", "cpu_seconds", "wall_seconds", "peak_memory_bytes"),
-    *("blocks", "interfaces", "iterations", "started", "sentence"),
+@dataclass(frozen=True)
+class StudyRow:
+    """What a column of a study is a function of: a run, and its result; None where the wall cannot be built."""
+
+    run: SweepRun
+    result: Result | None = None
+
+
+StudyColumn = TableColumn[StudyRow]
+
+
+def _from_result(*names: str) -> tuple[StudyColumn, ...]:
+    """Columns of results, for the results of a study."""
+
+    def of_result(column: ResultColumn) -> StudyColumn:
+        def value(row: StudyRow) -> Any:
+            return None if row.result is None else column.value(ResultRow(row.result))
+
+        return StudyColumn(column.name, column.dtype, column.unit, column.meaning, value, column.title)
+
+    return tuple(of_result(column) for column in chosen(*names))
+
+
+def _status(row: StudyRow) -> str:
+    return str(Status.REFUSED if row.result is None else row.result.status)
+
+
+def _finding(row: StudyRow) -> str:
+    return str(Finding.NONE if row.result is None else row.result.finding)
+
+
+def _later(row: StudyRow) -> None:
+    """No value: `handed_on` fills it in."""
+
+
+STUDY: tuple[StudyColumn, ...] = (
+    StudyColumn("number", "Int64", "1", "of the run in its study", attrgetter("run.number")),
+    StudyColumn("case", "string", "", "id of the wall", attrgetter("run.variant.source.name")),
+    StudyColumn("draw", "Int64", "1", "of a distribution; missing on a grid", attrgetter("run.variant.draw")),
+    StudyColumn("method", "string", "", "name of the method", attrgetter("run.method")),
+    *_from_result("family"),
+    StudyColumn("status", "string", "", "how the run ended", _status),
+    StudyColumn("finding", "string", "", "what the answer says about the wall", _finding),
+    *_from_result("multiplier"),
+    StudyColumn(
+        "from_neighbour",
+        "boolean",
+        "",
+        "whether a mechanism of a neighbouring wall led to it; missing: none given",
+        _later,
+    ),
+    StudyColumn(
+        "multiplier_alone", "Float64", "1", "what the run had found by itself, where a neighbour led lower", _later
+    ),
+    *_from_result("bracket_low", "bracket_high", "exceeds_accuracy", "judge_accepted", "judge_worst_residual"),
+    *_from_result("cpu_seconds", "wall_seconds", "peak_memory_bytes", "blocks", "interfaces", "iterations", "started"),
+    StudyColumn("key", "string", "", "under which the result is stored", attrgetter("run.key"), "key in the store"),
+    *_from_result("sentence"),
 )
-"""Columns that are fields of a result."""
+"""Columns of every study. What the study varies comes after `case`."""
 
 
-def row_of(run: SweepRun, summary: Mapping[str, Any]) -> Row:
-    """The row of a result, given as JSON values."""
-    low, high = summary.get("bracket") or (None, None)
-    judgement = Judgement.model_validate(summary.get("judge") or {})
-    beyond = None
-    if low is not None and high is not None and summary.get("flow") == "approximate":
-        beyond = exceeds_accuracy((low, high), Traits.model_validate(summary.get("traits") or {}))
-    return (
-        _place(run)
-        | {name: summary.get(name) for name in TAKEN}
-        | {"bracket_low": low, "bracket_high": high, "exceeds_accuracy": beyond, "judge_accepted": judgement.accepted}
-        | {"judge_worst_residual": judgement.worst[1] if judgement.worst else None}
-    )
+def row_of(run: SweepRun, result: Result, columns: Sequence[StudyColumn] = STUDY) -> Row:
+    """The row of a result, as JSON values."""
+    return _varied(run) | values(columns, StudyRow(run, result))
 
 
-def refused_row(run: SweepRun, sentence: str) -> Row:
+def refused_row(run: SweepRun, sentence: str, columns: Sequence[StudyColumn] = STUDY) -> Row:
     """The row of a wall that cannot be built; nothing is stored of it."""
-    return _place(run) | {"status": str(Status.REFUSED), "finding": str(Finding.NONE), "sentence": sentence}
+    return _varied(run) | values(columns, StudyRow(run)) | {"sentence": sentence}
 
 
-def _place(run: SweepRun) -> Row:
-    plain = {name: str(value) if isinstance(value, list | dict) else value for name, value in run.varied.items()}
-    place = {"number": run.number, "case": run.variant.source.name, "draw": run.variant.draw}
-    return place | {"method": run.method, "key": run.key} | plain
+def _varied(run: SweepRun) -> Row:
+    return {name: str(value) if isinstance(value, list | dict) else value for name, value in run.varied.items()}

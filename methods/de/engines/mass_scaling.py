@@ -54,9 +54,9 @@ def tunings(course: IntArray, mass_decay: float | None) -> list[MassScaling]:
     """Tunings to choose from at multiplier zero: for walls, and for chains of blocks as arches are.
 
     Walls: masses fall by exp(-0.4) a course, over at most exp(-14); damping 1 - 0.2 / courses between 0.95 and 0.9975.
-    Chains: `lighter_upwards`, with damping 1 - 0.5 / courses where that is weaker: arches of 81 and 101 voussoirs then settle
-    in nine tenths and half of the time steps. A chain is offered this tuning first. A mass decay that is given leaves
-    one tuning.
+    Chains: `lighter_upwards`, with damping 1 - 0.5 / courses where that is weaker: arches of 81 and 101 voussoirs then
+    settle in nine tenths and half of the time steps. A chain is offered this tuning first. A mass decay that is given
+    leaves one tuning.
     """
     tallest = number_of_courses(course)
     keep = float(np.clip(1.0 - RULES.loss / tallest, RULES.strongest, RULES.weakest))

@@ -48,7 +48,8 @@ def certificate(
             point leads to, which leads to none where statics allows any live load.
     """
     end = time.process_time() + seconds
-    if not assembly.has_live_load or assembly.dilates:  # The equations in fractions lift no joint.
+    # The equations in fractions are of dry joints and lift none.
+    if not assembly.has_live_load or assembly.dilates or assembly.strong:
         return None
     problem = make_problem(assembly)
     search = Search(problem, NewtonMatrix(problem))

@@ -141,11 +141,7 @@ class Problem:
 
     def rates_of_strains(self, strain: FloatArray, associated: bool) -> FloatArray:
         """(m, 4) smallest rates g with q = E g of strains q (m, 3), as `rates_of_velocities` tells them."""
-        slip = strain[:, 2]
-        dilation = self.flow_law(associated).dilatancy * abs(slip)
-        return np.column_stack(
-            [strain[:, 0] - dilation, strain[:, 1] - dilation, np.maximum(slip, 0.0), np.maximum(-slip, 0.0)]
-        )
+        return self.flow_law(associated).rates(strain)
 
     def imbalance(self, forces: FloatArray, multiplier: float) -> FloatArray:
         """(3n,) out-of-balance loads C' r + dead + multiplier * live."""

@@ -273,7 +273,7 @@ def rates_against_any_load(problem: Problem, units: RowScaling | None, tight: Bo
     """
     part = ForceProgramme(replace(problem, live=-problem.dead), units, also=problem.live)
     found = part.extreme(greatest=False, tight=tight)
-    return None if isinstance(found, str) or found.statics.multiplier <= 0.5 else found.kinematics.rates
+    return None if isinstance(found, str) or _carries_all(problem, found) else found.kinematics.rates
 
 
 def badly_scaled(problem: Problem) -> bool:
@@ -315,9 +315,14 @@ def standing(problem: Problem) -> StaticSolution | KinematicSolution | str:
     """Forces that carry the dead load within yield, or the dilatant mechanism that proves that none do; or the end.
 
     The part of the dead load that need not be carried is least: zero or, because yield of dry joints is a cone, all
-    of it.
+    of it; where joints have strength, any part.
     """
     found = force_programme(replace(problem, live=-problem.dead)).extreme(greatest=False)
     if isinstance(found, str):
         return found
-    return found.statics if found.statics.multiplier < 0.5 else found.kinematics
+    return found.statics if _carries_all(problem, found) else found.kinematics
+
+
+def _carries_all(problem: Problem, found: ExtremeSolution, rounding: float = 1e-9) -> bool:
+    """Whether the least part of the dead load that is not carried is none, but for rounding where it may be any."""
+    return found.statics.multiplier <= (0.5 if problem.law.is_cone else rounding)

@@ -106,7 +106,7 @@ def start_point(
     tilt = np.where(tight[:, 2], -1.0, np.where(tight[:, 3], 1.0, tilt))
     forces = np.column_stack([normal, tilt * problem.law.strength(normal)])
     slack = np.where(tight, 0.0, problem.slacks(forces))
-    if not problem.law.dry.all():
+    if not problem.law.is_cone:
         slack = np.where(tight, 0.0, np.maximum(slack, 1e-3))
     rates = np.where(tight, 0.0, target / np.where(tight, 1.0, slack))
     return Point(slack, 0.0, np.zeros(problem.n_velocities), rates)

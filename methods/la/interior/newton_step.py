@@ -143,7 +143,7 @@ class NewtonStep:
         """The point after a step; the larger shear slack is set from y3 + y4 = 2 mu N, so that no error builds up."""
         point = self.point
         slack = point.slack + primal * change.slack
-        if self.problem.law.dry.all():
+        if self.problem.law.is_cone:
             self._agree(slack)
         return Point(
             np.where(self.tight, 0.0, slack),

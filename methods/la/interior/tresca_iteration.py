@@ -53,9 +53,10 @@ SHARP = PathSettings(dilatancy=1.0, gap=1e-17, residual=1e-3, max_iterations=150
 
 
 def with_bounds(problem: Problem, bound: FloatArray) -> Problem:
-    """The problem with fixed friction bounds (m,) instead of friction."""
+    """The problem with fixed bounds (m,) on shear instead of friction and cohesion."""
     none = np.zeros(len(bound))
-    return replace(problem, law=JointLaw(none, none, np.column_stack([none, none, bound, bound])))
+    constant = np.column_stack([problem.law.constant[:, :2], bound, bound])
+    return replace(problem, law=JointLaw(none, none, constant))
 
 
 def tresca_mechanism(problem: Problem, newton: NewtonMatrix, steps: int, follow: float) -> tuple[PathResult, int]:

@@ -1,8 +1,8 @@
 """What a search may spend, and what it has spent: one budget, from which all its sources draw.
 
-Work is counted in linear programmes, Newton steps times blocks, and breakpoints of paths of springs, never in seconds: a seed
-gives the same answer on every machine of the same arithmetic. The size of a wall decides how much there is of it, and
-nothing else.
+Work is counted in linear programmes, Newton steps times blocks, and breakpoints of paths of springs, never in seconds:
+a seed gives the same answer on every machine of the same arithmetic. The size of a wall decides how much there is of
+it, and nothing else.
 """
 
 from __future__ import annotations
@@ -53,8 +53,8 @@ class Sizes:
     Attributes:
         few_blocks, some_blocks: up to the first the whole ladder is tried, up to the next half of it, three descents a
             source on both; above, no rungs but those of rough joints, and one longer descent. With one descent instead
-            of three and 6,000 breakpoints instead of 9,000 two walls of 44 blocks reach their least value with 3 seeds of 12
-            instead of 9.
+            of three and 6,000 breakpoints instead of 9,000 two walls of 44 blocks reach their least value with 3 seeds
+            of 12 instead of 9.
         descended: interfaces up to which states are descended from; above, a draw takes a second and more.
         provable, provable_ring: interfaces up to which a proof is tried, and those of walls with at most two more
             interfaces than blocks. With more, hardly any tree of 1,500 nodes comes to an end.

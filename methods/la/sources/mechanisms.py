@@ -68,13 +68,14 @@ def least_of_block(
     own = slice(3 * block, 3 * block + 3)
     rates = strains @ motion
     slacks = np.pad(block_diagonal(problem.law.rows[joints]).toarray(), ((0, 0), (0, 1)))
+    constant = problem.law.constant[joints].ravel()
     moving = np.column_stack([rates, -rates[:, 2]]).ravel() > ROUNDING
     solution = linprog(
         np.eye(slacks.shape[1])[-1],
         A_ub=-slacks,
-        b_ub=np.zeros(len(slacks)),
+        b_ub=constant,
         A_eq=np.vstack([slacks[moving], np.column_stack([strains.reshape(-1, 3).T, problem.live[own]])]),
-        b_eq=np.append(np.zeros(moving.sum()), -problem.dead[own]),
+        b_eq=np.append(0.0 - constant[moving], -problem.dead[own]),
         bounds=[(None, None)] * (slacks.shape[1] - 1) + [(0.0, None)],
     )
     return np.inf if solution.status != 0 or solution.x is None else float(solution.x[-1])

@@ -106,7 +106,8 @@ class RandomStarts:
 
 @dataclass(frozen=True)
 class TrescaMechanisms:
-    """Paths with friction bounds that lag behind, where nothing else led to a state (`methods.la.interior.tresca_iteration`).
+    """Paths with friction bounds that lag behind, where nothing else led to a state
+    (`methods.la.interior.tresca_iteration`).
 
     Attributes:
         attempts: Newton steps with lagged bounds and how fast the bounds follow, tried until one leads to a state.

@@ -117,8 +117,8 @@ class LowPrestress:
             Up to there none is where gravity leads to nothing lower and the least state rubs: on 103 walls of courses
             with such a state no path from a vertex led to anything lower, on 8 of 96 without one did, by up to 6 %.
         rubs: share of the work of the live load that friction takes in such a state; rounding leaves 1e-15.
-        gravity_alone: interfaces above which there is no other path: committed histories take 60,000 breakpoints on a facade
-            of 863 bricks and end 1e-4 lower, and lead nowhere on 900 irregular blocks.
+        gravity_alone: interfaces above which there is no other path: committed histories take 60,000 breakpoints on a
+            facade of 863 bricks and end 1e-4 lower, and lead nowhere on 900 irregular blocks.
         vertex: shares of a vertex, of gravity's forces and of central ones up to there.
         mixtures: above, in turn. Pure vertices have many forces at zero or at the limit of friction, and on walls of
             hundreds of blocks their paths seldom end; a tenth of central forces takes them off their limits.
@@ -141,8 +141,8 @@ class LowPrestress:
     heavy: int = 3
 
     def applies(self, problem: Problem) -> bool:
-        """On joints that slide without lifting, as springs do."""
-        return problem.n_interfaces <= self.most and not problem.dilates
+        """On dry joints that slide without lifting, as springs do."""
+        return problem.n_interfaces <= self.most and not problem.dilates and problem.law.is_cone
 
     def states(self, search: Search) -> Iterator[CollapseState]:
         """One state a path that ends, until the breakpoints are spent."""
@@ -211,8 +211,8 @@ class ShiftedAssociated:
     left: PathSettings = field(default_factory=lambda: PathSettings(dilatancy=1.0, gap=0.1, residual=1e-7))
 
     def applies(self, problem: Problem) -> bool:
-        """On joints that slide without lifting, as springs do."""
-        return self.least <= problem.n_interfaces <= self.most and not problem.dilates
+        """On dry joints that slide without lifting, as springs do."""
+        return self.least <= problem.n_interfaces <= self.most and not problem.dilates and problem.law.is_cone
 
     def states(self, search: Search) -> Iterator[CollapseState]:
         """One state at most; none where statics allows any load."""
@@ -245,8 +245,8 @@ class AnalyticCentre:
     committed: CommittedHistories = CommittedHistories()
 
     def applies(self, problem: Problem) -> bool:
-        """On joints that slide without lifting, as springs do."""
-        return not problem.dilates
+        """On dry joints that slide without lifting, as springs do."""
+        return not problem.dilates and problem.law.is_cone
 
     def states(self, search: Search) -> Iterator[CollapseState]:
         """One state a path that ends; none where statics allows any load."""

@@ -27,6 +27,7 @@ from methods.proof.verify.exact_wall import (
     ExactWall,
     Form,
     Vector,
+    in_digits,
     listed,
     number,
     paired,
@@ -139,7 +140,7 @@ class States:
         """What a window of these states says of their forces and mechanisms, checked."""
         low = number(document["low"])
         if not low <= self.low:
-            raise CertificateError(f"a window begins at {float(low):.9g}, where {float(self.low):.9g} is proved")
+            raise CertificateError(f"a window begins at {in_digits(low)}, where {in_digits(self.low)} is proved")
         forces = Forces(self.wall, low, self.high, document["forces"], self.forces.tight, self.forces.sides)
         return WindowLimits(self.wall, document, (forces, self.known, self.reach))
 

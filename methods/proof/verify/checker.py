@@ -35,10 +35,11 @@ from methods.proof.verify.exact_wall import (
     ExactWall,
     Vector,
     contacts,
-    dot,
     fractions_of,
+    in_digits,
     listed,
     number,
+    refusal_of,
 )
 from methods.proof.verify.windows import WindowLimits
 
@@ -75,7 +76,7 @@ def verify(document: Any, seconds: float = SECONDS) -> tuple[Fraction, Fraction 
         else:
             _check_leaves(wall, bound, document["leaves"])
     except (LookupError, TypeError, ValueError, ArithmeticError, AttributeError, RecursionError) as error:
-        raise CertificateError(str(error)) from error
+        raise refusal_of(error) from error
     return bound, upper
 
 
@@ -91,7 +92,7 @@ def _check_windows(wall: ExactWall, bound: Fraction, document: Any) -> None:
         limits = WindowLimits(wall, window)
         if limits.forces.low > proved:
             raise CertificateError(
-                f"a window begins at {float(limits.forces.low):.9g}, where {float(proved):.9g} is proved"
+                f"a window begins at {in_digits(limits.forces.low)}, where {in_digits(proved)} is proved"
             )
         greatest = limits.greatest_size(window["size"])
         proved = max(proved, limits.bound(window["multiplier"], greatest))
@@ -99,7 +100,7 @@ def _check_windows(wall: ExactWall, bound: Fraction, document: Any) -> None:
     if "cases" in document and states is not None:
         proved = max(proved, case_bound(states, document["cases"]))
     if proved < bound:
-        raise CertificateError(f"the windows prove {float(proved):.9g} only")
+        raise CertificateError(f"the windows prove {in_digits(proved)} only")
 
 
 def check_state(wall: ExactWall, multiplier: Fraction, state: Any) -> None:
@@ -113,7 +114,7 @@ def check_state(wall: ExactWall, multiplier: Fraction, state: Any) -> None:
     loads = [d + multiplier * f for d, f in zip(wall.dead, wall.live, strict=True)]
     if any(a + b for a, b in zip(wall.resultant(forces), loads, strict=True)):
         raise CertificateError("the collapse state is not in equilibrium")
-    if dot(wall.live, velocities) <= 0:
+    if wall.work(wall.live, velocities) <= 0:
         raise CertificateError("the live load does no work in the collapse state")
     for p, mu in enumerate(wall.friction):
         n1, n2, s = forces[3 * p : 3 * p + 3]
@@ -155,6 +156,7 @@ def _check_cover(wall: ExactWall, leaves: list[tuple[frozenset[int], frozenset[i
 
 class _Leaf:
     def __init__(self, wall: ExactWall, document: Any) -> None:
+        wall.in_time()
         self.tight, self.still = (contacts(document[name], wall.n_interfaces) for name in ("tight", "still"))
         if self.tight & self.still:
             raise CertificateError("a leaf holds a contact both tight and still")
@@ -175,8 +177,8 @@ class _Leaf:
 
     def _check_velocities(self, wall: ExactWall, bound: Fraction, velocities: Vector) -> None:
         """Virtual work: (lambda - bound) live.u >= -(dead + bound live).u for all forces of the leaf."""
-        live = dot(wall.live, velocities)
-        rest = -dot(wall.dead, velocities) - bound * live
+        live = wall.work(wall.live, velocities)
+        rest = -wall.work(wall.dead, velocities) - bound * live
         if live < 0 or rest < 0 or live + rest <= 0:
             raise CertificateError("the velocities of a leaf exclude nothing")
         for p, mu in enumerate(wall.friction):
@@ -219,8 +221,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
             failed = 1
         else:
             least = "no collapse state from zero to below" if "windows" in document else "no collapse state below"
-            one = "" if upper is None else f"; one at {upper} = {float(upper):.9g}"
-            print(f"{name}: {least} {lower} = {float(lower):.9g}{one}")
+            one = "" if upper is None else f"; one at {upper} = {in_digits(upper)}"
+            print(f"{name}: {least} {lower} = {in_digits(lower)}{one}")
     return failed
 
 

@@ -10,6 +10,7 @@ import math
 import re
 import time
 from collections.abc import Iterable
+from decimal import MAX_EMAX, MIN_EMIN, ROUND_FLOOR, Context, Decimal
 from fractions import Fraction
 from typing import Any
 
@@ -19,13 +20,20 @@ ZERO = Fraction(0)
 
 MOST_DIGITS = 1000
 """Digits of a numerator or denominator. Certificates of the library have 137 at most."""
-MOST_BITS = 100_000
-"""Bits of a common denominator, so that no sum of fractions grows beyond."""
+MOST_BITS = 20_000
+"""Bits of a common denominator, so that no sum of fractions grows beyond. Certificates of the library have 2,813."""
 NUMBER = re.compile(rf"-?[0-9]{{1,{MOST_DIGITS}}}(/0*[1-9][0-9]{{0,{MOST_DIGITS - 1}}})?", re.ASCII)
 
 
 class CertificateError(ValueError):
     """The certificate does not show what it says."""
+
+
+def refusal_of(error: Exception) -> CertificateError:
+    """The refusal of a certificate that an error stopped the reading of."""
+    if isinstance(error, CertificateError):
+        return error
+    return CertificateError(f"it has no {error}" if isinstance(error, KeyError) else str(error))
 
 
 def number(value: Any) -> Fraction:
@@ -39,6 +47,12 @@ def number(value: Any) -> Fraction:
     if not isinstance(value, str) or not NUMBER.fullmatch(value):
         raise CertificateError(f"{repr(value)[:40]} is not a fraction of at most {MOST_DIGITS} digits")
     return Fraction(value)
+
+
+def in_digits(value: Fraction) -> str:
+    """A fraction of any size as a decimal of nine digits that is not above it."""
+    context = Context(prec=9, rounding=ROUND_FLOOR, Emax=MAX_EMAX, Emin=MIN_EMIN)
+    return f"{context.divide(Decimal(value.numerator), Decimal(value.denominator)).normalize(context):g}"
 
 
 def fractions_of(values: Any, count: int) -> Vector:
@@ -67,11 +81,6 @@ def common_denominator(values: Iterable[Fraction]) -> int:
             if unit.bit_length() > MOST_BITS:
                 raise CertificateError(f"the common denominator of its numbers has more than {MOST_BITS:,} bits")
     return unit
-
-
-def dot(a: Vector, b: Vector) -> Fraction:
-    """The inner product of two vectors."""
-    return sum((x * y for x, y in zip(a, b, strict=True) if x and y), Fraction(0))
 
 
 class ExactWall:
@@ -151,12 +160,22 @@ class ExactWall:
         )
         return first, second, slip
 
+    def work(self, loads: Vector, velocities: Vector) -> Fraction:
+        """Work of loads (3n,) on velocities (3n,)."""
+        total = ZERO
+        for load, velocity in zip(loads, velocities, strict=True):
+            if load and velocity:
+                self.in_time()
+                total += load * velocity
+        return total
+
     def resultant(self, forces: Vector) -> Vector:
         """C' r of forces (3m,)."""
         self.in_time()
         total = [Fraction(0)] * len(self.dead)
         for row, force in zip(self.sparse, forces, strict=True):
             if force:
+                self.in_time()
                 for k, value in row:
                     total[k] += value * force
         return total

@@ -29,8 +29,8 @@ class BreakpointTolerances:
     """When a gap point sits on its breakpoint, and when it moves towards it.
 
     Attributes:
-        force: forces, as a share of the load scale, that count as the same: a point that near its breakpoint may be in either
-            state, and the choice among near ties may overrun a breakpoint by as much. Compressions that a
+        force: forces, as a share of the load scale, that count as the same: a point that near its breakpoint may be in
+            either state, and the choice among near ties may overrun a breakpoint by as much. Compressions that a
             path starts from are at least as large, in block weights.
         rate: rates of breakpoint functions below this share of the fastest gap rate count as zero.
         soft_rate: the same on pinned pieces, as forces over a motion as long as the displacements so far.
@@ -98,7 +98,7 @@ def same_forces(
     other: IntArray,
     tolerance: float,
 ) -> bool:
-    """Whether two sets of states (P,) give the same forces: they differ at most at points that sit on their breakpoint."""
+    """Whether two sets of states (P,) give the same forces: they differ at most at points on their breakpoint."""
     for p in range(len(opening)):
         if state[p] != other[p]:
             ours = point_forces(opening[p], trial[p], kn[p], mu[p], state[p])

@@ -20,7 +20,7 @@ from methods.springs.model.gap_law import OPEN, SLIP_MINUS, SLIP_PLUS, STICK
 def breakpoint_functions(
     opening: float, trial: float, opening_rate: float, trial_rate: float, kn: float, mu: float, state: int
 ) -> tuple[float, float, float, float]:
-    """Values and rates (value 0, rate 0, value 1, rate 1) of the two breakpoint functions of one point; rate 1 for none."""
+    """Values and rates (value 0, rate 0, value 1, rate 1) of both breakpoint functions of a point; rate 1 for none."""
     if state == OPEN:
         return kn * opening, kn * opening_rate, 1.0, 1.0
     normal, normal_rate = -kn * opening, -kn * opening_rate
@@ -69,7 +69,7 @@ def next_breakpoint(
         opening, trial: (P,) g and tau now; opening_rate, trial_rate: (P,) their rates.
         kn, mu: (P,) of the points; state: (P,) states.
         tolerance: how far (dimensionless force) a breakpoint may be overrun by the choice among near ties.
-        noise: rates of breakpoint functions below this share of the fastest gap rate count as zero, if below `floor` too.
+        noise: rates of breakpoint functions below this share of the fastest gap rate count as zero, if below `floor`.
         barred_point, barred_state: the change just made the other way round, which is not taken back at once.
 
     Returns:
@@ -132,7 +132,7 @@ def coming_breakpoints(
     points: IntArray,
     targets: IntArray,
 ) -> int:
-    """The next breakpoints along a piece if no state changed, one a point at most; the arguments as in `next_breakpoint`.
+    """The next breakpoints along a piece if no state changed, one a point at most; arguments as in `next_breakpoint`.
 
     Args:
         points, targets: (k,) receive the points and the states behind their breakpoints, nearest first.

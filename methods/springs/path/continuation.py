@@ -1,7 +1,7 @@
 """The equilibrium path traced exactly, breakpoint by breakpoint.
 
-In a fixed set of states the response is linear, and the path is a chain of straight pieces; at each breakpoint one gap point
-changes state and the path turns (`direction.py`). When nothing stops the motion at a constant multiplier,
+In a fixed set of states the response is linear, and the path is a chain of straight pieces; at each breakpoint one gap
+point changes state and the path turns (`direction.py`). When nothing stops the motion at a constant multiplier,
 it is the collapse mechanism.
 """
 
@@ -98,7 +98,7 @@ class PathFollower:
         return self.n_slip > 0 and not self.direction.bordered
 
     def refresh(self, crossed: tuple[Change, float] | None = None) -> None:
-        """Factorise afresh, solve for the direction again, on over the breakpoint just crossed, and remove the drift."""
+        """Factorise afresh, solve for the direction again, on over the breakpoint crossed, and remove the drift."""
         self.direction.solve_anew(self.state, self.extent, crossed)
         self._remove_drift()
 
@@ -210,7 +210,7 @@ class PathFollower:
         return PathEnd.TURNED_DOWN if rising and way.speed < 0.0 and self._turned_before() else None
 
     def _turned_before(self) -> bool:
-        """Whether the path turned down here before: from a commit, where many breakpoints meet, it may run in a loop."""
+        """Whether the path turned down here before: from a commit, where many breakpoints meet, it may loop."""
         turn = self.last_point, self.last_old, float(f"{self.multiplier:.11g}")
         known = turn in self.turns
         self.turns.add(turn)

@@ -5,8 +5,8 @@ When a gap point changes state at a breakpoint, K turns into K + a b' and, with 
 
     v' = (1 - b'w) v + (b'v) w,   l' = (1 - b'w) l + (b'v) m,
 
-which keeps b'v' = b'v: the breakpoint function that was crossed moves on into the new cell (Katzenelson, 1965; Eaves and
-Scarf, 1976), so that a path cannot turn back on itself, and nothing is divided by 1 - b'w, which vanishes at limit
+which keeps b'v' = b'v: the breakpoint function that was crossed moves on into the new cell (Katzenelson, 1965; Eaves
+and Scarf, 1976), so that a path cannot turn back on itself, and nothing is divided by 1 - b'w, which vanishes at limit
 points. On soft pieces the tangent itself is nearly singular. There the fastest displacement is pinned by a spring, and
 one more for each further soft motion, K + sum e e', and the factor of that is used to solve K v = l live with the first
 of them held (bordering; Keller, 1977). Velocities, rates of the multiplier and of the gaps are then refined to twice
@@ -214,7 +214,8 @@ class PathDirection:
         """Turn onto the next piece.
 
         Args:
-            change: the point that changes state, already changed in `state`; crossing: rate b'v of its breakpoint function.
+            change: the point that changes state, already changed in `state`; crossing: rate b'v of its breakpoint
+                function.
 
         Returns:
             False where the tangent must be factorised afresh; velocity and rate of the multiplier are near then.

@@ -77,9 +77,9 @@ class PlateauState:
 def finish(model: WallModel, present: PathSnapshot, kept: PathSnapshot | None = None) -> PlateauState | None:
     """The best collapse state of a path that has come to a plateau, or broke off after a mechanism; None if none.
 
-    The state on the last piece is solved for exactly; where that overshoots a breakpoint, or several mechanisms move at once,
-    the state as traced, one solved for with some inertia, and the last mechanism kept on the way are tried. Which one
-    holds is decided by their residuals alone.
+    The state on the last piece is solved for exactly; where that overshoots a breakpoint, or several mechanisms move at
+    once, the state as traced, one solved for with some inertia, and the last mechanism kept on the way are tried. Which
+    one holds is decided by their residuals alone.
     """
     shots = [present] if kept is None else [present, kept]
     best: PlateauState | None = None

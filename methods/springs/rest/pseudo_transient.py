@@ -11,8 +11,8 @@ friction history also freezes the shears in. Near rest plain Newton finds the eq
 singular, as in a statically determinate wall, the wall is at rest when neither forces of inertia nor limits move any
 more. There the law of the gap points holds as it does on the exact path. A wall that falls comes to a steady motion.
 
-On walls of many irregular blocks the exact path goes to and fro over tens of thousands of breakpoints on its way up. There
-the load is raised in finite steps instead, each until the wall has come to rest again.
+On walls of many irregular blocks the exact path goes to and fro over tens of thousands of breakpoints on its way up.
+There the load is raised in finite steps instead, each until the wall has come to rest again.
 """
 
 from __future__ import annotations

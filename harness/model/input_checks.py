@@ -1,4 +1,4 @@
-"""Slips that a file can be computed with and was hardly meant to have: an angle as friction, units, vanishing loads."""
+"""Checks of input that can be computed with and was hardly meant: an angle as friction, units, vanishing loads."""
 
 from __future__ import annotations
 
@@ -35,7 +35,7 @@ def thickness_of(block: Block, wall: Wall) -> float:
     return wall.thickness if wall.thickness is not None else wall.units.metre
 
 
-def slip_warnings(wall: Wall, blocks: list[Block], assembly: Assembly) -> list[str]:
+def input_warnings(wall: Wall, blocks: list[Block], assembly: Assembly) -> list[str]:
     """Sentences about frictions, unit weights, sizes and loads of a wall that were hardly meant."""
     return [
         *_friction_slips(wall, assembly),

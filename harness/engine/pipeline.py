@@ -1,0 +1,189 @@
+"""The one way from a run to its result: found in the store or made, judged, held against references, and kept."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Generator, Iterator, Mapping, Sequence
+from contextlib import AbstractContextManager, closing, nullcontext
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from harness.engine.executors import Executor, Job, LocalExecutor
+from harness.engine.judge import judge
+from harness.engine.provenance import judge_version
+from harness.engine.run import Run
+from harness.engine.verdict import compare, overall
+from harness.model.assembly import Assembly
+from harness.model.errors import InputError
+from harness.model.result import Judgement, Result
+
+if TYPE_CHECKING:
+    from harness.engine.store import Store
+
+Told = Callable[[Run, Result, bool], None]
+"""Called after every run with the run, its result and whether it came from the store."""
+
+
+def opened_at(path: str | Path | None) -> AbstractContextManager[Store | None]:
+    """The store of a file, closed at the end; None where there is no path.
+
+    Raises:
+        InputError: as of `harness.engine.store.open_store`.
+    """
+    if path is None:
+        return nullcontext()
+    from harness.engine.store import open_store
+
+    return open_store(Path(path))
+
+
+def execute(
+    runs: Sequence[Run],
+    store: Store | None,
+    jobs: int,
+    *,
+    fresh: bool = False,
+    told: Told | None = None,
+    executor: Executor | None = None,
+) -> list[Result]:
+    """Results of runs, in their order. Each is stored as soon as it is there.
+
+    Args:
+        runs: what to run.
+        store: where results are looked for and kept; None: nowhere.
+        jobs: number of child processes at a time.
+        fresh: run what is in the store as well.
+        told: called after each run.
+        executor: where runs are made; None: in child processes of this machine.
+
+    Raises:
+        InputError: a wall that cannot be built, or a store that is damaged or cannot be written.
+    """
+    results: dict[int, Result] = {}
+    with closing(executed(runs, store, executor or LocalExecutor(jobs), fresh=fresh)) as ended:
+        for number, result, stored in ended:
+            results[number] = result
+            if told:
+                told(runs[number], result, stored)
+    return [results[number] for number in range(len(runs))]
+
+
+def executed(
+    runs: Sequence[Run],
+    store: Store | None,
+    executor: Executor,
+    *,
+    fresh: bool = False,
+    whole: bool = True,
+    refused: list[tuple[int, InputError]] | None = None,
+) -> Generator[tuple[int, Result, bool]]:
+    """Numbers and results of runs as they end, and whether the result came from the store: those first.
+
+    A run that is planned twice is made once. Closing the generator stops what is under way; what ended is stored.
+
+    Args:
+        runs: what to run.
+        store: where results are looked for and kept; only this process writes it. None: nowhere.
+        executor: where runs are made.
+        fresh: run what is in the store as well.
+        whole: stored results with forces, mechanism and details, judged anew; False: without, which is quick, with the
+            word of the judge that was kept, unless the judge is another now.
+        refused: takes the numbers of runs whose wall cannot be built, with the reason; None: the reason is raised.
+
+    Raises:
+        InputError: a wall that cannot be built, or a store that is damaged or cannot be written.
+    """
+    waiting: dict[str, list[int]] = {}
+    looked_in = None if fresh else store
+    summaries = {} if whole or looked_in is None else looked_in.summaries({run.key for run in runs})
+    for number, run in enumerate(runs):
+        found = None if looked_in is None else _found(run, looked_in, None if whole else summaries)
+        if found is None:
+            waiting.setdefault(run.key or f"run {number}", []).append(number)
+        else:
+            yield number, found, True
+    same = list(waiting.values())
+    firsts = [runs[numbers[0]] for numbers in same]
+    assemblies: dict[int, Assembly] = {}
+
+    def jobs() -> Iterator[Job]:
+        for place, run in enumerate(firsts):
+            try:
+                assemblies[place] = run.case.assembly
+            except InputError as error:
+                if refused is None:
+                    raise
+                refused.extend((number, error) for number in same[place])
+            else:
+                yield Job(place, run.case.id, run.task(assemblies[place]))
+
+    with closing(executor.map(jobs(), {run.method for run in firsts})) as made:
+        for place, measured in made:
+            run, result = firsts[place], measured.result
+            known = {
+                "key": run.key,
+                "given": [motion.found_by for motion in run.given],
+                "judge": _word(assemblies.pop(place), result, measured.tolerance),
+            }
+            result = result.model_copy(update=known)
+            if store is not None and run.key:
+                store.put(run.key, result, measured.tolerance)
+            for number in same[place]:
+                yield number, _held(runs[number], result), False
+
+
+def judged(run: Run, result: Result, tolerance: float) -> Result:
+    """A stored result with the judge's word, its comparisons and the doubts about its wall, made anew.
+
+    Raises:
+        InputError: its arrays are not of the size of its wall.
+    """
+    _fits(run, result)
+    return _held(run, result.model_copy(update={"judge": _word(run.case.assembly, result, tolerance)}))
+
+
+def _found(run: Run, store: Store, summaries: Mapping[str, dict[str, Any]] | None) -> Result | None:
+    """The result of a run that the store has, judged; with summaries one without its fields."""
+    if summaries is not None:
+        if run.key not in summaries:
+            return None
+        try:
+            result = Result.model_validate(summaries[run.key], strict=False)
+        except ValueError as error:
+            raise store.damaged(f"the result of {run.method} on {run.case.id} in it", error) from None
+        if result.judge.code == judge_version():
+            return _held(run, result)
+    found = store.get(run.key)
+    if found is None:
+        return None
+    result = judged(run, *found)
+    if summaries is not None:  # so that it is quick next time
+        store.put(run.key, found[0].model_copy(update={"judge": result.judge}), found[1])
+    return result
+
+
+def _word(assembly: Assembly, result: Result, tolerance: float) -> Judgement:
+    return judge(assembly, result, tolerance).model_copy(update={"code": judge_version()})
+
+
+def _held(run: Run, result: Result) -> Result:
+    """A judged result as one of its run: held against its references, with the doubts about its wall."""
+    result = result.model_copy(update={"case": run.case.id, "warnings": list(run.case.warnings)})
+    comparisons = [compare(reference, result) for reference in run.references]
+    return result.model_copy(update={"comparisons": comparisons, "verdict": overall(comparisons)})
+
+
+def _fits(run: Run, result: Result) -> None:
+    """Refuse a result whose arrays are not of the size of its wall, as of a store that another hand has changed.
+
+    Raises:
+        InputError: naming the run and the array.
+    """
+    blocks, interfaces = run.case.assembly.n_blocks, run.case.assembly.n_interfaces
+    for name, rows in (("forces", interfaces), ("states", interfaces), ("mechanism", blocks)):
+        listed = getattr(result, name)
+        if listed is not None and len(listed) != rows:
+            raise InputError(
+                f"its {name} have {len(listed)} entries and its wall needs {rows}: it was not made for this wall",
+                "Run with --fresh to make it again",
+                f"the stored result of {run.method} on {run.case.id}",
+            )

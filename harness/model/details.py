@@ -1,0 +1,155 @@
+"""What an answer's details say, by type: the one place that knows the names under which methods put it.
+
+A method may add details of its own. A detail of another type than is declared here counts as missing.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from harness.model.assembly import FloatArray
+
+
+@dataclass(frozen=True)
+class LastImprovement:
+    """The last lower state that a search found.
+
+    Attributes:
+        source: starting-point strategy that led to it.
+        multiplier: of the state; None where it is not said.
+        cpu_seconds: processor time after which it was reached [s]; None where it is not said.
+    """
+
+    source: str
+    multiplier: float | None
+    cpu_seconds: float | None
+
+
+@dataclass(frozen=True)
+class SweepOrder:
+    """The bracket of one order in which distinct elements are swept.
+
+    Attributes:
+        name: of the order.
+        held: the greatest multiplier that was held; None where none was.
+        moving: the least at which the wall moved; None where it did not.
+    """
+
+    name: str = ""
+    held: float | None = None
+    moving: float | None = None
+
+
+@dataclass(frozen=True)
+class Release:
+    """The collapse that followed the release of a wall just above its multiplier.
+
+    Attributes:
+        time_unit: of its times; empty where walls have none.
+        frames: (k, n, 3) displacements (x, y) [length] and rotations of the blocks; None where there are none.
+    """
+
+    time_unit: str
+    frames: FloatArray | None
+
+
+@dataclass(frozen=True)
+class AnswerDetails:
+    """Details of an answer that the engine and the report read, by type.
+
+    Attributes:
+        data: the details as the method gives them, JSON values by name.
+    """
+
+    data: dict[str, Any]
+
+    @property
+    def unknowns(self) -> int | None:
+        """Of every method: number of unknowns of its largest problem."""
+        found = self.data.get("unknowns")
+        return None if found is None else int(found)
+
+    @property
+    def stopped_by_limit(self) -> bool:
+        """Of every method: whether the time limit ended it."""
+        return bool(self.data.get("stopped_by_limit"))
+
+    @property
+    def associated(self) -> float | None:
+        """Of searches for the least state: the associated maximum."""
+        return _float(self.data.get("associated"))
+
+    @property
+    def start_values(self) -> list[float]:
+        """Of searches for the least state: the multiplier that each start led to."""
+        return [float(value) for value in self.data.get("start_values") or ()]
+
+    @property
+    def last_improvement(self) -> LastImprovement | None:
+        """Of searches for the least state: the last lower state that was found."""
+        listed = self.data.get("improvements")
+        last = listed[-1] if isinstance(listed, list) and listed else None
+        if not isinstance(last, dict) or not isinstance(last.get("source"), str):
+            return None
+        return LastImprovement(last["source"], _number(last.get("multiplier")), _number(last.get("cpu_seconds")))
+
+    @property
+    def certificate(self) -> dict[str, Any] | None:
+        """Of proofs: a document for `drystone verify-bound`."""
+        found = self.data.get("certificate")
+        return found if isinstance(found, dict) else None
+
+    @property
+    def peak(self) -> float | None:
+        """Of load paths: the greatest multiplier."""
+        return _float(self.data.get("peak"))
+
+    @property
+    def plateau(self) -> float | None:
+        """Of load paths: the multiplier at which displacements grow without end."""
+        return _float(self.data.get("plateau"))
+
+    @property
+    def plateaus(self) -> list[float]:
+        """Of load paths: the plateau of each history of friction."""
+        entries = [entry for entry in self.data.get("histories") or () if isinstance(entry, dict)]
+        return [entry["plateau"] for entry in entries if isinstance(entry.get("plateau"), float)]
+
+    @property
+    def orders(self) -> list[SweepOrder] | None:
+        """Of distinct elements: the bracket of each sweep order; None where they are not said."""
+        found = self.data.get("orders")
+        return [_order(item) for item in found] if isinstance(found, list) else None
+
+    @property
+    def reported_order(self) -> SweepOrder:
+        """Of distinct elements: the sweep order that the answer reports; without ends where it names none."""
+        name = self.data.get("reporting_order")
+        return next((order for order in self.orders or () if order.name == (name or "")), SweepOrder())
+
+    @property
+    def release(self) -> Release | None:
+        """Of distinct elements: the collapse that followed."""
+        found = self.data.get("release")
+        if not isinstance(found, dict):
+            return None
+        frames = found.get("frames")
+        listed = np.array(frames, dtype=float) if isinstance(frames, list) else None
+        return Release(found.get("time_unit", ""), listed)
+
+
+def _float(value: Any) -> float | None:
+    return value if isinstance(value, float) else None
+
+
+def _number(value: Any) -> float | None:
+    return float(value) if isinstance(value, int | float) else None
+
+
+def _order(data: Any) -> SweepOrder:
+    if not isinstance(data, dict):
+        return SweepOrder()
+    return SweepOrder(str(data.get("order", "")), _number(data.get("held")), _number(data.get("moving")))

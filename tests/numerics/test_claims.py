@@ -1,0 +1,65 @@
+"""What statics alone says against a fall that was measured."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from harness.engine.judge import answered
+from harness.model.assembly import Assembly
+from harness.model.method import Answer, Finding, Status, load_method
+from harness.model.reading import read_wall
+from methods.numerics.claims import at_limit
+from tests.known_walls import WALLS
+
+EDGE = Path(__file__).parent.parent / "data" / "knife-edge"
+
+
+def measured_fall(wall: Assembly) -> Answer:
+    motion = np.where(wall.fixed[:, None], 0.0, [0.0, -1.0, 0.0])
+    return Answer(Status.OK, Finding.FALLS, "It falls", mechanism=motion, flow="approximate")
+
+
+def test_a_frictionless_stack_that_stands_is_not_said_to_fall_by_joints_that_give():
+    """It bears .02723503; rounded corners of soft joints take more than that from it."""
+    wall = read_wall(EDGE / "pz4-in-mu0.json").assembly
+    result, judgement = answered(load_method("de-soft"), wall)
+    assert (result.status, result.finding) == (Status.NOT_CONVERGED, Finding.NONE)
+    assert "0.02723503" in result.sentence
+    assert judgement.outcome == "not_judged"
+
+
+@pytest.mark.parametrize(("friction", "dilatancy", "stands"), [(0.5, 0.0, False), (0.5, 0.5, True), (0.0, 0.0, True)])
+def test_equilibrium_refutes_a_fall_only_where_no_slip_works_against_friction(friction, dilatancy, stands):
+    wall = WALLS["stack that topples"]()
+    size = np.ones_like(wall.friction)
+    wall = replace(wall, friction=friction * size, dilatancy=dilatancy * size)
+    if friction == 0.0:
+        wall = replace(wall, live=np.where(wall.fixed[:, None], 0.0, [0.0, 0.0, -1.0]))  # turned, which no slip bears
+    found = at_limit(wall, measured_fall(wall))
+    assert (found.finding is Finding.NONE) is stands
+    assert (found.finding is Finding.FALLS) is not stands
+
+
+def test_what_only_its_live_load_holds_up_falls_under_its_dead_load():
+    """Between smooth supports it falls; drawn up by its weight it hangs. Statics bears 1, and nothing at zero."""
+    wall = WALLS["falls between supports, drawn up"]()
+    found = at_limit(wall, measured_fall(wall))
+    assert found.finding is Finding.FALLS
+    assert found.sentence == "It falls"
+
+
+def test_falls_of_springs_near_their_limit_depend_on_the_springs_and_are_not_judged():
+    """Goodman and Bray's columns stand from a friction of .7854 by their recursion; springs share forces otherwise."""
+    wall = read_wall(EDGE / "gb16-7855-l.json").assembly
+    fe = load_method("fe")
+    result, judgement = answered(fe, wall)
+    assert (result.finding, judgement.outcome) == (Finding.FALLS, "not_judged")
+    assert "Statics alone would bear up to 0.0967" in result.sentence
+    at = replace(wall, friction=np.full_like(wall.friction, 0.79))
+    soft, stiff = (fe.solve(at, fe.Settings(stiffness_ratio=ratio)) for ratio in (0.05, 10.0))
+    assert soft.finding is Finding.FALLS
+    assert stiff.multiplier == pytest.approx(0.0040, rel=0.02)

@@ -1,0 +1,85 @@
+"""Report, terminal and tables show the strength of joints, and plastic and residual multipliers side by side."""
+
+from __future__ import annotations
+
+import csv
+import json
+from pathlib import Path
+
+import pytest
+
+import drystone
+from harness.formats.exporting import matrices
+from harness.model.build import build
+from harness.model.wall import Wall
+from reports.strength import strength_text
+from tests.commands import drystone as command
+from tests.walls import assembly, stack, wall_data
+
+DATA = wall_data(stack(1, 1.0, 0.2), 0.5, cohesion=1.0, tensile_strength=2.0)
+
+
+@pytest.fixture(scope="module")
+def written(tmp_path_factory: pytest.TempPathFactory) -> tuple[str, list[dict[str, str]]]:
+    folder = tmp_path_factory.mktemp("strength")
+    compared = drystone.compare(drystone.library_wall("bonded-block-slides"), isolated=False)
+    page = compared.report(folder / "report.html").read_text(encoding="utf-8")
+    with (folder / "report-data" / "results.csv").open(encoding="utf-8") as file:
+        return page, list(csv.DictReader(file))
+
+
+def test_report_shows_plastic_and_residual_side_by_side(written: tuple[str, list[dict[str, str]]]):
+    page, _ = written
+    assert "With and without the strength of the joints" in page
+    assert '<th scope="row">la</th><td class="num">0.75000</td><td class="num">0.50000</td>' in page
+    assert "la-associated (upper bound)" in page
+    assert "<dt>Strength of joints</dt><dd>cohesion c A 1 kN, tension T 0 kN; all interfaces</dd>" in page
+
+
+def test_results_have_the_residual_multiplier(written: tuple[str, list[dict[str, str]]]):
+    _, rows = written
+    found = {row["method"]: (float(row["multiplier"]), float(row["residual_multiplier"])) for row in rows}
+    assert found == {"la": (pytest.approx(0.75), pytest.approx(0.5))} | {
+        "la-associated": (pytest.approx(0.75), pytest.approx(0.5))
+    }
+    assert {row["residual_finding"] for row in rows} == {"collapses"}
+
+
+def test_a_dry_wall_has_no_such_table_and_empty_columns(tmp_path: Path):
+    compared = drystone.compare(drystone.library_wall("slide"), ["la-associated"], isolated=False)
+    page = compared.report(tmp_path / "report.html").read_text(encoding="utf-8")
+    assert "strength of the joints" not in page
+    assert "Strength of joints" not in page
+    with (tmp_path / "report-data" / "results.csv").open(encoding="utf-8") as file:
+        assert [row["residual_multiplier"] for row in csv.DictReader(file)] == [""]
+
+
+def test_terminal_says_both_and_which_is_safe_and_who_refuses(tmp_path: Path):
+    path = tmp_path / "glued.json"
+    path.write_text(json.dumps(DATA), encoding="utf-8")
+    done = command("compare", path, "--methods", "la-associated,fe,de", cwd=tmp_path)
+    said = " ".join(done.stdout.split())
+    assert "la-associated 0.7500000 plastic, 0.5000000 residual, an upper bound" in said
+    assert "rely on the residual value of a method that is no upper bound" in said
+    for method in ("fe", "de"):
+        assert f"{method} takes dry joints only" in said
+    assert "Take a method that knows the strength of joints (la, la-associated, la-associated-cvxpy)" in said
+    alone = command("run", "la-associated", path, cwd=tmp_path)
+    assert "0.5000000, without cohesion and tensile strength" in alone.stdout
+
+
+def test_exports_hold_the_strength_of_joints_that_have_any():
+    built = build(Wall.model_validate(DATA))
+    assert matrices(built, None)["constant"].tolist() == [[1.0, 1.0, 1.0, 1.0]]
+    assert "constant" not in matrices(build(Wall.model_validate(wall_data(stack(1), 0.5))), None)
+
+
+def test_strength_of_some_joints_is_told_with_their_number():
+    rules = {"default": 0.5, "rules": [{"joint": "bed", "value": 0.5, "cohesion": 2.0}]}
+    bond = {"type": "running_bond", "block_length": 1.0, "block_height": 0.5, "count": 2, "bricks": 2}
+    wall = assembly(bond, rules)
+    beds = sum(name == "bed" for name in wall.joint)
+    assert strength_text(wall, "kN") == (
+        f"cohesion c A 0 to 2 kN, tension T 0 kN; {beds} of {wall.n_interfaces} interfaces"
+    )
+    assert strength_text(assembly(bond), "kN") == ""
