@@ -69,7 +69,7 @@ class Result(Record):
 
     def to_pandas(self) -> pd.DataFrame:
         """One row with the columns of results.csv; `attrs["units"]` names the unit of each measured column."""
-        from reports.export import result_frame
+        from reports.page.export import result_frame
 
         return result_frame([(self, self.proof)])
 
@@ -104,7 +104,7 @@ class Result(Record):
         Raises:
             InputError: an unknown kind, or an answer without the field to draw.
         """
-        from reports.figures import results_figure
+        from reports.drawing.figures import results_figure
 
         return results_figure(self._wall.case, [self], kind)
 

@@ -59,7 +59,7 @@ PACKAGES = {
     "formats": ("harness/formats/*.py", "tests/formats"),
     "engine": ("harness/engine/*.py", "tests/engine tests/faults"),
     "studies": ("harness/engine/sweep/*.py drystone/studies.py", "tests/engine tests/reports"),
-    "reports": ("reports/**/*.py", "tests/reports"),
+    "reports": ("reports/*.py reports/*/*.py", "tests/reports"),
     "fe": ("methods/fe/*.py methods/springs/**/*.py", "tests/fe tests/springs"),
     "la": ("methods/la/*.py methods/la/core/*.py methods/la/interior/*.py methods/la/sources/*.py", "tests/la"),
     "de": ("methods/de/**/*.py", "tests/de"),

@@ -15,9 +15,9 @@ from harness.model.comparison import CaseResults
 from harness.model.live_load import reversed_live
 from harness.model.method import Finding
 from harness.model.result import Result
-from reports.appendix import render, write_appendix
-from reports.facts import value_in_words
-from reports.reactions import out_of_balance, reactions
+from reports.findings.reactions import out_of_balance, reactions
+from reports.labels.wall_summary import value_in_words
+from reports.page.appendix import render, write_appendix
 from tests.commands import drystone
 from tests.reports import samples
 from tests.walls import assembly, stack

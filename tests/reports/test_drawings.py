@@ -16,11 +16,13 @@ from matplotlib.text import Text
 from cases.start import stack as column
 from harness.model.comparison import CaseResults, ComparisonRun
 from harness.model.inspection import inspect
-from reports import build, drawing, figures, flow, shapes
-from reports.animate import frames
-from reports.drawing import Frame
-from reports.force_drawing import forces_svg
-from reports.inspected import inspected_figure
+from reports import drawing
+from reports.drawing import Frame, figures
+from reports.drawing.animate import frames
+from reports.drawing.force_drawing import forces_svg
+from reports.drawing.wall_check_figure import inspected_figure
+from reports.geometry import shapes, thrust_lines
+from reports.page import build
 from tests.reports import samples
 from tests.reports.read_chart import NUMBER, points_of
 from tests.walls import case as wall_case
@@ -56,14 +58,14 @@ def test_all_that_is_drawn_of_a_wall_lies_in_its_window_and_fills_it(pattern: di
 def test_lines_of_forces_end_in_their_heads_and_are_as_wide_as_the_forces_are_large():
     case = samples.bond(courses=4, bricks=3)
     result = samples.solved(case, "la", 0.5)
-    found = shapes.thrusts(case.assembly, np.asarray(result.forces), smallest=flow.STYLE.smallest)
+    found = shapes.thrusts(case.assembly, np.asarray(result.forces), smallest=thrust_lines.STYLE.smallest)
     drawn = forces_svg(case, result)
     heads = [points_of(path) for data in re.findall(r'class="tip-of" d="([^"]*)"', drawn) for path in data.split("z")]
     triangles = shapely.union_all([shapely.Polygon(head).buffer(1.5) for head in heads if len(head) == 3])
     frame = Frame(case.assembly)
     tails = {
         frame.place(end): size
-        for end, size in zip(flow.drawn_ends(case.assembly, found)[:, 0], found.size, strict=True)
+        for end, size in zip(thrust_lines.drawn_ends(case.assembly, found)[:, 0], found.size, strict=True)
     }
     lines = [
         (float(width), points_of(line))

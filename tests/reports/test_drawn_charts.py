@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 
 from harness.model.comparison import CaseResults, ComparisonRun
-from reports import charts, studies
-from reports.study_page import StudyPage, render
+from reports.charts import charts, studies
+from reports.page.study_page import StudyPage, render
 from tests.reports import samples
 from tests.reports.read_chart import Read
 from tests.reports.test_study_page import page_of, tables_of, walls
