@@ -16,6 +16,7 @@ from reports.drawing.mechanism_drawing import overlay_drawing
 from reports.drawing.svg import inline
 from reports.findings import joints, reasons
 from reports.findings.limits import known_limits
+from reports.labels import labels
 from reports.page import build, summary, tables
 from tests.reports import samples
 
@@ -365,7 +366,7 @@ def test_a_reference_that_is_a_range_is_printed_with_both_ends():
     result = samples.solved(case, "la", 0.5)
     samples.held_against(case, result, "known", Verdict.AGREES)
     ((row,),) = tables.run_rows(ComparisonRun("known", "", "", [CaseResults(case, [result])]))
-    assert row.reference.text == "in [0.45, 0.61]"
+    assert row.cell("reference").text == "in [0.45, 0.61]"
 
 
 def test_the_reference_that_stands_in_the_row_is_the_one_that_matters_most():
@@ -380,7 +381,7 @@ def test_the_reference_that_stands_in_the_row_is_the_one_that_matters_most():
 
     def told() -> str:
         ((row,),) = tables.run_rows(ComparisonRun("known", "", "", [CaseResults(case, [result])]))
-        return row.reference.text
+        return row.cell("reference").text
 
     samples.held_against(case, result, "width", Verdict.AGREES)
     assert told() == "width 0.2"
