@@ -55,10 +55,15 @@ class Frame:
         return round(min(1.0, max(0.3, self.block / 450.0)), 2)
 
     @property
+    def below(self) -> int:
+        """Room below the wall: the scales of lengths and forces stand beside each other where it is wide enough."""
+        return BELOW if self.extent.width * self.scale >= 0.55 * SIZE else 2 * BELOW
+
+    @property
     def box(self) -> Box:
         """The part to show: the wall and room round it for loads and motion."""
         width, height = self.extent.width * self.scale, self.extent.height * self.scale
-        return -MARGIN, -MARGIN, width + 2 * MARGIN, height + MARGIN + BELOW
+        return -MARGIN, -MARGIN, width + 2 * MARGIN, height + MARGIN + self.below
 
     def place(self, points: FloatArray) -> FloatArray:
         """Points (..., 2) [length] in drawing units."""

@@ -155,6 +155,8 @@ def test_the_scales_of_lengths_and_forces_cover_neither_each_other_nor_the_wall(
     assert all(shapely.box(left, top, left + wide, top + high).contains(box) for box in boxes)
     foot = max(part.points[:, 1].max() for part in parts if part.role in ("ground", "outline"))
     assert all(box.bounds[1] > foot for box in boxes)
+    right = Frame.of(case.assembly).place(case.assembly.corners[0].max(axis=0))[0]
+    assert boxes[2].bounds[2] == pytest.approx(right, abs=1)
     assert not any(one.intersects(other) for one, other in combinations(boxes, 2))
 
 
