@@ -53,12 +53,16 @@ def _levels(spread: pd.DataFrame, grid: Sequence[str]) -> Iterator[str]:
         about = f"{method} on {case}" if told["case"].nunique() > 1 else str(method)
         least, most = group.sort_values("mean_low").iloc[0], group.sort_values("mean_high").iloc[-1]
         brackets, answered = int(group["brackets"].sum()), int(group["answered"].sum())
-        if varied and least.name != most.name:
-            mean = "mean multipliers" if (group["answered"] > 1).any() else "multipliers"
+        low, high = float(least["mean_low"]), float(most["mean_high"])
+        mean = "mean multipliers" if (group["answered"] > 1).any() else "multipliers"
+        if varied and least.name != most.name and low < high:
             said = (
                 f"{mean} from {_mean_text(least)} ({_place(least, varied)}) to {_mean_text(most)} "
                 f"({_place(most, varied)})"
             )
+        elif varied and len(group) > 1:
+            where = numbers.multiplier(low) if low == high else f"within {numbers.interval((low, high))}"
+            said = f"{mean} {where} at all points of the grid"
         elif answered > 1 and brackets < answered:
             only = group.iloc[0]
             said = (

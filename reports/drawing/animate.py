@@ -9,13 +9,14 @@ import numpy as np
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from PIL import Image
 
+from harness.model.assembly import Assembly, FloatArray
 from harness.model.case import Case
 from harness.model.displaced import carried, released
 from harness.model.errors import InputError
 from harness.model.result import Result
 from harness.model.writing import replacing
 from reports.drawing import figures
-from reports.drawing.display_list import DisplayList
+from reports.drawing.display_list import Box, DisplayList, Frame
 from reports.drawing.looks import COLOURS
 from reports.drawing.mechanism_drawing import moved_wall
 from reports.drawing.plot import plot
@@ -72,17 +73,38 @@ def frames(case: Case, result: Result) -> list[Image.Image]:
     assembly = case.assembly
     followed = released(result, assembly.n_blocks)
     if followed is not None:
-        return [_picture(case, result, displaced_drawing(case, carried(assembly, places))) for places in followed]
+        places = [carried(assembly, moved) for moved in followed]
+        box = _box(assembly, places)
+        return [_picture(case, result, displaced_drawing(case, outlines), box) for outlines in places]
     # The square of time lets the blocks move ever faster, as in a collapse.
-    scale = GREATEST * shapes.amplitude(assembly, np.asarray(result.mechanism, dtype=float))
+    mechanism = np.asarray(result.mechanism, dtype=float)
+    scale = GREATEST * shapes.amplitude(assembly, mechanism)
+    box = _box(assembly, [shapes.displaced(assembly, mechanism, scale)])
     times = np.linspace(0.0, 1.0, FRAMES).tolist()
-    return [_picture(case, result, moved_wall(assembly, result, scale * time**2)) for time in times]
+    return [_picture(case, result, moved_wall(assembly, result, scale * time**2), box) for time in times]
 
 
-def _picture(case: Case, result: Result, drawn: DisplayList) -> Image.Image:
+def _box(assembly: Assembly, places: list[list[FloatArray]], room: float = 60.0) -> Box:
+    """Left, top, width and height that all frames show: those of a drawing of the wall, with all places of its blocks.
+
+    Args:
+        assembly: the wall.
+        places: outlines (k, 2) of the blocks [length], by frame.
+        room: from the outermost corner to the edge, in drawing units.
+    """
+    frame = Frame.of(assembly)
+    left, top, width, height = frame.box
+    corners = np.concatenate([frame.place(np.concatenate(outlines)) for outlines in places])
+    low = np.minimum(corners.min(axis=0) - room, (left, top))
+    high = np.maximum(corners.max(axis=0) + room, (left + width, top + height))
+    (x, y), (wide, tall) = low.tolist(), (high - low).tolist()
+    return x, y, wide, tall
+
+
+def _picture(case: Case, result: Result, drawn: DisplayList, box: Box) -> Image.Image:
     """One frame: a title and a drawing."""
     with figures.style():
-        page, axes = figures.blank(case.assembly, 1, 1)
+        page, axes = figures.blank(case.assembly, 1, 1, box=box)
         value = "" if result.multiplier is None else f" at {numbers.multiplier(result.multiplier)}"
         axes[0][0].set_title(f"{case.id}, {result.method}{value}", pad=3, color=COLOURS["ink"])
         plot(axes[0][0], drawn)

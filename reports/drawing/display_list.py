@@ -18,6 +18,8 @@ from reports.geometry import shapes
 SIZE = 4000
 MARGIN = 560
 BELOW = 240
+Box = tuple[float, float, float, float]
+"""Left, top, width and height in drawing units."""
 
 
 @dataclass(frozen=True)
@@ -39,7 +41,7 @@ class Frame:
 
     @property
     def scale(self) -> float:
-        """DisplayList units in a length."""
+        """Drawing units in a length."""
         return SIZE / self.extent.longest
 
     @property
@@ -53,10 +55,15 @@ class Frame:
         return round(min(1.0, max(0.3, self.block / 450.0)), 2)
 
     @property
-    def box(self) -> tuple[float, float, float, float]:
-        """Left, top, width and height of the part to show: the wall and room round it for loads and motion."""
+    def below(self) -> int:
+        """Room below the wall: the scales of lengths and forces stand beside each other where it is wide enough."""
+        return BELOW if self.extent.width * self.scale >= 0.55 * SIZE else 2 * BELOW
+
+    @property
+    def box(self) -> Box:
+        """The part to show: the wall and room round it for loads and motion."""
         width, height = self.extent.width * self.scale, self.extent.height * self.scale
-        return -MARGIN, -MARGIN, width + 2 * MARGIN, height + MARGIN + BELOW
+        return -MARGIN, -MARGIN, width + 2 * MARGIN, height + MARGIN + self.below
 
     def place(self, points: FloatArray) -> FloatArray:
         """Points (..., 2) [length] in drawing units."""

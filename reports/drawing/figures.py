@@ -20,7 +20,7 @@ from harness.model.case import Case
 from harness.model.errors import InputError
 from harness.model.result import Result
 from harness.model.writing import replacing
-from reports.drawing.display_list import Frame
+from reports.drawing.display_list import Box, Frame
 from reports.drawing.force_drawing import force_drawing
 from reports.drawing.looks import COLOURS
 from reports.drawing.mechanism_drawing import mechanism_drawing
@@ -174,10 +174,17 @@ def metadata(path: Path) -> dict[str, Any]:
     return {"Date": None, "Creator": "Drystone"} if suffix == ".svg" else {"Software": "Drystone"}
 
 
-def blank(assembly: Assembly, rows: int, columns: int, head: str = "") -> tuple[Figure, Any]:
-    """A figure of a journal's width whose axes have the shape of the wall, with a line of text above all."""
+def blank(assembly: Assembly, rows: int, columns: int, head: str = "", box: Box | None = None) -> tuple[Figure, Any]:
+    """A figure of a journal's width with axes in the lengths of a wall, and a line of text above all.
+
+    Args:
+        assembly: the wall.
+        rows, columns: of axes.
+        head: the line of text.
+        box: the part that the axes show; that of a drawing of the wall if None.
+    """
     frame = Frame.of(assembly)
-    left, top, wide, high = frame.box
+    left, top, wide, high = box or frame.box
     width = COLUMN if columns == 1 else PAGE
     above = 0.22 + (0.34 if head else 0.0)
     height = min(rows * (width / columns * min(high / wide, 1.6) + 0.28) + above - 0.22, 9.2)

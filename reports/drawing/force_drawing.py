@@ -109,9 +109,10 @@ def _size(frame: Frame, point: FloatArray, size: float, *, level: bool) -> Text:
 
 
 def _force_scale(frame: Frame, largest: float, unit: str) -> list[Shape]:
-    """A line as wide as a round force is drawn, below the wall on the right."""
-    force = thrust_lines.round_number(largest)
-    x, y = frame.extent.width * frame.scale, frame.extent.height * frame.scale + BELOW // 2
+    """A line as wide as a round force is drawn, below the wall on the right, and no wider than there is room."""
+    room = 0.6 * BELOW
+    force = thrust_lines.round_number(largest * min(1.0, room / _width(frame, 1.0)))
+    x, y = frame.extent.width * frame.scale, frame.extent.height * frame.scale + frame.below - BELOW // 2
     line = np.array([(x - 330, y), (x, y)])
     text = Text("", (x + 60, y + 38), numbers.quantity(force, unit), 110, "start")
     return [Lines("force-scale", (line,), _width(frame, force / largest)), text]

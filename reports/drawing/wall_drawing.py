@@ -108,8 +108,8 @@ def _arrows(frame: Frame, assembly: Assembly, load: FloatArray, role: str, head:
 
 
 def length_scale(frame: Frame, unit: str) -> list[Shape]:
-    """A bar of a round length below the wall."""
-    length = thrust_lines.round_number(0.3 * frame.extent.longest)
+    """A bar of a round length below the wall, no longer than the wall is wide."""
+    length = thrust_lines.round_number(min(0.3 * frame.extent.longest, frame.extent.width))
     x, y = length * frame.scale, math.floor(frame.extent.height * frame.scale) + BELOW // 2
     bar = [[(0, y), (x, y)], *([(end, y - 40), (end, y + 40)] for end in (0, x))]
     text = numbers.quantity(length, unit)

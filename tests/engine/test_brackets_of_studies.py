@@ -135,3 +135,18 @@ def test_a_level_that_the_mean_alone_passes_is_given_with_its_uncertainty():
     assert "0.75 not up to 0.1 by the mean, within its uncertainty from 0.083 to beyond 0.1" in said
     said = str(drawn({0.0: [1.0, 1.0], 0.1: [0.65, 0.85]}, level=0.8)["sentence"])
     assert "0.8 at about 0.08 by the mean, within its uncertainty from 0.057 to beyond 0.1" in said
+
+
+def test_what_is_in_no_mean_is_told_in_the_singular_and_the_plural():
+    one = str(drawn({0.0: [1.0], 0.1: [0.8, (0.5, 0.7)]})["sentence"])
+    assert one.endswith("; 1 wall gave a wide bracket and is in no mean drawn.")
+    two = str(drawn({0.0: [1.0, (0.5, 0.7)], 0.1: [0.8, (0.5, 0.7)]})["sentence"])
+    assert two.endswith("; 2 walls gave a wide bracket and are in no mean drawn.")
+
+
+@pytest.mark.parametrize("unit", [1.0, 8.0])
+def test_a_change_in_percent_is_the_same_in_any_unit_of_load(unit: float):
+    curve = drawn({0.0: [unit], 0.1: [0.9 * unit, (0.5 * unit, 0.7 * unit)]}, relative=True)
+    (line,) = curve["series"]  # type: ignore[misc]
+    assert line["y"] == pytest.approx([0.0, -10.0])
+    assert (line["low"], line["high"]) == (pytest.approx([0.0, -50.0]), pytest.approx([0.0, -10.0]))

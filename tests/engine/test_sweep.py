@@ -17,8 +17,10 @@ import pandas as pd
 import pytest
 from scipy import stats
 
-from drystone.studies import shipped_studies
+from drystone.studies import changed, shipped_studies
+from drystone.studies import sweep as drystone_sweep
 from harness.engine.executors import LocalExecutor
+from harness.engine.plan import Limits
 from harness.engine.store import open_store
 from harness.engine.sweep import statistics
 from harness.engine.sweep.expand import SweepRun, expand, sources_of
@@ -89,6 +91,7 @@ def test_short_names_do_what_they_say():
         ({"vary": {"frction": [1.0]}}, "frction"),
         ({"vary": {"friction": [-1.0]}}, "friction = -1.0"),
         ({"vary": {"loads.live.body[3].per_weight": [[1, 0]]}}, "leads nowhere"),
+        ({"vary": {"loads.live.body[0].per_weight[2]": [0.5]}}, "leads nowhere"),
         ({"vary": {"a b": [1]}}, "no path"),
         ({"vary": {"proportion": [2.0]}}, "running bond"),
         ({"vary": {"settings.la-associated.solver": ["magic"]}}, "solver"),
@@ -110,6 +113,10 @@ def test_a_study_that_cannot_be_is_refused_before_anything_runs(changes: dict[st
         {"together": [{"friction": [0.1], "inset": [0.1, 0.2]}]},
         {"draw": {"friction": {"distribution": "normal", "mean": 0.5}}},
         {"vary": {"friction": {"from": 0.0, "to": 1.0, "count": 3, "log": True}}},
+        {"vary": {"friction": {"from": 1.0, "to": 0.0, "count": 3, "log": True}}},
+        {"draw": {"friction": {"distribution": "uniform", "low": 0.2, "high": 0.2}}},
+        {"draw": {"friction": {"distribution": "normal", "mean": 0.5, "deviation": 0.1, "low": 0.6, "high": 0.4}}},
+        {"draw": {"friction": {"distribution": "lognormal", "mean": 0.0, "deviation": 0.1}}},
     ],
 )
 def test_a_study_file_that_contradicts_itself_is_refused(changes: dict[str, Any]):
@@ -410,3 +417,92 @@ def small_disk(path: Path, how: str = "") -> sqlite3.Connection:
     connection = sqlite3.connect(path)
     connection.execute("PRAGMA max_page_count = 20")
     return connection
+
+
+def test_runs_are_numbered_in_order_whatever_walls_and_methods():
+    runs = runs_of(study(methods=["la-associated", "fe"], vary={"friction": [0.1, 0.2], "inset": [0.0, 0.1]}))
+    assert [run.number for run in runs] == list(range(8))
+
+
+def test_a_turned_load_is_turned_at_points_too():
+    loads = {"live": {"points": [{"block": "2", "at": [0.1, 0.4], "force": [3.0, 4.0]}]}}
+    for turn, force in (
+        (90.0, [-4.0, 3.0]),
+        (180.0, [-3.0, -4.0]),
+        (30.0, [3.0 * 0.75**0.5 - 2.0, 1.5 + 4.0 * 0.75**0.5]),
+    ):
+        changed = with_values(wall_data(stack(2)) | {"loads": loads}, {"direction": turn})
+        assert changed["loads"]["live"]["points"][0]["force"] == pytest.approx(force)
+
+
+def test_uniform_and_triangular_draws_lie_within_their_ends():
+    flat = {"distribution": "uniform", "low": 0.4, "high": 0.6}
+    peak = {"distribution": "triangular", "low": 0.2, "mode": 0.3, "high": 0.5}
+    runs = runs_of(study(draw={"friction": flat, "pattern.width": peak}, samples=400))
+    values = pd.DataFrame([dict(run.variant.values) for run in runs])
+    assert stats.kstest(values["friction"], stats.uniform(0.4, 0.2).cdf).pvalue > 0.5
+    assert stats.kstest(values["pattern.width"], stats.triang(1.0 / 3.0, 0.2, 0.3).cdf).pvalue > 0.5
+
+
+def test_wall_files_of_a_study_are_looked_for_beside_it(tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
+    folder = tmp_path / "studies"
+    folder.mkdir()
+    (folder / "mine.json").write_text(json.dumps(wall_data(stack(3))))
+    monkeypatch.chdir(tmp_path)
+    asked = study(wall=None, cases=["mine.json"])
+    (source,) = sources_of(asked, place=folder)
+    assert source.data["pattern"]["count"] == 3
+    with pytest.raises(InputError, match="mine"):
+        sources_of(asked)
+    monkeypatch.chdir(folder)
+    assert sources_of(asked) == [source]
+
+
+def test_a_quick_study_keeps_the_limits_that_were_asked():
+    limits = Limits(7.0, 3 * 2**30)
+    asked = quick_study("wall-21", ["fe"], {}, limits, [], vary=["friction=0.1,0.2"])
+    assert (asked.limits.seconds, asked.limits.memory) == (7.0, 3 * 1024)
+    assert runs_of(asked)[0].limits == limits
+
+
+def test_a_study_is_changed_where_something_is_given_and_else_not():
+    own = study(settings={"la-associated": {"solver": "highs"}}, multipliers=[0.1], methods=["la-associated", "fe"])
+    assert changed(own) == own
+    more = changed(own, ["fe"], {"fe": {"points": 3}}, [0.2], neighbours=True)
+    assert (more.methods, more.multipliers, more.neighbours) == (["fe"], [0.2], True)
+    assert more.settings == {"la-associated": {"solver": "highs"}, "fe": {"points": 3}}
+    with pytest.raises(InputError, match="magic"):
+        drystone_sweep(own, settings={"la-associated": {"solver": "magic"}})
+
+
+def test_lost_runs_are_counted_beside_the_mean_of_the_others():
+    asked = study(methods=["la"], vary={"seed": {"seeds": 4}})
+    assert summarise(asked, made_up([0.5, 0.6, None, None])).by_method() == [{"la": "0.55 ± 0.071 (2 of 4 lost)"}]
+    assert summarise(asked, made_up([0.5, 0.6])).by_method() == [{"la": "0.55 ± 0.071"}]
+    assert summarise(asked, made_up([None])).by_method() == [{"la": "no answer"}]
+
+
+def test_walls_that_all_collapse_at_one_multiplier_have_no_lognormal_curve():
+    curve = statistics.fragility(made_up([0.5] * 6), ["case", "method"])
+    assert curve["probability"].tolist() == [1.0]
+    assert curve[["lognormal", "lognormal_low", "lognormal_high", "median", "dispersion"]].isna().all(axis=None)
+
+
+def test_the_band_of_a_lognormal_curve_is_as_wide_as_theory_says():
+    # Of n walls the deviation of the fitted probability at the median is that of the mean: phi(0) / sqrt(n).
+    rng = np.random.default_rng(5)
+    curve = statistics.fragility(made_up(list(np.exp(0.3 * rng.standard_normal(300)))), ["case", "method"])
+    middle = curve.iloc[(curve["lognormal"] - 0.5).abs().argmin()]
+    half = 1.959964 * stats.norm.pdf(0.0) / np.sqrt(300)
+    # ends from 400 samples scatter by a twentieth or so each
+    assert 0.5 * (middle["lognormal_high"] - middle["lognormal_low"]) == pytest.approx(half, rel=0.1)
+
+
+@pytest.mark.parametrize(("walls", "told"), [(19, False), (20, True)])
+def test_ten_walls_a_quantity_tell_what_matters_and_fewer_do_not(walls: int, told: bool):
+    rng = np.random.default_rng(1)
+    first, second = rng.random(walls), rng.random(walls)
+    found = statistics.sensitivity(
+        made_up(list(0.3 + first), first=first, second=second), ["first", "second"], ["case"]
+    )
+    assert len(found) == (2 if told else 0)

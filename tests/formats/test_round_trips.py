@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
+import csv
+import io
 import json
+import re
 from pathlib import Path
 from xml.etree import ElementTree
 
@@ -356,3 +359,45 @@ def test_commands_go_from_numbers_to_drawing_to_answer(tmp_path: Path) -> None:
 def test_write_npz_without_answer_holds_no_forces(tmp_path: Path) -> None:
     write_npz(build(WALL), None, tmp_path / "w.npz")
     assert "forces" not in np.load(tmp_path / "w.npz")
+
+
+def test_velocities_of_a_csv_are_those_of_rigid_blocks(answer: Result, tmp_path: Path) -> None:
+    assembly = build(WALL).assembly
+    for result, moves in ((answer, True), (None, False)):
+        BY_SUFFIX[".csv"].write(build(WALL), result, tmp_path / "w.csv")
+        rows = list(csv.DictReader(io.StringIO((tmp_path / "w.csv").read_text())))
+        assert any(float(row["vx"]) != 0.0 for row in rows) is moves
+        for row in rows:
+            number = assembly.block_ids.index(row["block"])
+            ux, uy, omega = answer.mechanism[number] if moves else (0.0, 0.0, 0.0)  # type: ignore[index]
+            x, y = (float(row[name]) - centre for name, centre in zip("xy", assembly.centroid[number], strict=True))
+            assert (float(row["vx"]), float(row["vy"])) == pytest.approx((ux - omega * y, uy + omega * x), abs=1e-12)
+
+
+@pytest.mark.parametrize("metre", [1.0, 1000.0])
+def test_pictures_of_a_mechanism_are_in_proportion_to_the_stones_in_any_unit(metre: float, tmp_path: Path) -> None:
+    blocks = [
+        {"id": name, "fixed": name == "g", "polygon": [[metre * x, metre * y] for x, y in corners]}
+        for name, corners in (("g", [(-1, -1), (2, -1), (2, 0), (-1, 0)]), ("s", [(0, 0), (1, 0), (1, 1), (0, 1)]))
+    ]
+    built = build(Wall.model_validate(WALL.document() | {"blocks": blocks, "unit_weight": 20.0 / metre**3}))
+    motion = np.zeros((2, 3))
+    motion[1] = (1.0, 0.0, 0.0)
+    method = load_method("la-associated")
+    result = result_of(
+        method.solve(built.assembly, method.Settings()), built.assembly, case="f", method="m", family="m"
+    )
+    result = result.model_copy(update={"mechanism": motion.tolist()})
+    BY_SUFFIX[".vtu"].write(built, result, tmp_path / "w.vtu")
+    BY_SUFFIX[".pvd"].write(built, result, tmp_path / "w.pvd")
+    last = max(tmp_path.glob("w-*.vtu"))
+    for path in (tmp_path / "w.vtu", last):
+        mesh = meshio.read(path)
+        assert {block.type for block in mesh.cells} == {"quad", "line"}
+        shift = np.abs(mesh.point_data["displacement"]).max()
+        assert 0.1 * metre < shift < 0.6 * metre  # a part of a stone that is seen
+        assert shift == pytest.approx(0.3 * built.assembly.length_scale)
+    BY_SUFFIX[".svg"].write(built, result, tmp_path / "w.svg")
+    widths = re.findall(r'stroke-width="([^"]*)"', (tmp_path / "w.svg").read_text())
+    assert len(widths) == 3
+    assert all(0.005 * metre < float(width) < 0.1 * metre for width in widths)

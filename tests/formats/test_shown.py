@@ -36,6 +36,9 @@ TOP_BOX = (40.0, -80.0, 50.0, -70.0)
         '<style>.off {display: none !important}</style><rect class="a off" x="40" y="70" width="10" height="10"/>',
         '<style>g .x, q {visibility: hidden}</style><g><rect class="x" x="40" y="70" width="10" height="10"/></g>',
         '<style>#h {opacity: 0}</style><rect id="h" opacity="1" x="40" y="70" width="10" height="10"/>',
+        '<style>/* a *//* b */.x{display:none}/**/</style><rect class="x" x="40" y="70" width="10" height="10"/>',
+        '<style>.y{}.x{display:none}/* .x{display:inline}</style><rect class="x" x="40" y="70" width="10" '
+        'height="10"/>',
         '<defs><rect x="40" y="70" width="10" height="10"/></defs>',
         '<symbol id="q"><rect x="40" y="70" width="10" height="10"/></symbol>',
         '<clipPath id="q"><rect x="40" y="70" width="10" height="10"/></clipPath>',

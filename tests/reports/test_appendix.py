@@ -13,7 +13,10 @@ import pytest
 from drystone.cli import printing
 from harness.model.comparison import CaseResults
 from harness.model.live_load import reversed_live
+from harness.model.method import Finding
+from harness.model.result import Result
 from reports.findings.reactions import out_of_balance, reactions
+from reports.labels.wall_summary import value_in_words
 from reports.page.appendix import render, write_appendix
 from tests.commands import drystone
 from tests.reports import samples
@@ -123,3 +126,41 @@ def test_the_command_analyses_a_horizontal_load_both_ways(tmp_path: Path):
     # one: (5 * .25 + 4 * .4) over the same.
     assert "collapses at 0.38824 under the live load to the right" in text
     assert "<td>0.67059 (la)</td>" in text
+
+
+@pytest.mark.parametrize("without", ["forces", "mechanism"])
+def test_the_appendix_draws_the_least_state_that_has_forces_and_a_motion(without: str):
+    case = samples.bond("mine")
+    least, other = samples.solved(case, "la", 0.4), samples.solved(case, "fe", 0.5)
+    bare = least.model_copy(update={without: None})
+
+    def drawn(*results: Result) -> tuple[str, ...]:
+        text = render(replace(samples.typical(), cases=[CaseResults(case, list(results))]))
+        assert text.count("<svg") == (3 if "Velocities" in text else 1), "the wall alone where nothing else is known"
+        found = re.search(r"By (\S+) at ([\d.]+)\. Velocities drawn", text)
+        return () if found is None else found.groups()
+
+    assert drawn(least, other) == ("la", "0.40000")
+    assert drawn(bare, other) == ("fe", "0.50000")
+    assert drawn(bare) == ()
+
+
+@pytest.mark.parametrize("finding", list(Finding))
+def test_a_value_is_a_number_only_where_the_wall_collapses(finding: Finding):
+    result = samples.solved(samples.bond("mine"), "la", 0.4).model_copy(update={"finding": finding})
+    assert ("0.4" in value_in_words(result)) is (finding is Finding.COLLAPSES)
+
+
+def test_loads_and_blocks_of_the_appendix_are_those_of_the_file():
+    case = samples.bond("mine", courses=1, bricks=1)  # two halves of .2 by .2 m, 20 kN/m3, one metre thick
+    text = render(replace(samples.typical(), cases=[CaseResults(case, [samples.solved(case, "la", 0.4)])]))
+    rows = [re.findall(r"<t[hd][^>]*>(.*?)</t[hd]>", row) for row in re.findall(r"<tr>(.*?)</tr>", text)]
+    told = {
+        row[0]: [part for cell in row[1:] for part in cell.replace("\u2212", "-").split(", ")] for row in rows if row
+    }
+    assert [float(x) for x in told["Dead load, with the weights"]] == pytest.approx([0.0, -1.6], abs=5e-4)
+    assert [float(x) for x in told["Live load at multiplier 1"]] == pytest.approx([1.6, 0.0], abs=5e-4)
+    free = int(case.assembly.free[0])
+    x, y = case.assembly.polygons[free].mean(axis=0)
+    values = [float(value) for value in told[case.assembly.block_ids[free]]]
+    assert values == pytest.approx([x, y, 0.8, 0.0, -0.8, 0.8, 0.0], abs=5e-4)

@@ -16,6 +16,7 @@ from reports.drawing.mechanism_drawing import overlay_drawing
 from reports.drawing.svg import inline
 from reports.findings import joints, reasons
 from reports.findings.limits import known_limits
+from reports.labels import labels
 from reports.page import build, summary, tables
 from tests.reports import samples
 
@@ -327,3 +328,69 @@ def test_the_share_of_the_range_that_a_bracket_covers_is_computed():
     assert "On mine the bracket of de covers 91 % of the range" in limits_of(0.4, 0.582)
     assert "On mine the bracket of de covers 50 % of the range" in limits_of(0.5, 0.7)
     assert "covers" not in limits_of(0.5, 0.501)
+
+
+def test_what_moves_is_counted_and_told_alike_at_any_speed():
+    assembly = samples.bond(courses=4).assembly
+    mechanism = np.zeros((assembly.n_blocks, 3))
+    top = np.argsort(assembly.centroid[:, 1])[-2:]
+    mechanism[top[0]] = (1.0, 0.0, 0.0)
+    assert reasons.mechanism_in_words(assembly, mechanism, "m") == f"1 of {assembly.n_free} blocks moves, sliding"
+    mechanism[top[1]] = (1.0, 0.0, 0.0)
+    told = reasons.mechanism_in_words(assembly, mechanism, "m")
+    assert told == f"2 of {assembly.n_free} blocks move, sliding as one body"
+    mechanism[top[1]] = (1.6, 0.0, 0.0)  # of 1 and 1.6 the mean, 1.3, leaves 2 * .3 ** 2 / (1 + 1.6 ** 2) = 5 %
+    parted = np.zeros_like(mechanism)
+    parted[top] = [(1.0, 0.0, 0.0), (-1.0, 0.0, 0.0)]
+    for speed in (1e-3, 1.0, 1e3):
+        told = reasons.mechanism_in_words(assembly, speed * mechanism, "m")
+        assert told.startswith(f"2 of {assembly.n_free} blocks move, mainly ")
+        moves = speed * samples.sliding(assembly)
+        assert ", sliding as one body" in reasons.mechanism_in_words(assembly, moves, "m")
+
+
+def test_how_far_a_measured_value_is_from_the_least_is_told_of_both_its_ends():
+    item = of_one_wall()
+    item.results[3] = samples.solved(item.case, "de", 0.65, turn=0.2, flow="approximate", bracket=(0.6138, 0.6696))
+    told = reasons.reasons(item)
+    assert any(sentence.startswith("la and de (+10.00 % to +20.00 %): mechanisms differ") for sentence in told)
+    assert not any(sentence.startswith("la and la ") for sentence in told), "the least differs from no other of itself"
+    assert len([sentence for sentence in told if sentence.startswith("la and ")]) == 3
+
+
+def test_a_reference_that_is_a_range_is_printed_with_both_ends():
+    known = [samples.reference("known", "published", 0.5, ["la"]) | {"value": [0.45, 0.61], "relation": "inside"}]
+    case = samples.bond("known", references=known)
+    result = samples.solved(case, "la", 0.5)
+    samples.held_against(case, result, "known", Verdict.AGREES)
+    ((row,),) = tables.run_rows(ComparisonRun("known", "", "", [CaseResults(case, [result])]))
+    assert row.cell("reference").text == "in [0.45, 0.61]"
+
+
+def test_the_reference_that_stands_in_the_row_is_the_one_that_matters_most():
+    known = [
+        samples.reference("width", "published", 0.2, ["la"], quantity="details.width"),
+        samples.reference("close", "published", 0.5, ["la"]),
+        samples.reference("gate", "exact", 0.51, ["la"], gate=True),
+        samples.reference("missed", "published", 0.7, ["la"], quantity="details.peak"),
+    ]
+    case = samples.bond("known", references=known)
+    result = samples.solved(case, "la", 0.5)
+
+    def told() -> str:
+        ((row,),) = tables.run_rows(ComparisonRun("known", "", "", [CaseResults(case, [result])]))
+        return row.cell("reference").text
+
+    samples.held_against(case, result, "width", Verdict.AGREES)
+    assert told() == "width 0.2"
+    samples.held_against(case, result, "close", Verdict.AGREES)
+    assert told() == "0.5 +1", "the multiplier before what else is known"
+    samples.held_against(case, result, "gate", Verdict.AGREES)
+    assert told() == "0.51 +2", "what a gate holds before what it does not"
+    samples.held_against(case, result, "missed", Verdict.OUTSIDE_TOLERANCE)
+    assert told() == "peak 0.7 +3", "what is missed before what agrees"
+
+
+def test_names_are_listed_as_in_a_sentence():
+    listed = [labels.all_of(["fe", "la", "de"][:count]) for count in (1, 2, 3)]
+    assert listed == ["FE", "FE and LA", "FE, LA and DE"]

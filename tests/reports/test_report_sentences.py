@@ -6,7 +6,7 @@ import pytest
 
 from harness.model.comparison import CaseResults, ComparisonRun
 from harness.model.method import Finding
-from reports.charts import charts, curves, studies
+from reports.charts import charts, curves, families, studies
 from reports.findings.agreement import agreement, spread
 from reports.page import paper
 from tests.reports import samples
@@ -70,3 +70,69 @@ def test_ticks_of_a_narrow_axis_differ():
     axis = charts.Axis([0.5, 0.50016], 0.0, 100.0, log=False)
     texts = [axis.text(value) for value in axis.ticks]
     assert len(set(texts)) == len(texts) > 2
+
+
+@pytest.mark.parametrize("load", [1e-3, 1.0, 1e3])
+def test_a_plateau_is_drawn_to_three_times_the_displacement_at_which_it_begins_whatever_the_load(load: float):
+    rise = [(0.1 * k, load * 0.1 * k) for k in range(11)]  # to 1 at a displacement of 1, then a creep of half a percent
+    plateau = [(1.0 + 0.5 * k, load * (1.0 + 1e-4 * k)) for k in range(1, 51)]
+    moved, loads = (list(column) for column in zip(*rise, *plateau, strict=True))
+    path = {"live_displacement": moved, "multiplier": loads}
+    row = samples.solved(CASE, "fe", loads[-1], path=path)
+    ((caption, drawn),) = curves.curves(CaseResults(CASE, [row]))
+    assert caption.endswith("; the plateau goes on beyond the right edge.")
+    assert max(drawn.chart.series[0].x) == pytest.approx(3.0)
+    row = samples.solved(CASE, "fe", loads[10], path={name: values[:14] for name, values in path.items()})
+    ((caption, drawn),) = curves.curves(CaseResults(CASE, [row]))
+    assert "beyond" not in caption
+    assert len(drawn.chart.series[0].x) == 14
+
+
+def test_starts_of_a_search_are_counted_from_one_with_the_least_so_far_and_what_a_descent_found():
+    def chart_of(value: float) -> charts.Chart:
+        row = samples.solved(CASE, "la", value, details={"start_values": [0.6, 0.5, 0.7], "associated": 0.8})
+        ((caption, drawn),) = curves.curves(CaseResults(CASE, [row]))
+        assert caption == "la: the collapse state each start of the search leads to."
+        return drawn.chart
+
+    chart = chart_of(0.4)
+    least, found = chart.series
+    assert (least.x, least.y) == ([1.0, 2.0, 3.0], [0.6, 0.5, 0.5])
+    assert (found.x, found.y) == ([1.0, 2.0, 3.0], [0.6, 0.5, 0.7])
+    assert [value for _, value in chart.levels] == [0.8, 0.4]
+    assert [value for _, value in chart_of(0.5).levels] == [0.8]
+
+
+def test_walls_of_the_papers_application_carry_the_dead_part_and_the_multiplier():
+    said = paper.printed().application
+    case = samples.bond(said.rows[0].case)
+    rows = [
+        samples.solved(case, "la", 0.25),
+        samples.solved(case, "de", 0.3, flow="approximate", bracket=(0.25, 0.35)),
+    ]
+    found = paper.paper_comparison(ComparisonRun("a", "b", "c", [CaseResults(case, rows)]))
+    assert found is None, "neither the block nor the wall of the paper was run"
+    (row,) = paper.applications(ComparisonRun("a", "b", "c", [CaseResults(case, rows)]))
+    told = dict(zip(said.methods, (cell.text for cell in row.ours), strict=True))
+    assert (told["la"], told["de"]) == ("0.350", "0.350 to 0.450")  # .1 of the load counts as dead
+
+
+def test_brackets_of_a_family_of_walls_are_bars():
+    items = []
+    for number, friction in enumerate((0.4, 0.6, 0.8)):
+        case = samples.bond(f"wall-{number}", friction=friction)
+        low, high = friction - 0.1, friction + 0.2
+        items.append(
+            CaseResults(
+                case,
+                [
+                    samples.solved(case, "la", friction),
+                    samples.solved(case, "de", 0.5 * (low + high), bracket=(low, high), flow="approximate"),
+                ],
+            )
+        )
+    (study,) = families.families(ComparisonRun("", "", "", items))
+    la, de = study.charts[0][1].chart.series
+    assert (la.x, la.y, la.low) == ([0.4, 0.6, 0.8], [0.4, 0.6, 0.8], [])
+    assert de.low == pytest.approx([0.3, 0.5, 0.7])
+    assert de.high == pytest.approx([0.6, 0.8, 1.0])

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import re
+
 import numpy as np
 import pandas as pd
 
@@ -105,3 +107,27 @@ def test_lines_that_are_left_out_are_counted():
     rows = pd.concat(parts, ignore_index=True)
     page = render(StudyPage("A study", "", "c", "now", rows, ["friction"], tables_of(rows, "friction")))
     assert "3 more lines are not drawn; the files have them." in page
+
+
+def test_equal_multipliers_over_a_grid_have_no_ends_and_a_bracket_about_all_others_is_both():
+    rows = walls([0.5, 0.5], friction=[0.3, 0.9])
+    assert findings(tables_of(rows, "friction"), ["friction"]) == ["fe: multipliers 0.50000 at all points of the grid."]
+    rows = walls([0.5, 0.55], friction=[0.3, 0.9])
+    rows = rows.assign(bracket_low=[0.5, 0.3], bracket_high=[0.5, 0.8], exceeds_accuracy=[False, True])
+    assert findings(tables_of(rows, "friction"), ["friction"]) == [
+        "fe: multipliers within [0.30000, 0.80000] at all points of the grid; 1 of 2 answers are wide brackets."
+    ]
+
+
+def test_lines_are_named_by_what_tells_them_apart():
+    def legend(*parts: pd.DataFrame) -> list[str]:
+        rows = pd.concat(parts, ignore_index=True)
+        page = page_of(rows, tables_of(rows)).split("<h2>Fragility</h2>")[1]
+        return re.findall(r'<text x="\d+" y="\d+">([^<]*)</text>', page.partition("</svg>")[0])
+
+    values = [0.3, 0.4, 0.5, 0.6, 0.7]
+    one, other = walls(values), walls(values, "la")
+    assert legend(one) == []
+    assert legend(one, other) == ["fe", "la"]
+    assert legend(one, one.assign(case="b")) == ["a", "b"]
+    assert legend(one, other.assign(case="b")) == ["a, fe", "b, la"]

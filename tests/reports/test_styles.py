@@ -2,12 +2,17 @@
 
 from __future__ import annotations
 
+import itertools
+
+import shapely
+
 from harness.model.comparison import CaseResults, ComparisonRun
 from harness.model.method import Traits, load_method, method_names
 from harness.model.result import Result
 from reports.charts import charts, styles
 from reports.page import build
 from tests.reports import samples
+from tests.reports.read_chart import points_of
 
 CASE = samples.block()
 
@@ -48,3 +53,12 @@ def test_answer_nobody_judged_says_so_in_the_overview():
         page = build.render(ComparisonRun("mine", "", "", [CaseResults(CASE, [result])]), data_folder="x")
         overview = page.split('class="matrix"')[1].split("</table>")[0]
         assert ("not judged" in overview) == (accepted is None)
+
+
+def test_every_marker_is_another_figure():
+    figures = {name: shapely.Polygon(points_of(path)) for name, path in styles.SHAPES.items() if "a" not in path}
+    figures["o"] = shapely.Point(0.0, 0.0).buffer(3.5)
+    assert figures.keys() == styles.SHAPES.keys()
+    for (name, one), (other, two) in itertools.combinations(figures.items(), 2):
+        apart = one.symmetric_difference(two).area / one.union(two).area
+        assert apart > 0.1, f"{name} and {other} cannot be told apart"

@@ -1,0 +1,63 @@
+"""Charts against their data: what a reader measures on the drawing is what was computed."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+
+from harness.model.comparison import CaseResults, ComparisonRun
+from reports.charts import charts, studies
+from reports.page.study_page import StudyPage, render
+from tests.reports import samples
+from tests.reports.read_chart import Read
+from tests.reports.test_study_page import page_of, tables_of, walls
+
+NEAR = 0.01
+"""Places are written to a tenth of a pixel on axes of some 250: of an axis of one to ten this is the rounding."""
+
+
+@pytest.mark.parametrize(("log_x", "log_y"), [(False, False), (True, False), (False, True), (True, True)])
+def test_points_bars_and_line_of_a_chart_are_read_back(log_x: bool, log_y: bool):
+    x, y = [1.0, 2.0, 5.0, 8.0], [0.2, 0.5, 0.3, 0.9]
+    low, high = [0.1, 0.4, 0.2, 0.7], [0.3, 0.6, 0.5, 1.0]
+    chart = charts.Chart("t", "x", "y", [charts.Series("a", x, y, low, high)], log_x=log_x, log_y=log_y)
+    read = Read(str(charts.svg(chart)), log_x=log_x, log_y=log_y)
+    for points in (read.lines[0], read.marks):
+        assert np.array(points) == pytest.approx(np.column_stack([x, y]), rel=NEAR, abs=NEAR)
+    assert np.array(read.bars) == pytest.approx(np.column_stack([x, low, high]), rel=NEAR, abs=NEAR)
+
+
+def test_a_performance_profile_rises_by_one_case_at_each_ratio():
+    # FE takes 1, 4, 1 of the fastest's time and LA 2, 1, 1: FE has solved 2 of 3 at 1 and all at 4, LA all at 2.
+    case = samples.bond()
+    items = [
+        CaseResults(case, [samples.solved(case, "fe", 0.5, cpu=first), samples.solved(case, "la", 0.5, cpu=second)])
+        for first, second in ((1.0, 2.0), (4.0, 1.0), (1.0, 1.0))
+    ]
+    study = studies.performance_profile(ComparisonRun("", "", "", items))
+    assert study is not None
+    for line, last in zip(Read(str(study.charts[0][1]), log_x=True).lines, (4.0, 2.0), strict=True):
+        corners = [(1.0, 1.0 / 3.0), (1.0, 2.0 / 3.0), (last, 1.0), (10.0, 1.0)]
+        assert np.array(line) == pytest.approx(np.array(corners), rel=NEAR, abs=NEAR)
+
+
+def test_a_fragility_curve_is_the_lognormal_of_its_walls_and_its_points_are_counted_shares():
+    values = [0.2, 0.25, 0.4, 0.5, 0.8]
+    rows = walls(values)
+    read = Read(page_of(rows, tables_of(rows)).split("<h2>Fragility</h2>")[1])
+    counted = [(value, (k + 1) / 5) for k, value in enumerate(values)]
+    assert np.array(read.marks) == pytest.approx(np.array(counted), abs=NEAR)
+    logs = np.log(values)
+    fitted = [0.5 * (1.0 + math.erf((log - logs.mean()) / (math.sqrt(2.0) * logs.std()))) for log in logs]
+    assert np.array(read.lines[0]) == pytest.approx(np.column_stack([values, fitted]), abs=NEAR)
+
+
+def test_multipliers_over_the_grid_are_drawn_and_printed():
+    rows = walls([0.31, 0.47, 0.52], friction=[0.3, 0.5, 0.9])
+    page = render(StudyPage("A study", "", "c", "now", rows, ["friction"], tables_of(rows, "friction")))
+    told = [(0.3, 0.31), (0.5, 0.47), (0.9, 0.52)]
+    points = Read(page.split("<h2>Multiplier over friction</h2>")[1]).marks
+    assert np.array(points) == pytest.approx(np.array(told), abs=NEAR)
+    assert all(f"<td>{value:g}</td>" in page for pair in told for value in pair)
