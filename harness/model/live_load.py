@@ -25,7 +25,9 @@ def _right_and_up(case: Case) -> FloatArray:
 
 
 def is_horizontal(case: Case) -> bool:
-    """Whether there is a live load and all of it is horizontal, as that of an earthquake."""
+    """Whether there is a live load and all of it is horizontal, as that of an earthquake; a pressure acts one way."""
+    if case.wall.loads.live is not None and case.wall.loads.live.pressures:
+        return False
     forces = _right_and_up(case)
     return len(forces) > 0 and not forces[:, 1].any()
 
@@ -52,6 +54,7 @@ def reversed_live(case: Case) -> Case:
         update={
             "body": [each.model_copy(update={"per_weight": _minus(each.per_weight)}) for each in live.body],
             "points": [each.model_copy(update={"force": _minus(each.force)}) for each in live.points],
+            "pressures": [each.model_copy(update={"factor": -each.factor}) for each in live.pressures],
         }
     )
     loads = case.wall.loads.model_copy(update={"live": turned})

@@ -13,6 +13,7 @@ from pydantic import BaseModel, Discriminator, Field, StrictBool, Tag, model_val
 
 from harness.model.fields import Angle, Coefficient, Name, NonNegative, Number, Point, Positive, Strict
 from harness.model.pattern_fields import Pattern
+from harness.model.pressure_fields import Pressure
 from harness.model.units import DIMENSIONLESS, KILONEWTONS, METRES, ForceUnit, LengthUnit, unit_weight_in_kn_m3
 
 MOST_VERTICES = 5_000
@@ -296,6 +297,7 @@ class Load(Strict):
 
     body: list[BodyForce] = Field(default_factory=list)
     points: list[PointForce] = Field(default_factory=list)
+    pressures: list[Pressure] = Field(default_factory=list)
 
 
 class Settlement(Strict):
