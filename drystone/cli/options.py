@@ -18,6 +18,8 @@ import click
 from harness.engine.run import Limits
 from harness.model.case import Case
 from harness.model.errors import InputError, visible
+from harness.model.live_load import both_signs as signs_of
+from harness.model.live_load import with_live_load
 from harness.model.writing import check_output
 
 STORE = Path("out/drystone.sqlite")
@@ -82,6 +84,26 @@ def _finite(_context: click.Context, _option: click.Parameter, value: float) -> 
     return value
 
 
+def _pair(text: str) -> tuple[float, float]:
+    try:
+        x, y = (float(part) for part in text.split(","))
+    except ValueError:
+        x = y = math.nan
+    if not (math.isfinite(x) and math.isfinite(y)):
+        raise click.BadParameter(f'"{text}" is not two numbers with a comma between them, as 1,0.')
+    return x, y
+
+
+def as_loaded(case: Case, live: tuple[float, float] | None, *, both_signs: bool) -> list[Case]:
+    """The case under the live load that is asked for, both ways if that is asked for too.
+
+    Raises:
+        InputError: the live load is zero, or both signs are asked of one that is not horizontal.
+    """
+    loaded = case if live is None else with_live_load(case, *live)
+    return signs_of(loaded) if both_signs else [loaded]
+
+
 def print_json(value: Any) -> None:
     """One JSON document on standard output."""
     say_json(json.dumps(value, indent=1, ensure_ascii=False, allow_nan=False))
@@ -143,6 +165,15 @@ report_option = click.option(
     "--report", type=OUTPUT, default=REPORT, show_default=True, help="Where the report is written."
 )
 junit_option = click.option("--junit", type=OUTPUT, help="Also write the outcomes as JUnit XML to this file.")
+live_option = click.option(
+    "--live",
+    metavar="X,Y",
+    callback=lambda _context, _option, value: None if value is None else _pair(value),
+    help="Live load as a multiple of every weight, in place of that of the file: 1,0 is to the right.",
+)
+both_signs_flag = click.option(
+    "--both-signs", is_flag=True, help="A horizontal live load both ways; the lower multiplier governs."
+)
 fresh_flag = click.option("--fresh", is_flag=True, help="Run again what is in the store.")
 
 

@@ -10,12 +10,16 @@ import click
 from drystone.analysis import analyse_by
 from drystone.cli import terminal
 from drystone.cli.options import (
+    as_loaded,
+    both_signs_flag,
     cases_option,
     catching,
     fresh_flag,
     json_flag,
+    live_option,
     memory_option,
     print_json,
+    say,
     seconds_option,
     settings_option,
     warn,
@@ -24,6 +28,7 @@ from drystone.cli.settings import settings_of
 from drystone.walls import Wall
 from harness.engine.plan import check_methods, find_cases
 from harness.engine.run import Limits
+from harness.model.envelope import envelope
 from harness.model.method import Status
 
 
@@ -31,6 +36,8 @@ from harness.model.method import Status
 @click.argument("method")
 @click.argument("case")
 @settings_option
+@live_option
+@both_signs_flag
 @click.option(
     "--jobs",
     type=click.IntRange(1),
@@ -54,6 +61,8 @@ def run(
     method: str,
     case: str,
     settings: tuple[str, ...],
+    live: tuple[float, float] | None,
+    both_signs: bool,
     jobs: int,
     store: Path | None,
     fresh: bool,
@@ -67,13 +76,24 @@ def run(
     check_methods([method], "method")
     (found,) = find_cases([case], None, folders)
     chosen = settings_of(method, settings)
-    warn(found)
+    cases = as_loaded(found, live, both_signs=both_signs)
+    warn(cases[0])
     limits = Limits(seconds, memory * 2**20)
-    result = analyse_by(
-        Wall(found), method, chosen, isolated=True, limits=limits, processes=jobs, store=store, fresh=fresh
-    )
-    if as_json:
-        print_json(terminal.result_json(result, result.proof, fields=fields))
+    results = [
+        analyse_by(Wall(case), method, chosen, isolated=True, limits=limits, processes=jobs, store=store, fresh=fresh)
+        for case in cases
+    ]
+    documents = [terminal.result_json(result, result.proof, fields=fields) for result in results]
+    if as_json and len(cases) == 1:
+        print_json(documents[0])
+    elif as_json:
+        print_json({"results": documents} | envelope(cases, results).as_json())
     else:
-        terminal.print_result(result, found, result.proof)
-    sys.exit(1 if result.status is not Status.OK else terminal.JUDGED[result.judge.accepted])
+        for case, result in zip(cases, results, strict=True):
+            terminal.print_result(result, case, result.proof)
+            if case.load_case:
+                print()
+        if len(cases) > 1:
+            say(envelope(cases, results).sentence)
+    codes = {1 if result.status is not Status.OK else terminal.JUDGED[result.judge.accepted] for result in results}
+    sys.exit(1 if 1 in codes else max(codes))

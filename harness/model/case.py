@@ -103,12 +103,16 @@ class Case:
         wall: the wall.
         origin: the path of the wall's file.
         notes: what a person should hear about how the case was found.
+        wall_id: id of the wall of which this is one of several load cases; empty if it is the only one.
+        load_case: name of this load case; empty if it is the only one.
     """
 
     file: CaseFile
     wall: Wall
     origin: str
     notes: tuple[str, ...] = ()
+    wall_id: str = ""
+    load_case: str = ""
 
     @cached_property
     def built(self) -> Built:
