@@ -21,6 +21,7 @@ from drystone.cli.options import (
     json_flag,
     junit_option,
     live_option,
+    load_case_option,
     memory_option,
     print_json,
     report_option,
@@ -64,6 +65,7 @@ from harness.model.live_load import is_horizontal, reversed_live
 @click.option(
     "--set", "settings", multiple=True, metavar="METHOD.NAME=VALUE", help="A setting of a method; may be repeated."
 )
+@load_case_option
 @live_option
 @both_signs_flag
 @click.option("--no-report", is_flag=True, help="Print and store only.")
@@ -83,6 +85,7 @@ def compare(
     methods: str | None,
     studied: str | None,
     settings: tuple[str, ...],
+    load_case: str | None,
     live: tuple[float, float] | None,
     both_signs: bool,
     no_report: bool,
@@ -98,7 +101,7 @@ def compare(
 ) -> None:
     """Run methods on CASES (ids, case folders, WALL.json files) or a suite, judge, store and report."""
     named = find_cases(cases, suite, folders)
-    chosen = [each for case in named for each in as_loaded(case, live, both_signs=both_signs)]
+    chosen = [each for case in named for each in as_loaded(case, load_case, live, both_signs=both_signs)]
     names = [name.strip() for name in methods.split(",") if name.strip()] if methods is not None else None
     if names is not None:
         if not names:

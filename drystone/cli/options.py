@@ -19,7 +19,8 @@ from harness.engine.run import Limits
 from harness.model.case import Case
 from harness.model.errors import InputError, visible
 from harness.model.live_load import both_signs as signs_of
-from harness.model.live_load import with_live_load
+from harness.model.live_load import is_horizontal, with_live_load
+from harness.model.load_cases import load_cases_of
 from harness.model.writing import check_output
 
 STORE = Path("out/drystone.sqlite")
@@ -94,14 +95,19 @@ def _pair(text: str) -> tuple[float, float]:
     return x, y
 
 
-def as_loaded(case: Case, live: tuple[float, float] | None, *, both_signs: bool) -> list[Case]:
-    """The case under the live load that is asked for, both ways if that is asked for too.
+def as_loaded(case: Case, load_case: str | None, live: tuple[float, float] | None, *, both_signs: bool) -> list[Case]:
+    """The load cases of a case, or the one that is chosen, under the live load that is asked for and both ways if so.
+
+    Of several load cases those with a horizontal live load are answered both ways.
 
     Raises:
-        InputError: the live load is zero, or both signs are asked of one that is not horizontal.
+        InputError: no such load case, a live load of zero, or both signs of one that is not horizontal.
     """
-    loaded = case if live is None else with_live_load(case, *live)
-    return signs_of(loaded) if both_signs else [loaded]
+    found = []
+    for each in load_cases_of(case, load_case):
+        loaded = each if live is None else with_live_load(each, *live)
+        found += signs_of(loaded) if both_signs and (is_horizontal(loaded) or not each.load_case) else [loaded]
+    return found
 
 
 def print_json(value: Any) -> None:
@@ -171,6 +177,7 @@ live_option = click.option(
     callback=lambda _context, _option, value: None if value is None else _pair(value),
     help="Live load as a multiple of every weight, in place of that of the file: 1,0 is to the right.",
 )
+load_case_option = click.option("--load-case", metavar="NAME", help="One of the named load cases of the wall.")
 both_signs_flag = click.option(
     "--both-signs", is_flag=True, help="A horizontal live load both ways; the lower multiplier governs."
 )

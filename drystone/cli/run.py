@@ -17,6 +17,7 @@ from drystone.cli.options import (
     fresh_flag,
     json_flag,
     live_option,
+    load_case_option,
     memory_option,
     print_json,
     say,
@@ -29,6 +30,7 @@ from drystone.walls import Wall
 from harness.engine.plan import check_methods, find_cases
 from harness.engine.run import Limits
 from harness.model.envelope import envelope
+from harness.model.errors import InputError
 from harness.model.method import Status
 
 
@@ -36,6 +38,7 @@ from harness.model.method import Status
 @click.argument("method")
 @click.argument("case")
 @settings_option
+@load_case_option
 @live_option
 @both_signs_flag
 @click.option(
@@ -61,6 +64,7 @@ def run(
     method: str,
     case: str,
     settings: tuple[str, ...],
+    load_case: str | None,
     live: tuple[float, float] | None,
     both_signs: bool,
     jobs: int,
@@ -76,7 +80,14 @@ def run(
     check_methods([method], "method")
     (found,) = find_cases([case], None, folders)
     chosen = settings_of(method, settings)
-    cases = as_loaded(found, live, both_signs=both_signs)
+    if found.wall.load_cases and load_case is None:
+        raise InputError(
+            f"it has the load cases {', '.join(found.wall.load_cases)}",
+            "Choose one: --load-case NAME; `drystone compare` answers all of them",
+            "load_cases",
+            found.origin,
+        )
+    cases = as_loaded(found, load_case, live, both_signs=both_signs)
     warn(cases[0])
     limits = Limits(seconds, memory * 2**20)
     results = [
@@ -89,9 +100,9 @@ def run(
     elif as_json:
         print_json({"results": documents} | envelope(cases, results).as_json())
     else:
-        for case, result in zip(cases, results, strict=True):
-            terminal.print_result(result, case, result.proof)
-            if case.load_case:
+        for loaded, result in zip(cases, results, strict=True):
+            terminal.print_result(result, loaded, result.proof)
+            if len(cases) > 1:
                 print()
         if len(cases) > 1:
             say(envelope(cases, results).sentence)

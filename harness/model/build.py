@@ -64,8 +64,14 @@ def build(wall: Wall, name: str = "wall") -> Built:
     """The assembly of a wall.
 
     Raises:
-        InputError: naming the block, interface or load that is wrong.
+        InputError: naming the block, interface or load that is wrong; or it has load cases, each a wall of its own.
     """
+    if wall.load_cases:
+        raise InputError(
+            f"it has {len(wall.load_cases)} load case(s), and one is built at a time: {', '.join(wall.load_cases)}",
+            "Choose one with --load-case of run, compare or expand; compare answers all of them without",
+            "load_cases",
+        )
     blocks = blocks_of_wall(wall)
     names = tuple(block.id for block in blocks)
     index = {block_id: k for k, block_id in enumerate(names)}

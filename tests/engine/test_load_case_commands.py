@@ -1,4 +1,4 @@
-"""`--live` and `--both-signs` as a user types them."""
+"""`--live`, `--both-signs` and `--load-case` as a user types them."""
 
 from __future__ import annotations
 
@@ -68,3 +68,49 @@ def test_a_live_load_that_is_none_is_refused(wall: Path, words: tuple[str, ...],
     done = drystone("run", "la-associated", wall, *words)
     assert done.returncode == 2
     assert said in done.stderr
+
+
+@pytest.fixture
+def cases(tmp_path: Path) -> Path:
+    heavy = {"dead": {"points": [{"block": "a", "at": [0.4, 2], "force": [0, -9]}]}}
+    named = {"push": LEANING["loads"], "heavy": heavy | {"live": {"body": [{"per_weight": [2, 0]}]}}}
+    path = tmp_path / "leaning.json"
+    path.write_text(json.dumps(LEANING | {"loads": {}, "load_cases": named}))
+    return path
+
+
+def test_compare_answers_all_load_cases_and_remembers_them(cases: Path, tmp_path: Path):
+    words = ("compare", cases, "--methods", "la-associated", "--store", tmp_path / "store.sqlite")
+    done = drystone(*words, "--no-report")
+    assert done.returncode == 0, done.stderr
+    assert "Load cases of leaning:" in done.stdout
+    assert 'la-associated: load case "heavy" governs' in done.stdout
+    found = json.loads(drystone(*words, "--no-report", "--both-signs", "--json").stdout)
+    assert found["envelopes"][0]["governing"] == ["heavy, to the left"]
+    one = json.loads(drystone(*words, "--no-report", "--load-case", "push", "--json").stdout)
+    assert [case["id"] for case in one["cases"]] == ["leaning-push"]
+    assert one["envelopes"] == []
+
+
+def test_run_asks_for_a_load_case_and_says_which_there_are(cases: Path):
+    done = drystone("run", "la-associated", cases)
+    assert done.returncode == 2
+    assert "it has the load cases push, heavy. Choose one: --load-case NAME" in done.stderr
+    done = drystone("run", "la-associated", cases, "--load-case", "heavi")
+    assert done.returncode == 2
+    assert 'no load case is called "heavi". Did you mean "heavy"?' in done.stderr
+    done = drystone("run", "la-associated", cases, "--load-case", "push", "--json")
+    assert json.loads(done.stdout)["multiplier"] == pytest.approx(RIGHT, rel=1e-9)
+
+
+def test_expand_writes_one_load_case_for_commands_that_take_none(cases: Path, tmp_path: Path):
+    assert drystone("expand", cases).returncode == 2
+    assert drystone("expand", cases, "--load-case", "push", "-o", tmp_path / "push.json").returncode == 0
+    done = drystone("run", "la-associated", tmp_path / "push.json", "--json")
+    assert json.loads(done.stdout)["multiplier"] == pytest.approx(RIGHT, rel=1e-9)
+
+
+def test_a_wall_without_load_cases_refuses_the_name_of_one(wall: Path):
+    done = drystone("run", "la-associated", wall, "--load-case", "push")
+    assert done.returncode == 2
+    assert 'no load case is called "push". A wall gives them in "load_cases"' in done.stderr
