@@ -22,7 +22,7 @@ from harness.model.case import Case
 from harness.model.columns import PRINTED, ResultColumn, ResultRow
 from harness.model.comparison import CaseResults, ComparisonRun
 from harness.model.difference import Difference, Kind
-from harness.model.envelope import Envelope, envelopes
+from harness.model.envelope import Envelope, by_wall, envelopes
 from harness.model.errors import InputError, first_few, visible
 from harness.model.fields import LARGEST
 from harness.model.live_load import direction_in_words
@@ -127,8 +127,7 @@ def print_comparison(compared: ComparisonRun, report: Path | None, columns: Sequ
 
 def print_envelopes(found: Sequence[Envelope]) -> None:
     """A table for every wall of several load cases, a row a load case, with a sentence a method on which governs."""
-    for wall in dict.fromkeys(each.wall for each in found):
-        mine = [each for each in found if each.wall == wall]
+    for wall, mine in by_wall(found).items():
         print(visible(f"Load cases of {wall}:"))
         print_rows(
             [

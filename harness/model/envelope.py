@@ -108,3 +108,11 @@ def envelopes(compared: Sequence[CaseResults]) -> list[Envelope]:
             if len(items) > 1 and len(results) == len(items):
                 found.append(envelope([item.case for item in items], results))
     return found
+
+
+def by_wall(found: Sequence[Envelope]) -> dict[str, list[Envelope]]:
+    """Envelopes by the id of their wall, in the order given."""
+    walls: dict[str, list[Envelope]] = {}
+    for each in found:
+        walls.setdefault(each.wall, []).append(each)
+    return walls

@@ -87,6 +87,13 @@ def test_compare_answers_all_load_cases_and_remembers_them(cases: Path, tmp_path
     assert 'la-associated: load case "heavy" governs' in done.stdout
     found = json.loads(drystone(*words, "--no-report", "--both-signs", "--json").stdout)
     assert found["envelopes"][0]["governing"] == ["heavy, to the left"]
+    assert drystone(*words, "--report", tmp_path / "report.html").returncode == 0
+    page = (tmp_path / "report.html").read_text()
+    assert "Load case of leaning" in page
+    assert page.count("<small>governs</small>") == 1
+    again = drystone("report", "--store", tmp_path / "store.sqlite", "--report", tmp_path / "again.html")
+    assert again.returncode == 0, again.stderr
+    assert (tmp_path / "again.html").read_text().count("<small>governs</small>") == 1
     one = json.loads(drystone(*words, "--no-report", "--load-case", "push", "--json").stdout)
     assert [case["id"] for case in one["cases"]] == ["leaning-push"]
     assert one["envelopes"] == []
