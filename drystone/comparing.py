@@ -20,6 +20,7 @@ from harness.engine.store import Store, open_store
 from harness.model.case import Case
 from harness.model.comparison import ComparisonRun
 from harness.model.errors import InputError
+from harness.model.load_cases import load_cases_of
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -102,7 +103,7 @@ def compare(
     """Run methods on walls, judge every answer, and hold them against references and theory.
 
     Args:
-        walls: one wall or several.
+        walls: one wall or several; one with load cases stands for all of them.
         methods: names of methods; None: those of each case, else those of the library.
         isolated: each run in a process of its own, so that one that hangs or crashes costs its row only; False: in this
             process, one after the other, without limits.
@@ -120,7 +121,8 @@ def compare(
     Raises:
         InputError: an unknown method, two walls of one name, or a store that is damaged.
     """
-    chosen = [walls] if isinstance(walls, Wall) else list(walls)
+    given = [walls] if isinstance(walls, Wall) else list(walls)
+    chosen = [Wall(each) for wall in given for each in load_cases_of(wall.case)]
     names = [wall.name for wall in chosen]
     if len(set(names)) < len(names):
         twice = next(name for name in names if names.count(name) > 1)

@@ -13,6 +13,7 @@ from harness.model import reading
 from harness.model.assembly import Assembly
 from harness.model.case import Case, CaseFile, case_folders, case_of_wall, id_of, shipped_cases
 from harness.model.errors import InputError, did_you_mean
+from harness.model.load_cases import load_cases_of
 from harness.model.wall import Wall as Description
 from harness.model.writing import write_whole
 
@@ -57,6 +58,15 @@ class Wall:
         """Names of its units of force and length."""
         return {"force": self.case.wall.units.force, "length": self.case.wall.units.length}
 
+    @property
+    def load_cases(self) -> dict[str, Wall]:
+        """The wall under each of its named load cases; empty if its file names none."""
+        return {
+            each.load_case: Wall(each)
+            for each in load_cases_of(self.case)
+            if each.load_case and self.case.wall.load_cases
+        }
+
     def called(self, name: str) -> Wall:
         """The same wall under another name."""
         return Wall(self.case.called(id_of(name)))
@@ -86,6 +96,8 @@ class Wall:
         return html(f"{self.title}: {free} free blocks, {joints} interfaces", self.plot())
 
     def __repr__(self) -> str:
+        if self.case.wall.load_cases:
+            return f"<Wall {self.name}: load cases {', '.join(self.case.wall.load_cases)}>"
         free, joints = self.assembly.n_free, self.assembly.n_interfaces
         return f"<Wall {self.name}: {free} free blocks, {joints} interfaces>"
 
@@ -97,7 +109,7 @@ def read_wall(path: str | Path) -> Wall:
         InputError: naming the file, the element and what would be right.
     """
     wall = Wall(case_of_wall(Path(path)))
-    _ = wall.case.built  # faults are told here and not at the first use
+    _check(wall.case)
     return wall
 
 
@@ -116,8 +128,14 @@ def build_wall(document: Mapping[str, Any] | Description, name: str = "wall") ->
     title = wall.title or name
     file = CaseFile(id=id_of(name), title=title, source=str(wall.metadata.get("source", "the user")))
     made = Wall(Case(file, wall, name))
-    _ = made.case.built
+    _check(made.case)
     return made
+
+
+def _check(case: Case) -> None:
+    """Faults are told when a wall is made and not at its first use."""
+    for each in load_cases_of(case):
+        _ = each.built
 
 
 def new_wall(kind: str, **numbers: Any) -> Wall:

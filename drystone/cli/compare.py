@@ -12,12 +12,16 @@ import click
 from drystone.cli import terminal
 from drystone.cli.junit import tests_of_comparison, write_junit
 from drystone.cli.options import (
+    as_loaded,
+    both_signs_flag,
     cases_option,
     catching,
     fresh_flag,
     jobs_option,
     json_flag,
     junit_option,
+    live_option,
+    load_case_option,
     memory_option,
     print_json,
     report_option,
@@ -61,6 +65,9 @@ from harness.model.live_load import is_horizontal, reversed_live
 @click.option(
     "--set", "settings", multiple=True, metavar="METHOD.NAME=VALUE", help="A setting of a method; may be repeated."
 )
+@load_case_option
+@live_option
+@both_signs_flag
 @click.option("--no-report", is_flag=True, help="Print and store only.")
 @seconds_option
 @memory_option
@@ -78,6 +85,9 @@ def compare(
     methods: str | None,
     studied: str | None,
     settings: tuple[str, ...],
+    load_case: str | None,
+    live: tuple[float, float] | None,
+    both_signs: bool,
     no_report: bool,
     seconds: float,
     memory: int,
@@ -90,7 +100,8 @@ def compare(
     folders: tuple[Path, ...],
 ) -> None:
     """Run methods on CASES (ids, case folders, WALL.json files) or a suite, judge, store and report."""
-    chosen = find_cases(cases, suite, folders)
+    named = find_cases(cases, suite, folders)
+    chosen = [each for case in named for each in as_loaded(case, load_case, live, both_signs=both_signs)]
     names = [name.strip() for name in methods.split(",") if name.strip()] if methods is not None else None
     if names is not None:
         if not names:
@@ -99,7 +110,7 @@ def compare(
     limits = Limits(seconds, memory * 2**20)
     for case in chosen:
         warn(case)
-    title = ", ".join(case.id for case in chosen) if cases else f"suite {suite or 'small'}"
+    title = ", ".join(case.id for case in named) if cases else f"suite {suite or 'small'}"
     asked = method_settings(settings)
     written = None if no_report else report
     planned = [run for case in chosen for run in plan_case(case, names, limits, settings=asked)]

@@ -18,6 +18,9 @@ import click
 from harness.engine.run import Limits
 from harness.model.case import Case
 from harness.model.errors import InputError, visible
+from harness.model.live_load import both_signs as signs_of
+from harness.model.live_load import is_horizontal, with_live_load
+from harness.model.load_cases import load_cases_of
 from harness.model.writing import check_output
 
 STORE = Path("out/drystone.sqlite")
@@ -82,6 +85,31 @@ def _finite(_context: click.Context, _option: click.Parameter, value: float) -> 
     return value
 
 
+def _pair(text: str) -> tuple[float, float]:
+    try:
+        x, y = (float(part) for part in text.split(","))
+    except ValueError:
+        x = y = math.nan
+    if not (math.isfinite(x) and math.isfinite(y)):
+        raise click.BadParameter(f'"{text}" is not two numbers with a comma between them, as 1,0.')
+    return x, y
+
+
+def as_loaded(case: Case, load_case: str | None, live: tuple[float, float] | None, *, both_signs: bool) -> list[Case]:
+    """The load cases of a case, or the one that is chosen, under the live load that is asked for and both ways if so.
+
+    Of several load cases those with a horizontal live load are answered both ways.
+
+    Raises:
+        InputError: no such load case, a live load of zero, or both signs of one that is not horizontal.
+    """
+    found = []
+    for each in load_cases_of(case, load_case):
+        loaded = each if live is None else with_live_load(each, *live)
+        found += signs_of(loaded) if both_signs and (is_horizontal(loaded) or not each.load_case) else [loaded]
+    return found
+
+
 def print_json(value: Any) -> None:
     """One JSON document on standard output."""
     say_json(json.dumps(value, indent=1, ensure_ascii=False, allow_nan=False))
@@ -143,6 +171,16 @@ report_option = click.option(
     "--report", type=OUTPUT, default=REPORT, show_default=True, help="Where the report is written."
 )
 junit_option = click.option("--junit", type=OUTPUT, help="Also write the outcomes as JUnit XML to this file.")
+live_option = click.option(
+    "--live",
+    metavar="X,Y",
+    callback=lambda _context, _option, value: None if value is None else _pair(value),
+    help="Live load as a multiple of every weight, in place of that of the file: 1,0 is to the right.",
+)
+load_case_option = click.option("--load-case", metavar="NAME", help="One of the named load cases of the wall.")
+both_signs_flag = click.option(
+    "--both-signs", is_flag=True, help="A horizontal live load both ways; the lower multiplier governs."
+)
 fresh_flag = click.option("--fresh", is_flag=True, help="Repeat runs that are in the store.")
 
 

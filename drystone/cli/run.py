@@ -10,12 +10,17 @@ import click
 from drystone.analysis import analyse_by
 from drystone.cli import terminal
 from drystone.cli.options import (
+    as_loaded,
+    both_signs_flag,
     cases_option,
     catching,
     fresh_flag,
     json_flag,
+    live_option,
+    load_case_option,
     memory_option,
     print_json,
+    say,
     seconds_option,
     settings_option,
     warn,
@@ -24,6 +29,8 @@ from drystone.cli.settings import settings_of
 from drystone.walls import Wall
 from harness.engine.plan import check_methods, find_cases
 from harness.engine.run import Limits
+from harness.model.envelope import envelope
+from harness.model.errors import InputError
 from harness.model.method import Status
 
 
@@ -31,6 +38,9 @@ from harness.model.method import Status
 @click.argument("method")
 @click.argument("case")
 @settings_option
+@load_case_option
+@live_option
+@both_signs_flag
 @click.option(
     "--jobs",
     type=click.IntRange(1),
@@ -54,6 +64,9 @@ def run(
     method: str,
     case: str,
     settings: tuple[str, ...],
+    load_case: str | None,
+    live: tuple[float, float] | None,
+    both_signs: bool,
     jobs: int,
     store: Path | None,
     fresh: bool,
@@ -67,13 +80,31 @@ def run(
     check_methods([method], "method")
     (found,) = find_cases([case], None, folders)
     chosen = settings_of(method, settings)
-    warn(found)
+    if found.wall.load_cases and load_case is None:
+        raise InputError(
+            f"it has the load cases {', '.join(found.wall.load_cases)}",
+            "Choose one: --load-case NAME; `drystone compare` answers all of them",
+            "load_cases",
+            found.origin,
+        )
+    cases = as_loaded(found, load_case, live, both_signs=both_signs)
+    warn(cases[0])
     limits = Limits(seconds, memory * 2**20)
-    result = analyse_by(
-        Wall(found), method, chosen, isolated=True, limits=limits, processes=jobs, store=store, fresh=fresh
-    )
-    if as_json:
-        print_json(terminal.result_json(result, result.proof, fields=fields))
+    results = [
+        analyse_by(Wall(case), method, chosen, isolated=True, limits=limits, processes=jobs, store=store, fresh=fresh)
+        for case in cases
+    ]
+    documents = [terminal.result_json(result, result.proof, fields=fields) for result in results]
+    if as_json and len(cases) == 1:
+        print_json(documents[0])
+    elif as_json:
+        print_json({"results": documents} | envelope(cases, results).as_json())
     else:
-        terminal.print_result(result, found, result.proof)
-    sys.exit(1 if result.status is not Status.OK else terminal.JUDGED[result.judge.accepted])
+        for loaded, result in zip(cases, results, strict=True):
+            terminal.print_result(result, loaded, result.proof)
+            if len(cases) > 1:
+                print()
+        if len(cases) > 1:
+            say(envelope(cases, results).sentence)
+    codes = {1 if result.status is not Status.OK else terminal.JUDGED[result.judge.accepted] for result in results}
+    sys.exit(1 if 1 in codes else max(codes))

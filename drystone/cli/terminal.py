@@ -22,6 +22,7 @@ from harness.model.case import Case
 from harness.model.columns import PRINTED, ResultColumn, ResultRow
 from harness.model.comparison import CaseResults, ComparisonRun
 from harness.model.difference import Difference, Kind
+from harness.model.envelope import Envelope, by_wall, envelopes
 from harness.model.errors import InputError, first_few, visible
 from harness.model.fields import LARGEST
 from harness.model.live_load import direction_in_words
@@ -107,6 +108,7 @@ def print_comparison(compared: ComparisonRun, report: Path | None, columns: Sequ
     for case in compared.cases:
         for sentence in _strength(case):
             console.print(escape(sentence), highlight=False)
+    print_envelopes(envelopes(compared.cases))
     broken = violations(compared)
     gated = sum(item.gate for case in compared.cases for result in case.results for item in result.comparisons)
     gates = sum(gate.passed is not None for case in compared.cases for gate in case.gates)
@@ -120,6 +122,20 @@ def print_comparison(compared: ComparisonRun, report: Path | None, columns: Sequ
         console.print(_all_well(gated, gates))
     if report is not None:
         print(visible(f"Report: {report}"))
+
+
+def print_envelopes(found: Sequence[Envelope]) -> None:
+    """A table for every wall of several load cases, a row a load case, with a sentence a method on which governs."""
+    for wall, mine in by_wall(found).items():
+        print(visible(f"Load cases of {wall}:"))
+        print_rows(
+            [
+                {"load case": name} | {each.method: answer_text(each.results[k]) for each in mine}
+                for k, name in enumerate(mine[0].names)
+            ]
+        )
+        for each in mine:
+            print(visible(each.verdict))
 
 
 def _strength(case: CaseResults) -> Iterator[str]:
@@ -169,6 +185,7 @@ def comparison_json(compared: ComparisonRun, report: Path | None) -> dict[str, A
         "report": None if report is None else str(report),
         "passed": not broken,
         "violations": broken,
+        "envelopes": [each.as_json() for each in envelopes(compared.cases)],
         "cases": [
             {
                 "id": case.case.id,

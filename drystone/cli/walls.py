@@ -15,6 +15,7 @@ from drystone.cli.options import (
     cases_option,
     catching,
     json_flag,
+    load_case_option,
     print_json,
     say,
     say_json,
@@ -27,9 +28,10 @@ from harness.engine.plan import check_methods, find_cases
 from harness.engine.run import Limits, Run
 from harness.engine.store import open_store
 from harness.formats.registry import FORMATS
-from harness.model.case import Case, case_folders, read_case, shipped_cases
+from harness.model.case import Case, case_folders, case_of_wall, read_case, shipped_cases
 from harness.model.errors import InputError
 from harness.model.library import library
+from harness.model.load_cases import load_cases_of
 from harness.model.method import Finding, Status, load_method, method_names
 from harness.model.reading import read_json, read_wall, wall_json
 from harness.model.result import Result
@@ -86,10 +88,14 @@ def _method_row(name: str) -> dict[str, Any]:
 @click.command()
 @click.argument("wall", type=click.Path(path_type=Path))
 @click.option("-o", "--output", type=OUTPUT, help="A file instead of standard output.")
+@load_case_option
 @catching
-def expand(wall: Path, output: Path | None) -> None:
-    """Print WALL.json in explicit form: every block with its weight, every interface with its friction."""
-    built = read_wall(wall)
+def expand(wall: Path, output: Path | None, load_case: str | None) -> None:
+    """Print WALL.json in explicit form: every block with its weight, every interface with its friction.
+
+    With --load-case it is the wall under that load case, which all commands take.
+    """
+    built = read_wall(wall) if load_case is None else load_cases_of(case_of_wall(wall), load_case)[0].built
     for sentence in built.warnings:
         say(f"drystone: {sentence}", err=True)
     text = wall_json(built.wall)

@@ -84,6 +84,8 @@ def remember(store: Store, compared: ComparisonRun, runs: Sequence[Run]) -> None
             "file": item.case.file.model_dump(mode="json"),
             "wall": item.case.wall.document(),
             "origin": item.case.origin,
+            "wall_id": item.case.wall_id,
+            "load_case": item.case.load_case,
         }
         for item in compared.cases
     }
@@ -113,6 +115,8 @@ class _KeptCase(BaseModel, defer_build=True):
     file: CaseFile
     wall: dict[str, Any]
     origin: str
+    wall_id: str = ""
+    load_case: str = ""
 
 
 class _KeptRun(BaseModel, defer_build=True):
@@ -147,7 +151,14 @@ def recall(store: Store) -> ComparisonRun | None:
         return None
     kept = validate(_Kept, content, f"{store.path}: the last comparison in it")
     cases = {
-        name: Case(item.file, parse_wall(item.wall, item.origin), item.origin) for name, item in kept.cases.items()
+        name: Case(
+            item.file,
+            parse_wall(item.wall, item.origin),
+            item.origin,
+            wall_id=item.wall_id,
+            load_case=item.load_case,
+        )
+        for name, item in kept.cases.items()
     }
     runs: list[Run] = []
     results: list[Result] = []

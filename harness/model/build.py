@@ -19,6 +19,7 @@ from harness.model.names import faults_of_wall
 from harness.model.pattern import blocks_of, count_of
 from harness.model.pattern_fields import PatternBase
 from harness.model.plausibility import contact_warnings, force_warnings, interface_warnings, near_misses
+from harness.model.pressure import pressure_forces
 from harness.model.rings import hole_faults, ringed
 from harness.model.wall import (
     Block,
@@ -63,8 +64,14 @@ def build(wall: Wall, name: str = "wall") -> Built:
     """The assembly of a wall.
 
     Raises:
-        InputError: naming the block, interface or load that is wrong.
+        InputError: naming the block, interface or load that is wrong; or it has load cases, each a wall of its own.
     """
+    if wall.load_cases:
+        raise InputError(
+            f"it has {len(wall.load_cases)} load case(s), and one is built at a time: {', '.join(wall.load_cases)}",
+            "Choose one with --load-case of run, compare or expand; compare answers all of them without",
+            "load_cases",
+        )
     blocks = blocks_of_wall(wall)
     names = tuple(block.id for block in blocks)
     index = {block_id: k for k, block_id in enumerate(names)}
@@ -107,6 +114,8 @@ def build(wall: Wall, name: str = "wall") -> Built:
         dead=_dead_load(wall.loads, blocks, index, weight, centroids, fixed),
         live=_load(wall.loads.live or Load(), blocks, index, weight, centroids, fixed),
     )
+    if _has_pressures(wall.loads):
+        assembly = _with_pressures(wall, blocks, assembly, size)
     if wall.settlements:
         assembly = replace(assembly, support_motion=_support_motion(wall, blocks, assembly))
     if laws.strong:
@@ -431,6 +440,43 @@ def _load(
     return generalised
 
 
+def _has_pressures(loads: Loads) -> bool:
+    return bool(loads.dead.pressures or (loads.live is not None and loads.live.pressures))
+
+
+def _with_pressures(wall: Wall, blocks: list[Block], assembly: Assembly, size: float) -> Assembly:
+    """The assembly with the pressures of the wall added to its loads.
+
+    Raises:
+        InputError: part of a pressure lies on no face, or on faces of two blocks.
+    """
+    thickness = [thickness_of(block, wall) for block in blocks]
+    sums = {}
+    for kind, load in (("dead", wall.loads.dead), ("live", wall.loads.live or Load())):
+        total = getattr(assembly, kind).copy()
+        for number, pressure in enumerate(load.pressures):
+            named = None if pressure.blocks is None else set(pressure.blocks)
+            chosen = [
+                k
+                for k, block in enumerate(blocks)
+                if not block.fixed
+                and (named is None or block.id in named)
+                and (pressure.group is None or pressure.group in block.groups)
+            ]
+            total += pressure_forces(
+                pressure,
+                chosen,
+                assembly.polygons,
+                assembly.centroid,
+                thickness,
+                wall.units.unit_weight_factor,
+                size,
+                f"loads.{kind}.pressures[{number}]",
+            )
+        sums[kind] = total
+    return replace(assembly, **sums)
+
+
 def _explicit(
     wall: Wall,
     blocks: list[Block],
@@ -439,7 +485,8 @@ def _explicit(
     joints: tuple[str, ...],
     laws: _Laws,
 ) -> Wall:
-    dropped = () if laws.strong else ("thickness",)  # the areas of joints with strength depend on it
+    used = laws.strong or _has_pressures(wall.loads)  # areas of joints with strength and of faces depend on it
+    dropped = () if used else ("thickness",)
     return wall.model_copy(
         update={
             "pattern": None,

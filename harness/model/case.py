@@ -103,12 +103,16 @@ class Case:
         wall: the wall.
         origin: the path of the wall's file.
         notes: what a person should hear about how the case was found.
+        wall_id: id of the wall of which this is one of several load cases; empty if it is the only one.
+        load_case: name of this load case; empty if it is the only one.
     """
 
     file: CaseFile
     wall: Wall
     origin: str
     notes: tuple[str, ...] = ()
+    wall_id: str = ""
+    load_case: str = ""
 
     @cached_property
     def built(self) -> Built:
@@ -169,7 +173,7 @@ def read_case(folder: Path) -> Case:
         raise InputError(f'id is "{file.id}" in a folder called "{folder.name}"', "Give both one name", "id", str(path))
     wall_path = folder / file.wall
     wall = parse_wall(read_json(wall_path), str(wall_path))
-    if file.kind == "multiplier" and wall.loads.live is None:
+    if file.kind == "multiplier" and wall.loads.live is None and not wall.load_cases:
         raise InputError(
             "a multiplier is asked for and there is no live load",
             'Give loads.live, or set kind = "stability" in case.toml',

@@ -9,6 +9,8 @@ import numpy as np
 
 from harness.model.assembly import FloatArray
 from harness.model.case import Case
+from harness.model.errors import InputError
+from harness.model.wall import BodyForce, Load
 
 LEVEL = 1e-9
 """Part of the greatest live force below which a component is rounding."""
@@ -25,7 +27,9 @@ def _right_and_up(case: Case) -> FloatArray:
 
 
 def is_horizontal(case: Case) -> bool:
-    """Whether there is a live load and all of it is horizontal, as that of an earthquake."""
+    """Whether there is a live load and all of it is horizontal, as that of an earthquake; a pressure acts one way."""
+    if case.wall.loads.live is not None and case.wall.loads.live.pressures:
+        return False
     forces = _right_and_up(case)
     return len(forces) > 0 and not forces[:, 1].any()
 
@@ -52,12 +56,59 @@ def reversed_live(case: Case) -> Case:
         update={
             "body": [each.model_copy(update={"per_weight": _minus(each.per_weight)}) for each in live.body],
             "points": [each.model_copy(update={"force": _minus(each.force)}) for each in live.points],
+            "pressures": [each.model_copy(update={"factor": -each.factor}) for each in live.pressures],
         }
     )
     loads = case.wall.loads.model_copy(update={"live": turned})
     file = case.file.model_copy(update={"references": []})
     wall = case.wall.model_copy(update={"loads": loads})
     return replace(case, file=file, wall=wall, origin=f"{Path(case.origin).name} with the live load reversed")
+
+
+def with_live_load(case: Case, x: float, y: float) -> Case:
+    """The case under a live load of (x, y) times the weight of every free block, in place of its own.
+
+    It has no references and no certificate: what is known of the case holds for the live load of its file.
+
+    Raises:
+        InputError: (x, y) is zero.
+    """
+    if x == 0.0 and y == 0.0:
+        raise InputError(
+            "the live load 0,0 is none", "Give a multiple of the weight, as 1,0 for to the right", "--live"
+        )
+    loads = case.wall.loads.model_copy(update={"live": Load(body=[BodyForce(per_weight=(x, y))])})
+    said = f"live load ({x:g}, {y:g}) times the weight"
+    file = case.file.model_copy(update={"references": [], "kind": "multiplier", "title": f"{case.file.title}, {said}"})
+    return replace(
+        case,
+        file=file,
+        wall=case.wall.model_copy(update={"loads": loads}),
+        origin=f"{Path(case.origin).name} with the {said}",
+        notes=(*case.notes, f"the {said} takes the place of that of the file"),
+    )
+
+
+def both_signs(case: Case) -> list[Case]:
+    """The case and that with the opposite live load, as two load cases of one wall.
+
+    Raises:
+        InputError: its live load is not horizontal, or a pressure, which acts one way.
+    """
+    if not is_horizontal(case):
+        raise InputError(
+            "its live load is not horizontal, or a pressure: both signs are those of an earthquake",
+            "Leave --both-signs out, or say --live 1,0",
+            "loads.live",
+            case.origin,
+        )
+    wall = case.wall_id or case.id
+    opposite = reversed_live(case)
+    ways = [", ".join(filter(None, (case.load_case, direction_in_words(each)))) for each in (case, opposite)]
+    return [
+        replace(case, wall_id=wall, load_case=ways[0]),
+        replace(opposite.called(f"{case.id}-reversed"), wall_id=wall, load_case=ways[1]),
+    ]
 
 
 def _minus(vector: tuple[float, float]) -> tuple[float, float]:

@@ -46,11 +46,16 @@ def _groups_and_supports(wall: Wall, blocks: list[Block]) -> list[InputError]:
     fixed = {block.id for block in blocks if block.fixed}
     faults = []
     for where, load in (("loads.dead", wall.loads.dead), ("loads.live", wall.loads.live or Load())):
-        for number, body in enumerate(load.body):
-            if body.group is not None and body.group not in groups:
-                remedy = f"{did_you_mean(body.group, groups)} Groups of this wall: {', '.join(groups) or 'none'}"
-                problem = f'no block is in a group "{body.group}"'
-                faults.append(InputError(problem, remedy.strip(), f"{where}.body[{number}]"))
+        grouped = [(f"{where}.body[{number}]", body.group) for number, body in enumerate(load.body)]
+        grouped += [(f"{where}.pressures[{number}]", pressure.group) for number, pressure in enumerate(load.pressures)]
+        for place, group in grouped:
+            if group is not None and group not in groups:
+                remedy = f"{did_you_mean(group, groups)} Groups of this wall: {', '.join(groups) or 'none'}"
+                faults.append(InputError(f'no block is in a group "{group}"', remedy.strip(), place))
+        for number, pressure in enumerate(load.pressures):
+            for name in sorted(fixed.intersection(pressure.blocks or ())):
+                problem, place = f'block "{name}" is fixed', f"{where}.pressures[{number}]"
+                faults.append(InputError(problem, "Load a block that is free to move", place, spot=Spot((name,))))
         for number, point in enumerate(load.points):
             if point.block in fixed:
                 problem, place = f'block "{point.block}" is fixed', f"{where}.points[{number}]"
@@ -78,6 +83,9 @@ def _named(wall: Wall) -> Iterator[tuple[str, str]]:
                 yield f"{where}.body[{number}]", name
         for number, point in enumerate(load.points):
             yield f"{where}.points[{number}]", point.block
+        for number, pressure in enumerate(load.pressures):
+            for name in pressure.blocks or ():
+                yield f"{where}.pressures[{number}]", name
     for number, settlement in enumerate(wall.settlements):
         for name in settlement.blocks or ():
             yield f"settlements[{number}]", name

@@ -24,7 +24,9 @@ _OUTSIDE = {
         "tie", "ties", "tie_rod", "anchor", "anchors", "reinforcement", "rebar", "prop", "props", "spring", "springs",
         "cable", "cables", "frp", "prestress", "post_tension",
     ),
-    "soil and water": ("backfill", "fill", "soil", "earth_pressure", "foundation", "water", "pore_pressure", "uplift"),
+    "soil and water (their pressure on faces is a field, pressures of a load)": (
+        "backfill", "fill", "soil", "earth", "earth_pressure", "foundation", "water", "pore_pressure", "uplift",
+    ),
     "motion in time": (
         "damping", "mass", "time", "time_history", "accelerogram", "ground_motion", "velocity", "acceleration",
         "frequency", "restitution",

@@ -7,16 +7,20 @@ loads, dead and live apart. `harness.model.reading` reads it, `harness.model.bui
 from __future__ import annotations
 
 import math
+import re
 from typing import Annotated, Any, Literal, Protocol
 
 from pydantic import BaseModel, Discriminator, Field, StrictBool, Tag, model_validator
 
 from harness.model.fields import Angle, Coefficient, Name, NonNegative, Number, Point, Positive, Strict
 from harness.model.pattern_fields import Pattern
+from harness.model.pressure_fields import Pressure
 from harness.model.units import DIMENSIONLESS, KILONEWTONS, METRES, ForceUnit, LengthUnit, unit_weight_in_kn_m3
 
 MOST_VERTICES = 5_000
 """Of one outline: joints of two faces are found in time that grows with the square of their vertices."""
+LOAD_CASE_NAME = r"[a-z0-9][a-z0-9-]{0,59}"
+"""A load case is part of the id of a case, which users type."""
 TAGS = ONE, MANY, OBJECT, OTHER = "(one)", "(many)", "(object)", "(other)"
 """Alternatives of a field, told apart by what is given, so that only the faults of the one meant are found.
 
@@ -296,6 +300,7 @@ class Load(Strict):
 
     body: list[BodyForce] = Field(default_factory=list)
     points: list[PointForce] = Field(default_factory=list)
+    pressures: list[Pressure] = Field(default_factory=list)
 
 
 class Settlement(Strict):
@@ -371,6 +376,9 @@ class Wall(Strict):
     interfaces: Interfaces = Field(default_factory=Detection)
     contact_inset: Inset | None = None
     loads: Loads = Field(default_factory=Loads)
+    load_cases: dict[str, Loads] = Field(
+        default_factory=dict, description="by name, each on top of the gravity and the dead load of `loads`"
+    )
     settlements: list[Settlement] = Field(
         default_factory=list, description="supports that move; asked about by `drystone reaction` alone"
     )
@@ -389,6 +397,19 @@ class Wall(Strict):
                 )
         else:
             _check_strength(self, coefficient_of(self.friction, self.friction_angle))
+        return self
+
+    @model_validator(mode="after")
+    def _load_cases_named(self) -> Wall:
+        if self.load_cases and self.loads.live is not None:
+            raise ValueError(
+                "loads.live beside load_cases: a load case has a live load of its own, so name this one there too"
+            )
+        for name in self.load_cases:
+            if re.fullmatch(LOAD_CASE_NAME, name) is None:
+                raise ValueError(
+                    f'"{name}" is no name of a load case: give small letters, digits and hyphens, as "snow-left"'
+                )
         return self
 
     @property

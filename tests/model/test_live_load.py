@@ -7,7 +7,8 @@ from typing import Any
 import pytest
 
 import drystone
-from harness.model.live_load import direction_in_words, is_horizontal, reversed_live
+from harness.model.errors import InputError
+from harness.model.live_load import both_signs, direction_in_words, is_horizontal, reversed_live, with_live_load
 
 STONES = [
     {"id": "g", "fixed": True, "polygon": [[0, -0.1], [0.4, -0.1], [0.4, 0], [0, 0]]},
@@ -72,3 +73,32 @@ def test_the_reversed_wall_has_the_opposite_load_and_no_reference():
     assert turned.assembly.dead.tolist() == case.assembly.dead.tolist()
     assert turned.file.references == []
     assert {direction_in_words(each) for each in (case, turned)} == {"to the right", "to the left"}
+
+
+def test_another_live_load_takes_the_place_of_that_of_the_file_and_what_is_known_of_it():
+    case = drystone.library_wall("single-block").case
+    loaded_anew = with_live_load(case, 0.5, -2.0)
+    free = case.assembly.free
+    expected = case.assembly.weight[free, None] * [0.5, -2.0]
+    assert loaded_anew.assembly.live[free, :2].tolist() == expected.tolist()
+    assert loaded_anew.assembly.dead.tolist() == case.assembly.dead.tolist()
+    assert loaded_anew.file.references == []
+    assert "live load (0.5, -2) times the weight takes the place" in loaded_anew.warnings[0]
+    with pytest.raises(InputError, match="the live load 0,0 is none"):
+        with_live_load(case, 0.0, 0.0)
+
+
+def test_both_signs_are_two_load_cases_of_one_wall():
+    case = drystone.library_wall("single-block").case
+    there, back = both_signs(case)
+    assert (there.id, back.id) == ("single-block", "single-block-reversed")
+    assert (there.load_case, back.load_case) == ("to the right", "to the left")
+    assert there.wall_id == back.wall_id == "single-block"
+    assert there.file.references == case.file.references
+    assert back.assembly.live.tolist() == (-case.assembly.live).tolist()
+
+
+@pytest.mark.parametrize("live", [body(0, -1), None, {"pressures": [{"from": [0, 0], "to": [0, 0.2], "uniform": 1.0}]}])
+def test_both_signs_of_what_is_no_earthquake_are_refused(live: dict[str, Any] | None):
+    with pytest.raises(InputError, match="its live load is not horizontal, or a pressure"):
+        both_signs(loaded(live).case)

@@ -1,0 +1,118 @@
+"""Which of several load cases of one wall governs: the one with the lowest multiplier, for every method by itself."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any
+
+from harness.model.case import Case
+from harness.model.comparison import CaseResults
+from harness.model.method import Finding, Status
+from harness.model.result import Result
+from harness.model.result_texts import answer_text
+
+EQUAL = 1e-9
+"""Relative difference of two multipliers that is rounding: the judge's own tolerance."""
+
+
+def _size(result: Result) -> float | None:
+    """What a load case is ordered by: its multiplier, 0 if the wall falls before; None without an accepted answer."""
+    if result.status is not Status.OK or result.judge.accepted is False:
+        return None
+    if result.finding is Finding.FALLS:
+        return 0.0
+    if result.finding in (Finding.UNBOUNDED, Finding.STANDS):
+        return math.inf
+    return result.multiplier if result.finding.has_multiplier else None
+
+
+@dataclass(frozen=True)
+class Envelope:
+    """Answers of one method to all load cases of a wall.
+
+    Attributes:
+        wall: id of the wall.
+        method: that answered.
+        names: (k,) of the load cases.
+        results: (k,) in the same order.
+    """
+
+    wall: str
+    method: str
+    names: tuple[str, ...]
+    results: tuple[Result, ...]
+
+    @property
+    def governing(self) -> tuple[str, ...]:
+        """The load cases of the lowest multiplier, several if equal to rounding; none unless all are answered."""
+        sizes = [_size(result) for result in self.results]
+        known = [size for size in sizes if size is not None]
+        if len(known) < len(sizes) or min(known) == math.inf:
+            return ()
+        least = min(known)
+        return tuple(name for name, size in zip(self.names, known, strict=True) if size <= least * (1.0 + EQUAL))
+
+    @property
+    def verdict(self) -> str:
+        """Which load case governs, or why none does."""
+        missing = [f'"{name}"' for name, result in zip(self.names, self.results, strict=True) if _size(result) is None]
+        if missing:
+            verdict = f"which load case governs is not known, for want of an accepted answer to {' and '.join(missing)}"
+        elif not self.governing:
+            verdict = "no load case makes the wall collapse"
+        else:
+            lowest = answer_text(self.results[self.names.index(self.governing[0])])
+            named = " and ".join(f'"{name}"' for name in self.governing)
+            alike = len(self.governing) > 1
+            verdict = f"load case{'s' * alike} {named} govern{'s' * (not alike)}, {lowest}"
+        return f"{self.method}: {verdict}."
+
+    @property
+    def sentence(self) -> str:
+        """The answers, and which of them governs or why none does."""
+        answers = [f'"{name}" {answer_text(result)}' for name, result in zip(self.names, self.results, strict=True)]
+        return f"{self.verdict} Answers: {', '.join(answers)}."
+
+    def as_json(self) -> dict[str, Any]:
+        """JSON values: wall, method, answers by load case, and the governing ones."""
+        return {
+            "wall": self.wall,
+            "method": self.method,
+            "load_cases": [
+                {"load_case": name, "finding": str(result.finding), "multiplier": result.multiplier}
+                for name, result in zip(self.names, self.results, strict=True)
+            ],
+            "governing": list(self.governing),
+            "sentence": self.sentence,
+        }
+
+
+def envelope(cases: Sequence[Case], results: Sequence[Result]) -> Envelope:
+    """The envelope of the answers (k,) of one method to the load cases (k,) of one wall."""
+    return Envelope(cases[0].wall_id, results[0].method, tuple(case.load_case for case in cases), tuple(results))
+
+
+def envelopes(compared: Sequence[CaseResults]) -> list[Envelope]:
+    """An envelope for every wall of several load cases and every method that was asked about all of them."""
+    walls: dict[str, list[CaseResults]] = {}
+    for item in compared:
+        if item.case.load_case:
+            walls.setdefault(item.case.wall_id, []).append(item)
+    found = []
+    for items in walls.values():
+        for method in dict.fromkeys(result.method for item in items for result in item.results):
+            answers = [item.of(method) for item in items]
+            results = [answer for answer in answers if answer is not None]
+            if len(items) > 1 and len(results) == len(items):
+                found.append(envelope([item.case for item in items], results))
+    return found
+
+
+def by_wall(found: Sequence[Envelope]) -> dict[str, list[Envelope]]:
+    """Envelopes by the id of their wall, in the order given."""
+    walls: dict[str, list[Envelope]] = {}
+    for each in found:
+        walls.setdefault(each.wall, []).append(each)
+    return walls

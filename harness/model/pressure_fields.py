@@ -1,0 +1,62 @@
+"""Pressure on faces of blocks as a wall file gives it: uniform, linear, of water or of earth."""
+
+from __future__ import annotations
+
+from typing import Annotated, Literal
+
+from pydantic import Field, model_validator
+
+from harness.model.fields import Angle, Name, NonNegative, Number, Point, Strict
+
+
+class Water(Strict):
+    """Water up to a level: unit_weight times the depth below it, square to the face."""
+
+    level: Number = Field(description="height y of the surface [length]")
+    unit_weight: NonNegative = Field(description="of water [force/length^3], or in the unit of unit weights")
+
+
+class Earth(Strict):
+    """Earth up to a level: vertical stress surcharge + unit_weight times depth, horizontal stress K times that."""
+
+    level: Number = Field(description="height y of the surface [length]")
+    unit_weight: NonNegative = Field(description="of the earth [force/length^3], or in the unit of unit weights")
+    friction_angle: Angle | None = Field(None, description="phi of the earth [degrees], with `state`")
+    state: Literal["active", "at_rest"] | None = Field(
+        None, description="active: K = (1 - sin phi)/(1 + sin phi); at_rest: K = 1 - sin phi"
+    )
+    coefficient: NonNegative | None = Field(None, description="K itself, instead of `friction_angle` and `state`")
+    surcharge: NonNegative = Field(0.0, description="load on the surface of the earth [force/length^2]")
+
+    @model_validator(mode="after")
+    def _one_coefficient(self) -> Earth:
+        by_angle = (self.friction_angle is not None, self.state is not None)
+        if self.coefficient is not None and any(by_angle):
+            raise ValueError("earth gives either coefficient, or friction_angle and state")
+        if self.coefficient is None and not all(by_angle):
+            raise ValueError('earth gives friction_angle and state ("active" or "at_rest"), or coefficient')
+        return self
+
+
+class Pressure(Strict):
+    """Pressure on the faces of blocks along a segment, pushing into the blocks."""
+
+    start: Point = Field(alias="from", description="one end of the loaded segment, on a face")
+    end: Point = Field(alias="to", description="its other end")
+    blocks: list[Name] | None = Field(None, description="ids; all free blocks if neither blocks nor group is given")
+    group: Name | None = None
+    uniform: Number | None = Field(None, description="pressure [force/length^2]; negative: suction")
+    linear: Annotated[tuple[Number, Number] | None, Field(description="pressure at `from` and `to`")] = None
+    water: Water | None = None
+    earth: Earth | None = None
+    factor: Number = Field(1.0, description="multiple of it that acts; negative: the other way")
+
+    @model_validator(mode="after")
+    def _one_kind(self) -> Pressure:
+        if sum(kind is not None for kind in (self.uniform, self.linear, self.water, self.earth)) != 1:
+            raise ValueError("a pressure gives exactly one of uniform, linear, water, earth")
+        if self.blocks is not None and self.group is not None:
+            raise ValueError("a pressure names either blocks or group, not both")
+        if self.start == self.end:
+            raise ValueError("a pressure acts along a segment: give different from and to")
+        return self

@@ -1,0 +1,70 @@
+"""Which load case governs: the lowest multiplier, if all are answered and accepted."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import pytest
+
+import drystone
+from harness.model.case import Case
+from harness.model.comparison import CaseResults
+from harness.model.envelope import Envelope, envelope, envelopes
+from harness.model.live_load import both_signs
+from harness.model.method import Status
+from harness.model.result import Result
+
+B1, B2, H = 1.0, 1.2, 2.0
+"""Width of the base and of the top of a block that leans to the left, and its height."""
+
+
+def leaning() -> list[Case]:
+    blocks = [
+        {"id": "g", "fixed": True, "polygon": [[-1, -1], [3, -1], [3, 0], [-1, 0]]},
+        {"id": "a", "polygon": [[0, 0], [B1, 0], [1.0, H], [-0.2, H]]},
+    ]
+    loads = {"live": {"body": [{"per_weight": [1, 0]}]}}
+    wall = drystone.build_wall(
+        {"format": "wall/1", "unit_weight": 20, "friction": 0.9, "blocks": blocks, "loads": loads}, "leaning"
+    )
+    return both_signs(wall.case)
+
+
+def answers(**settings: Any) -> tuple[list[Case], list[Result]]:
+    cases = leaning()
+    return cases, [drystone.analyse(drystone.Wall(case), "la-associated", **settings) for case in cases]
+
+
+def test_the_side_to_which_a_block_leans_governs_with_its_closed_form():
+    """It topples at the distance from the edge to the centroid over the height of the centroid."""
+    cases, results = answers()
+    x, y = cases[0].assembly.centroid[1].tolist()
+    found = envelope(cases, results)
+    assert [result.multiplier for result in results] == pytest.approx([(B1 - x) / y, x / y], rel=1e-9)
+    assert found.governing == ("to the left",)
+    assert found.verdict == 'la-associated: load case "to the left" governs, 0.4352941.'
+    assert 'Answers: "to the right" 0.5352941, "to the left" 0.4352941.' in found.sentence
+    assert found.as_json()["governing"] == ["to the left"]
+
+
+def test_equal_load_cases_govern_alike():
+    cases, results = answers()
+    found = envelope(cases, [results[0], results[0]])
+    assert found.verdict == 'la-associated: load cases "to the right" and "to the left" govern, 0.5352941.'
+
+
+def test_no_load_case_governs_while_another_has_no_answer():
+    cases, results = answers()
+    failed = results[0].model_copy(update={"status": Status.TIMEOUT})
+    rejected = results[0].model_copy(update={"judge": results[0].judge.model_copy(update={"accepted": False})})
+    for missing in (failed, rejected):
+        found = envelope(cases, [missing, results[1]])
+        assert found.governing == ()
+        assert 'not known, for want of an accepted answer to "to the right"' in found.verdict
+
+
+def test_envelopes_are_by_wall_and_method_and_walls_of_one_load_case_have_none():
+    cases, results = answers()
+    alone = drystone.library_wall("single-block").case
+    rows = [CaseResults(case, [result]) for case, result in zip([*cases, alone], [*results, results[0]], strict=True)]
+    assert envelopes(rows) == [Envelope("leaning", "la-associated", ("to the right", "to the left"), tuple(results))]
