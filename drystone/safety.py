@@ -16,7 +16,6 @@ from typing import Any
 
 import numpy as np
 
-from drystone.analysis import Result
 from drystone.walls import Wall
 from harness.engine import pipeline
 from harness.engine.executors import InProcess, LocalExecutor
@@ -27,6 +26,7 @@ from harness.model.case import Case
 from harness.model.errors import InputError
 from harness.model.method import Finding, Status, check_takes, load_method
 from harness.model.reading import validate
+from harness.model.result import Result
 
 
 @dataclass(frozen=True)
@@ -99,13 +99,8 @@ class FactorOfSafety:
 
     @property
     def value(self) -> float | None:
-        """The lower end of the bracket; infinite: the wall stands without friction; None: no standing wall was found."""
+        """The lower end of the bracket; infinite: the wall stands without friction; None: nothing stands."""
         return None if self.stands is None else self.lower
-
-    @property
-    def standing_proved(self) -> bool:
-        """Whether the judge accepted forces in equilibrium and within yield at the lower end."""
-        return self.stands is not None and self.stands.judge.accepted is True
 
     @property
     def fall_proved(self) -> bool:
@@ -115,41 +110,46 @@ class FactorOfSafety:
     @property
     def sentence(self) -> str:
         """What was found, between which ends, and what is proved of them."""
-        if self.stands is None and self.falls is None:
-            return f"Whether the wall stands was not found. {self.reason}"
-        if self.falls is None and math.isinf(self.lower):
-            found = "The wall stands without friction: the factor of safety on friction is infinite."
-        elif self.falls is None:
-            found = f"The factor of safety on friction is at least {self.lower:.7g}; no factor at which it falls was found."
-        elif self.stands is None:
-            found = f"The factor of safety on friction is below {self.upper:.7g}; no factor at which it stands was found."
-        else:
-            found = f"The factor of safety on friction is {self.lower:.7g}; the wall falls at {self.upper:.7g}."
-        return " ".join(filter(None, (found, self.reason, *self._proofs())))
+        return " ".join(filter(None, (self._found(), self.reason, *self._proofs())))
+
+    def _found(self) -> str:
+        if self.stands is None:
+            if self.falls is None:
+                return "Whether the wall stands was not found."
+            if self.upper >= 1.0:
+                return f"The wall falls with its friction divided by {self.upper:.8g}; no state was found that stands."
+            return (
+                f"No factor of safety exists: the wall falls even with friction {1.0 / self.upper:.8g} times as large."
+            )
+        if math.isinf(self.lower):
+            return "The wall stands without friction: the factor of safety on friction is infinite."
+        if math.isinf(self.upper):
+            return f"The factor of safety on friction is at least {self.lower:.8g}."
+        return f"The factor of safety on friction is {self.lower:.8g}; the wall falls at {self.upper:.8g}."
 
     def _proofs(self) -> Iterator[str]:
         if self.stands is not None:
-            at = "without friction" if math.isinf(self.lower) else f"at {self.lower:.7g}"
-            yield (
-                f"Proved: an equilibrium within yield exists {at}."
-                if self.standing_proved
-                else f"That it stands {at} is not proved."
-            )
+            if math.isinf(self.lower):
+                yield "Proved: an equilibrium exists without friction."
+                return
+            yield f"Proved: an equilibrium within yield exists at {self.lower:.8g}."
+            if self.stands.traits.any_self_stress:
+                yield (
+                    "Joints may carry any self-stress in it: a wall whose joints slide without dilatancy can fall "
+                    "earlier, so ask fe and de too."
+                )
         if self.falls is not None:
-            yield (
-                f"Proved: no equilibrium exists at {self.upper:.7g} and above."
-                if self.fall_proved
-                else f"That it falls at {self.upper:.7g} was computed by {self.method} and is not proved."
-            )
+            at = "without friction" if math.isinf(self.upper) else f"at {self.upper:.8g} and above"
+            if self.fall_proved:
+                yield f"Proved: no equilibrium exists {at}."
+            else:
+                yield f"The fall was computed by {self.method}; that no equilibrium exists is not proved."
 
     def as_json(self) -> dict[str, Any]:
         """JSON values; what is infinite is null."""
         ends = {
-            name: None if end is None else {"factor": _finite(at), "proved": proved, "result": end.summary()}
-            for name, end, at, proved in (
-                ("stands", self.stands, self.lower, self.standing_proved),
-                ("falls", self.falls, self.upper, self.fall_proved),
-            )
+            name: None if end is None else {"factor": _finite(at), "result": end.summary()}
+            for name, end, at in (("stands", self.stands, self.lower), ("falls", self.falls, self.upper))
         }
         return {
             "case": self.wall.name,
@@ -159,6 +159,7 @@ class FactorOfSafety:
             "infinite": self.value == math.inf,
             "bracket": [_finite(self.lower), _finite(self.upper)],
             "sentence": self.sentence,
+            "fall_proved": self.fall_proved,
             "runs": self.runs,
             **ends,
         }
@@ -174,63 +175,84 @@ def factor(
     *,
     share: float = 0.0,
     accuracy: float | None = None,
-    furthest: float = 2.0**16,
     isolated: bool = False,
-    limits: Limits | None = None,
+    seconds: float = Limits().seconds,
+    memory_bytes: int = Limits().memory_bytes,
     store: str | Path | None = None,
-    fresh: bool = False,
     **settings: Any,
 ) -> FactorOfSafety:
     """The largest factor by which friction and cohesion of all joints can be divided before the wall falls.
 
-    >>> import drystone
-    >>> leaning = drystone.library_wall("incline-down")
-    >>> drystone.factor(leaning).sentence[:40]
-    ''
-
-    The wall without friction is asked first. Where it falls, the factor is bracketed by squares, from 2, and bisected.
+    >>> from drystone import library_wall
+    >>> print(f"{factor(library_wall('incline-down')).value:.4f}")  # friction 0.5 on 10 degrees
+    2.8356
 
     Args:
-        wall: the wall; its live load acts by its share alone.
+        wall: the wall; of its live load only the share acts.
         method: the name of the method whose finding is taken.
         share: multiple of the live load that acts beside the dead load.
-        accuracy: relative width at which the bracket is narrow enough; None: 1e-6, or what a method that measures
-            states of itself.
+        accuracy: relative width at which the bracket is narrow enough; None: 1e-6, or the accuracy that a method states
+            which measures.
+        isolated, seconds, memory_bytes, store, settings: as of `analyse`; limits are of one run.
+
+    Raises:
+        InputError: an unknown method or setting, a share of a live load that the wall does not have, an accuracy out of
+            range, or a wall that the method refuses.
+    """
+    limits = Limits(seconds, memory_bytes) if isolated else None
+    return factor_by(wall, method, settings, share=share, accuracy=accuracy, limits=limits, store=store)
+
+
+def factor_by(
+    wall: Wall,
+    method: str,
+    settings: dict[str, Any],
+    *,
+    share: float = 0.0,
+    accuracy: float | None = None,
+    furthest: float = 2.0**16,
+    limits: Limits | None = None,
+    store: str | Path | None = None,
+    fresh: bool = False,
+) -> FactorOfSafety:
+    """As `factor`, with settings that may have any name, `seconds` among them.
+
+    Args:
+        wall, method, settings, share, accuracy, store: see `factor`.
         furthest: the factor is sought from 1 / furthest to furthest.
-        isolated, store, settings: as of `analyse`.
-        limits: of one run, where it is isolated; None: those that are usual.
+        limits: of one isolated run; None: all runs are made in this process.
         fresh: run what is in the store as well.
 
     Raises:
-        InputError: an unknown method or setting, a share of a live load that the wall does not have, an accuracy or a
-            range that is none, or a wall that the method refuses.
+        InputError: as `factor`.
     """
     check_methods([method], "method")
     loaded = load_method(method)
     validate(loaded.Settings, settings, "settings")
-    try:
-        check_takes(loaded, wall.assembly)
-    except InputError as error:
-        error.source = error.source or wall.case.origin
-        raise
-    if share != 0.0 and not wall.assembly.has_live_load:
-        raise InputError("a share of the live load is asked for and there is none", "Give loads.live", "loads.live")
     if not math.isfinite(share):
-        raise InputError(f"the share {share} is no number", "Give a finite one, as 0.5", "share")
+        raise InputError(f"the share {share} is not finite", "Give a finite number, as 0.5", "share")
     if accuracy is None:
         accuracy = loaded.traits.accuracy if loaded.traits.brackets else 1e-6
     if not 1e-12 <= accuracy < 1.0:
-        raise InputError(f"the accuracy {accuracy:g} is none", "Give one from 1e-12 to below 1", "accuracy")
-    if not 1.0 < furthest < math.inf:
-        raise InputError(f"the furthest factor {furthest:g} is none", "Give one above 1", "furthest")
-    executor = LocalExecutor(1) if isolated else InProcess()
+        raise InputError(f"the accuracy {accuracy:g} is out of range", "Give one from 1e-12 to below 1", "accuracy")
+    try:
+        check_takes(loaded, wall.assembly)
+        if share != 0.0 and not wall.assembly.has_live_load:
+            raise InputError(
+                "a share of the live load is asked for and there is none",
+                'Give "loads": {"live": ...}, or the share 0',
+                "loads.live",
+            )
+    except InputError as error:
+        error.source = error.source or wall.case.origin
+        raise
+    executor = InProcess() if limits is None else LocalExecutor(1)
     with pipeline.opened_at(store) as opened:
 
-        def run(factor: float) -> Result:
-            reduced = ReducedWall(wall.case, factor, share)
-            asked = Run(reduced, method, settings, (limits or Limits()) if isolated else None)
+        def run(at: float) -> Result:
+            asked = Run(ReducedWall(wall.case, at, share), method, settings, limits)
             (record,) = pipeline.execute([asked], opened, 1, fresh=fresh, executor=executor)
-            return Result.on(wall, record)
+            return record
 
         search = _Search(run)
         search.bracket(furthest)
@@ -255,6 +277,7 @@ class _Search:
     Attributes:
         run: makes the judged result of a factor.
         lower, upper, stands, falls, runs, reason: as of `FactorOfSafety`.
+        cut_off: a run was ended by a limit or crashed; further ones would be too.
     """
 
     run: Callable[[float], Result]
@@ -264,10 +287,13 @@ class _Search:
     falls: Result | None = None
     runs: int = 0
     reason: str = ""
+    cut_off: bool = False
 
     def bracket(self, furthest: float) -> None:
         """Ask the wall without friction, then as drawn, then at the factors 2, 4, 16, ... or their inverses."""
         if self._holds(math.inf):
+            return
+        if self.cut_off:
             return
         self.reason = ""  # a method may have no answer without friction
         drawn, exponent = self._holds(1.0), 1.0
@@ -278,10 +304,24 @@ class _Search:
             exponent *= 2.0
 
     def bisect(self, accuracy: float) -> None:
-        """Halve the bracket on a logarithmic scale until its relative width is no larger than the accuracy."""
-        while 0.0 < self.lower and self.lower * (1.0 + accuracy) < self.upper < math.inf:
-            if self._holds(math.sqrt(self.lower) * math.sqrt(self.upper)) is None:
+        """Halve the bracket on a logarithmic scale until its relative width is no larger than the accuracy.
+
+        Factors at which the method decides nothing are left between the ends, which close in on them from both sides.
+        """
+        doubt: tuple[float, float] | None = None
+        while self.lower > 0.0 and self.upper < math.inf and not self.cut_off:
+            if doubt is not None and not self.lower < doubt[0] <= doubt[1] < self.upper:
+                doubt, self.reason = None, ""
+            if self.upper <= self.lower * (1.0 + accuracy):
+                self.reason = ""
                 return
+            gaps = [(self.lower, self.upper)] if doubt is None else [(self.lower, doubt[0]), (doubt[1], self.upper)]
+            low, high = max(gaps, key=lambda gap: gap[1] / gap[0])
+            if high <= low * (1.0 + 0.25 * accuracy):
+                return
+            middle = math.sqrt(low) * math.sqrt(high)
+            if self._holds(middle) is None:
+                doubt = (middle, middle) if doubt is None else (min(doubt[0], middle), max(doubt[1], middle))
 
     def _holds(self, factor: float) -> bool | None:
         """Whether the wall stands at a factor, which becomes an end of the bracket; None: not decided, for a reason."""
@@ -293,7 +333,9 @@ class _Search:
         if result.finding is Finding.FALLS and result.judge.accepted is not False:
             self.upper, self.falls = factor, result
             return False
-        decided = result.status is Status.OK and result.finding in (Finding.STANDS, Finding.FALLS)
+        answered = result.status in (Status.OK, Status.NOT_CONVERGED)
+        decided = result.finding in (Finding.STANDS, Finding.FALLS)
         why = result.judge.sentence if decided else result.sentence
         self.reason = f"At {factor:.7g} the run decides nothing: {why.rstrip('.')}."
+        self.cut_off = not answered
         return None
