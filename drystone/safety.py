@@ -184,14 +184,14 @@ def factor(
     """The largest factor by which friction and cohesion of all joints can be divided before the wall falls.
 
     >>> from drystone import library_wall
-    >>> print(f"{factor(library_wall('incline-down')).value:.4f}")  # friction 0.5 on 10 degrees
-    2.8356
+    >>> print(f"{factor(library_wall('incline-down')).value:.3f}")  # friction 0.5 on 10 degrees
+    2.836
 
     Args:
         wall: the wall; of its live load only the share acts.
         method: the name of the method whose finding is taken.
         share: multiple of the live load that acts beside the dead load.
-        accuracy: relative width at which the bracket is narrow enough; None: 1e-6, or the accuracy that a method states
+        accuracy: relative width at which the bracket is narrow enough; None: 1e-4, or the accuracy that a method states
             which measures.
         isolated, seconds, memory_bytes, store, settings: as of `analyse`; limits are of one run.
 
@@ -232,7 +232,7 @@ def factor_by(
     if not math.isfinite(share):
         raise InputError(f"the share {share} is not finite", "Give a finite number, as 0.5", "share")
     if accuracy is None:
-        accuracy = loaded.traits.accuracy if loaded.traits.brackets else 1e-6
+        accuracy = loaded.traits.accuracy if loaded.traits.brackets else 1e-4
     if not 1e-12 <= accuracy < 1.0:
         raise InputError(f"the accuracy {accuracy:g} is out of range", "Give one from 1e-12 to below 1", "accuracy")
     try:

@@ -32,7 +32,7 @@ from harness.engine.run import Limits
 @settings_option
 @click.option("--share", type=float, default=0.0, show_default=True, help="Multiple of the live load that acts too.")
 @click.option(
-    "--accuracy", type=float, help="Relative width of the bracket.  [default: 1e-6, or that of a method that measures]"
+    "--accuracy", type=float, help="Relative width of the bracket.  [default: 1e-4, or that of a method that measures]"
 )
 @click.option(
     "--store", type=click.Path(path_type=Path), help="Where runs are kept, and looked for first.  [default: nowhere]"
