@@ -116,6 +116,8 @@ class FactorOfSafety:
         if self.stands is None:
             if self.falls is None:
                 return "Whether the wall stands was not found."
+            if math.isinf(self.upper):
+                return "The wall falls without friction; no state was found that stands."
             if self.upper >= 1.0:
                 return f"The wall falls with its friction divided by {self.upper:.8g}; no state was found that stands."
             return (
@@ -130,9 +132,9 @@ class FactorOfSafety:
     def _proofs(self) -> Iterator[str]:
         if self.stands is not None:
             if math.isinf(self.lower):
-                yield "Proved: an equilibrium exists without friction."
+                yield "The judge accepted its equilibrium."
                 return
-            yield f"Proved: an equilibrium within yield exists at {self.lower:.8g}."
+            yield f"The judge accepted an equilibrium within yield at {self.lower:.8g}."
             if self.stands.traits.any_self_stress:
                 yield (
                     "Joints may carry any self-stress in it: a wall whose joints slide without dilatancy can fall "
@@ -291,9 +293,7 @@ class _Search:
 
     def bracket(self, furthest: float) -> None:
         """Ask the wall without friction, then as drawn, then at the factors 2, 4, 16, ... or their inverses."""
-        if self._holds(math.inf):
-            return
-        if self.cut_off:
+        if self._holds(math.inf) or self.cut_off:
             return
         self.reason = ""  # a method may have no answer without friction
         drawn, exponent = self._holds(1.0), 1.0

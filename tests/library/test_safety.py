@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 
 import drystone
-from drystone.safety import ReducedWall, _Search, factor, factor_by
+from drystone.safety import FactorOfSafety, ReducedWall, _Search, factor, factor_by
 from drystone.walls import Wall
 from harness.engine.judge import judge
 from harness.model.errors import InputError
@@ -162,6 +162,20 @@ def test_a_run_that_is_cut_off_ends_the_search():
     assert (search.lower, search.upper, search.runs) == (1.0, 2.0, 4)
 
 
+def test_a_wall_as_drawn_that_decides_nothing_has_no_factor():
+    search = _Search(lambda at: made_up(at, 1.2, (0.9, 1.1), Status.NOT_CONVERGED))
+    search.bracket(100.0)
+    search.bisect(EXACT)
+    found = FactorOfSafety(
+        UPRIGHT, "b", 0.0, search.lower, search.upper, search.stands, search.falls, search.runs, search.reason
+    )
+    assert found.value is None
+    assert found.sentence == (
+        "The wall falls without friction; no state was found that stands. At 1 the run decides nothing: Why. "
+        "Proved: no equilibrium exists without friction."
+    )
+
+
 def test_runs_are_kept_and_found_again(tmp_path: Path):
     store = tmp_path / "store.sqlite"
     first, second = (factor(sloped(20.0, 0.6), "la-associated", store=store, accuracy=1e-3) for _ in range(2))
@@ -179,7 +193,7 @@ REFUSED: list[tuple[Callable[[], Any], str]] = [
     (lambda: factor(sloped(20.0, 0.6), share=0.5), "a share of the live load is asked for and there is none"),
     (lambda: factor(UPRIGHT, share=math.nan), "the share nan is not finite"),
     (lambda: factor(UPRIGHT, accuracy=0.0), "the accuracy 0 is out of range"),
-    (lambda: factor(sloped(20.0, 0.6, cohesion=1.0), "fe"), "fe takes dry joints only"),
+    (lambda: factor(sloped(20.0, 0.6, cohesion=1.0), "la-paper"), "la-paper takes dry joints only"),
     (lambda: factor_by(UPRIGHT, "la", {"no": 1}), "no"),
 ]
 
