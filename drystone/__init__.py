@@ -8,7 +8,8 @@
 
 `read_wall`, `build_wall`, `new_wall` and `library_wall` give a `Wall`; `analyse` runs one method in this process,
 `compare` many, each run in a process of its own; `judge` holds an answer against equilibrium, yield and flow. `sweep`
-varies friction, proportions or seeds over many walls, and `check` compares methods with checked references.
+varies friction, proportions or seeds over many walls, and `check` compares methods with checked references. `factor` is the
+factor of safety on friction.
 """
 
 from __future__ import annotations
@@ -21,6 +22,7 @@ __all__ = [
     "Answer",
     "Check",
     "Comparison",
+    "FactorOfSafety",
     "Finding",
     "InputError",
     "Judgement",
@@ -35,6 +37,7 @@ __all__ = [
     "build_wall",
     "check",
     "compare",
+    "factor",
     "judge",
     "library_wall",
     "library_walls",
@@ -48,6 +51,7 @@ if TYPE_CHECKING:
     from drystone.analysis import Result, analyse, judge, methods
     from drystone.checking import Check, check
     from drystone.comparing import Comparison, compare
+    from drystone.safety import FactorOfSafety, factor
     from drystone.studies import Sweep, sweep
     from drystone.walls import Wall, build_wall, library_wall, library_walls, new_wall, read_wall
     from harness.model.errors import InputError
@@ -58,6 +62,7 @@ _HOME = {
     "drystone.analysis": ("Result", "analyse", "judge", "methods"),
     "drystone.checking": ("Check", "check"),
     "drystone.comparing": ("Comparison", "compare"),
+    "drystone.safety": ("FactorOfSafety", "factor"),
     "drystone.studies": ("Sweep", "sweep"),
     "drystone.walls": ("Wall", "build_wall", "library_wall", "library_walls", "new_wall", "read_wall"),
     "harness.model.errors": ("InputError",),

@@ -20,7 +20,10 @@ MULTIPLIER = 0.5
 """Width over height of the whole stack, 0.3 / 0.6: it topples about its lower corner."""
 
 
-MODULES = ["drystone", *(f"drystone.{name}" for name in ("walls", "analysis", "comparing", "studies", "checking"))]
+MODULES = [
+    "drystone",
+    *(f"drystone.{name}" for name in ("walls", "analysis", "comparing", "safety", "studies", "checking")),
+]
 
 
 @pytest.mark.parametrize("module", MODULES)

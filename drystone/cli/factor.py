@@ -1,0 +1,81 @@
+"""The command that finds the factor of safety on friction."""
+
+from __future__ import annotations
+
+import sys
+from pathlib import Path
+
+import click
+
+from drystone.cli.options import (
+    cases_option,
+    catching,
+    fresh_flag,
+    json_flag,
+    memory_option,
+    print_json,
+    say,
+    seconds_option,
+    settings_option,
+    warn,
+)
+from drystone.cli.settings import settings_of
+from drystone.safety import factor_by
+from drystone.walls import Wall
+from harness.engine.plan import check_methods, find_cases
+from harness.engine.run import Limits
+
+
+@click.command()
+@click.argument("case")
+@click.option("--method", default="la", show_default=True, help="The method whose finding is taken: la, fe, de, ...")
+@settings_option
+@click.option("--share", type=float, default=0.0, show_default=True, help="Multiple of the live load that acts too.")
+@click.option(
+    "--accuracy", type=float, help="Relative width of the bracket.  [default: 1e-4, or that of a method that measures]"
+)
+@click.option(
+    "--store", type=click.Path(path_type=Path), help="Where runs are kept, and looked for first.  [default: nowhere]"
+)
+@fresh_flag
+@json_flag
+@cases_option
+@seconds_option
+@memory_option
+@catching
+def factor(
+    case: str,
+    method: str,
+    settings: tuple[str, ...],
+    share: float,
+    accuracy: float | None,
+    store: Path | None,
+    fresh: bool,
+    as_json: bool,
+    folders: tuple[Path, ...],
+    seconds: float,
+    memory: int,
+) -> None:
+    """Find the factor of safety on friction of CASE (an id, a case folder or a WALL.json).
+
+    It is the largest factor by which friction and cohesion of all joints can be divided before the wall falls under its
+    dead load. Both ends of its bracket are judged. Exit code 1: it was not found, or to less than the accuracy.
+    """
+    check_methods([method], "--method")
+    (found,) = find_cases([case], None, folders)
+    warn(found)
+    answer = factor_by(
+        Wall(found),
+        method,
+        settings_of(method, settings),
+        share=share,
+        accuracy=accuracy,
+        limits=Limits(seconds, memory * 2**20),
+        store=store,
+        fresh=fresh,
+    )
+    if as_json:
+        print_json(answer.as_json())
+    else:
+        say(answer.sentence)
+    sys.exit(0 if answer.value is not None and not answer.reason else 1)
