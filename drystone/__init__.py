@@ -8,8 +8,8 @@
 
 `read_wall`, `build_wall`, `new_wall` and `library_wall` give a `Wall`; `analyse` runs one method in this process,
 `compare` many, each run in a process of its own; `judge` holds an answer against equilibrium, yield and flow. `sweep`
-varies friction, proportions or seeds over many walls, and `check` compares methods with checked references. `factor` is the
-factor of safety on friction.
+varies friction, proportions or seeds over many walls, and `check` compares methods with checked references.
+`factor` is the factor of safety on friction.
 """
 
 from __future__ import annotations
