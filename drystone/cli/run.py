@@ -45,6 +45,7 @@ from harness.model.method import Status
 )
 @fresh_flag
 @click.option("--fields", is_flag=True, help="With --json: contact forces, mechanism, states and path too.")
+@click.option("--joints", is_flag=True, help="The margins of every joint too, the most critical first.")
 @json_flag
 @cases_option
 @seconds_option
@@ -58,6 +59,7 @@ def run(
     store: Path | None,
     fresh: bool,
     fields: bool,
+    joints: bool,
     as_json: bool,
     folders: tuple[Path, ...],
     seconds: float,
@@ -73,7 +75,9 @@ def run(
         Wall(found), method, chosen, isolated=True, limits=limits, processes=jobs, store=store, fresh=fresh
     )
     if as_json:
-        print_json(terminal.result_json(result, result.proof, fields=fields))
+        print_json(terminal.result_json(found, result, result.proof, fields=fields, joints=joints))
     else:
         terminal.print_result(result, found, result.proof)
+        if joints:
+            terminal.print_joints(found, result)
     sys.exit(1 if result.status is not Status.OK else terminal.JUDGED[result.judge.accepted])
