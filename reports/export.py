@@ -11,8 +11,8 @@ from importlib.util import find_spec
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from harness.model.columns import COMPARISONS, RESULTS, ResultColumn, ResultRow
 from harness.model.case import Case
+from harness.model.columns import COMPARISONS, RESULTS, ResultColumn, ResultRow
 from harness.model.comparison import CaseResults, ComparisonRun
 from harness.model.joint_margins import ANSWERED, joint_rows
 from harness.model.proof import Proof, proof_of
