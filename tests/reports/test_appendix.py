@@ -67,6 +67,8 @@ def test_appendix_holds_what_an_engineer_signs_for():
         "Repeat it",
     ):
         assert word in text
+    joints = item.case.assembly.n_interfaces
+    assert f"<b>Most critical joints</b> ({min(joints, 8)} of {joints}) in this state" in text
     assert text.count("<svg") == 3
     assert not re.search(r'(src|href)="http', text)
 
