@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import csv
+import io
 import json
 import re
 import tempfile
@@ -45,8 +46,7 @@ def export(run: ComparisonRun, folder: Path, *, drawn: bool = False, columns: Se
     folder.mkdir(parents=True, exist_ok=True)
     results = result_frame(((r, proof_of(item, r)) for item in run.cases for r in item.results), columns)
     contents: dict[str, bytes] = {"results.csv": _csv(results), "comparisons.csv": _csv(comparison_frame(run))}
-    joints = [row for item in run.cases for result in item.results for row in joint_rows(item.case, result)]
-    contents["joints.csv"] = _csv(_frame(ANSWERED, joints))
+    contents["joints.csv"] = _joints_csv(run)
     if find_spec("pyarrow") is not None:
         contents["results.parquet"] = results.to_parquet(index=False)
     for item in run.cases:
@@ -143,6 +143,16 @@ def _csv(table: pd.DataFrame) -> bytes:
     known = table.astype(object)
     plain = known.where(known.notna(), None).map(_field)
     return plain.to_csv(index=False, quoting=csv.QUOTE_NONNUMERIC, lineterminator="\n").encode()
+
+
+def _joints_csv(run: ComparisonRun) -> bytes:
+    """As `_csv` writes the joints of all answers, without a frame: they are many."""
+    stream = io.StringIO()
+    rows = (row for item in run.cases for result in item.results for row in joint_rows(item.case, result))
+    writer = csv.writer(stream, quoting=csv.QUOTE_NONNUMERIC, lineterminator="\n")
+    writer.writerow([column.name for column in ANSWERED])
+    writer.writerows([_field(column.value(row)) for column in ANSWERED] for row in rows)
+    return stream.getvalue().encode()
 
 
 def _field(value: Any) -> Any:

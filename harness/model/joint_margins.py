@@ -11,6 +11,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import cached_property
 from operator import attrgetter
 from typing import Any
 
@@ -48,7 +49,7 @@ class JointMargins:
     eccentricity_utilisation: FloatArray
     edge_stress: FloatArray
 
-    @property
+    @cached_property
     def utilisation(self) -> FloatArray:
         """(m,) the larger utilisation."""
         return np.fmax(self.shear_utilisation, self.eccentricity_utilisation)
