@@ -446,12 +446,11 @@ def _explicit(
     joints: tuple[str, ...],
     laws: _Laws,
 ) -> Wall:
-    dropped = () if laws.strong else ("thickness",)  # the areas of joints with strength depend on it
     return wall.model_copy(
         update={
             "pattern": None,
             "blocks": [
-                block.model_copy(update={"weight": float(w), "unit_weight": None, **dict.fromkeys(dropped)})
+                block.model_copy(update={"weight": float(w), "unit_weight": None})
                 for block, w in zip(blocks, weight, strict=True)
             ],
             "interfaces": [

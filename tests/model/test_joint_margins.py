@@ -72,6 +72,16 @@ def test_edge_stress_does_not_depend_on_the_thickness_that_also_carries_the_weig
     assert found.edge_stress == pytest.approx(margins_of(block()).edge_stress[0])
 
 
+def test_the_explicit_form_keeps_the_thickness_of_blocks():
+    outlines = {"ground": [[0, 0], [1, 0], [1, 0.5], [0, 0.5]], "cap": [[0, 0.5], [1, 0.5], [1, 0.7], [0, 0.7]]}
+    blocks = [{"id": name, "polygon": outline, "fixed": name == "ground"} for name, outline in outlines.items()]
+    blocks[1]["thickness"] = 0.2
+    wall = {"format": "wall/1", "unit_weight": 20.0, "friction": 0.5, "thickness": 0.5, "blocks": blocks}
+    built = build(Wall.model_validate(wall))
+    assert built.joint_thickness == pytest.approx([0.2])
+    assert build(built.wall).joint_thickness == pytest.approx([0.2])
+
+
 def test_contact_points_set_in_shorten_the_distance_and_not_the_face():
     found = margins_of(block(contact_inset={"length": 0.03}))
     eccentricity = PUSH * HEIGHT / (2.0 * WEIGHT)
