@@ -11,8 +11,9 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from reports.figures import BLUE, GREY, INK, RUST
+from reports.drawing.looks import COLOURS
 
+BLUE, GREY, INK, RUST = (COLOURS[name] for name in ("blue", "grey", "ink", "rust"))
 ARROW = {"arrowstyle": "-|>", "linewidth": 1.4, "shrinkA": 0, "shrinkB": 0}
 """An arrow that begins and ends where it says."""
 LOWEST, HIGHEST = 0.4, 0.6
@@ -180,7 +181,7 @@ def friction_figure(folder: Path) -> None:
 def readme_figure(folder: Path) -> None:
     """The 21-brick wall in three methods, as the README shows it: `python docs/figures.py` draws it again."""
     import drystone
-    from reports.figures import figure
+    from reports.drawing.figures import figure
 
     wall = drystone.library_wall("wall-21")
     answers: list[Any] = [drystone.analyse(wall, name) for name in ("fe", "la", "de")]

@@ -8,7 +8,7 @@ from harness.engine.baseline import Baseline, Value, read_baseline
 from harness.engine.verdict import compare
 from harness.model.case import Case, Reference, ReferenceType, case_folders, read_case, shipped_cases
 from harness.model.result import Judgement, Result, Verdict
-from reports import numbers
+from reports.labels import numbers
 
 KINDS = {
     ReferenceType.EXACT: "Verification: a closed form, or proved",

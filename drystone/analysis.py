@@ -69,7 +69,7 @@ class Result(Record):
 
     def to_pandas(self) -> pd.DataFrame:
         """One row with the columns of results.csv; `attrs["units"]` names the unit of each measured column."""
-        from reports.export import result_frame
+        from reports.page.export import result_frame
 
         return result_frame([(self, self.proof)])
 
@@ -87,13 +87,13 @@ class Result(Record):
 
     def joints_to_pandas(self) -> pd.DataFrame:
         """Margins of every joint, the most critical first, with the columns of joints.csv; `attrs["units"]`: units."""
-        from reports.export import joint_frame
+        from reports.page.export import joint_frame
 
         return joint_frame(self._wall.case, [self])
 
     def reactions_to_pandas(self) -> pd.DataFrame:
         """Reactions of the supports on the wall: one row a fixed block with Fx, Fy and moment; `attrs["units"]`."""
-        from reports.export import reaction_frame
+        from reports.page.export import reaction_frame
 
         return reaction_frame(self._wall.case, self)
 
@@ -116,7 +116,7 @@ class Result(Record):
         Raises:
             InputError: an unknown kind, or an answer without the field to draw.
         """
-        from reports.figures import results_figure
+        from reports.drawing.figures import results_figure
 
         return results_figure(self._wall.case, [self], kind)
 

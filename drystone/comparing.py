@@ -47,7 +47,7 @@ class Comparison:
 
     def to_pandas(self) -> pd.DataFrame:
         """One row a wall and method, the columns of results.csv; `attrs["units"]` names the units."""
-        from reports.export import result_frame
+        from reports.page.export import result_frame
 
         return result_frame((result, result.proof) for result in self.results)
 
@@ -63,7 +63,7 @@ class Comparison:
 
     def report(self, path: str | Path) -> Path:
         """Write the HTML report, with its data folder beside it."""
-        from reports.build import write_report
+        from reports.page.build import write_report
 
         target = Path(path)
         target.parent.mkdir(parents=True, exist_ok=True)
@@ -72,7 +72,7 @@ class Comparison:
 
     def plot(self) -> Figure:
         """Multipliers of all methods, one group of points a wall, in the colours and marks that the methods name."""
-        from reports.multipliers import multipliers_figure
+        from reports.charts.multipliers import multipliers_figure
 
         return multipliers_figure(self.run)
 
@@ -114,7 +114,7 @@ def compare(
         fresh: run again what is in the store.
         told: called after each run with the run, its result and whether it was stored.
         title, command: what the report says was compared, and how to repeat it.
-        studies: for the report to draw, as `reports.studies` describes them.
+        studies: for the report to draw, as `reports.charts.studies` describes them.
         proof_seconds: of CPU time, by wall, for checking certificates that methods hand on [s].
 
     Raises:

@@ -7,7 +7,7 @@ from html import escape
 
 from matplotlib.figure import Figure
 
-from reports.figures import style
+from reports.drawing.figures import style
 
 
 def html(words: str, figure: Figure | None, table: str = "") -> str:

@@ -93,7 +93,7 @@ class Sweep:
             data: names of files that the page points to.
         """
         from harness.engine.sweep.summary import grid_of
-        from reports.study_page import StudyPage, write_page
+        from reports.page.study_page import StudyPage, write_page
 
         created = datetime.now(UTC).isoformat(timespec="seconds")
         study, summary = self.study, self.summary

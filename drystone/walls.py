@@ -75,7 +75,7 @@ class Wall:
 
     def plot(self) -> Figure:
         """A figure of the blocks with their names, joints, supports and loads."""
-        from reports.figures import wall_figure
+        from reports.drawing.figures import wall_figure
 
         return wall_figure(self.case.built, self.title)
 

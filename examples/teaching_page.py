@@ -15,7 +15,7 @@ Expected:
 from pathlib import Path
 
 import drystone
-from reports.learn import write_learn
+from reports.page.learn import write_learn
 
 
 def main() -> None:

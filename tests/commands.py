@@ -95,7 +95,7 @@ def serve() -> None:
 
     for module, _, _ in drystone.cli.main.COMMANDS.values():
         __import__(f"drystone.cli.{module}")
-    import reports.build  # noqa: F401
+    import reports.page.build  # noqa: F401
 
     for method in ("la", "fe", "de"):
         load_method(method)

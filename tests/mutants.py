@@ -2,15 +2,17 @@
 
     python -m tests.mutants map PACKAGE...      find which tests run which lines; again after tests change
     python -m tests.mutants PACKAGE --count 60  a sample of mutants; survivors are printed
+    python -m tests.mutants PACKAGE --ask TESTS --uncompiled  the same by these tests alone, which needs no map
 
-A mutant changes one operator or doubles one number. It is held against the tests that run the changed line, and a
-survivor of those against all tests of the package. Each is made in a copy of the checkout, never here.
+A mutant changes one operator or doubles one number. It is held against the tests that run the changed line, quick ones
+first, and a survivor of those against all tests of the package. Each is made in a copy of the checkout, never here.
 """
 
 from __future__ import annotations
 
 import ast
 import contextlib
+import itertools
 import json
 import os
 import random
@@ -19,12 +21,13 @@ import signal
 import subprocess
 import sys
 import tempfile
-from collections import Counter
+from collections import defaultdict
 from collections.abc import Iterator
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 from pathlib import Path
 from queue import Queue
+from xml.etree import ElementTree
 
 import click
 from coverage import CoverageData
@@ -56,14 +59,18 @@ PACKAGES = {
     "formats": ("harness/formats/*.py", "tests/formats"),
     "engine": ("harness/engine/*.py", "tests/engine tests/faults"),
     "studies": ("harness/engine/sweep/*.py drystone/studies.py", "tests/engine tests/reports"),
-    "reports": ("reports/*.py", "tests/reports"),
+    "reports": ("reports/*.py reports/*/*.py", "tests/reports"),
     "fe": ("methods/fe/*.py methods/springs/**/*.py", "tests/fe tests/springs"),
     "la": ("methods/la/*.py methods/la/core/*.py methods/la/interior/*.py methods/la/sources/*.py", "tests/la"),
     "de": ("methods/de/**/*.py", "tests/de"),
 }
 """Patterns of the sources of each package and of the tests that are its own."""
 SECONDS = 300
-"""After which a mutant counts as found: its tests take no more than half of this without it."""
+"""After which a mutant counts as found, and is printed as such: on a busy machine it need not be."""
+TIME_OVER = 99
+"""What stands for the exit code of pytest where the time was over."""
+NEAR_SECONDS = 60
+"""Of the tests that run the changed line: the quickest that take no longer than this together."""
 CANNOT_START = (3, 4, 5)
 """Exit codes of pytest that say nothing of the tests: an internal error, wrong words, no test found."""
 COMPARED = {
@@ -149,7 +156,7 @@ def sample(package: str, count: int, seed: int) -> list[Mutant]:
 
 
 def copy_of_checkout(folder: Path) -> Path:
-    """A copy of the files that git knows of here."""
+    """A copy of the files that git knows of here, and of the compiled loops that belong to them."""
     listed = subprocess.run(
         ["git", "ls-files", "-z", "-co", "--exclude-standard"], cwd=ROOT, capture_output=True, check=True
     )
@@ -157,11 +164,20 @@ def copy_of_checkout(folder: Path) -> Path:
         if name and (ROOT / name).is_file():
             (folder / name).parent.mkdir(parents=True, exist_ok=True)
             shutil.copy2(ROOT / name, folder / name)
+    copy_loops(folder)
     return folder
 
 
+def copy_loops(folder: Path) -> None:
+    """Copy the code that numba keeps beside the sources of the methods; it holds for sources of the same date."""
+    for kept in ROOT.glob("methods/**/__pycache__/*.nb[ic]"):
+        place = folder / kept.relative_to(ROOT)
+        place.parent.mkdir(exist_ok=True)
+        shutil.copy2(kept, place)
+
+
 def pytest(folder: Path, tests: list[str], *words: str, seconds: float | None = None) -> int:
-    """Exit code of tests in a copy of the checkout; 99 where the time was over."""
+    """Exit code of tests in a copy of the checkout; `TIME_OVER` where the time was over."""
     command = [sys.executable, "-m", "pytest", "-q", "-p", "no:cacheprovider", "-m", "not slow and not browser", *words]
     environment = os.environ | {"PYTHONPATH": str(folder), "OMP_NUM_THREADS": "1", "OPENBLAS_NUM_THREADS": "1"}
     environment.pop("PYTHONDONTWRITEBYTECODE", None)  # most of the time of a mutant would be that of compiling others
@@ -172,7 +188,7 @@ def pytest(folder: Path, tests: list[str], *words: str, seconds: float | None = 
     try:
         return process.wait(seconds)
     except subprocess.TimeoutExpired:
-        return 99
+        return TIME_OVER
     finally:
         with contextlib.suppress(ProcessLookupError):
             os.killpg(process.pid, signal.SIGKILL)
@@ -186,64 +202,91 @@ def make_map(package: str) -> None:
     data = KEPT / f"{package}.coverage"
     settings.write_text(f"[run]\ndata_file = {data}\ndynamic_context = test_function\nsource = .\nomit = tests/*\n")
     words = ["-m", "coverage", "run", f"--rcfile={settings}", "-m", "pytest", "-q", "-m", "not slow and not browser"]
+    words.append(f"--junitxml={KEPT / package}.xml")
     if subprocess.run([sys.executable, *words, *own_tests(package)], cwd=ROOT, check=False).returncode != 0:
         raise click.ClickException(f"the tests of {package} fail without any mutant: mend them, then make its map")
 
 
-def tests_by_line(package: str) -> dict[str, dict[int, list[str]]]:
-    """Functions of tests that run each line of each source, as the map has them; first those that run few lines."""
-    data = CoverageData(str(KEPT / f"{package}.coverage"))
-    data.read()
-    found: dict[str, dict[int, list[str]]] = {}
-    for file in data.measured_files():
-        if Path(file).is_relative_to(ROOT):
-            lines = data.contexts_by_lineno(file)
-            path = str(Path(file).relative_to(ROOT))
-            found[path] = {line: [test for test in tests if test] for line, tests in lines.items()}
-    runs = Counter(test for lines in found.values() for tests in lines.values() for test in tests)
-    for lines in found.values():
-        for tests in lines.values():
-            tests.sort(key=lambda test: (runs[test], test))
-    return found
+class Map:
+    """Which tests run which lines of the sources, the quick ones of them first.
+
+    Args:
+        package: whose map was made.
+    """
+
+    def __init__(self, package: str) -> None:
+        self.seconds: defaultdict[str, float] = defaultdict(float)
+        for case in ElementTree.parse(KEPT / f"{package}.xml").iter("testcase"):
+            module, function = case.attrib["classname"].split(".")[-1], case.attrib["name"].split("[")[0]
+            self.seconds[f"{module}.{function}"] += float(case.attrib["time"])
+        self.data = CoverageData(str(KEPT / f"{package}.coverage"))
+        self.data.read()
+
+    def near(self, mutant: Mutant) -> list[str]:
+        """Tests that run the line of a mutant; of a line that no test runs by itself (run at import, compiled) those
+        of its file, or any."""
+        lines = self.data.contexts_by_lineno(str(ROOT / mutant.path))
+        of_line = {last_two(test) for test in lines.get(mutant.line, []) if test}
+        of_file = {last_two(test) for tests in lines.values() for test in tests if test}
+        ordered = sorted(of_line or of_file or self.seconds, key=lambda test: (self.seconds[test], test))
+        sums = itertools.accumulate(self.seconds[test] for test in ordered)
+        return [test for test, total in zip(ordered, sums, strict=True) if test == ordered[0] or total < NEAR_SECONDS]
+
+
+def last_two(test: str) -> str:
+    """`module.function` of a test."""
+    return ".".join(test.split(".")[-2:])
 
 
 def node(test: str, folder: Path) -> list[str]:
-    """What pytest calls a test that coverage calls `module.function` or `tests.room.module.function`."""
-    *_, module, function = test.split(".")
+    """What pytest calls the test `module.function`."""
+    module, function = test.split(".")
     found = [path for path in folder.glob(f"tests/**/{module}.py") if f"def {function}(" in path.read_text("utf-8")]
     return [f"{path.relative_to(folder)}::{function}" for path in found]
 
 
-def survives(
-    package: str, mutant: Mutant, folder: Path, lines: dict[str, dict[int, list[str]]], near_only: bool
-) -> bool:
-    """Whether a mutant passes the tests that run its line, and then, unless those are enough, all of its package."""
+def survives(package: str, mutant: Mutant, folder: Path, tests: Map | list[str], near_only: bool) -> bool:
+    """Whether a mutant passes the tests that run its line, and then, unless those are enough, all of its package.
+
+    Args:
+        package: of the mutant; folder: a copy of the checkout.
+        tests: the map of the package, or tests that are asked instead of those near the line.
+        near_only: they are enough.
+    """
     place = folder / mutant.path
     source = place.read_text("utf-8")
 
-    def passes(tests: list[str]) -> bool:
+    def passes(asked: list[str]) -> bool:
         """Whether the mutant passes these tests."""
-        put(mutant.applied(source))
-        code = pytest(folder, tests, "-x", seconds=SECONDS)
-        put(source)
+        place.write_text(mutant.applied(source), "utf-8")
+        forget()
+        code = pytest(folder, asked, "-x", seconds=SECONDS)
+        restore()
+        if code == TIME_OVER:
+            print("TIME OVER", mutant.shown(source), flush=True)
         # Tests that cannot be started tell of the mutant only if they can be without it.
-        if code in CANNOT_START and pytest(folder, tests, "--collect-only") != 0:
-            raise click.ClickException(f"pytest cannot start {' '.join(tests)} without any mutant")
+        if code in CANNOT_START and pytest(folder, asked, "--collect-only") != 0:
+            raise click.ClickException(f"pytest cannot start {' '.join(asked)} without any mutant")
         return code == 0
 
-    def put(text: str) -> None:
-        place.write_text(text, "utf-8")
+    def forget() -> None:
+        for kept in place.parent.glob(f"__pycache__/{place.stem}.*.pyc"):  # two changes in one second look alike
+            kept.unlink()
         if "@compiled" in source:  # numba keeps callers of a changed loop too
             for kept in folder.rglob("*.nb[ic]"):
                 kept.unlink()
 
+    def restore() -> None:
+        shutil.copy2(ROOT / mutant.path, place)
+        forget()
+        if "@compiled" in source:
+            copy_loops(folder)
+
     try:
-        near = [name for test in lines.get(mutant.path, {}).get(mutant.line, [])[:40] for name in node(test, folder)]
-        own = own_tests(package, folder)
-        rounds = [near, *([] if near_only else [own])] if near else [own]
-        return all(passes(tests) for tests in rounds)
+        near = [name for test in tests.near(mutant) for name in node(test, folder)] if isinstance(tests, Map) else tests
+        return passes(near) and (near_only or passes(own_tests(package, folder)))
     finally:
-        put(source)
+        restore()
 
 
 @click.command()
@@ -252,27 +295,36 @@ def survives(
 @click.option("--seed", default=1, show_default=True, help="Of the sample.")
 @click.option("--jobs", default=1, show_default=True, help="Mutants tried at a time.")
 @click.option("--near", is_flag=True, help="Ask only the tests that run the changed line, where there are any.")
-def main(words: tuple[str, ...], count: int, seed: int, jobs: int, near: bool) -> None:
+@click.option("--ask", multiple=True, metavar="FILE", help="Ask these tests alone.")
+@click.option(
+    "--uncompiled", is_flag=True, help="Run compiled loops as Python: for tests that call them on few numbers."
+)
+def main(
+    words: tuple[str, ...], count: int, seed: int, jobs: int, near: bool, ask: tuple[str, ...], uncompiled: bool
+) -> None:
     """Make the map of PACKAGES (`map PACKAGE...`), or try mutants of them."""
     if words[0] == "map":
         for package in words[1:]:
             make_map(package)
         return
+    if uncompiled:
+        os.environ["NUMBA_DISABLE_JIT"] = "1"
     for package in words:
-        lines, drawn = tests_by_line(package), sample(package, count, seed)
+        tests, drawn = list(ask) or Map(package), sample(package, count, seed)
         with tempfile.TemporaryDirectory() as room, ThreadPoolExecutor(jobs) as pool:
             free: Queue[Path] = Queue()
             for number in range(jobs):
                 folder = copy_of_checkout(Path(room, str(number)))
-                if (
-                    not near and pytest(folder, own_tests(package, folder), "-x") != 0
-                ):  # compiles the loops of the copy, too
+                first = list(ask) if ask else [] if near else own_tests(package, folder)
+                if first and pytest(folder, first, "-x") != 0:  # compiles the loops of the copy, too
                     raise click.ClickException(f"the tests of {package} fail without any mutant")
                 free.put(folder)
 
-            def tried(mutant: Mutant, package: str = package, lines: object = lines, free: Queue[Path] = free) -> bool:
+            def tried(
+                mutant: Mutant, package: str = package, tests: Map | list[str] = tests, free: Queue[Path] = free
+            ) -> bool:
                 folder = free.get()
-                alive = survives(package, mutant, folder, lines, near)  # type: ignore[arg-type]
+                alive = survives(package, mutant, folder, tests, near or bool(ask))
                 free.put(folder)
                 click.echo("." if not alive else "", nl=alive, err=True)
                 if alive:

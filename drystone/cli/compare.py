@@ -136,7 +136,7 @@ def _command_line() -> str:
 
 
 def _write_report(compared: ComparisonRun, path: Path, *, drawn: bool = False) -> None:
-    from reports.build import write_report
+    from reports.page.build import write_report
 
     path.parent.mkdir(parents=True, exist_ok=True)
     try:
@@ -170,7 +170,7 @@ def _appendix(wall: str, folder: Path, store: Path) -> None:
 
     A horizontal live load is analysed both ways: an earthquake comes from either side.
     """
-    from reports.appendix import write_appendix
+    from reports.page.appendix import write_appendix
 
     chosen = find_cases([wall], None, ())
     warn(chosen[0])

@@ -43,7 +43,7 @@ def diff(sets: tuple[Path, ...], share: float, html: Path | None, junit: Path | 
     old = sets[0] if len(sets) == 2 else shipped_cases() / "baseline.json"
     found = difference(read_answers(old), read_answers(sets[-1]), Slower(share=share))
     if html is not None:
-        from reports.diff_page import write_diff
+        from reports.page.diff_page import write_diff
 
         write_diff(found, html)
     if junit is not None:

@@ -170,8 +170,8 @@ def show(case: str, output: Path, window: bool, axes: bool, dimensions: bool, fo
 
     A wall with faults is drawn too, with the faults marked under the numbers of `drystone validate`; exit code 2 then.
     """
-    from reports.figures import show_window
-    from reports.inspected import draw_inspected, inspected_figure
+    from reports.drawing.figures import show_window
+    from reports.drawing.wall_check_figure import draw_inspected, inspected_figure
 
     if Path(case).is_file():
         looked = _looked_at(Path(case))

@@ -31,7 +31,7 @@ def learn(output: Path, jobs: int, store: Path) -> None:
 
     Runs that the store does not have are made first; the page works offline.
     """
-    from reports.learn import write_learn
+    from reports.page.learn import write_learn
 
     chosen = find_cases(("single-block", *WALLS), None, ())
     runs = [planned for case in chosen for planned in plan_case(case, list(library().methods.compare), Limits())]

@@ -157,7 +157,7 @@ def figure(
     folders: tuple[Path, ...],
 ) -> None:
     """Draw the answers of methods on CASE as a figure for a paper."""
-    from reports.figures import figure as draw
+    from reports.drawing.figures import figure as draw
 
     found, results = _answers(case, methods, store, folders)
     path = output or Path(f"{found.id}-{kind}.{suffix}")
@@ -174,7 +174,7 @@ def figure(
 @catching
 def animate(case: str, method: str, output: Path | None, store: Path, folders: tuple[Path, ...]) -> None:
     """Animate the mechanism a method finds on CASE."""
-    from reports.animate import animate as draw
+    from reports.drawing.animate import animate as draw
 
     found, results = _answers(case, (method,), store, folders)
     path = output or Path(f"{found.id}.gif")

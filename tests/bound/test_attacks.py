@@ -311,6 +311,27 @@ def test_what_is_too_much_to_be_read_is_refused_at_once(name: str, tmp_path: Pat
     assert CliRunner().invoke(drystone, ["verify-bound", str(file)]).exit_code == 2
 
 
+@pytest.mark.parametrize("packed", [False, True])
+def test_a_certificate_of_exactly_the_limits_is_read_and_of_one_more_is_not(
+    packed: bool, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def read(content: bytes) -> Any:
+        return documents.read(gzip.compress(content) if packed else content)
+
+    content = b'{"a": [1, 2, 30]}'
+    for name, most in (("MOST_BYTES", len(content)), ("MOST_VALUES", 5)):  # an object, a list and three numbers
+        with monkeypatch.context() as limited:
+            limited.setattr(documents, name, most)
+            assert read(content) == {"a": [1, 2, 30]}
+            limited.setattr(documents, name, most - 1)
+            with pytest.raises(CertificateError, match=f"more than {most - 1} "):
+                read(content)
+    digits = documents.MOST_DIGITS
+    assert read(b"1" * digits) == int("1" * digits)
+    with pytest.raises(CertificateError, match=f"more than {digits} digits"):
+        read(b"1" * (digits + 1))
+
+
 def test_a_number_in_powers_of_ten_is_refused_at_once() -> None:
     answer = CliRunner().invoke(drystone, ["verify-bound", str(DATA / "exp.json")])
     assert (answer.exit_code, "is not a fraction" in answer.output) == (1, True)

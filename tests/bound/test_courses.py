@@ -19,7 +19,8 @@ from harness.model.reading import parse_wall
 from harness.model.wall import Wall
 from methods.proof.verify.checker import digest, verify
 from methods.proof.verify.exact_wall import CertificateError, ExactWall
-from methods.proof.verify.window_limits import Course, Motions
+from methods.proof.verify.force_limits import Known
+from methods.proof.verify.window_limits import Columns, Course, Motions
 from methods.proof.verify.windows import WindowLimits
 from tests.bound.test_window_certificate import certificate_of
 
@@ -72,6 +73,28 @@ def test_the_joints_of_a_course_bear_the_weight_above_whatever_their_lengths() -
     assert float(course.least) == pytest.approx(float(weight / abs(x2 - x1)), rel=1e-6)  # velocities have 40 places
 
 
+def test_a_slip_of_a_course_is_the_lift_over_the_least_friction_and_what_is_left_over_by_rounding():
+    """Friction on a slip s of the first joint takes mu N s, no more than the lift, which is 1 / weight in size one."""
+    document = of_slab()
+    wall, window = ExactWall(document), document["windows"][0]
+    columns, unit = WindowLimits(wall, window).columns, Fraction(1, 2 ** window["motions"]["exponent"])
+    strains = window["motions"]["strains"]
+    rows = [{k: unit * v for k, v in zip(strains, row, strict=True) if v} for row in window["motions"]["inverse"]]
+    course = Course(columns, window["motions"]["courses"][0], rows)
+    first, still = course.joints[0], dict.fromkeys(columns.strain_limits(), Fraction(0))
+    exact = [Fraction(0)] * columns.n
+    slip, part = course.slip(still, exact, {first: course})
+    assert slip == 1 / (wall.friction[first] * columns.lift_weight * course.least)
+    assert part == 0
+    left_over = [Fraction(1, 7), Fraction(1, 3), Fraction(1, 5)]
+    _, part = course.slip(still, left_over, {first: course})
+    lost = [
+        wall.friction[p] * columns.forces.normal[p] * sum(abs(v) * left_over[d] for d, v in wall.sparse[3 * p + 2])
+        for p in course.joints
+    ]
+    assert part == sum(lost) / (wall.friction[first] * course.least)
+
+
 CHANGES: dict[str, Callable[[dict[str, Any]], Any]] = {
     "a joint that may be unloaded alone": lambda course: course["joints"].pop(),
     "a joint counted twice": lambda course: course["joints"].append(course["joints"][0]),
@@ -110,3 +133,52 @@ def test_a_wall_of_courses_with_unequal_joints_is_proved() -> None:
     lower, upper = verify(certificate_of(build(wall).assembly))
     assert upper == Fraction(10, 21)  # the block of least height over width turns over
     assert 0 < upper - lower <= Fraction(1, 10**6) * upper
+
+
+def columns_of(still: set[int], least: dict[int, Fraction], slow: dict[int, Fraction]) -> Columns:
+    """Of the slab, with what is known of its contacts; a rate of the left joint weighs 2, of the right one 4."""
+    wall, window = ExactWall(of_slab()), of_slab()["windows"][0]
+    said = {"weight_exponent": 1, "weights": [4, 8], "lift_weight": 2}
+    return Columns(WindowLimits(wall, window).forces, Known(frozenset(still), least, slow), said)
+
+
+def test_rates_of_a_loaded_joint_are_weighed_and_lose_friction_by_hand() -> None:
+    """Contacts 4 p + k: an opening at each end, and the slip each way, which a signed joint has as one number."""
+    half, eighth = Fraction(1, 2), Fraction(1, 8)
+    columns = columns_of({4}, {1: half}, {0: eighth})
+    wall, n = columns.wall, columns.n
+    opening = [dict(wall.sparse[k]) for k in (0, 1, 3, 4)]
+    slip = dict(wall.sparse[5])
+    assert (columns.signed, columns.backward, columns.width) == ([0], {1: n}, n + 1)
+    assert columns.rates == {1: opening[1], 5: opening[3], 6: slip | {n: 1}, 7: {n: 1}}
+    assert columns.still == [(opening[0], eighth), (opening[2], 0)]
+    assert (columns.weights, columns.lift_weight) == ({1: 2, 5: 4, 6: 4, 7: 4}, 1)
+    assert columns.strain_limits() == {0: 0, 1: half, 3: 0, 4: half / 2, 5: half / 2}
+    lost = {d: -wall.friction[1] * half * v for d, v in slip.items()} | {n: -2 * wall.friction[1] * half}
+    high = columns.forces.high
+    lift = {d: high * f + g for d, (f, g) in enumerate(zip(wall.live, wall.dead, strict=True))}
+    assert columns.lift == {d: lift.get(d, 0) + lost.get(d, 0) for d in range(n + 1)}
+    assert columns.work == {d: f for d, f in enumerate(wall.live) if f}
+
+
+@pytest.mark.parametrize("p", [0, 1])
+def test_slips_that_are_held_one_way_or_both_by_hand(p: int) -> None:
+    slip = dict(ExactWall(of_slab()).sparse[3 * p + 2])
+    backwards = {d: -v for d, v in slip.items()}
+    forward, backward = 4 * p + 2, 4 * p + 3
+    weight, other = (2, 4)[p], 1 - p
+    for held, rates, limit in (
+        ({forward}, {backward: backwards}, Fraction(1, weight)),
+        ({backward}, {forward: slip}, Fraction(1, weight)),
+        ({forward, backward}, {}, 0),
+    ):
+        columns = columns_of(held, {}, {})
+        assert columns.signed == [other]
+        assert {k: form for k, form in columns.rates.items() if k in (forward, backward)} == rates
+        assert columns.strain_limits()[3 * p + 2] == limit
+        assert columns.still == ([(slip, 0)] if held == {forward, backward} else [])
+        assert columns.backward == {}
+    slow = columns_of(set(), {}, {forward: Fraction(1, 3)})
+    assert slow.signed == [other]
+    assert (slip | {slow.n: 1}, Fraction(1, 3)) in slow.still
+    assert columns_of(set(), {}, {}).signed == [0, 1]

@@ -25,7 +25,7 @@ from methods.la.bounded import BoundedLimitAnalysis
 from methods.la.certify.tree_certificate import certificate
 from methods.la.settings import BoundSettings
 from methods.proof.verify.document import digest
-from reports.build import write_report
+from reports.page.build import write_report
 from tests.walls import case, stack
 
 FRICTION = 0.37

@@ -33,6 +33,7 @@ WITHIN: dict[str, tuple[Callable[[], Any], Any]] = {
     "pairs": (lambda: paired("ab", [1, 2]), [("a", 1), ("b", 2)]),
     "fractions": (lambda: fractions_of(["1/2", 3], 2), [HALF, Fraction(3)]),
     "denominators": (lambda: common_denominator([HALF, Fraction(1, 6), Fraction(1, 4)]), 12),
+    "least denominators": (lambda: [common_denominator(v) for v in ([], [THIRD], [Fraction(5)])], [1, 3, 1]),
     "many bits": (lambda: common_denominator([Fraction(1, 2 ** (MOST_BITS - 1))]), 2 ** (MOST_BITS - 1)),
     "forms": (lambda: integers([{0: HALF, 5: Fraction(0)}, {3: -THIRD}]), ([{0: 3}, {3: -2}], 6)),
 }
@@ -64,3 +65,11 @@ def test_what_may_stand_there_is_read(name: str) -> None:
 def test_what_is_beyond_is_refused(name: str) -> None:
     with pytest.raises(CertificateError):
         BEYOND[name]()
+
+
+def test_how_many_digits_a_number_may_have_is_said_in_the_refusal():
+    for name, words in (("digits", "at most 1000 digits"), ("bits", "more than 3000 bits")):
+        with pytest.raises(CertificateError, match=words):
+            BEYOND[name]()
+    with pytest.raises(CertificateError, match="more than 100,000 bits"):
+        BEYOND["many bits"]()

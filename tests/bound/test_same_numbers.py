@@ -27,6 +27,7 @@ from tests.bound.by_cases import certificate_of_cases
 from tests.bound.second_checker import halves_of, step_of, window_of
 from tests.bound.second_wall import Refused, Wall, up
 from tests.bound.second_windows import Gain, Motion, Set, gain, raised, size_of
+from tests.bound.test_courses import of_slab
 from tests.bound.test_mutants import of_library
 
 CERTIFICATES: dict[str, Callable[[], dict[str, Any]]] = {
@@ -132,6 +133,29 @@ def test_both_checkers_compute_the_same_limits_sizes_and_bounds(name: str) -> No
         if node is not None and "parts" in node:
             halves = list(zip(own.halves(node), halves_of(other, node), node["parts"], strict=True))
             left += halves if name in SMALL else [draw.choice(halves)]
+
+
+@pytest.mark.parametrize("side", [2, 3])
+def test_both_checkers_compute_the_same_bounds_where_a_joint_is_at_its_friction(side: int) -> None:
+    """Shear that is known one way leaves half of the extreme forces of a joint, and so one sign of its products."""
+    document, draw = of_slab(), random.Random(side)
+    window = copy.deepcopy(document["windows"][0])
+    for products in (window["size"], window["multiplier"]):
+        products["balance"] = [[*row, 0] for row in products["balance"]]  # of the slack that is zero
+    first, second = ExactWall(document), Wall(document)
+    limits, states = WindowLimits(first, document["windows"][0]), window_of(second, document["windows"][0])
+    assert limits.columns.signed
+    unknowns = Motion(states, document["windows"][0]).unknowns
+    reach = dict(zip(unknowns, limits.motions.limits, strict=True))
+    again = replace(states, reach=tuple(up(reach[d], 60) for d in range(second.n)))
+    own = states_of(limits, Fraction(1), states.low)
+    for p in limits.columns.signed:
+        half = own.half(4 * p + side, True)
+        other = halves_of(again, {"contact": 4 * p + side})[0]
+        case = half.window(window)
+        part = replace(other, low=case.forces.low).with_forces(window["forces"])
+        reach = dict(zip(Motion(part, window).unknowns, case.motions.limits, strict=True))
+        compare(case, part, window, reach, False, draw)
 
 
 def compare_step(own: States, other: Set, step: Any, draw: random.Random) -> None:

@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 from playwright.sync_api import Browser, sync_playwright
 
-from reports.build import write_report
+from reports.page.build import write_report
 from tests.reports import samples
 
 CHROMIUM = "/usr/bin/chromium"

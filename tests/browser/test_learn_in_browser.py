@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 from playwright.sync_api import Browser
 
-from reports.learn import block_answers
+from reports.page.learn import block_answers
 from tests.reports.test_learn import page
 
 

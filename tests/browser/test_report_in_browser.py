@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterator
 from importlib.resources import files
 from pathlib import Path
@@ -10,7 +11,7 @@ from typing import Any
 import pytest
 from playwright.sync_api import Browser, Page
 
-from reports.build import render
+from reports.page import build
 from tests.reports import samples
 
 pytestmark = pytest.mark.browser
@@ -63,10 +64,10 @@ def test_page_asks_for_nothing_and_complains_of_nothing(opened: Opened, report: 
 
 
 def test_hostile_names_are_shown_as_text(opened: Opened):
-    opened.look_at("#case-2 svg[data-kind=mechanism]")
+    opened.look_at("#case-2 [data-kind=mechanism] svg")
     assert opened.page.locator("img").count() == 0
     assert opened.page.get_by_text(samples.SCRIPT).first.is_visible()
-    opened.page.locator("#case-2 svg[data-kind=mechanism] path[data-block='1']").first.hover()
+    opened.page.locator("#case-2 [data-kind=mechanism] path[data-block='1']").first.hover()
     tip = opened.page.locator(".tip")
     assert samples.CLOSING in tip.inner_text()
     assert opened.complaints == []
@@ -74,7 +75,7 @@ def test_hostile_names_are_shown_as_text(opened: Opened):
 
 def test_every_figure_is_drawn(opened: Opened):
     opened.see_everything()
-    figures = opened.page.locator("svg[data-kind]")
+    figures = opened.page.locator("[data-kind] svg")
     assert figures.count() == 2 * (4 + 5 + 1)
     empty = figures.evaluate_all("all => all.filter(svg => svg.childElementCount === 0).length")
     assert empty == 0
@@ -107,7 +108,7 @@ def test_slider_at_zero_puts_the_wall_back(opened: Opened):
     section.locator("input[type=range]").evaluate(
         "slider => { slider.value = 0; slider.dispatchEvent(new Event('input', {bubbles: true})); }"
     )
-    moving = section.locator("svg[data-kind] path.moves")
+    moving = section.locator("[data-kind] path.moves")
     transforms = moving.evaluate_all("all => all.map(path => path.getAttribute('transform'))")
     assert {tuple(float(x) for x in item[7:-1].split()) for item in transforms} == {(1, 0, 0, 1, 0, 0)}
 
@@ -115,19 +116,26 @@ def test_slider_at_zero_puts_the_wall_back(opened: Opened):
 def test_flow_of_forces_replaces_resultants(opened: Opened):
     opened.look_at("#case-1 .tools")
     section = opened.page.locator("#case-1")
-    assert section.locator(".bars").first.is_visible()
+    shown = {name: section.locator(f".panel .{name}") for name in ("force", "said", "ring", "thrust")}
+    assert {name: found.first.is_visible() for name, found in shown.items() if found.count()} == {
+        "force": True,
+        "said": True,
+        "thrust": False,
+    }
     section.get_by_label("flow of forces").check()
-    assert not section.locator(".bars").first.is_visible()
-    assert section.locator(".thrust").first.is_visible()
+    assert not shown["force"].first.is_visible()
+    assert not shown["said"].first.is_visible()
+    assert shown["thrust"].first.is_visible()
 
 
 def test_resultants_are_arrows_with_their_size_and_a_scale(opened: Opened):
     opened.see_everything()
-    forces = opened.page.locator("#case-1 svg[data-kind=forces]").first
-    groups = forces.locator(".bars g")
-    assert groups.count() == forces.locator(".bars path.tip-of").count() == forces.locator(".bars text").count() > 0
-    assert "kN" in (forces.locator(".scale text").text_content() or "")
-    assert (opened.page.locator("#case-1 .sheet svg.wall .scale text").text_content() or "").endswith(" m")
+    forces = opened.page.locator("#case-1 [data-kind=forces] svg").first
+    groups = forces.locator("g[data-joint]")
+    arrows = forces.locator("path:is(.force, .full)")
+    assert groups.count() == arrows.count() == forces.locator("text.said").count() > 0
+    assert re.fullmatch(r"[0-9.]+ m[0-9.]+ kN", "".join(forces.locator("text:not(.said)").all_text_contents()))
+    assert (opened.page.locator("#case-1 .sheet svg.wall text:not(.said)").last.text_content() or "").endswith(" m")
 
 
 def test_a_mechanism_stays_in_its_picture_at_the_end_of_the_slider(opened: Opened):
@@ -136,7 +144,7 @@ def test_a_mechanism_stays_in_its_picture_at_the_end_of_the_slider(opened: Opene
     section.locator("input[type=range]").evaluate(
         "slider => { slider.value = slider.max; slider.dispatchEvent(new Event('input', {bubbles: true})); }"
     )
-    outside = section.locator("svg[data-kind=mechanism]").evaluate_all(
+    outside = section.locator("[data-kind=mechanism] svg").evaluate_all(
         """all => all.flatMap((svg) => {
           const frame = svg.getBoundingClientRect();
           const boxes = [...svg.querySelectorAll('path.moves')].map((path) => path.getBoundingClientRect());
@@ -148,8 +156,8 @@ def test_a_mechanism_stays_in_its_picture_at_the_end_of_the_slider(opened: Opene
 
 
 def test_hover_shows_the_values_of_an_interface(opened: Opened):
-    opened.look_at("#case-1 svg[data-kind=forces]")
-    opened.page.locator("#case-1 svg[data-kind=forces] .bars g path.tip-of").first.hover(force=True)
+    opened.look_at("#case-1 [data-kind=forces] svg")
+    opened.page.locator("#case-1 [data-kind=forces] path.force").first.hover(force=True)
     text = opened.page.locator(".tip").inner_text()
     assert "kN" in text
     assert "friction used: 50 %" in text
@@ -231,10 +239,32 @@ def test_report_prints_with_all_drawings(opened: Opened, tmp_path: Path):
     path = tmp_path / "report.pdf"
     content = opened.page.pdf(path=str(path), format="A4", print_background=True)
     assert content.startswith(b"%PDF")
-    empty = opened.page.locator("svg[data-kind]").evaluate_all(
+    empty = opened.page.locator("[data-kind] svg").evaluate_all(
         "all => all.filter(s => s.childElementCount === 0).length"
     )
     assert empty == 0, "printing draws what was not scrolled to yet"
+
+
+def test_packed_drawings_are_the_same_as_those_that_are_not(
+    browser: Browser, report: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+):
+    read = "all => all.map(svg => svg.innerHTML)"
+    plain = Opened(browser, report)
+    expected = plain.page.locator("[data-kind] svg").evaluate_all(read)
+    plain.context.close()
+    monkeypatch.setattr(build, "INLINE", 0)
+    path = tmp_path / "packed.html"
+    path.write_text(build.render(samples.typical(), data_folder="report-data"), encoding="utf-8")
+    opened = Opened(browser, path)
+    figures = opened.page.locator("[data-kind] svg")
+    assert figures.last.evaluate("svg => svg.childElementCount") == 0, "far off"
+    opened.see_everything()
+    assert figures.evaluate_all(read) == expected
+    assert opened.complaints == []
+    opened.page.reload()
+    opened.page.pdf(path=str(tmp_path / "report.pdf"))
+    assert figures.evaluate_all(read) == expected, "printing fills what was not scrolled to yet"
+    opened.context.close()
 
 
 def test_tables_stand_without_the_script(browser: Browser, report: Path):
@@ -243,8 +273,8 @@ def test_tables_stand_without_the_script(browser: Browser, report: Path):
     page.goto(report.as_uri())
     assert page.locator("#runs-table tbody tr:visible").count() == 12
     assert page.locator("svg.wall").first.is_visible()
-    still = page.locator(".panel noscript svg.wall:visible").count()
-    assert still == page.locator("svg[data-kind]").count() > 0, "mechanisms and forces are still drawings"
+    drawn = page.locator(".panel [data-kind] svg.wall:visible").count()
+    assert drawn == page.locator("[data-kind] svg").count() > 0, "mechanisms and forces are drawn"
     assert not page.locator("#runs-filter").is_visible(), "no controls that would do nothing"
     context.close()
 
@@ -263,7 +293,7 @@ def test_links_lead_to_their_place(browser: Browser, report: Path, size: Any):
 
 def test_sixty_five_cases_by_eight_methods_open_fast(browser: Browser, tmp_path: Path):
     path = tmp_path / "large.html"
-    path.write_text(render(samples.large(65), data_folder="large-data"), encoding="utf-8")
+    path.write_text(build.render(samples.large(65), data_folder="large-data"), encoding="utf-8")
     context = browser.new_context(viewport=DESKTOP)
     page = context.new_page()
     session = context.new_cdp_session(page)
@@ -284,10 +314,10 @@ def test_policy_runs_the_scripts_of_the_page_and_no_other(browser: Browser, repo
     complaints: list[str] = []
     page.on("console", lambda message: complaints.append(message.text))
     page.goto(report.as_uri())
-    assert page.evaluate("document.querySelectorAll('svg[data-kind]').length") > 0
-    page.evaluate("window.scrollTo({top: document.querySelector('svg[data-kind]').getBoundingClientRect().top})")
+    assert page.evaluate("document.querySelectorAll('[data-kind] svg').length") > 0
+    page.evaluate("window.scrollTo({top: document.querySelector('[data-kind] svg').getBoundingClientRect().top})")
     page.wait_for_timeout(300)
-    assert page.evaluate("document.querySelector('svg[data-kind]').childElementCount") > 0
+    assert page.evaluate("document.querySelector('[data-kind] svg').childElementCount") > 0
     assert complaints == []
     page.evaluate(
         "() => { const s = document.createElement('script'); s.textContent = 'window.intruder = 1';"

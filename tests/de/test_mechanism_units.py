@@ -11,7 +11,7 @@ from harness.engine.judge import answered, judge
 from harness.model.build import build
 from harness.model.method import load_method, prepared
 from harness.model.wall import Wall
-from reports.agreement import measure_of, velocity_cosine
+from reports.findings.agreement import measure_of, velocity_cosine
 from tests.walls import assembly, running_bond, stack, wall_data
 
 MEASURED = ["de", "de-mujoco", "de-soft", "de-tilt"]

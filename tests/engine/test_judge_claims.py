@@ -20,7 +20,7 @@ from harness.model.proof import Proof
 from harness.model.reading import read_json, read_wall
 from harness.model.result import Result, result_of
 from harness.model.wall import Wall
-from reports import numbers
+from reports.labels import numbers
 from tests.walls import PUSH, assembly, case, running_bond, stack
 
 DATA = Path(__file__).parent.parent / "data" / "judge"

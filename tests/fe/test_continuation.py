@@ -22,7 +22,9 @@ from methods.fe.gap_springs import GapSprings
 from methods.fe.methods import FE
 from methods.fe.settings import GapSpringsSettings
 from methods.springs.model.factor import make_factor
+from methods.springs.model.gap_law import SLIP_MINUS, SLIP_PLUS
 from methods.springs.model.wall_model import build_model
+from methods.springs.path.continuation import PathFollower
 from methods.springs.path.plateau import check
 from methods.springs.patterns import block_on_halves, running_bond
 from methods.springs.rest.equilibrium import gravity_state
@@ -296,3 +298,30 @@ def test_fe_point_load_at_the_end_of_a_beam_has_the_multiplier_of_limit_analysis
 @pytest.mark.parametrize("friction", [3.0, 10.0, 1000.0])
 def test_fe_very_rough_bricks_rock_alike(friction: float) -> None:
     assert solve(running_bond(6, 3, friction)).multiplier == pytest.approx(13 / 23, rel=EXACT)
+
+
+def test_fe_path_counts_the_points_that_slip_whichever_way_they_do() -> None:
+    """A block on two joints of two points each, far too low to rock: when the fourth slips too, it collapses."""
+    wall = block_on_halves((0.5, 0.5))
+    paths = [solve(replace(wall, live=way * wall.live)).path for way in (1.0, -1.0)]
+    for path in paths:
+        assert (path["slipping_points"][0], path["slipping_points"][-1]) == (0.0, 3.0)
+        assert set(path["open_points"]) == {0.0}
+    np.testing.assert_allclose(paths[0]["multiplier"], paths[1]["multiplier"], atol=1e-12)
+    np.testing.assert_allclose(paths[0]["live_displacement"], paths[1]["live_displacement"], atol=1e-12)
+
+
+@pytest.mark.parametrize("way", [1.0, -1.0])
+def test_fe_path_that_begins_loaded_counts_the_points_that_slip_there(way: float) -> None:
+    """On halves of friction .6 and .2 the smoother one slips first, and before a collapse at .2 at least."""
+    wall = block_on_halves((0.6, 0.2))
+    model = build_model(replace(wall, live=way * wall.live), GapSpringsSettings())
+    factor = make_factor(model)
+    rest = gravity_state(model, factor)
+    loaded = newton(model, factor, rest.u, 0.25, rest.history)
+    assert loaded.found
+    follower = PathFollower.from_rest(model, factor, loaded)
+    slips = np.isin(loaded.state, [SLIP_PLUS, SLIP_MINUS])
+    assert model.interface[slips].tolist() == [1, 1]
+    assert (follower.n_slip, follower.n_open) == (2, 0)
+    assert follower.may_commit()

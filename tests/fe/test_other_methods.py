@@ -39,6 +39,14 @@ def test_newton_starts_where_load_control_finds_no_step_at_all() -> None:
     assert answer.multiplier == pytest.approx(0.5056146, rel=1e-6)
 
 
+@pytest.mark.parametrize(("cuts", "reached"), [(0, 0.4), (2, 0.4), (3, 0.475), (8, 0.475)])
+def test_newton_halves_a_step_of_the_load_each_time_it_finds_no_equilibrium(cuts: int, reached: float) -> None:
+    """The block collapses at .476: after .4 the step is .6, and its eighth is the first that it bears."""
+    answer = IncrementalNewton().solve(block_on_halves((0.6, 0.4)), NewtonSettings(first_step=0.4, cuts=cuts))
+    assert answer.details["load_control_limit"] == pytest.approx(reached, rel=1e-12)
+    assert answer.multiplier == pytest.approx(0.5 / 1.05, rel=1e-9)
+
+
 def test_newton_that_stops_says_so_and_gives_no_number() -> None:
     answer = IncrementalNewton().solve(running_bond(10, 5, 0.65), NewtonSettings(displacement_steps=0))
     assert (answer.status, answer.finding, answer.multiplier) == (Status.NOT_CONVERGED, Finding.NONE, None)

@@ -20,10 +20,11 @@ def two_blocks(**loads: Any) -> Assembly:
 
 
 def test_area_of_an_outline_has_the_sign_of_its_direction_wherever_it_lies():
-    for shift in (0.0, 4e6):
-        assert signed_area(L_SHAPE + shift) == pytest.approx(4.0)
-        assert signed_area(L_SHAPE[::-1] + shift) == pytest.approx(-4.0)
-        assert polygon_area(L_SHAPE[::-1] + shift) == pytest.approx(4.0)
+    for size, shift in ((1.0, 0.0), (1.0, 4e6), (0.1, 4e6 + 0.1)):  # a tenth in a national grid: no number is exact
+        shape, area = size * L_SHAPE + shift, 4.0 * size**2
+        assert signed_area(shape) == pytest.approx(area)
+        assert signed_area(shape[::-1]) == pytest.approx(-area)
+        assert polygon_area(shape[::-1]) == pytest.approx(area)
 
 
 def test_sizes_are_those_of_the_free_blocks():

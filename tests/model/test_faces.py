@@ -228,6 +228,14 @@ def test_faults_of_outlines_name_their_element(polygon: list[Any], words: str):
     assert geometry.polygon_faults([], []) == []
 
 
+@pytest.mark.parametrize("size", [0.01, 1.0, 100.0])
+def test_a_drawing_may_be_as_rough_as_a_fiftieth_of_a_block_of_any_size(size: float):
+    for deep, rough in ((0.0199, True), (0.0201, False)):
+        polygons = [outline(0.0, 0.0, size, size), outline(size * (1.0 - deep), 0.0, size, size)]
+        (fault,) = geometry.overlaps(geometry.shapes_of(polygons), ["a", "b"], np.zeros(2, dtype=bool), 0.0)
+        assert ("greatest_overlap" in str(fault)) is rough
+
+
 def test_overlaps_are_told_the_worst_first_with_area_depth_place_and_the_remedy():
     polygons = [outline(0.0, 0.0, 1.0, 1.0), outline(0.9, 0.0, 1.0, 1.0), outline(0.0, 0.99, 1.0, 1.0)]
     shapes, names, free = geometry.shapes_of(polygons), ["a", "b", "c"], np.zeros(3, dtype=bool)

@@ -176,6 +176,34 @@ def test_a_slip_is_told_with_the_remedy(changes: dict[str, Any], words: list[str
         assert word in told
 
 
+@pytest.mark.parametrize(
+    ("rule", "idle"),
+    [
+        ({"joint": "bed"}, False),
+        ({"joint": "head"}, True),
+        ({"materials": ["stone", "stone"]}, False),
+        ({"materials": ["stone", "brick"]}, True),
+        ({"between": ["a", "ground"]}, False),
+        ({"between": ["b", "ground"]}, False),
+        ({"between": ["a", "b"]}, True),
+    ],
+)
+def test_a_rule_that_no_joint_meets_is_told_and_any_other_is_not(rule: dict[str, Any], idle: bool):
+    """Stones a and b stand apart on a ground of stone, and a brick on sand."""
+    apart = [
+        {"id": "b", "polygon": [[5, 0], [6, 0], [6, 1], [5, 1]]},
+        {"id": "c", "polygon": [[8, 0], [9, 0], [9, 1], [8, 1]], "material": "brick"},
+        {"id": "sand", "polygon": [[7, -1], [10, -1], [10, 0], [7, 0]], "material": "sand", "fixed": True},
+    ]
+    ground = GROUND | {"polygon": [[-1, -1], [6.5, -1], [6.5, 0], [-1, 0]]}
+    wall = data(
+        blocks=[ground, data()["blocks"][1], *apart], friction={"default": 0.5, "rules": [rule | {"value": 0.3}]}
+    )
+    told = [text for text in warnings_of(wall) if "friction.rules[0]" in text]
+    assert bool(told) is idle
+    assert all("no interface is of this kind, so the rule does nothing" in text for text in told)
+
+
 def test_a_wall_eight_kilometres_high_and_a_block_too_small_to_see_are_told():
     tall = scaled(data(units={"length": "m"}), 4000.0)
     assert "8 km across (8000 m)" in " ".join(warnings_of(tall))

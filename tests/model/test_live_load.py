@@ -46,6 +46,18 @@ def test_direction_of_a_live_load(live: dict[str, Any] | None, said: str, horizo
     assert is_horizontal(case) is horizontal
 
 
+def test_loads_of_unlike_blocks_one_way_have_one_direction():
+    """The greater block carries the greater load."""
+    tall = {"id": "b", "polygon": [[0, 0.2], [0.4, 0.2], [0.4, 0.9], [0, 0.9]]}
+    data = {"format": "wall/1", "unit_weight": 20, "friction": 0.5, "blocks": [*STONES, tall]}
+    one_way = {"body": [{"per_weight": [1, 0.5]}]}
+    two_ways = {"body": [{"per_weight": [1, 0], "blocks": ["a"]}, {"per_weight": [-1, 0], "blocks": ["b"]}]}
+    said = [
+        direction_in_words(drystone.build_wall(data | {"loads": {"live": live}}).case) for live in (one_way, two_ways)
+    ]
+    assert said == ["at 26.57° from the right, counter-clockwise", "in several directions"]
+
+
 def test_right_and_horizontal_are_those_of_gravity():
     case = loaded(body(0, 1), gravity=[1, 0]).case  # the sheet is turned: down is to the right of it
     assert is_horizontal(case)

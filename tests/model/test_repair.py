@@ -62,6 +62,48 @@ def test_outline_drawn_twice_is_taken_once():
     assert len(mended.wall.blocks) == len(drawn.blocks)
 
 
+def drawn(*outlines: list[list[float]]) -> Wall:
+    blocks = [{"id": name, "polygon": outline} for name, outline in zip("abcd", outlines, strict=False)]
+    blocks[0]["fixed"] = True
+    data = {"format": "wall/1", "unit_weight": 20.0, "friction": 0.5, "blocks": blocks}
+    return Wall.model_validate(data)
+
+
+def box(left: float, low: float, right: float, high: float) -> list[list[float]]:
+    return [[left, low], [right, low], [right, high], [left, high]]
+
+
+def test_corners_that_nearly_meet_meet_in_their_middle():
+    mended = repair(drawn(box(0, 0, 1, 1), box(1.25, 0, 2, 1)), 0.25)
+    assert [block.polygon for block in mended.wall.blocks] == [
+        [(0.0, 0.0), (1.125, 0.0), (1.125, 1.0), (0.0, 1.0)],
+        [(1.125, 0.0), (2.0, 0.0), (2.0, 1.0), (1.125, 1.0)],
+    ]
+    assert [(move.block, move.vertex, move.start, move.end) for move in mended.moves] == [
+        ("a", 1, (1.0, 0.0), (1.125, 0.0)),
+        ("a", 2, (1.0, 1.0), (1.125, 1.0)),
+        ("b", 0, (1.25, 0.0), (1.125, 0.0)),
+        ("b", 3, (1.25, 1.0), (1.125, 1.0)),
+    ]
+    assert {move.distance for move in mended.moves} == {0.125}
+    assert (mended.doubles, mended.splits) == ((), ())
+
+
+def test_a_corner_that_nearly_meets_a_face_comes_to_lie_on_it_and_the_face_gets_a_vertex():
+    mended = repair(drawn(box(0, 0, 4, 1), box(1, 1.125, 2, 2)), 0.25)
+    ground, block = (each.polygon for each in mended.wall.blocks)
+    assert block == [(1.0, 1.0), (2.0, 1.0), (2.0, 2.0), (1.0, 2.0)]
+    assert ground == [(0.0, 0.0), (4.0, 0.0), (4.0, 1.0), (2.0, 1.0), (1.0, 1.0), (0.0, 1.0)]
+    assert mended.splits == (("a", 2),)
+    assert [(move.block, move.vertex) for move in mended.moves] == [("b", 0), ("b", 1)]
+
+
+@pytest.mark.parametrize(("gap", "moved"), [(0.25, True), (0.2501, False)])
+def test_gaps_up_to_the_distance_are_closed(gap: float, moved: bool):
+    for block in (box(1, 1 + gap, 2, 3), box(0, 1 + gap, 4, 3)):
+        assert bool(repair(drawn(box(0, 0, 4, 1), block), 0.25).moves) is moved
+
+
 def test_snapping_further_than_an_edge_is_long_is_refused():
     _, drawn = surveyed(2)
     with pytest.raises(InputError, match=r"would vanish. Snap over less than"):

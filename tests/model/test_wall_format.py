@@ -253,6 +253,57 @@ def test_points_off_their_block_are_pointed_out():
     assert sentence.startswith('loads.live.points[0] acts 49 away from block "a"')
 
 
+@pytest.mark.parametrize("size", [0.01, 1.0, 100.0])
+def test_how_far_an_interface_may_end_off_its_blocks_is_a_share_of_their_size(size: float):
+    """The block that is free has the area 2: .05 of the square root is .0707, and half of it .707."""
+    for off, told in ((0.0707, 0), (0.0708, 1), (0.707, 1), (0.708, None)):
+        wall = two_blocks(interfaces=[{"between": ["base", "a"], "from": [0, 0], "to": [size * (2 + off), 0]}])
+        for block in wall["blocks"]:
+            block["polygon"] = [[x * size, y * size] for x, y in block["polygon"]]
+        wall["units"] = {"length": "1", "force": "1"}
+        if told is None:
+            with pytest.raises(InputError, match="away from one of its blocks"):
+                build(Wall.model_validate(wall))
+            continue
+        sentences = [text for text in build(Wall.model_validate(wall)).warnings if "end up to" in text]
+        assert len(sentences) == told, off
+
+
+@pytest.mark.parametrize(("inset", "left"), [({"length": 0.99}, True), ({"length": 1.0}, False)])
+def test_contact_points_set_in_by_half_leave_no_joint(inset: dict[str, float], left: bool):
+    if left:
+        assert assembly_of(two_blocks(contact_inset=inset)).length == pytest.approx([0.02])
+        return
+    with pytest.raises(InputError, match="leave nothing of its 2"):
+        assembly_of(two_blocks(contact_inset=inset))
+
+
+def test_a_joint_that_lifts_as_it_slides_gives_its_friction_beside():
+    interface = {"between": ["base", "a"], "from": [0, 0], "to": [2, 0]}
+
+    def lift(**given: Any) -> list[float]:
+        return assembly_of(two_blocks(interfaces=[interface | given])).dilatancy.tolist()
+
+    assert lift(friction=0.7, dilatancy=0.3) == [0.3]
+    assert lift(friction_angle=45.0, dilatancy=0.9) == [0.9]
+    for given, words in (
+        ({"dilatancy": 0.1}, "beside a friction of its own"),
+        ({"friction": 0.7, "friction_angle": 35.0}, "either friction or friction_angle"),
+        ({"friction": 0.7, "dilatancy": 0.8}, "dilatancy"),
+    ):
+        with pytest.raises(ValueError, match=words):
+            lift(**given)
+
+
+def test_a_wall_of_another_format_is_refused_with_what_it_gives():
+    for data, words in ((two_blocks(format="wall/2"), "format is 'wall/2'"), ({"blocks": []}, "it has no format")):
+        with pytest.raises(InputError, match=words):
+            parse_wall(data, "w")
+    for data in ([], None, "wall/1"):
+        with pytest.raises(InputError, match="a wall is a JSON object"):
+            parse_wall(data, "w")
+
+
 def test_unreadable_files_are_refused(tmp_path: Path):
     with pytest.raises(InputError, match="no such file"):
         read_json(tmp_path / "absent.json")

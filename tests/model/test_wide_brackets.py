@@ -10,8 +10,8 @@ from harness.model.method import Answer, Finding, Status
 from harness.model.result import exceeds_accuracy, result_of
 from harness.model.result_texts import answer_text
 from harness.model.table import types, values
-from reports.facts import value_in_words
-from reports.tables import run_row
+from reports.labels.wall_summary import value_in_words
+from reports.page.tables import run_row
 from tests.reports import samples
 from tests.walls import assembly, stack
 

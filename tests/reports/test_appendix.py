@@ -14,7 +14,7 @@ from drystone.cli import printing
 from harness.model.comparison import CaseResults
 from harness.model.live_load import reversed_live
 from harness.model.support_reactions import out_of_balance, support_reactions
-from reports.appendix import render, write_appendix
+from reports.page.appendix import render, write_appendix
 from tests.commands import drystone
 from tests.reports import samples
 from tests.walls import assembly, stack

@@ -11,7 +11,7 @@ from harness.model.assembly import Assembly
 from harness.model.build import build
 from harness.model.method import load_method
 from harness.model.wall import Wall
-from reports.learn import BlockAnswers, block_answers, render
+from reports.page.learn import BlockAnswers, block_answers, render
 from tests.reports import samples
 
 

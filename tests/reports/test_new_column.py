@@ -19,8 +19,8 @@ from harness.model.columns import LISTED, PRINTED, RESULTS, ResultColumn
 from harness.model.comparison import CaseResults, ComparisonRun
 from harness.model.method import Status
 from harness.model.proof import proof_of
-from reports import build
-from reports.export import export, result_frame
+from reports.page import build
+from reports.page.export import export, result_frame
 from tests.reports import samples
 
 TWICE = ResultColumn(

@@ -15,7 +15,7 @@ from harness.model import columns
 from harness.model.comparison import CaseResults, ComparisonRun
 from harness.model.proof import proof_of
 from harness.model.table import types
-from reports.export import export, result_frame
+from reports.page.export import export, result_frame
 from tests.reports import samples
 
 

@@ -13,8 +13,9 @@ from PIL import Image
 from harness.model.errors import InputError
 from harness.model.method import Status
 from harness.model.result import Result
-from reports import figures, flow, shapes
-from reports.animate import FRAMES, animate
+from reports.drawing import figures
+from reports.drawing.animate import FRAMES, animate
+from reports.geometry import shapes, thrust_lines
 from tests.reports import samples
 from tests.walls import case as wall_case
 from tests.walls import running_bond, stack
@@ -122,7 +123,7 @@ def test_no_arrow_of_a_force_enters_a_support():
     ):
         wall = wall_case(pattern).assembly
         found = shapes.thrusts(wall, np.tile([0.2, 1.0, 0.6], (wall.n_interfaces, 1)))
-        ends = flow.drawn_ends(wall, found)
+        ends = thrust_lines.drawn_ends(wall, found)
         supports = [shapely.Polygon(wall.polygons[k]).buffer(-1e-6) for k in np.flatnonzero(wall.fixed)]
         assert not any(shapely.LineString(arrow).intersects(held) for arrow in ends for held in supports)
         np.testing.assert_allclose(np.linalg.norm(ends[:, 1] - ends[:, 0], axis=1), 0.72 * wall.length_scale)

@@ -8,11 +8,15 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from harness.model.case import Case
 from harness.model.comparison import CaseResults, Certified, ComparisonRun, Gate
 from harness.model.method import Finding, Status
-from harness.model.result import Verdict
-from reports import build, joints, mechanism_drawing, opening, reasons, tables
-from reports.limits import known_limits
+from harness.model.result import Result, Verdict
+from reports.drawing.mechanism_drawing import overlay_drawing
+from reports.drawing.svg import inline
+from reports.findings import joints, reasons
+from reports.findings.limits import known_limits
+from reports.page import build, summary, tables
 from tests.reports import samples
 
 
@@ -32,7 +36,7 @@ def of_one_wall(**more: object) -> CaseResults:
 
 
 def test_one_wall_opens_with_its_multipliers_and_the_number_to_use():
-    opened = opening.opening(ComparisonRun("mine", "", "", [of_one_wall()]))
+    opened = summary.summary(ComparisonRun("mine", "", "", [of_one_wall()]))
     told = " ".join(opened.findings)
     assert told.startswith("mine collapses at 0.55800 under the live load to the right (LA, least known); FE 0.56520")
     assert "; FE 0.56520, DE [0.45000, 0.61000] (26 % wide)." in told
@@ -46,17 +50,17 @@ def test_one_wall_opens_with_its_multipliers_and_the_number_to_use():
 
 
 def test_least_is_the_minimum_only_where_it_is_proved():
-    proved = opening.which_number(of_one_wall(proved_least=True))
+    proved = summary.which_number(of_one_wall(proved_least=True))
     assert "(la), least, to rounding: la finds in floating point that no collapse state lies below it." in proved
-    assert "minimum" not in opening.wall_findings(of_one_wall())
-    assert "(LA, least, to rounding)" in opening.wall_findings(of_one_wall(proved_least=True))
+    assert "minimum" not in summary.wall_findings(of_one_wall())
+    assert "(LA, least, to rounding)" in summary.wall_findings(of_one_wall(proved_least=True))
 
 
 @pytest.mark.parametrize(("bound", "said"), [(0.557999, True), (0.5579, False), (0.558001, False)])
 def test_the_minimum_is_called_proved_only_where_a_certificate_meets_it(bound: float, said: bool):
     item = replace(of_one_wall(proved_least=True), certified=Certified(bound, "", ""))
-    assert ("minimum, proved" in opening.wall_findings(item)) is said
-    assert ("an exact certificate proves that" in opening.which_number(item)) is said
+    assert ("minimum, proved" in summary.wall_findings(item)) is said
+    assert ("an exact certificate proves that" in summary.which_number(item)) is said
 
 
 def test_rejected_state_is_never_the_number_to_use():
@@ -67,7 +71,7 @@ def test_rejected_state_is_never_the_number_to_use():
 
 def test_suite_names_every_red_row_and_broken_theory_comes_first():
     run = samples.typical()
-    opened = opening.opening(run)
+    opened = summary.summary(run)
     assert opened.findings[0].startswith("Theory is violated on wall-21")
     assert {row.name for row in opened.red} == {
         "wall-21, theory",
@@ -84,7 +88,7 @@ def test_search_that_missed_a_state_is_told_as_such_and_no_method_is_called_wron
     item = of_one_wall()
     missed = Gate(name="la-below-fe", statement="s", passed=False, sentence="la 0.6, fe 0.5", of_search=True)
     item.gates.append(missed)
-    opened = opening.opening(ComparisonRun("", "", "", [item]))
+    opened = summary.summary(ComparisonRun("", "", "", [item]))
     assert opened.findings[0].startswith("mine collapses"), "the reader's wall comes first"
     assert opened.findings[-1].startswith("The search for the least state missed one")
     assert "la 0.6, fe 0.5" in opened.findings[-1]
@@ -94,7 +98,7 @@ def test_search_that_missed_a_state_is_told_as_such_and_no_method_is_called_wron
 def test_case_that_only_failed_has_findings():
     case = samples.bond("mine")
     item = CaseResults(case, [samples.failed(case, "fe", Status.TIMEOUT, "late")])
-    opened = opening.opening(ComparisonRun("mine", "", "", [item]))
+    opened = summary.summary(ComparisonRun("mine", "", "", [item]))
     assert "no method gave an answer" in opened.findings[0]
     assert opened.figure == ""
     assert opened.advice == ""
@@ -165,11 +169,15 @@ def test_reason_names_what_moves_in_one_only():
     assert "in la only" in told[1]
 
 
+def overlay_svg(case: Case, first: Result, second: Result) -> str:
+    return inline(overlay_drawing(case, first, second))
+
+
 def test_overlay_draws_both_mechanisms():
     item = of_one_wall()
-    drawn = mechanism_drawing.overlay_svg(item.case, item.results[0], item.results[1])
+    drawn = overlay_svg(item.case, item.results[0], item.results[1])
     assert 'class="other"' in drawn
-    assert drawn != mechanism_drawing.overlay_svg(item.case, item.results[1], item.results[0])
+    assert drawn != overlay_svg(item.case, item.results[1], item.results[0])
 
 
 def test_overlay_of_one_motion_at_two_scales_draws_nothing_twice():
@@ -177,7 +185,7 @@ def test_overlay_of_one_motion_at_two_scales_draws_nothing_twice():
     first = item.results[0]
     assert first.mechanism is not None
     faster = first.model_copy(update={"mechanism": [tuple(3.0 * x for x in row) for row in first.mechanism]})
-    drawn = mechanism_drawing.overlay_svg(item.case, first, faster)
+    drawn = overlay_svg(item.case, first, faster)
     assert 'class="other"' not in drawn
     assert 'class="slide"' not in drawn
 
@@ -191,7 +199,7 @@ def test_overlay_marks_joints_that_slide_in_one_mechanism_only():
     motions[1, free] = (-toe[0, 1], toe[0, 0], -1.0)
     slides = samples.solved(case, "la", 0.4).model_copy(update={"mechanism": motions[0].tolist()})
     turns = slides.model_copy(update={"method": "fe", "mechanism": motions[1].tolist()})
-    drawn = mechanism_drawing.overlay_svg(case, slides, turns)
+    drawn = overlay_svg(case, slides, turns)
     assert drawn.count('class="slide"') == 1
     assert 'class="slide" stroke-width="46" d=' in drawn, "the first one's are whole lines"
     assert re.search('class="open" stroke-width="28" stroke-dasharray="41 41" d=', drawn), "the second one's are dashed"
@@ -206,7 +214,7 @@ def test_own_walls_come_first_then_the_papers_then_those_that_part():
         CaseResults(paper := samples.bond("wall-21", references=known), [samples.solved(paper, "la", 0.5)]),
         of_one_wall(),
     ]
-    assert [item.case.id for item in opening.in_order(items)] == ["mine", "wall-21", "torn", "calm"]
+    assert [item.case.id for item in summary.in_order(items)] == ["mine", "wall-21", "torn", "calm"]
 
 
 def test_measured_value_is_its_bracket_in_every_table():
@@ -272,7 +280,7 @@ def suite(*families: dict[str, float | tuple[float, float]]) -> str:
             bracket = {"flow": "approximate", "bracket": (low, high)} if low < high else {}
             rows.append(samples.solved(case, name, 0.5 * (low + high), **bracket))
         items.append(CaseResults(case, rows))
-    return " ".join(opening.opening(ComparisonRun("", "", "", items)).findings)
+    return " ".join(summary.summary(ComparisonRun("", "", "", items)).findings)
 
 
 def test_families_are_counted_where_two_give_a_multiplier_and_a_bracket_that_does_not_decide_is_told():
@@ -291,7 +299,7 @@ def test_walls_that_fall_for_one_family_and_stand_for_another_are_told_and_not_c
     falls = samples.solved(case, "fe", 0.5).model_copy(update={"finding": Finding.FALLS, "multiplier": None})
     item = CaseResults(case, [falls, samples.solved(case, "la", 0.5)])
     other = CaseResults(samples.bond("other"), [])
-    said = " ".join(opening.opening(ComparisonRun("", "", "", [item, other])).findings)
+    said = " ".join(summary.summary(ComparisonRun("", "", "", [item, other])).findings)
     assert "The families find different things on 1 wall: mine." in said
     assert "within 1 %" not in said
 
@@ -299,11 +307,11 @@ def test_walls_that_fall_for_one_family_and_stand_for_another_are_told_and_not_c
 def test_what_differs_is_said_of_the_least_and_the_highest_state():
     case = samples.bond("mine")
     same = CaseResults(case, [samples.solved(case, "fe", 0.6), samples.solved(case, "la", 0.5)])
-    assert "They differ by 20.0 %: the mechanism of LA and FE is the same, but" in opening.wall_findings(same)
+    assert "They differ by 20.0 %: the mechanism of LA and FE is the same, but" in summary.wall_findings(same)
     other = replace(same, results=[samples.solved(case, "fe", 0.6, turn=0.5), same.results[1]])
-    assert "They differ by 20.0 %: the mechanisms of LA and FE differ." in opening.wall_findings(other)
+    assert "They differ by 20.0 %: the mechanisms of LA and FE differ." in summary.wall_findings(other)
     unmoved = [same.results[0].model_copy(update={"mechanism": None}), same.results[1]]
-    assert "They differ by 20.0 %." in opening.wall_findings(replace(same, results=unmoved))
+    assert "They differ by 20.0 %." in summary.wall_findings(replace(same, results=unmoved))
 
 
 def test_the_share_of_the_range_that_a_bracket_covers_is_computed():

@@ -11,20 +11,14 @@ from harness.model.comparison import CaseResults, ComparisonRun
 from harness.model.displaced import carried, released
 from harness.model.method import Status
 from harness.model.result import Verdict
-from reports import (
-    agreement,
-    charts,
-    curves,
-    drawing,
-    families,
-    flow,
-    grid,
-    numbers,
-    paper,
-    sections,
-    shapes,
-    studies,
-)
+from reports.charts import charts, curves, families, grid, studies
+from reports.drawing.display_list import Circles, DisplayList, Group, Polygons, moved
+from reports.drawing.force_drawing import force_drawing, percent_used
+from reports.drawing.mechanism_drawing import mechanism_drawing
+from reports.findings import agreement
+from reports.geometry import shapes, thrust_lines
+from reports.labels import numbers
+from reports.page import paper, sections
 from tests.reports import samples
 
 
@@ -157,23 +151,42 @@ def test_load_arrow_lies_on_the_line_of_action():
     assert off[0] * force[1] - off[1] * force[0] == pytest.approx(0.0, abs=1e-12)
 
 
+def groups(drawn: DisplayList) -> list[Group]:
+    return [part for part in drawn.parts if isinstance(part, Group)]
+
+
 def test_drawn_motion_is_the_mechanism():
     case = samples.bond()
     result = samples.solved(case, "la", 0.5, turn=0.4)
-    data = drawing.result_data(case, result, 1.0)
-    assert result.mechanism is not None
-    got = np.array(data["m"], dtype=float).reshape(-1, 3)
-    velocity = np.column_stack([got[:, :2] * [1.0, -1.0] * data["speed"], -got[:, 2] * data["spin"]])
-    # A tenth of a drawing unit of 4000, and 1e-4 rad, over the amplitude of about 500 units or 0.25 rad.
-    assert velocity == pytest.approx(np.array(result.mechanism), abs=1e-3)
+    mechanism = np.array(result.mechanism)
+    drawn = mechanism_drawing(case, result)
+    places = shapes.displaced(case.assembly, mechanism, shapes.amplitude(case.assembly, mechanism))
+    blocks = {group.block: group for group in groups(drawn) if group.block is not None}
+    assert sorted(blocks) == list(range(case.assembly.n_blocks))
+    for number, group in blocks.items():
+        (shape,) = (moved(part, group.motion) for part in group.parts)
+        assert isinstance(shape, Polygons)
+        assert drawn.frame.back(shape.outlines[0]) == pytest.approx(places[number], abs=1e-12)
+        assert group.values == (tuple(mechanism[number]) if group.motion is not None else ())
+        assert group.motion is not None or not mechanism[number].any()
 
 
 def test_drawn_forces_are_the_forces():
     case = samples.bond()
     result = samples.solved(case, "la", 0.5)
-    unit = drawing.force_unit([result])
-    got = np.array(drawing.result_data(case, result, unit)["f"], dtype=float).reshape(-1, 3) * unit / 1e4
-    assert got == pytest.approx(np.array(result.forces), abs=unit * 0.51e-4)
+    assert result.forces is not None
+    shown = {group.joint: group.values[:3] for group in groups(force_drawing(case, result))}
+    assert shown == {number: tuple(force) for number, force in enumerate(result.forces)}
+
+
+def test_no_shape_is_lost_where_neighbours_are_drawn_as_one():
+    case = samples.bond()
+    drawn = mechanism_drawing(case, samples.solved(case, "la", 0.5, turn=0.4))
+    flat = list(drawn.flat())
+    outlines = [outline for shape in flat if isinstance(shape, Polygons) for outline in shape.outlines]
+    moving = sum(group.motion is not None and group.block is not None for group in groups(drawn))
+    assert len(outlines) == case.assembly.n_blocks + moving, "the blocks, and where those stood that move"
+    assert len(flat) < len(drawn.parts)
 
 
 def test_profile_does_not_count_an_unsolved_case_as_won():
@@ -372,7 +385,7 @@ def test_the_source_of_a_search_that_found_the_state_is_told_and_nothing_where_n
         assert sections.origin(samples.solved(samples.block(), "la", 0.5, details=details)) == ""
 
 
-def test_friction_at_its_limit_is_decided_from_the_forces_and_not_from_the_steps_that_the_page_gets():
+def test_friction_at_its_limit_is_decided_from_the_forces_and_not_from_what_is_shown_of_them():
     case = samples.bond("mine")
     result = samples.solved(case, "la", 0.5)
     forces = np.zeros((case.assembly.n_interfaces, 3))
@@ -382,10 +395,12 @@ def test_friction_at_its_limit_is_decided_from_the_forces_and_not_from_the_steps
     forces[2] = (100.0, 0.0, 0.998 * 65.0)
     forces[3] = (0.0, 0.0, 0.0)
     result = result.model_copy(update={"forces": [tuple(row) for row in forces.tolist()]})
-    used = drawing.result_data(case, result, 1000.0)["used"]
-    assert used[:5] == [100, 96, 99, -1, 0]
-    printed = flow.at_friction_limit(case.assembly, forces)
-    assert [share == 100 for share in used] == printed.tolist()
+    assert percent_used(case.assembly, forces)[:5] == [100, 96, 99, -1, 0]
+    shown = {group.joint: group for group in groups(force_drawing(case, result))}
+    assert shown[2].values[3] == 99
+    for number, group in shown.items():
+        circled = any(isinstance(part, Circles) for part in group.parts)
+        assert circled == thrust_lines.at_friction_limit(case.assembly, forces)[number]
 
 
 def bracketed_grid(low: float, high: float) -> families.Study:
@@ -417,7 +432,7 @@ def test_what_head_joints_carry_is_said_from_the_forces_of_the_walls_that_differ
         for number, (length, friction) in enumerate(((0.4, 0.5), (0.4, 0.8), (0.6, 0.5), (0.6, 0.8))):
             case = samples.bond(f"wall-{number}", length=length, friction=friction)
             assembly = case.assembly
-            heads = np.flatnonzero(abs(assembly.normal[:, 0]) > flow.HEAD_JOINT)
+            heads = np.flatnonzero(abs(assembly.normal[:, 0]) > thrust_lines.HEAD_JOINT)
             weight = float(assembly.weight[assembly.free].sum())
             rows = []
             for name, value in (("fe", 0.6), ("la", 0.5)):

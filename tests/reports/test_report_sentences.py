@@ -6,8 +6,9 @@ import pytest
 
 from harness.model.comparison import CaseResults, ComparisonRun
 from harness.model.method import Finding
-from reports import charts, curves, paper, studies
-from reports.agreement import agreement, spread
+from reports.charts import charts, curves, studies
+from reports.findings.agreement import agreement, spread
+from reports.page import paper
 from tests.reports import samples
 from tests.walls import case as wall_case
 from tests.walls import stack

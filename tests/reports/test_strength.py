@@ -12,7 +12,7 @@ import drystone
 from harness.formats.exporting import matrices
 from harness.model.build import build
 from harness.model.wall import Wall
-from reports.strength import strength_text
+from reports.findings.strength import strength_text
 from tests.commands import drystone as command
 from tests.walls import assembly, stack, wall_data
 

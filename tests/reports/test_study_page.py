@@ -7,8 +7,8 @@ import pandas as pd
 
 from harness.engine.sweep import statistics
 from harness.engine.sweep.frame import tidy
-from reports.study_findings import findings
-from reports.study_page import StudyPage, render
+from reports.charts.study_findings import findings
+from reports.page.study_page import StudyPage, render
 
 
 def walls(values: list[float], method: str = "fe", **columns: list[float]) -> pd.DataFrame:

@@ -3,16 +3,22 @@
 from __future__ import annotations
 
 import re
+from importlib.resources import files
 from pathlib import Path
 from xml.etree import ElementTree
 
 import numpy as np
 import pytest
 
-from reports import flow, shapes, vectors
-from reports.drawing import Frame
-from reports.export import export
-from reports.force_drawing import forces_svg
+from reports.drawing.display_list import Frame
+from reports.drawing.force_drawing import force_drawing
+from reports.drawing.looks import LOOKS, css
+from reports.drawing.mechanism_drawing import mechanism_drawing
+from reports.drawing.svg import inline
+from reports.drawing.wall_drawing import wall_drawing
+from reports.geometry import shapes, thrust_lines
+from reports.page import vectors
+from reports.page.export import export
 from tests.reports import samples
 
 SVG = "{http://www.w3.org/2000/svg}"
@@ -46,12 +52,11 @@ def test_vector_files_say_what_they_show_and_need_no_page(folder: Path):
 def test_forces_are_drawn_where_they_act_with_their_size_and_a_scale():
     case = samples.bond()
     result = samples.solved(case, "la", 0.5)
-    drawn = forces_svg(case, result)
-    found = shapes.thrusts(case.assembly, np.asarray(result.forces), smallest=flow.STYLE.smallest)
-    heads = "".join(re.findall(r'class="tip-of" d="([^"]*)"', drawn))
-    frame = Frame(case.assembly)
-    tips = {tuple(int(x) for x in head) for head in re.findall(r"M(-?\d+) (-?\d+)", heads)}
-    assert tips == {frame.place(end) for end in flow.drawn_ends(case.assembly, found)[:, 1]}
+    drawn = inline(force_drawing(case, result))
+    found = shapes.thrusts(case.assembly, np.asarray(result.forces), smallest=thrust_lines.STYLE.smallest)
+    arrows = re.findall(r'class="(?:force|full)" d="M(-?\d+) (-?\d+)', drawn)
+    tips = np.rint(Frame.of(case.assembly).place(thrust_lines.drawn_ends(case.assembly, found)[:, 1]))
+    assert np.array(arrows, dtype=int).tolist() == tips.tolist()
     assert drawn.count("<text") == len(found.size) + 2, "a size each, and two scales"
     assert " kN</text>" in drawn
 
@@ -61,16 +66,33 @@ def test_force_at_the_limit_of_friction_is_circled():
     one = [(1.0, 1.0, 0.65 * 2.0)] * case.assembly.n_interfaces
     below = [(1.0, 1.0, 0.5)] * case.assembly.n_interfaces
     result = samples.solved(case, "la", 0.5)
-    drawn = [forces_svg(case, result.model_copy(update={"forces": forces})) for forces in (one, below)]
+    drawn = [inline(force_drawing(case, result.model_copy(update={"forces": forces}))) for forces in (one, below)]
     assert [text.count("<circle") for text in drawn] == [case.assembly.n_interfaces, 0]
 
 
 def test_long_words_are_broken_into_lines_of_the_drawing():
     case = samples.bond(title="A wall")
-    text = vectors.headed(case, forces_svg(case, samples.solved(case, "la", 0.5)), "one word after another " * 12)
+    text = vectors.headed(case, force_drawing(case, samples.solved(case, "la", 0.5)), "one word after another " * 12)
     root = ElementTree.fromstring(text)
     box = [float(x) for x in root.attrib["viewBox"].split()]
     lines = [e for e in root.iter(f"{SVG}text") if (e.text or "").startswith(("one", "word", "after", "another"))]
     assert len(lines) > 3
     assert all(0.55 * vectors.HEADING.size * len(line.text or "") <= box[2] for line in lines)
     assert all(float(line.attrib["y"]) > box[1] for line in lines)
+
+
+def test_the_script_of_the_page_draws_nothing():
+    script = files("reports").joinpath("static/move.js").read_text(encoding="utf-8")
+    assert "createElementNS" not in script
+    assert not re.search(r"\b(path|circle|polygon|stroke|friction|limit)\b", script)
+
+
+def test_every_shape_that_a_page_shows_has_a_look():
+    run = samples.typical()
+    for item in run.cases:
+        drawings = [wall_drawing(item.case)]
+        drawings += [mechanism_drawing(item.case, result) for result in item.results if result.mechanism is not None]
+        drawings += [force_drawing(item.case, result) for result in item.results if result.forces is not None]
+        shown = {shape.role for drawing in drawings for shape in drawing.flat()} - {"", "said"}
+        assert shown <= set(LOOKS)
+        assert all(f"svg .{role} {{" in css() for role in shown)

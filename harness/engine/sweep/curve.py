@@ -39,7 +39,7 @@ class _Line:
 
 
 def curve_of(study: Study, rows: Iterable[Row]) -> dict[str, Any]:
-    """What `reports.studies` draws of a study: title, sentence, how to read it, labels, series.
+    """What `reports.charts.studies` draws of a study: title, sentence, how to read it, labels, series.
 
     Args:
         study: one that says how it is drawn (`curve`).

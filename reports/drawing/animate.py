@@ -1,0 +1,90 @@
+"""A collapse as a moving picture: frames that a run followed, or the mechanism growing from rest. GIF, PNG or WebP."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from matplotlib.backends.backend_agg import FigureCanvasAgg
+from PIL import Image
+
+from harness.model.case import Case
+from harness.model.displaced import carried, released
+from harness.model.errors import InputError
+from harness.model.result import Result
+from harness.model.writing import replacing
+from reports.drawing import figures
+from reports.drawing.display_list import DisplayList
+from reports.drawing.looks import COLOURS
+from reports.drawing.mechanism_drawing import moved_wall
+from reports.drawing.plot import plot
+from reports.drawing.wall_drawing import displaced_drawing
+from reports.geometry import shapes
+from reports.labels import labels, numbers
+
+FORMATS = (".gif", ".png", ".apng", ".webp")
+FRAMES = 28
+FRAME_MILLISECONDS = 60
+PAUSE_MILLISECONDS = 900
+DOTS_PER_INCH = 160
+GREATEST = 2.0
+"""Last displacement, as a multiple of the one the report draws."""
+
+
+def animate(case: Case, result: Result, path: Path) -> None:
+    """Draw the collapse of a result as an animation.
+
+    Args:
+        case: the case.
+        result: a result with a mechanism.
+        path: the file; its ending .gif, .png or .apng, or .webp says the format.
+
+    Raises:
+        InputError: another ending, or a result without a mechanism.
+    """
+    suffix = path.suffix.lower()
+    if suffix not in FORMATS:
+        raise InputError(f'no animation is written as "{path.suffix}"', f"Use {', '.join(FORMATS)}", source=str(path))
+    if result.mechanism is None and released(result, case.assembly.n_blocks) is None:
+        raise InputError(
+            f"{result.method} left no mechanism to animate ({labels.STATUS[result.status][1]}: {result.sentence})",
+            "Choose a method that ended with a collapse state",
+            source=case.id,
+        )
+    images = frames(case, result)
+    durations = [FRAME_MILLISECONDS] * len(images)
+    durations[0] = durations[-1] = PAUSE_MILLISECONDS
+    if suffix == ".gif":
+        images = [image.quantize(colors=64, dither=Image.Dither.NONE) for image in images]
+    name = {".gif": "GIF", ".webp": "WEBP"}.get(suffix, "PNG")
+    options = {"lossless": True} if name == "WEBP" else {}
+    with replacing(path) as draft:
+        images[0].save(
+            draft, format=name, save_all=True, append_images=images[1:], duration=durations, loop=0, **options
+        )
+
+
+def frames(case: Case, result: Result) -> list[Image.Image]:
+    """The pictures of an animation: the collapse a run followed, else the mechanism from rest to twice its size."""
+    assembly = case.assembly
+    followed = released(result, assembly.n_blocks)
+    if followed is not None:
+        return [_picture(case, result, displaced_drawing(case, carried(assembly, places))) for places in followed]
+    # The square of time lets the blocks move ever faster, as in a collapse.
+    scale = GREATEST * shapes.amplitude(assembly, np.asarray(result.mechanism, dtype=float))
+    times = np.linspace(0.0, 1.0, FRAMES).tolist()
+    return [_picture(case, result, moved_wall(assembly, result, scale * time**2)) for time in times]
+
+
+def _picture(case: Case, result: Result, drawn: DisplayList) -> Image.Image:
+    """One frame: a title and a drawing."""
+    with figures.style():
+        page, axes = figures.blank(case.assembly, 1, 1)
+        value = "" if result.multiplier is None else f" at {numbers.multiplier(result.multiplier)}"
+        axes[0][0].set_title(f"{case.id}, {result.method}{value}", pad=3, color=COLOURS["ink"])
+        plot(axes[0][0], drawn)
+        page.set_dpi(DOTS_PER_INCH)
+        canvas: Any = FigureCanvasAgg(page)
+        canvas.draw()
+        return Image.fromarray(np.asarray(canvas.buffer_rgba())).convert("RGB")

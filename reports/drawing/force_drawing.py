@@ -1,0 +1,117 @@
+"""Contact forces as a display list: resultants at their centres of pressure, or their way through the blocks."""
+
+from __future__ import annotations
+
+from collections.abc import Collection
+
+import numpy as np
+
+from harness.model.assembly import Assembly, FloatArray
+from harness.model.case import Case
+from harness.model.result import Result
+from reports.drawing.display_list import BELOW, Circles, DisplayList, Frame, Group, Lines, Polygons, Shape, Text, chosen
+from reports.drawing.wall_drawing import length_scale
+from reports.geometry import shapes, thrust_lines
+from reports.labels import numbers
+from reports.memo import memo
+
+WIDEST, THINNEST = 0.16, 0.02
+"""Width of the largest and of the smallest force, in block sizes."""
+LAYERS = ("forces", "thrust")
+
+
+@memo
+def force_drawing(case: Case, result: Result, layers: Collection[str] = LAYERS) -> DisplayList:
+    """Contact forces (m, 3) of a result with their sizes and scales; a force at the limit of friction is circled.
+
+    Args:
+        case: the case.
+        result: one of its results, with forces.
+        layers: "forces" for the resultants, "thrust" for lines through the blocks; a page shows one of both.
+    """
+    assembly, frame = case.assembly, Frame.of(case.assembly)
+    drawn = DisplayList(frame, f"Contact forces of {result.case} by {result.method}")
+    placed = frame.place_all(assembly.polygons)
+    drawn.parts.append(Polygons("ground", chosen(placed, assembly.fixed)))
+    drawn.parts.append(Polygons("outline", chosen(placed, ~assembly.fixed)))
+    drawn.parts.extend(length_scale(frame, case.wall.units.length))
+    forces = np.asarray(result.forces, dtype=float)
+    found = shapes.thrusts(assembly, forces, smallest=thrust_lines.STYLE.smallest)
+    if len(found.size):
+        drawn.parts.extend(_groups(frame, assembly, found, forces, layers))
+        drawn.parts.extend(_force_scale(frame, float(found.size.max()), case.wall.units.force))
+    return drawn
+
+
+def _width(frame: Frame, share: float) -> float:
+    """Width of the line of a force that is a share of the largest."""
+    return max(THINNEST, WIDEST * share) * frame.block
+
+
+def _groups(
+    frame: Frame, assembly: Assembly, found: shapes.Thrusts, forces: FloatArray, layers: Collection[str]
+) -> list[Group]:
+    """A group for each interface that carries force."""
+    full, used = thrust_lines.at_friction_limit(assembly, forces), percent_used(assembly, forces)
+    points, width = frame.place(found.point), [_width(frame, share) for share in (found.size / found.size.max())]
+    arrows = _arrows(frame, frame.place(thrust_lines.drawn_ends(assembly, found)), np.array(width))
+    lines = _through_blocks(frame, assembly, found)
+    labelled = len(found.size) <= thrust_lines.STYLE.labelled
+    drawn = []
+    for k, p in enumerate(found.interface.tolist()):
+        parts: list[Shape] = []
+        if "forces" in layers:
+            parts.append(Polygons("full" if full[p] else "force", (arrows[k],)))
+            if labelled:
+                level = abs(float(assembly.normal[p, 1])) > 0.5
+                parts.append(_size(frame, points[k], float(found.size[k]), level=level))
+            if full[p]:
+                parts.append(Circles("ring", points[k][None], max(0.05 * frame.block, 0.5 * width[k] + 9)))
+        if "thrust" in layers:
+            parts.append(Lines("thrust", (lines[k],), width[k]))
+        share = used[p] if used[p] >= 0 else None
+        drawn.append(Group(tuple(parts), joint=p, values=(*forces[p].tolist(), share)))
+    return drawn
+
+
+def percent_used(assembly: Assembly, forces: FloatArray) -> list[int]:
+    """Friction used at every interface in whole percent: 100 exactly where it is at its limit, -1 without friction."""
+    used = thrust_lines.friction_used(assembly, forces)
+    below = np.minimum(99, np.rint(100.0 * np.nan_to_num(used, nan=-0.01)))
+    return [int(percent) for percent in np.where(thrust_lines.at_friction_limit(assembly, forces), 100, below)]
+
+
+def _arrows(frame: Frame, ends: FloatArray, width: FloatArray) -> FloatArray:
+    """Outlines (p, 7, 2) of arrows of a width (p,) from tails to tips (p, 2, 2), the tips first."""
+    tail, tip = ends[:, 0], ends[:, 1]
+    way = (tip - tail) / np.linalg.norm(tip - tail, axis=1)[:, None]
+    across = np.column_stack([-way[:, 1], way[:, 0]])
+    head = np.maximum(0.2 * frame.block, 1.7 * width)[:, None]
+    neck, wide, half = tip - head * way, 0.4 * head * across, 0.5 * width[:, None] * across
+    return np.stack([tip, neck + wide, neck + half, tail + half, tail - half, neck - half, neck - wide], axis=1)
+
+
+def _through_blocks(frame: Frame, assembly: Assembly, found: shapes.Thrusts) -> FloatArray:
+    """Lines (p, 3, 2) from where the forces of one block meet through each centre of pressure to those of the other."""
+    meet, point = shapes.junctions(assembly, found), found.point
+    first, second = (
+        np.where(assembly.fixed[block][:, None], point, meet[block])
+        for block in (assembly.block_a[found.interface], assembly.block_b[found.interface])
+    )
+    return frame.place(np.stack([first, point, second], axis=1))
+
+
+def _size(frame: Frame, point: FloatArray, size: float, *, level: bool) -> Text:
+    """The size of a force beside it."""
+    across, up = (0.09, 0.05) if level else (0.0, 0.1)
+    at = (float(point[0]) + across * frame.block, float(point[1]) - up * frame.block)
+    return Text("said", at, numbers.given(size, 3), min(110.0, 0.17 * frame.block), "start" if level else "middle")
+
+
+def _force_scale(frame: Frame, largest: float, unit: str) -> list[Shape]:
+    """A line as wide as a round force is drawn, below the wall on the right."""
+    force = thrust_lines.round_number(largest)
+    x, y = frame.extent.width * frame.scale, frame.extent.height * frame.scale + BELOW // 2
+    line = np.array([(x - 330, y), (x, y)])
+    text = Text("", (x + 60, y + 38), numbers.quantity(force, unit), 110, "start")
+    return [Lines("force-scale", (line,), _width(frame, force / largest)), text]

@@ -1,0 +1,1 @@
+"""Findings: what results have in common, where they differ and why."""

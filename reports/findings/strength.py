@@ -1,0 +1,49 @@
+"""Walls whose joints have cohesion and tensile strength: what is given, plastic and residual values side by side."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from harness.model.assembly import Assembly, FloatArray
+from harness.model.comparison import CaseResults
+from harness.model.method import Status
+from harness.model.result import residual_of
+from reports.labels import numbers
+from reports.labels.wall_summary import value_in_words
+
+
+@dataclass(frozen=True)
+class StrengthRow:
+    """What one method finds for a wall with the strength of its joints, plastic, and without, the residual value."""
+
+    method: str
+    plastic: str
+    residual: str
+    upper_bound: bool
+
+
+def strength_rows(item: CaseResults) -> list[StrengthRow]:
+    """One row a method that took the strength of the joints; none where all joints are dry."""
+    rows = []
+    for result in item.results:
+        residual = residual_of(result)
+        if residual is None or result.status is not Status.OK:
+            continue
+        shown = value_in_words(residual) if residual.status is Status.OK else numbers.NOTHING
+        rows.append(StrengthRow(result.method, value_in_words(result), shown, result.traits.bounds_above))
+    return rows
+
+
+def strength_text(assembly: Assembly, unit: str) -> str:
+    """The greatest cohesion c A and tension T = f_t A of the joints [force], and how many have any; empty if none."""
+    if not assembly.strong:
+        return ""
+    cohesion, tension = assembly.constant[:, 2], 2.0 * assembly.constant[:, 0]
+    number = int((~assembly.law.dry).sum())
+    joints = "all" if number == assembly.n_interfaces else f"{number} of {assembly.n_interfaces}"
+    return f"cohesion c A {_range(cohesion, unit)}, tension T {_range(tension, unit)}; {joints} interfaces"
+
+
+def _range(values: FloatArray, unit: str) -> str:
+    least, greatest = (numbers.given(float(value), 4) for value in (values.min(), values.max()))
+    return numbers.quantity(float(values.max()), unit, 4) if least == greatest else f"{least} to {greatest} {unit}"

@@ -1,0 +1,1 @@
+"""Geometry: extents, centres of pressure, lines of thrust and displaced blocks."""

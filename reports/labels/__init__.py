@@ -1,0 +1,1 @@
+"""Labels: words, numbers and facts as a reader meets them."""

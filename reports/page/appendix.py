@@ -1,0 +1,238 @@
+"""The appendix to a structural report: one wall on two to four sheets, for an engineer to sign."""
+
+from __future__ import annotations
+
+import hashlib
+import io
+import json
+import math
+from dataclasses import dataclass
+from importlib.resources import files
+from pathlib import Path
+
+from markupsafe import Markup
+from matplotlib.figure import Figure
+
+from harness.model.assembly import FloatArray
+from harness.model.comparison import CaseResults, ComparisonRun
+from harness.model.joint_margins import JOINTS, joint_rows
+from harness.model.live_load import direction_in_words
+from harness.model.method import Finding, Status
+from harness.model.proof import least_known, proof_of
+from harness.model.result import Result
+from harness.model.support_reactions import SupportReaction, out_of_balance, reactions_of
+from harness.model.table import in_units
+from harness.model.writing import write_whole
+from reports.drawing.figures import results_figure, style, wall_figure
+from reports.environment import environment
+from reports.geometry import shapes
+from reports.labels import labels, numbers
+from reports.labels.wall_summary import value_in_words, wall_summary
+from reports.page.summary import wall_findings, which_number
+
+
+@dataclass(frozen=True)
+class SheetLimits:
+    """How much of a wall is written out, so that the appendix stays within four sheets.
+
+    Attributes:
+        blocks: largest number of blocks with a row each; more are told by their sums.
+        joints: number of most critical joints with a row each.
+        figures: largest number of blocks whose drawings stand in the page; a drawing takes some 5 kB a block.
+    """
+
+    blocks: int = 36
+    joints: int = 8
+    figures: int = 2000
+
+
+LIMITS = SheetLimits()
+
+ASSUMPTIONS = (
+    "The wall is plane; blocks are rigid and do not crush.",
+    "Joints are dry: they bear no tension, and shear up to friction times compression (Coulomb), at each contact.",
+    "Sliding is without dilatancy, except in the associated maximum, which is an upper bound and no design value.",
+    "Displacements before collapse are small: equilibrium is that of the wall as drawn.",
+    "Dead loads act first and stay; the live load grows by one multiplier, slowly.",
+)
+
+
+@dataclass(frozen=True)
+class MethodRow:
+    """One method's answer."""
+
+    method: str
+    value: str
+    number_is: str
+    judged: str
+    residual: str
+    cpu: str
+
+
+@dataclass(frozen=True)
+class BlockRow:
+    """What is given of one free block."""
+
+    name: str
+    x: str
+    y: str
+    weight: str
+    dead: str
+    live: str
+
+
+_CRITICAL = tuple(
+    column
+    for column in JOINTS
+    if column.name not in ("interface", "joint", "utilisation", "eccentricity", "length", "thickness")
+)
+"""Columns of the most critical joints."""
+
+
+def write_appendix(run: ComparisonRun, path: Path) -> None:
+    """Write the appendix of one wall as one HTML file, ready to print on A4."""
+    write_whole(path, render(run))
+
+
+def render(run: ComparisonRun) -> str:
+    """The appendix as text.
+
+    Args:
+        run: a comparison of one wall; or of two, the second with the opposite live load. The one that collapses at the
+            lower multiplier governs, and is the one whose state is shown.
+    """
+    item = min(run.cases, key=_collapse)
+    case, shown = item.case, _shown(item)
+    listed, balance = _reactions(item, shown)
+    document = json.dumps(run.cases[0].case.wall.document(), sort_keys=True, ensure_ascii=False)
+    return (
+        environment()
+        .get_template("appendix.html.j2")
+        .render(
+            run=run,
+            case=case,
+            origin=Path(run.cases[0].case.origin).name,
+            digest=hashlib.sha256(document.encode()).hexdigest()[:16],
+            finding=wall_findings(item),
+            advice=which_number(item),
+            ways=_ways(run.cases, item) if len(run.cases) > 1 else [],
+            direction=direction_in_words(item.case),
+            facts=wall_summary(case),
+            assumptions=ASSUMPTIONS,
+            loads=_loads(item),
+            blocks=_blocks(item),
+            methods=[_method_row(result) for result in labels.in_order(item)],
+            gates=[gate for gate in item.gates if gate.passed is not None],
+            wall=_svg(wall_figure(case.built)) if _drawn(item) else Markup(""),
+            every=shapes.drawn_every(len(shapes.load_arrows(case.assembly, case.assembly.live))),
+            answer=[_svg(results_figure(case, [shown], kind)) for kind in ("mechanism", "forces")]
+            if shown and _drawn(item)
+            else [],
+            shown=shown,
+            value=value_in_words(shown) if shown else "",
+            reactions=listed,
+            balance=balance,
+            joints=joint_rows(case, shown)[: LIMITS.joints] if shown else [],
+            joint_columns=in_units(_CRITICAL, case.wall.units.force, case.wall.units.length),
+            warnings=(*case.warnings, *item.refusals),
+            units=case.wall.units,
+            style=Markup(files("reports").joinpath("static/appendix.css").read_text(encoding="utf-8")),
+            numbers=numbers,
+        )
+    )
+
+
+def _collapse(item: CaseResults) -> float:
+    """The multiplier by which a direction of the live load governs: none is known where nothing collapses."""
+    least = least_known(item)
+    if least is not None and least.multiplier is not None:
+        return least.multiplier
+    falls = any(r.finding is Finding.FALLS and r.judge.accepted is not False for r in item.results)
+    return 0.0 if falls else math.inf
+
+
+def _ways(items: list[CaseResults], governing: CaseResults) -> list[tuple[str, str, str, bool]]:
+    """For each direction of the live load: its name, the least multiplier, what is proved of it, whether it governs."""
+    rows = []
+    for item in items:
+        least = least_known(item)
+        answers = dict.fromkeys(labels.FINDING[result.finding] for result in item.mains)
+        value = ", ".join(answers) if least is None else f"{numbers.multiplier(least.multiplier)} ({least.method})"
+        proved = "" if least is None else proof_of(item, least).label
+        rows.append((direction_in_words(item.case), value, proved, item is governing))
+    return rows
+
+
+def _drawn(item: CaseResults) -> bool:
+    return item.case.assembly.n_blocks <= LIMITS.figures
+
+
+def _shown(item: CaseResults) -> Result | None:
+    """The state that is drawn and whose reactions are told: the least, or any accepted one with forces."""
+    least = least_known(item)
+    if least is not None and least.forces is not None and least.mechanism is not None:
+        return least
+    return next(
+        (r for r in labels.in_order(item) if r.status is Status.OK and r.forces is not None and r.mechanism),
+        None,
+    )
+
+
+def _reactions(item: CaseResults, shown: Result | None) -> tuple[list[SupportReaction], float | None]:
+    if shown is None or shown.forces is None:
+        return [], None
+    listed = reactions_of(item.case, shown)
+    return listed, out_of_balance(item.case.assembly, listed, shown.forces_multiplier or 0.0)
+
+
+def _loads(item: CaseResults) -> list[tuple[str, str, str]]:
+    """Sums of the loads on free blocks: what, along x, along y."""
+    assembly = item.case.assembly
+    return [
+        (name, numbers.plain(float(total[0]), 4), numbers.plain(float(total[1]), 4))
+        for name, load in (("Dead load, with the weights", assembly.dead), ("Live load at multiplier 1", assembly.live))
+        for total in [load[assembly.free, :2].sum(axis=0)]
+    ]
+
+
+def _blocks(item: CaseResults) -> list[BlockRow]:
+    assembly = item.case.assembly
+    if assembly.n_free > LIMITS.blocks:
+        return []
+    return [
+        BlockRow(
+            assembly.block_ids[k],
+            numbers.plain(float(assembly.centroid[k, 0]), 4),
+            numbers.plain(float(assembly.centroid[k, 1]), 4),
+            numbers.plain(float(assembly.weight[k]), 4),
+            _pair(assembly.dead[k]),
+            _pair(assembly.live[k]),
+        )
+        for k in assembly.free
+    ]
+
+
+def _pair(load: FloatArray) -> str:
+    return f"{numbers.plain(float(load[0]), 4)}, {numbers.plain(float(load[1]), 4)}"
+
+
+def _method_row(result: Result) -> MethodRow:
+    worst = result.judge.worst
+    answered = result.status is Status.OK
+    return MethodRow(
+        method=result.method,
+        value=value_in_words(result) if answered else f"{labels.STATUS[result.status][1]}: {result.sentence}",
+        number_is=result.traits.caption,
+        judged={None: "not judged", True: "accepted", False: "rejected"}[result.judge.accepted],
+        residual=numbers.NOTHING if worst is None else numbers.residual(worst[1]),
+        cpu=numbers.seconds(result.cpu_seconds),
+    )
+
+
+def _svg(figure: Figure) -> Markup:
+    """A figure of ours as an SVG element: letters are drawn as outlines, so that no text of a file becomes markup."""
+    stream = io.StringIO()
+    with style():
+        figure.savefig(stream, format="svg", metadata={"Date": None, "Creator": "Drystone"})
+    text = stream.getvalue()
+    return Markup(text[text.index("<svg") :])

@@ -1,0 +1,228 @@
+"""One section of the report for every case: the wall, its results side by side, agreement, references, errata."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, field
+
+import numpy as np
+from markupsafe import Markup
+
+from harness.model.case import Case
+from harness.model.comparison import CaseResults
+from harness.model.details import AnswerDetails
+from harness.model.result import Result
+from reports.drawing.force_drawing import force_drawing
+from reports.drawing.mechanism_drawing import mechanism_drawing
+from reports.drawing.svg import inline
+from reports.findings.agreement import Agreement
+from reports.findings.joints import joints_in_words, motion, open_with_force
+from reports.findings.reasons import reasons
+from reports.findings.strength import StrengthRow, strength_rows, strength_text
+from reports.geometry import shapes, thrust_lines
+from reports.labels import numbers
+from reports.labels.wall_summary import wall_summary
+from reports.page.page_drawings import PageDrawings
+from reports.page.summary import figure_of, is_calm
+from reports.page.tables import RunRow
+
+
+@dataclass(frozen=True)
+class Panel:
+    """One method's drawings.
+
+    Attributes:
+        row: the run.
+        number: its index among the case's results.
+        mechanism, forces: their drawings; empty where there is nothing to draw, or too much.
+        flow: what the mechanism is, for the caption.
+        states: how many interfaces move in which way, in words.
+        origin: which source of a search found it, and when; or nothing.
+        beside: joints drawn as open that carry force, and why; or nothing.
+        forces_are: what the forces are, for the caption.
+    """
+
+    row: RunRow
+    number: int
+    mechanism: Markup
+    forces: Markup
+    flow: str
+    states: str
+    origin: str
+    beside: str
+    forces_are: str
+
+
+@dataclass(frozen=True)
+class CaseSection:
+    """Everything the section of a case prints."""
+
+    number: int
+    case: Case
+    wall: Markup
+    loads_drawn: str
+    through: str
+    facts: list[tuple[str, str]]
+    warnings: tuple[str, ...]
+    rows: list[RunRow]
+    panels: list[Panel]
+    without_drawing: list[RunRow]
+    agreements: list[Agreement]
+    curves: list[tuple[str, Markup]]
+    problem: str = ""
+    cut: str = "all"
+    reasons: tuple[str, ...] = ()
+    calm: bool = False
+    overlay: Markup = field(default_factory=Markup)
+    overlay_caption: str = ""
+    strength: list[StrengthRow] = field(default_factory=list)
+
+    @property
+    def packed(self) -> bool:
+        """Whether a reader without scripts misses a drawing."""
+        return any("data-packed" in drawn for panel in self.panels for drawn in (panel.mechanism, panel.forces))
+
+
+FLOW = {
+    "non-associated": "mechanism without dilatancy",
+    "associated": "mechanism with dilatant (associated) slip",
+    "approximate": "measured velocity field",
+}
+
+
+def case_section(
+    number: int,
+    item: CaseResults,
+    rows: list[RunRow],
+    agreements: list[Agreement],
+    curves: list[tuple[str, Markup]],
+    wall: Markup,
+    drawings: PageDrawings,
+    fields: str = "all",
+) -> CaseSection:
+    """The section of one case.
+
+    Args:
+        number: of the case in the report.
+        item: the case with its results.
+        rows: of its results.
+        agreements: of pairs of them.
+        curves: captions and charts.
+        wall: its drawing.
+        drawings: those of the page so far.
+        fields: as in `reports.page.page_drawings.fields_drawn`.
+    """
+    problem = shapes.problem(item.case)
+    if problem:
+        return CaseSection(number, item.case, wall, "", "", [], (), rows, [], rows, [], [], problem)
+    calm = is_calm(item)
+    overlay, caption = (None, "") if calm else figure_of(item)
+    panels, without = [], []
+    for row in rows:
+        index = int(row.anchor.rsplit("-", 1)[1])
+        result = item.results[index]
+        if result.mechanism is None and result.forces is None:
+            without.append(row)
+            continue
+        panels.append(
+            Panel(
+                row=row,
+                number=index,
+                mechanism=Markup("")
+                if result.mechanism is None or fields == "none"
+                else drawings.put(mechanism_drawing(item.case, result)),
+                forces=Markup("")
+                if result.forces is None or fields != "all"
+                else drawings.put(force_drawing(item.case, result)),
+                flow=FLOW.get(result.flow, result.flow),
+                states=_states(item.case, result),
+                origin=origin(result),
+                beside=_forces_beside(item.case, result) if fields == "all" else "",
+                forces_are=_forces_are(result),
+            )
+        )
+    return CaseSection(
+        number=number,
+        case=item.case,
+        wall=wall,
+        loads_drawn=_loads_drawn(item.case),
+        through=_through(item),
+        facts=_facts(item.case),
+        strength=strength_rows(item),
+        warnings=(*item.case.warnings, *item.refusals, *filter(None, [item.split_on_dead_load])),
+        rows=rows,
+        panels=panels,
+        without_drawing=without,
+        agreements=agreements,
+        curves=curves,
+        cut=fields,
+        reasons=tuple(reasons(item)),
+        calm=calm,
+        overlay=Markup("") if overlay is None else inline(overlay),
+        overlay_caption=caption,
+    )
+
+
+def _facts(case: Case) -> list[tuple[str, str]]:
+    """The facts of a case, with the strength of its joints where they have any."""
+    strength = strength_text(case.assembly, case.wall.units.force)
+    return wall_summary(case) + ([("Strength of joints", strength)] if strength else [])
+
+
+def _loads_drawn(case: Case) -> str:
+    """The caption of a wall: what of its loads is drawn."""
+    assembly = case.assembly
+    if not assembly.has_live_load:
+        return "The wall with its supports; dots are contact points."
+    step = shapes.drawn_every(len(shapes.load_arrows(assembly, assembly.live)))
+    every = f", drawn on one block in {step}" if step > 1 else ""
+    return f"The wall with its loads{every}; dots are contact points."
+
+
+def _through(item: CaseResults) -> str:
+    """What lines through the blocks are: the line of thrust where each result has one, else how forces flow."""
+    drawn = [np.asarray(result.forces, dtype=float) for result in item.results if result.forces is not None]
+    assembly = item.case.assembly
+    found = [shapes.thrusts(assembly, forces, thrust_lines.STYLE.smallest) for forces in drawn if len(forces)]
+    return "line of thrust" if all(thrust_lines.has_line_of_thrust(assembly, f) for f in found) else "flow of forces"
+
+
+def _states(case: Case, result: Result) -> str:
+    """How the joints move, in words; nothing for a measured field, in which nothing is exactly at rest."""
+    found = motion(case.assembly, result)
+    return "" if found is None else joints_in_words(found)
+
+
+def _forces_beside(case: Case, result: Result) -> str:
+    """How the forces of the drawing below and the open joints of this one go together, where they do not."""
+    number = open_with_force(case.assembly, result)
+    if not number:
+        return ""
+    carry = f"{numbers.count(number, 'joint')} drawn as open {'carries' if number == 1 else 'carry'} force below"
+    if result.flow == "approximate":
+        return f"{carry}: the forces are of the state that was held, the mechanism is of the one that moved"
+    return carry
+
+
+def origin(result: Result) -> str:
+    """Which source of a search found the state, and when, of methods that keep their improvements.
+
+    Nothing of a state that is lower than the last of these, as one that a proof came across.
+    """
+    last = AnswerDetails(result.details).last_improvement
+    if last is None or last.multiplier is None or result.multiplier is None:
+        return ""
+    if not math.isclose(last.multiplier, result.multiplier, rel_tol=1e-7, abs_tol=1e-9):
+        return ""
+    after = "" if last.cpu_seconds is None else f" after {numbers.seconds(last.cpu_seconds)} of CPU time"
+    return f"found by “{last.source}”{after}"
+
+
+def _forces_are(result: Result) -> str:
+    if result.flow == "approximate":
+        moved = "; the mechanism above is of the one that moved" if result.mechanism is not None else ""
+        return f"contact forces of the last state that was held{moved}"
+    at = numbers.multiplier(result.forces_multiplier)
+    if result.forces_multiplier is not None and at != numbers.multiplier(result.multiplier):
+        return f"contact forces at {at}"
+    return "contact forces at collapse"

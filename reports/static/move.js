@@ -1,0 +1,120 @@
+/* Unpacks drawings, moves the blocks of mechanisms, chooses the layer of forces and says the values of what is under the pointer. */
+(() => {
+  "use strict";
+  const REACH = 500; /* displacement of the fastest vertex at amplitude 1, an eighth of the longer side */
+  const cases = JSON.parse(document.getElementById("data").textContent);
+
+  /* Puts a drawing that is packed into its place; nothing until all are unpacked. */
+  let fill = () => {};
+  const unpack = async (text) => {
+    const bytes = Uint8Array.from(atob(text), (letter) => letter.charCodeAt(0));
+    const stream = new Blob([bytes]).stream().pipeThrough(new DecompressionStream("deflate"));
+    const contents = JSON.parse(await new Response(stream).text());
+    fill = (svg) => {
+      if (svg.dataset.packed === undefined) return;
+      svg.innerHTML = contents[svg.dataset.packed];
+      delete svg.dataset.packed;
+    };
+    const figures = [...document.querySelectorAll("svg[data-packed]")];
+    const watcher = new IntersectionObserver((entries) => {
+      entries.filter((entry) => entry.isIntersecting).forEach((entry) => fill(entry.target));
+    }, { rootMargin: "800px" });
+    figures.forEach((svg) => watcher.observe(svg));
+    window.addEventListener("beforeprint", () => figures.forEach(fill));
+  };
+  const packed = document.getElementById("packed");
+  if (packed) unpack(packed.textContent);
+
+  /* A function that moves the groups of a drawing: what stands in the page is their displacement at amplitude 1. */
+  const mover = (svg) => {
+    const groups = [...svg.querySelectorAll("[transform]")].map((group) => {
+      const { a, b, c, d, e, f } = group.transform.baseVal.consolidate().matrix;
+      return [group, [a - 1, b, c, d - 1, e, f]];
+    });
+    const { x, y, width, height } = svg.viewBox.baseVal;
+    const box = [x, y, width, height];
+    return (k) => {
+      for (const [group, [a, b, c, d, e, f]] of groups) {
+        group.setAttribute("transform", `matrix(${[1 + k * a, k * b, k * c, 1 + k * d, k * e, k * f].join(" ")})`);
+      }
+      /* Room for what moves further than the margin of the drawing. */
+      const room = Math.max(0, k - 1) * REACH;
+      svg.setAttribute("viewBox", [box[0] - room, box[1] - room, box[2] + 2 * room, box[3] + 2 * room].join(" "));
+    };
+  };
+
+  for (const section of document.querySelectorAll("section.case")) {
+    section.querySelectorAll(".tools").forEach((tools) => { tools.hidden = false; });
+    const slider = section.querySelector("input[type=range]");
+    if (slider) {
+      const output = section.querySelector("output");
+      let movers;
+      slider.addEventListener("input", () => {
+        movers ??= [...section.querySelectorAll("[data-kind=mechanism] svg")].map((svg) => (fill(svg), mover(svg)));
+        output.textContent = `${slider.value} %`;
+        movers.forEach((move) => move(Number(slider.value) / 100));
+      });
+    }
+    for (const radio of section.querySelectorAll("input[type=radio]")) {
+      radio.addEventListener("change", () => {
+        if (radio.checked) section.dataset.layer = radio.value;
+      });
+    }
+  }
+
+  /* Sections far off have an estimated height until they are laid out, so a jump is corrected as they come near. */
+  const settle = () => {
+    const target = location.hash.length > 1 ? document.getElementById(location.hash.slice(1)) : null;
+    if (!target) return;
+    let left = 8;
+    const correct = () => {
+      if (Math.abs(target.getBoundingClientRect().top) > 2) target.scrollIntoView({ behavior: "instant" });
+      if (--left > 0) requestAnimationFrame(correct);
+    };
+    requestAnimationFrame(correct);
+  };
+  window.addEventListener("hashchange", settle);
+  document.addEventListener("click", (event) => {
+    const link = event.target instanceof Element ? event.target.closest("a[href^='#']") : null;
+    if (link && link.getAttribute("href") === location.hash) settle();
+  });
+  settle();
+
+  /* Values of the block or interface under the pointer. */
+  const tip = document.createElement("div");
+  tip.className = "tip";
+  tip.hidden = true;
+  tip.setAttribute("aria-hidden", "true");
+  document.body.appendChild(tip);
+  const lines = (target, section, kind) => {
+    const said = cases[Number(section.id.slice("case-".length))];
+    const { block, joint, values } = target.dataset;
+    const head = block !== undefined ? said.blocks[block] : said.joints[joint];
+    const forms = block !== undefined ? said.moves : kind === "mechanism" ? said.joint : said.force;
+    const left = (values || "").split("|");
+    const rows = forms.map((form) => {
+      const taken = left.splice(0, form.split("{}").length - 1);
+      return taken.includes("") ? "" : form.replace(/\{\}/g, () => taken.shift());
+    });
+    return [...head.split("\n"), ...rows].filter(Boolean);
+  };
+  document.addEventListener("pointerover", (event) => {
+    const target = event.target instanceof Element ? event.target.closest("[data-block],[data-joint]") : null;
+    const figure = target && target.closest("[data-kind]");
+    tip.hidden = !figure;
+    if (!figure) return;
+    tip.replaceChildren(...lines(target, figure.closest("section.case"), figure.dataset.kind).map((line) => {
+      const row = document.createElement("div");
+      row.textContent = line;
+      return row;
+    }));
+  });
+  document.addEventListener("pointermove", (event) => {
+    if (tip.hidden) return;
+    const [width, height] = [tip.offsetWidth, tip.offsetHeight];
+    const left = Math.min(event.clientX + 14, document.documentElement.clientWidth - width - 4);
+    const top = event.clientY + 18 + height > window.innerHeight ? event.clientY - height - 10 : event.clientY + 18;
+    tip.style.left = `${Math.max(4, left)}px`;
+    tip.style.top = `${top}px`;
+  });
+})();
