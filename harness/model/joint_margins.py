@@ -101,7 +101,7 @@ def _moves(assembly: Assembly, result: Result, still: float) -> tuple[BoolArray,
     opening, slip = relative_velocities(assembly, normalised_mechanism(assembly, np.array(result.mechanism, float)))
     law = assembly.law.associated if result.flow == "associated" else assembly.law
     moves = law.rates(np.column_stack([opening, slip])) > still
-    return moves[:, :2].any(axis=1), moves[:, 2:].any(axis=1)
+    return np.asarray(moves[:, :2].any(axis=1)), np.asarray(moves[:, 2:].any(axis=1))
 
 
 @dataclass(frozen=True)

@@ -22,7 +22,7 @@ from harness.model.method import Answer, load_method
 from harness.model.reading import parse_wall
 from harness.model.result import Result, result_of
 from methods.fe.settings import GapSpringsSettings
-from methods.springs.path.path_record import LoadStep, PathRecord
+from methods.springs.path.path_record import PathRecord, PathStep
 from tests.walls import running_bond, wall_data
 
 STEPS = 12
@@ -129,7 +129,7 @@ def test_no_steps_are_kept_unasked() -> None:
 def test_steps_are_spread_evenly_however_many_there_are(count: int) -> None:
     record, none = PathRecord(most=10), np.zeros(0)
     for k in range(count):
-        record.keep(lambda k=k: LoadStep(float(k), none, none, none, none))  # type: ignore[misc]
+        record.keep(lambda k=k: PathStep(float(k), none, none, none, none))  # type: ignore[misc]
     kept = [step.multiplier for step in record.steps]
     assert min(count, 10) <= len(kept) <= 20
     assert kept[0] == 0.0
