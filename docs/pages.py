@@ -28,11 +28,15 @@ def columns_page(folder: Path) -> None:
     """The columns of tables of results, of their comparisons with references, and of studies."""
     from harness.engine.sweep.running import STUDY
     from harness.model.columns import COMPARISONS, RESULTS
+    from harness.model.joint_margins import ANSWERED
+    from harness.model.support_reactions import REACTIONS
 
     parts = ["# Columns of results"]
     for sentence, columns in (
         ("Of results.csv, results.parquet and `to_pandas()`.", RESULTS),
         ("Of comparisons.csv.", COMPARISONS),
+        ("Of joints.csv and `joints_to_pandas()`, one row a joint, in the units of the wall.", ANSWERED),
+        ("Of `reactions_to_pandas()`, and names of `reactions` in JSON, in the units of the wall.", REACTIONS),
         ("Of the runs.csv of a study; the varied quantities follow `case`.", STUDY),
     ):
         parts += ["", sentence, "", "| column | type | unit | meaning |", "|---|---|---|---|"]

@@ -85,6 +85,18 @@ class Result(Record):
         table.attrs["units"] = dict.fromkeys(("n1", "n2", "s"), self._wall.units["force"])
         return table
 
+    def joints_to_pandas(self) -> pd.DataFrame:
+        """Margins of every joint, the most critical first, with the columns of joints.csv; `attrs["units"]`: units."""
+        from reports.page.export import joint_frame
+
+        return joint_frame(self._wall.case, [self])
+
+    def reactions_to_pandas(self) -> pd.DataFrame:
+        """Reactions of the supports on the wall: one row a fixed block with Fx, Fy and moment; `attrs["units"]`."""
+        from reports.page.export import reaction_frame
+
+        return reaction_frame(self._wall.case, self)
+
     def mechanism_to_pandas(self) -> pd.DataFrame:
         """The mechanism: one row a block with ux, uy, omega, scaled so that the fastest vertex has speed 1."""
         import pandas as pd

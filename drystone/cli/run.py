@@ -55,6 +55,7 @@ from harness.model.method import Status
 )
 @fresh_flag
 @click.option("--fields", is_flag=True, help="With --json: contact forces, mechanism, states and path too.")
+@click.option("--joints", is_flag=True, help="The margins of every joint too, the most critical first.")
 @json_flag
 @cases_option
 @seconds_option
@@ -71,6 +72,7 @@ def run(
     store: Path | None,
     fresh: bool,
     fields: bool,
+    joints: bool,
     as_json: bool,
     folders: tuple[Path, ...],
     seconds: float,
@@ -94,7 +96,10 @@ def run(
         analyse_by(Wall(case), method, chosen, isolated=True, limits=limits, processes=jobs, store=store, fresh=fresh)
         for case in cases
     ]
-    documents = [terminal.result_json(result, result.proof, fields=fields) for result in results]
+    documents = [
+        terminal.result_json(loaded, result, result.proof, fields=fields, joints=joints)
+        for loaded, result in zip(cases, results, strict=True)
+    ]
     if as_json and len(cases) == 1:
         print_json(documents[0])
     elif as_json:
@@ -102,6 +107,8 @@ def run(
     else:
         for loaded, result in zip(cases, results, strict=True):
             terminal.print_result(result, loaded, result.proof)
+            if joints:
+                terminal.print_joints(loaded, result)
             if len(cases) > 1:
                 print()
         if len(cases) > 1:

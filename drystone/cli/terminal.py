@@ -25,11 +25,14 @@ from harness.model.difference import Difference, Kind
 from harness.model.envelope import Envelope, by_wall, envelopes
 from harness.model.errors import InputError, first_few, visible
 from harness.model.fields import LARGEST
+from harness.model.joint_margins import JOINTS, joint_rows
 from harness.model.live_load import direction_in_words
 from harness.model.method import Answer, Finding, Status
 from harness.model.proof import LABELS, Proof, Standing, least_known, proof_of
 from harness.model.result import Judgement, Result, Verdict, residual_of
 from harness.model.result_texts import PROVED, VERDICT_TEXTS, answer_text
+from harness.model.support_reactions import REACTIONS, reactions_of
+from harness.model.table import in_units, values
 
 JUDGED = {True: 0, False: 1, None: 3}
 """Exit codes for an answer that is accepted, rejected, or shows nothing that proves or refutes its claim."""
@@ -189,7 +192,7 @@ def comparison_json(compared: ComparisonRun, report: Path | None) -> dict[str, A
         "cases": [
             {
                 "id": case.case.id,
-                "results": [result_json(result, proof_of(case, result)) for result in case.results],
+                "results": [result_json(case.case, result, proof_of(case, result)) for result in case.results],
                 "gates": [gate.model_dump(mode="json") for gate in case.gates],
             }
             for case in compared.cases
@@ -198,10 +201,51 @@ def comparison_json(compared: ComparisonRun, report: Path | None) -> dict[str, A
     }
 
 
-def result_json(result: Result, proof: Proof, *, fields: bool = False) -> dict[str, Any]:
-    """A result as JSON values, with forces, mechanism, states and path if `fields`, and with what is proved of it."""
-    values = result.model_dump(mode="json") if fields else result.summary()
-    return values | {"proof": proof.as_json()}
+def result_json(
+    case: Case, result: Result, proof: Proof, *, fields: bool = False, joints: bool = False
+) -> dict[str, Any]:
+    """A result as JSON values, with what is proved of it and the reactions of the supports.
+
+    Args:
+        case: the wall.
+        result: of it.
+        proof: what is proved of the result.
+        fields: whether forces, mechanism, states and path are given too.
+        joints: whether the margins of the joints are given too.
+    """
+    listed = result.model_dump(mode="json") if fields else result.summary()
+    listed |= {"proof": proof.as_json()}
+    listed["reactions"] = [values(REACTIONS, reaction) for reaction in reactions_of(case, result)]
+    if joints:
+        listed["joints"] = [values(JOINTS, row) for row in joint_rows(case, result)]
+    return listed
+
+
+def print_joints(case: Case, result: Result) -> None:
+    """The margins of the joints of a result as a table, the most critical first."""
+    columns = in_units(JOINTS, case.wall.units.force, case.wall.units.length)
+    print_rows([{column.head: column.text(row) for column in columns} for row in joint_rows(case, result)])
+
+
+def _reaction_lines(case: Case, result: Result, most: int = 8) -> Iterator[tuple[str, str]]:
+    """One line a support, up to so many, for a person."""
+    force, length = case.wall.units.force, case.wall.units.length
+    listed = reactions_of(case, result)
+    for reaction in listed[:most]:
+        text = {column.name: column.text(reaction) for column in REACTIONS}
+        unit = {
+            column.name: "" if column.unit == "1" else f" {column.unit}"
+            for column in in_units(REACTIONS, force, length)
+        }
+        parts = [
+            f"Fx {text['fx']}{unit['fx']}",
+            f"Fy {text['fy']}{unit['fy']}",
+            f"moment {text['moment']}{unit['moment']}",
+        ]
+        line = "" if reaction.x is None else f", through ({text['x']}, {text['y']}){unit['x']}"
+        yield "reaction", f"{reaction.support}: {', '.join(parts)} about its centroid{line}"
+    if len(listed) > most:
+        yield "", f"and {len(listed) - most} more supports; --json has all"
 
 
 def print_result(result: Result, case: Case, proof: Proof) -> None:
@@ -220,6 +264,7 @@ def print_result(result: Result, case: Case, proof: Proof) -> None:
         rows.append(("bracket", f"[{result.bracket[0]:.7g}, {result.bracket[1]:.7g}] {result.bracket_meaning}"))
     if proof.sentence:
         rows.append(("proof", proof.sentence))
+    rows += _reaction_lines(case, result)
     rows += [("status", str(result.status)), ("judge", result.judge.sentence)]
     rows += [("", f"{name} {value:.2e}") for name, value in result.judge.residuals.items()]
     for comparison in result.comparisons:
@@ -298,7 +343,7 @@ def print_rows(rows: list[dict[str, Any]]) -> None:
     table = Table(box=None, pad_edge=False)
     if rows:
         for name in rows[0]:
-            table.add_column(name)
+            table.add_column(escape(name))
     for row in rows:
         table.add_row(*[escape(_cell(value)) for value in row.values()])
     console.print(table, highlight=False)

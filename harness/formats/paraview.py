@@ -13,6 +13,7 @@ import numpy as np
 from harness.model.assembly import Assembly, FloatArray, IntArray
 from harness.model.build import Built
 from harness.model.displaced import carried, released
+from harness.model.joint_margins import joint_margins
 from harness.model.load_steps import STATES, UNKNOWN, LoadSteps
 from harness.model.result import Result, vertex_velocities
 from harness.model.writing import replacing, write_whole
@@ -65,7 +66,7 @@ def write_vtu(built: Built, result: Result | None, path: Path) -> None:
     """Blocks as polygons and joints as lines, for ParaView: velocity, displacement, forces and states."""
     assembly = built.assembly
     displacement = [SHOWN * assembly.length_scale * v for v in velocities(assembly, result)]
-    _write(_mesh(assembly, result, _frame(assembly, result, 0.0, displacement)), path)
+    _write(_mesh(built, result, _frame(assembly, result, 0.0, displacement)), path)
 
 
 def _write(mesh: Any, path: Path) -> None:
@@ -87,10 +88,11 @@ def _frame(assembly: Assembly, result: Result | None, time: float, displacement:
     )
 
 
-def _mesh(assembly: Assembly, result: Result | None, frame: Frame) -> Any:
+def _mesh(built: Built, result: Result | None, frame: Frame) -> Any:
     """The mesh of a wall in a frame, with the mechanism of its answer."""
     import meshio
 
+    assembly = built.assembly
     polygons, joints = assembly.polygons, np.stack([assembly.face1, assembly.face2], axis=1)
     starts = np.cumsum([0, *(len(polygon) for polygon in polygons)])
     points = np.concatenate([*polygons, joints.reshape(-1, 2)])
@@ -116,6 +118,9 @@ def _mesh(assembly: Assembly, result: Result | None, frame: Frame) -> Any:
         "multiplier": (np.full(len(order), frame.multiplier), np.full(len(joints), frame.multiplier)),
         "friction": (np.zeros(len(order)), assembly.friction),
     }
+    margins = joint_margins(assembly, built.joint_thickness, forces)
+    for name in ("eccentricity", "shear_utilisation", "eccentricity_utilisation", "edge_stress"):
+        fields[name] = np.full(len(order), np.nan), getattr(margins, name)
     if len(lines):
         cells.append(("line", lines))
     ends = np.cumsum(groups)[:-1]
@@ -145,7 +150,7 @@ def write_pvd(built: Built, result: Result | None, path: Path) -> None:
     rows = []
     for step, frame in enumerate(_frames(assembly, result)):
         name = f"{path.stem}-{step:03d}.vtu"
-        _write(_mesh(assembly, result, frame), path.with_name(name))
+        _write(_mesh(built, result, frame), path.with_name(name))
         rows.append(f'    <DataSet timestep="{frame.time:.9g}" part="0" file={quoteattr(name)}/>')
     text = '<?xml version="1.0"?>\n<VTKFile type="Collection" version="0.1">\n  <Collection>\n'
     write_whole(path, text + "\n".join(rows) + "\n  </Collection>\n</VTKFile>\n")

@@ -74,7 +74,7 @@ FORMATS = (
         (".vtu",),
         "VTK",
         writer="paraview.write_vtu",
-        holds="ParaView: blocks with velocity and displacement, joints with n1, n2, s and state",
+        holds="ParaView: blocks with velocity and displacement, joints with n1, n2, s, state and margins",
         package="meshio",
     ),
     Format(

@@ -48,16 +48,23 @@ class Built:
         warnings: the doubts of the wall, and sentences about contacts at corners, very short interfaces, and points
             that lie off their block.
         explicit: makes the explicit form.
+        thickness: makes the thickness of the joints.
     """
 
     assembly: Assembly
     warnings: tuple[str, ...]
     explicit: Callable[[], Wall]
+    thickness: Callable[[], FloatArray]
 
     @cached_property
     def wall(self) -> Wall:
         """The explicit form, with every block and interface written out; made when it is first asked for."""
         return self.explicit()
+
+    @cached_property
+    def joint_thickness(self) -> FloatArray:
+        """(m,) thickness of the interfaces out of plane [length], that of the thinner block; made when asked for."""
+        return self.thickness()
 
 
 def build(wall: Wall, name: str = "wall") -> Built:
@@ -119,7 +126,8 @@ def build(wall: Wall, name: str = "wall") -> Built:
     if wall.settlements:
         assembly = replace(assembly, support_motion=_support_motion(wall, blocks, assembly))
     if laws.strong:
-        area = _areas(wall, blocks, assembly)
+        faces = np.linalg.norm(assembly.face2 - assembly.face1, axis=1)
+        area = np.asarray(faces * _joint_thickness(wall, blocks, assembly))
         assembly = replace(assembly, constant=laws.constant(area))
     if wall.loads.live is not None and not assembly.has_live_load:
         raise InputError(
@@ -138,7 +146,7 @@ def build(wall: Wall, name: str = "wall") -> Built:
     if trusted < len(interfaces):
         warnings += interface_warnings(assembly, size, trusted)
     explicit = partial(_explicit, wall, blocks, weight, interfaces, joints, laws)
-    return Built(assembly, tuple(warnings), explicit)
+    return Built(assembly, tuple(warnings), explicit, partial(_joint_thickness, wall, blocks, assembly))
 
 
 def _check_sizes(assembly: Assembly) -> None:
@@ -351,16 +359,15 @@ def _support_motion(wall: Wall, blocks: list[Block], assembly: Assembly) -> Floa
     return motion
 
 
-def _areas(wall: Wall, blocks: list[Block], assembly: Assembly) -> FloatArray:
-    """(m,) areas of the interfaces: their whole length times the thickness of the thinner block [length^2].
+def _joint_thickness(wall: Wall, blocks: list[Block], assembly: Assembly) -> FloatArray:
+    """(m,) thickness of the interfaces, that of the thinner block [length].
 
     A support that gives no thickness is as thick as what stands on it.
     """
     thickness = np.array([thickness_of(block, wall) for block in blocks])
     given = np.array([block.thickness is not None for block in blocks])
     thickness[assembly.fixed & ~given] = np.inf
-    thinner = np.minimum(thickness[assembly.block_a], thickness[assembly.block_b])
-    return np.asarray(np.linalg.norm(assembly.face2 - assembly.face1, axis=1) * thinner)
+    return np.asarray(np.minimum(thickness[assembly.block_a], thickness[assembly.block_b]))
 
 
 def _set_in(
@@ -485,13 +492,11 @@ def _explicit(
     joints: tuple[str, ...],
     laws: _Laws,
 ) -> Wall:
-    used = laws.strong or _has_pressures(wall.loads)  # areas of joints with strength and of faces depend on it
-    dropped = () if used else ("thickness",)
     return wall.model_copy(
         update={
             "pattern": None,
             "blocks": [
-                block.model_copy(update={"weight": float(w), "unit_weight": None, **dict.fromkeys(dropped)})
+                block.model_copy(update={"weight": float(w), "unit_weight": None})
                 for block, w in zip(blocks, weight, strict=True)
             ],
             "interfaces": [

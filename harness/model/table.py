@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any, Generic, TypeVar
 
 Row = TypeVar("Row")
@@ -73,3 +73,20 @@ def units(columns: Sequence[TableColumn[Any]]) -> dict[str, str]:
 def values(columns: Sequence[TableColumn[Row]], row: Row) -> dict[str, Any]:
     """A row of a table of data: the value of each column by its name."""
     return {column.name: column.value(row) for column in columns}
+
+
+def in_units(columns: Sequence[TableColumn[Row]], force: str, length: str) -> tuple[TableColumn[Row], ...]:
+    """Columns whose units are kinds of quantity (force, length, force length, force/length2), in the units of a wall.
+
+    Args:
+        columns: any; units of other kinds stay.
+        force, length: names of the units, "1" for none.
+    """
+    area = "" if length == "1" else f"/{length}2"
+    kinds = {
+        "force": force,
+        "length": length,
+        "force length": " ".join(unit for unit in (force, length) if unit != "1") or "1",
+        "force/length2": f"{force}{area}",
+    }
+    return tuple(replace(column, unit=kinds.get(column.unit, column.unit)) for column in columns)

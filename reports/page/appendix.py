@@ -10,20 +10,21 @@ from dataclasses import dataclass
 from importlib.resources import files
 from pathlib import Path
 
-import numpy as np
 from markupsafe import Markup
 from matplotlib.figure import Figure
 
 from harness.model.assembly import FloatArray
 from harness.model.comparison import CaseResults, ComparisonRun
+from harness.model.joint_margins import JOINTS, joint_rows
 from harness.model.live_load import direction_in_words
 from harness.model.method import Finding, Status
 from harness.model.proof import least_known, proof_of
 from harness.model.result import Result
+from harness.model.support_reactions import SupportReaction, out_of_balance, reactions_of
+from harness.model.table import in_units
 from harness.model.writing import write_whole
 from reports.drawing.figures import results_figure, style, wall_figure
 from reports.environment import environment
-from reports.findings.reactions import Reaction, out_of_balance, reactions
 from reports.geometry import shapes
 from reports.labels import labels, numbers
 from reports.labels.wall_summary import value_in_words, wall_summary
@@ -36,10 +37,12 @@ class SheetLimits:
 
     Attributes:
         blocks: largest number of blocks with a row each; more are told by their sums.
+        joints: number of most critical joints with a row each.
         figures: largest number of blocks whose drawings stand in the page; a drawing takes some 5 kB a block.
     """
 
     blocks: int = 36
+    joints: int = 8
     figures: int = 2000
 
 
@@ -76,6 +79,14 @@ class BlockRow:
     weight: str
     dead: str
     live: str
+
+
+_CRITICAL = tuple(
+    column
+    for column in JOINTS
+    if column.name not in ("interface", "joint", "utilisation", "eccentricity", "length", "thickness")
+)
+"""Columns of the most critical joints."""
 
 
 def write_appendix(run: ComparisonRun, path: Path) -> None:
@@ -121,6 +132,8 @@ def render(run: ComparisonRun) -> str:
             value=value_in_words(shown) if shown else "",
             reactions=listed,
             balance=balance,
+            joints=joint_rows(case, shown)[: LIMITS.joints] if shown else [],
+            joint_columns=in_units(_CRITICAL, case.wall.units.force, case.wall.units.length),
             warnings=(*case.warnings, *item.refusals),
             units=case.wall.units,
             style=Markup(files("reports").joinpath("static/appendix.css").read_text(encoding="utf-8")),
@@ -165,10 +178,10 @@ def _shown(item: CaseResults) -> Result | None:
     )
 
 
-def _reactions(item: CaseResults, shown: Result | None) -> tuple[list[Reaction], float | None]:
+def _reactions(item: CaseResults, shown: Result | None) -> tuple[list[SupportReaction], float | None]:
     if shown is None or shown.forces is None:
         return [], None
-    listed = reactions(item.case.assembly, np.asarray(shown.forces, dtype=float))
+    listed = reactions_of(item.case, shown)
     return listed, out_of_balance(item.case.assembly, listed, shown.forces_multiplier or 0.0)
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import csv
+import io
 import json
 import re
 import tempfile
@@ -11,11 +12,14 @@ from importlib.util import find_spec
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from harness.model.case import Case
 from harness.model.columns import COMPARISONS, RESULTS, ResultColumn, ResultRow
 from harness.model.comparison import CaseResults, ComparisonRun
+from harness.model.joint_margins import ANSWERED, joint_rows
 from harness.model.proof import Proof, proof_of
 from harness.model.result import Result
-from harness.model.table import Row, TableColumn, types, units, values
+from harness.model.support_reactions import REACTIONS, reactions_of
+from harness.model.table import Row, TableColumn, in_units, types, units, values
 from harness.model.writing import cell, write_whole
 from reports.charts import charts
 from reports.charts.curves import curves
@@ -45,6 +49,7 @@ def export(run: ComparisonRun, folder: Path, *, drawn: bool = False, columns: Se
     folder.mkdir(parents=True, exist_ok=True)
     results = result_frame(((r, proof_of(item, r)) for item in run.cases for r in item.results), columns)
     contents: dict[str, bytes] = {"results.csv": _csv(results), "comparisons.csv": _csv(comparison_frame(run))}
+    contents["joints.csv"] = _joints_csv(run)
     if find_spec("pyarrow") is not None:
         contents["results.parquet"] = results.to_parquet(index=False)
     for item in run.cases:
@@ -55,6 +60,7 @@ def export(run: ComparisonRun, folder: Path, *, drawn: bool = False, columns: Se
                 | {
                     "proof": proof_of(item, result).as_json(),
                     "block_ids": [] if shapes.problem(item.case) else list(item.case.assembly.block_ids),
+                    "reactions": [values(REACTIONS, reaction) for reaction in reactions_of(item.case, result)],
                     "units": item.case.wall.units.model_dump(mode="json", exclude_none=True),
                 }
             )
@@ -142,6 +148,16 @@ def _csv(table: pd.DataFrame) -> bytes:
     return plain.to_csv(index=False, quoting=csv.QUOTE_NONNUMERIC, lineterminator="\n").encode()
 
 
+def _joints_csv(run: ComparisonRun) -> bytes:
+    """As `_csv` writes the joints of all answers, without a frame: they are many."""
+    stream = io.StringIO()
+    rows = (row for item in run.cases for result in item.results for row in joint_rows(item.case, result))
+    writer = csv.writer(stream, quoting=csv.QUOTE_NONNUMERIC, lineterminator="\n")
+    writer.writerow([column.name for column in ANSWERED])
+    writer.writerows([_field(column.value(row)) for column in ANSWERED] for row in rows)
+    return stream.getvalue().encode()
+
+
 def _field(value: Any) -> Any:
     if isinstance(value, list | dict):
         return json.dumps(value)
@@ -158,6 +174,19 @@ def comparison_frame(run: ComparisonRun) -> pd.DataFrame:
 def result_frame(results: Iterable[tuple[Result, Proof]], columns: Sequence[ResultColumn] = RESULTS) -> pd.DataFrame:
     """Results, each with what is proved of it, with the columns of results.csv; units in `attrs["units"]`."""
     return _frame(columns, [ResultRow(result, proof) for result, proof in results])
+
+
+def joint_frame(case: Case, results: Iterable[Result]) -> pd.DataFrame:
+    """Margins of the joints of answers for one wall, with the columns of joints.csv; units in `attrs["units"]`."""
+    wall = case.wall.units
+    rows = [row for result in results for row in joint_rows(case, result)]
+    return _frame(in_units(ANSWERED, wall.force, wall.length), rows)
+
+
+def reaction_frame(case: Case, result: Result) -> pd.DataFrame:
+    """Reactions of the supports in an answer; units in `attrs["units"]`."""
+    wall = case.wall.units
+    return _frame(in_units(REACTIONS, wall.force, wall.length), reactions_of(case, result))
 
 
 def _frame(columns: Sequence[TableColumn[Row]], rows: Iterable[Row]) -> pd.DataFrame:

@@ -15,7 +15,7 @@ from harness.model.comparison import CaseResults
 from harness.model.live_load import reversed_live
 from harness.model.method import Finding
 from harness.model.result import Result
-from reports.findings.reactions import out_of_balance, reactions
+from harness.model.support_reactions import out_of_balance, support_reactions
 from reports.labels.wall_summary import value_in_words
 from reports.page.appendix import render, write_appendix
 from tests.commands import drystone
@@ -42,12 +42,12 @@ def test_reaction_of_a_column_is_its_weight_and_push_where_statics_puts_it():
         forces = [(second, first, -shear) for first, second, shear in forces]
     sign = float(wall.normal[0, 1])
     forces = [(first, second, sign * shear) for first, second, shear in forces]
-    (reaction,) = reactions(wall, np.array(forces))
-    assert abs(reaction.force[0]) == pytest.approx(push * 3.6)
-    assert reaction.force[1] == pytest.approx(-3.6)
+    (reaction,) = support_reactions(wall, np.array(forces))
+    assert abs(reaction.fx) == pytest.approx(push * 3.6)
+    assert reaction.fy == pytest.approx(3.6)
     centre = float(wall.centroid[wall.free, 0].mean())
     assert abs((reaction.x or 0.0) - centre) == pytest.approx(push * 0.3)
-    assert out_of_balance(wall, [reaction], np.sign(reaction.force[0]) * push) < 1e-12
+    assert out_of_balance(wall, [reaction], -np.sign(reaction.fx) * push) < 1e-12
     assert out_of_balance(wall, [reaction], 0.3) > 0.01
 
 
@@ -60,8 +60,10 @@ def test_appendix_holds_what_an_engineer_signs_for():
     for free in item.case.assembly.free:
         name = item.case.assembly.block_ids[free]
         assert f'<th scope="row">{name}</th>' in text
-    for word in ("Supports", "Friction", "Units", "Forces on the supports", "Computed by", "Repeat it"):
+    for word in ("Supports", "Friction", "Units", "Reactions of the supports", "Computed by", "Repeat it"):
         assert word in text
+    joints = item.case.assembly.n_interfaces
+    assert f"<b>Most critical joints</b> ({min(joints, 8)} of {joints}) in this state" in text
     assert text.count("<svg") == 3
     assert not re.search(r'(src|href)="http', text)
 

@@ -37,6 +37,24 @@ def test_csv_keeps_all_digits_and_failed_runs(folder: Path):
     assert stopped["sentence"] == "The wall limit of 60 s was reached."
 
 
+def test_joints_of_every_answer_with_forces_stand_in_one_file_the_most_critical_first(folder: Path):
+    with (folder / "joints.csv").open(encoding="utf-8", newline="") as stream:
+        rows = list(csv.DictReader(stream))
+    answers = [(item.case, result) for item in samples.typical().cases for result in item.results if result.forces]
+    assert answers
+    for case, result in answers:
+        mine = [row for row in rows if (row["case"], row["method"]) == (case.id, result.method)]
+        assert len(mine) == case.assembly.n_interfaces
+        used = [float(row["utilisation"] or 0.0) for row in mine]
+        assert used == pytest.approx(sorted(used, reverse=True))
+        assert {row["units"] for row in mine} == {"kN, m"}
+        told = json.loads((folder / case.id / f"{result.method}.json").read_text(encoding="utf-8"))
+        assert [reaction["support"] for reaction in told["reactions"]] == [
+            name for name, fixed in zip(case.assembly.block_ids, case.assembly.fixed, strict=True) if fixed
+        ]
+    assert len(rows) == sum(case.assembly.n_interfaces for case, _ in answers)
+
+
 def test_csv_quotes_texts_so_that_no_reader_makes_numbers_of_them(tmp_path: Path):
     case = samples.bond("000000")
     export(ComparisonRun("", "", "", [CaseResults(case, [samples.solved(case, "la", 0.5)])]), tmp_path)

@@ -1,0 +1,100 @@
+"""Reactions of the supports: the sum of the contact forces on each, and whether they balance the loads."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from operator import attrgetter
+
+import numpy as np
+
+from harness.model.assembly import Assembly, FloatArray
+from harness.model.case import Case
+from harness.model.result import Result
+from harness.model.table import TableColumn
+
+
+@dataclass(frozen=True)
+class SupportReaction:
+    """The force of one support on the wall; the support's own weight is not in it.
+
+    Attributes:
+        support: id of the fixed block.
+        fx, fy: of the force [force].
+        moment: about the centroid of the support, counter-clockwise [force length].
+        x, y: point of the line of action at the level y of the support's highest contact point [length]; None where the
+            force is level.
+    """
+
+    support: str
+    fx: float
+    fy: float
+    moment: float
+    x: float | None
+    y: float | None
+
+
+ReactionColumn = TableColumn[SupportReaction]
+
+REACTIONS: tuple[ReactionColumn, ...] = (
+    ReactionColumn("support", "string", "", "id of the fixed block", attrgetter("support")),
+    ReactionColumn("fx", "Float64", "force", "horizontal reaction, on the wall", attrgetter("fx"), "Fx"),
+    ReactionColumn("fy", "Float64", "force", "vertical reaction, on the wall", attrgetter("fy"), "Fy"),
+    ReactionColumn(
+        "moment",
+        "Float64",
+        "force length",
+        "of the reaction about the centroid of the support, counter-clockwise",
+        attrgetter("moment"),
+    ),
+    ReactionColumn("x", "Float64", "length", "where the line of action meets the level y", attrgetter("x"), "at x"),
+    ReactionColumn("y", "Float64", "length", "level of the support's highest contact point", attrgetter("y"), "at y"),
+)
+"""Columns of reactions; their units are kinds, which `harness.model.table.in_units` replaces by the units of a wall."""
+
+
+def support_reactions(assembly: Assembly, forces: FloatArray, flat: float = 1e-9) -> list[SupportReaction]:
+    """The reaction of each support that has a joint.
+
+    Args:
+        assembly: the wall.
+        forces: contact forces (m, 3) [force], tension included.
+        flat: share of the vertical part in a force below which its line of action counts as level.
+    """
+    forces = np.asarray(forces, dtype=float).reshape(-1, 3)
+    # The forces of a on b at end 1 and at end 2 (m, 2, 2); shear acts along the line through both.
+    at_ends = forces[:, :2, None] * assembly.normal[:, None]
+    at_ends[:, 0] += forces[:, 2:] * assembly.tangent
+    ends = np.stack([assembly.end1, assembly.end2], axis=1)
+    listed = []
+    for block in np.flatnonzero(assembly.fixed):
+        is_a, is_b = assembly.block_a == block, assembly.block_b == block
+        chosen = np.flatnonzero(is_a | is_b)
+        if not len(chosen):
+            continue
+        vectors = np.where(is_a[chosen], 1.0, -1.0)[:, None, None] * at_ends[chosen]
+        centroid = assembly.centroid[block]
+        arms = ends[chosen] - centroid
+        fx, fy = (float(part) for part in vectors.sum(axis=(0, 1)))
+        moment = float((arms[..., 0] * vectors[..., 1] - arms[..., 1] * vectors[..., 0]).sum())
+        x = y = None
+        if abs(fy) > flat * float(np.hypot(fx, fy)):
+            level = float(arms[..., 1].max())
+            x, y = float(centroid[0]) + (moment + level * fx) / fy, float(centroid[1]) + level
+        listed.append(SupportReaction(assembly.block_ids[block], fx, fy, moment, x, y))
+    return listed
+
+
+def reactions_of(case: Case, result: Result) -> list[SupportReaction]:
+    """The reactions of an answer, at its `forces_multiplier`; none where it has no contact forces of this wall."""
+    if result.forces is None or len(result.forces) != case.assembly.n_interfaces:
+        return []
+    return support_reactions(case.assembly, np.asarray(result.forces, dtype=float))
+
+
+def out_of_balance(assembly: Assembly, listed: Sequence[SupportReaction], multiplier: float) -> float:
+    """Largest part of the loads on free blocks that the reactions do not balance, relative to the loads."""
+    loads = (assembly.dead + multiplier * assembly.live)[assembly.free]
+    taken = np.array([(reaction.fx, reaction.fy) for reaction in listed]).reshape(-1, 2).sum(axis=0)
+    left = loads[:, :2].sum(axis=0) + taken
+    return float(np.linalg.norm(left) / max(float(np.linalg.norm(loads[:, :2], axis=1).sum()), 1e-300))
