@@ -81,7 +81,7 @@ FORMATS = (
         (".pvd",),
         "series of VTK",
         writer="paraview.write_pvd",
-        holds="a series of these: the collapse of de-tilt, the load steps of fe, or a mechanism that grows",
+        holds="a series of these: a collapse over time, load steps, or a growing mechanism",
         package="meshio",
     ),
     Format(

@@ -94,7 +94,7 @@ def test_bracket_known_before_the_time_was_over_is_the_answer(windows: int, monk
 def test_associated_state_is_the_answer_where_no_other_is_known(monkeypatch: pytest.MonkeyPatch):
     """It is told as what it is: an upper bound, which the gates do not take for the least known."""
     wall, method = assembly(running_bond(6, 3), 0.65), load_method("la")
-    monkeypatch.setattr("methods.la.sources.paths.SmootherJoints.states", out_of_time)
+    monkeypatch.setattr("methods.la.sources.paths.ReducedFriction.states", out_of_time)
     answer = method.solve(wall, method.Settings())
     assert answer.status is Status.OK
     assert "No collapse state without dilatancy is known yet" in answer.sentence

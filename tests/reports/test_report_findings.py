@@ -141,7 +141,7 @@ def test_self_stress_that_loading_does_not_build_up_is_told_with_its_size():
     told = reasons.reasons(item)
     (associated,) = (sentence for sentence in told if "la-associated" in sentence)
     assert "Head joints carry 0.20 of the wall’s weight in la and 0.50 in la-associated" in associated
-    assert "loading does not build up: fe ends with 0.10" in associated
+    assert "the load path does not produce: fe ends with 0.10" in associated
 
 
 def test_friction_histories_that_part_are_told_and_equal_ones_in_a_word():
