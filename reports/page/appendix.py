@@ -25,6 +25,7 @@ from harness.model.table import in_units
 from harness.model.writing import write_whole
 from reports.drawing.figures import results_figure, style, wall_figure
 from reports.environment import environment
+from reports.findings.strength import strength_text
 from reports.geometry import shapes
 from reports.labels import labels, numbers
 from reports.labels.wall_summary import value_in_words, wall_summary
@@ -48,13 +49,22 @@ class SheetLimits:
 
 LIMITS = SheetLimits()
 
-ASSUMPTIONS = (
-    "The wall is plane; blocks are rigid and do not crush.",
-    "Joints are dry: they bear no tension, and shear up to friction times compression (Coulomb), at each contact.",
-    "Sliding is without dilatancy, except in the associated maximum, which is an upper bound and not a design value.",
-    "Displacements before collapse are small: equilibrium is that of the wall as drawn.",
-    "Dead loads act first and stay; the live load grows by one multiplier, slowly.",
-)
+
+def assumptions(case: Case) -> tuple[str, ...]:
+    """What the analysis of a wall assumes, a sentence each; joints are dry unless the wall gives their strength."""
+    dry = "Joints are dry: they bear no tension, and shear up to friction times compression (Coulomb), at each contact."
+    strength = strength_text(case.assembly, case.wall.units.force)
+    joints = (
+        f"Joints bear shear by friction and cohesion, and tension: {strength}. This strength is plastic: it remains "
+        "however far a joint moves. Joints of mortar are brittle: rely on the value without this strength."
+    )
+    return (
+        "The wall is plane; blocks are rigid and do not crush.",
+        joints if strength else dry,
+        "Sliding is without dilatancy, except in the associated maximum, which is an upper bound and not a design value.",
+        "Displacements before collapse are small: equilibrium is that of the wall as drawn.",
+        "Dead loads act first and stay; the live load grows by one multiplier, slowly.",
+    )
 
 
 @dataclass(frozen=True)
@@ -118,7 +128,7 @@ def render(run: ComparisonRun) -> str:
             ways=_ways(run.cases, item) if len(run.cases) > 1 else [],
             direction=direction_in_words(item.case),
             facts=wall_summary(case),
-            assumptions=ASSUMPTIONS,
+            assumptions=assumptions(case),
             loads=_loads(item),
             blocks=_blocks(item),
             methods=[_method_row(result) for result in labels.in_order(item)],

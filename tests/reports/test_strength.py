@@ -13,8 +13,9 @@ from harness.formats.exporting import matrices
 from harness.model.build import build
 from harness.model.wall import Wall
 from reports.findings.strength import strength_text
+from reports.page.appendix import assumptions
 from tests.commands import drystone as command
-from tests.walls import assembly, stack, wall_data
+from tests.walls import assembly, case, stack, wall_data
 
 DATA = wall_data(stack(1, 1.0, 0.2), 0.5, cohesion=1.0, tensile_strength=2.0)
 
@@ -34,6 +35,13 @@ def test_report_shows_plastic_and_residual_side_by_side(written: tuple[str, list
     assert '<th scope="row">la</th><td class="num">0.75000</td><td class="num">0.50000</td>' in page
     assert "la-associated (upper bound)" in page
     assert "<dt>Strength of joints</dt><dd>cohesion c A 1 kN, tension T 0 kN; all interfaces</dd>" in page
+
+
+def test_appendix_assumes_the_strength_that_joints_have_and_no_other():
+    strong, dry = assumptions(drystone.library_wall("bonded-block-slides").case), assumptions(case(stack(1)))
+    assert "cohesion c A 1 kN" in strong[1]
+    assert "brittle" in strong[1]
+    assert dry[1].startswith("Joints are dry")
 
 
 def test_results_have_the_residual_multiplier(written: tuple[str, list[dict[str, str]]]):
