@@ -13,6 +13,7 @@ from pathlib import Path
 from markupsafe import Markup
 from matplotlib.figure import Figure
 
+from harness.model.case import Case
 from harness.model.assembly import FloatArray
 from harness.model.comparison import CaseResults, ComparisonRun
 from harness.model.joint_margins import JOINTS, joint_rows
@@ -61,7 +62,7 @@ def assumptions(case: Case) -> tuple[str, ...]:
     return (
         "The wall is plane; blocks are rigid and do not crush.",
         joints if strength else dry,
-        "Sliding is without dilatancy, except in the associated maximum, which is an upper bound and not a design value.",
+        "Sliding is without dilatancy, except in the associated maximum: an upper bound and no design value.",
         "Displacements before collapse are small: equilibrium is that of the wall as drawn.",
         "Dead loads act first and stay; the live load grows by one multiplier, slowly.",
     )
