@@ -13,8 +13,8 @@ from pathlib import Path
 from markupsafe import Markup
 from matplotlib.figure import Figure
 
-from harness.model.case import Case
 from harness.model.assembly import FloatArray
+from harness.model.case import Case
 from harness.model.comparison import CaseResults, ComparisonRun
 from harness.model.joint_margins import JOINTS, joint_rows
 from harness.model.live_load import direction_in_words
