@@ -59,7 +59,9 @@ class Envelope:
         """Which load case governs, or why none does."""
         missing = [f'"{name}"' for name, result in zip(self.names, self.results, strict=True) if _size(result) is None]
         if missing:
-            verdict = f"which load case governs is not known, for want of an accepted answer to {' and '.join(missing)}"
+            verdict = (
+                f"which load case governs is not known, because there is no accepted answer to {' and '.join(missing)}"
+            )
         elif not self.governing:
             verdict = "no load case makes the wall collapse"
         else:

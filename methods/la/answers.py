@@ -16,6 +16,7 @@ from methods.la.core.programmes import KinematicSolution
 from methods.la.core.state import CollapseState, local_residuals, residuals
 from methods.la.core.vertex_programmes import badly_scaled, standing
 from methods.la.interior.phase_one import phase_one_forces
+from methods.numerics.statics import dilatant_mechanism
 
 LOCAL_RESIDUAL = 1e-8
 """Residual at a block or joint, relative to the forces and speeds there, of a state that is returned."""
@@ -132,9 +133,13 @@ def dead_load_answer(problem: Problem, newton: NewtonMatrix, has_live_load: bool
         return None
     found = standing(problem)
     if isinstance(found, str):
+        # Near the limit forces have no vertex to rounding, and a mechanism has: programmes to 1e-9 show so much work.
+        shown = None if has_live_load else dilatant_mechanism(problem.assembly, problem.assembly.dead, least_work=1e-5)
+        if shown is not None:
+            return falls_answer(problem.assembly, shown)
         return not_converged(f"Whether the wall stands under its dead load was not decided: the programme was {found}.")
     if isinstance(found, KinematicSolution):
-        return falls_answer(problem, found.velocities)
+        return falls_answer(problem.assembly, problem.to_mechanism(found.velocities))
     if has_live_load:
         return None
     return Answer(
@@ -147,10 +152,8 @@ def dead_load_answer(problem: Problem, newton: NewtonMatrix, has_live_load: bool
     )
 
 
-def falls_answer(problem: Problem, velocities: FloatArray) -> Answer:
-    """Falls under its dead load, by a dilatant mechanism on which the dead load does positive work."""
-    assembly = problem.assembly
-    motion = problem.to_mechanism(velocities)
+def falls_answer(assembly: Assembly, motion: FloatArray) -> Answer:
+    """Falls under its dead load, by a dilatant mechanism (n, 3) on which the dead load does positive work."""
     return Answer(
         Status.OK,
         Finding.FALLS,

@@ -157,11 +157,15 @@ def strength_power(assembly: Assembly, mechanism: FloatArray) -> float:
 
 
 def dilatant_mechanism(
-    assembly: Assembly, load: FloatArray, about: FloatArray | None = None, within: float = 1.0
+    assembly: Assembly,
+    load: FloatArray,
+    about: FloatArray | None = None,
+    within: float = 1.0,
+    least_work: float = LEAST_WORK,
 ) -> FloatArray | None:
     """A mechanism (n, 3) of dilatant flow on which a load does positive work, so that no equilibrium exists under it.
 
-    It is that of the greatest work near `about`; None where that is `LEAST_WORK` or less, or where the programme
+    It is that of the greatest work near `about`; None where that is `least_work` or less, or where the programme
     fails: exactly no work would mean an equilibrium (Farkas' lemma), but the programme holds to its tolerances only.
     None too where joints have cohesion or tensile strength, whose work is not in the programme.
 
@@ -170,6 +174,7 @@ def dilatant_mechanism(
         load: (n, 3) generalised loads on the blocks [force, force, moment].
         about: (n, 3) velocities [length, length, radian], or None for rest.
         within: largest difference from `about` of a speed, or of a rotation times the length scale.
+        least_work: as total weight times speed.
     """
     from methods.numerics.linear_programme import INFINITY, Programme  # HiGHS, which few answers need
 
@@ -184,7 +189,7 @@ def dilatant_mechanism(
     rows = sp.vstack([rates[end::3] + sign * slip for end in (0, 1) for sign in (1.0, -1.0)])
     bounds = (np.zeros(rows.shape[0]), np.full(rows.shape[0], INFINITY))
     status, motion, _ = Programme(sp.csc_matrix(rows), -pull, (centre - within, centre + within), bounds).run()
-    if status != "optimal" or not pull @ motion > LEAST_WORK:
+    if status != "optimal" or not pull @ motion > least_work:
         return None
     mechanism = np.zeros((assembly.n_blocks, 3))
     mechanism[assembly.free] = (motion * column).reshape(-1, 3)

@@ -70,6 +70,14 @@ def test_a_share_of_the_live_load_acts_beside_the_dead_load():
     assert math.isinf(factor(pushed(0.6)).lower)
 
 
+def test_a_wall_just_below_its_limit_is_shown_to_fall_by_a_mechanism():
+    """The 21-brick wall slides on one bed joint: F = .65 / .3, where forces have no vertex to rounding."""
+    found = factor(drystone.library_wall("wall-21"), "la-associated", share=0.3)
+    assert found.lower <= 0.65 / 0.3 <= found.upper <= found.lower * (1.0 + 1e-4)
+    assert found.fall_proved
+    assert not found.reason
+
+
 def test_both_ends_are_judged_on_the_wall_of_their_factor():
     found = factor(sloped(20.0, 0.6), "fe")
     for end, at, finding in ((found.stands, found.lower, Finding.STANDS), (found.falls, found.upper, Finding.FALLS)):
