@@ -60,7 +60,7 @@ def test_no_load_case_governs_while_another_has_no_answer():
     for missing in (failed, rejected):
         found = envelope(cases, [missing, results[1]])
         assert found.governing == ()
-        assert 'not known, for want of an accepted answer to "to the right"' in found.verdict
+        assert 'not known, because there is no accepted answer to "to the right"' in found.verdict
 
 
 def test_envelopes_are_by_wall_and_method_and_walls_of_one_load_case_have_none():
