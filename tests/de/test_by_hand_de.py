@@ -2,34 +2,45 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
+from harness.model.assembly import IntArray
 from harness.model.method import Status
+from methods.de.answers import solve_by_holds
 from methods.de.damped_holds import DampedHolds
+from methods.de.engines.engine import Engine
+from methods.de.engines.mass_scaling import MassScaling
 from methods.de.engines.pymunk_blocks import PymunkBlocks
+from methods.de.engines.sequential_impulses import SequentialImpulses
 from methods.de.settings import SweepSettings
 from methods.de.uneven.gapped import GAPPED, GappedWall
 from methods.de.uneven.settled_contacts import SETTLING, with_contacts
 from tests.walls import assembly, stack
 
 
-def test_contacts_with_gaps_bear_the_loads_of_a_block_at_rest():
-    """A block .4 x .2 under its weight W and a push W / 4, which its joint bears by friction .5."""
-    wall = assembly(stack(1, 0.4, 0.2), 0.5)
-    block = int(wall.free[0])
+@pytest.mark.parametrize("size", [0.2, 200.0])
+def test_contacts_with_gaps_bear_the_loads_of_two_blocks_at_rest(size: float):
+    """Each of weight W and twice as wide as high, pushed by W / 4, which their joints bear by friction .5."""
+    wall = assembly(stack(2, 2.0 * size, size), 0.5)
     gapped = GappedWall(wall, wall.polygons, np.zeros((wall.n_blocks, 3)), 0.5)
     assert gapped.rests(0.25)
     state = gapped.state()
-    assert state.interface.tolist() == [0, 0]
-    sign = np.where(state.onto == block, 1.0, -1.0)
-    borne = (sign[:, None] * state.force).sum(axis=0)
-    assert borne == pytest.approx(-(wall.dead + 0.25 * wall.live)[block, :2], rel=1e-6)
-    # Half the weight on each of two springs of 1e4 W a length scale.
-    sinks = 0.5 / GAPPED.stiffness * wall.length_scale
-    assert gapped.rest.places[block] == pytest.approx(np.zeros(3), abs=1e-3 * wall.length_scale)
-    assert -gapped.rest.moved[block, 1] == pytest.approx(sinks, rel=1e-6)
-    assert gapped.drift > 0.0
+    assert state.interface.tolist() == [0, 0, 1, 1]
+    borne = np.zeros((wall.n_blocks, 2))
+    pairs = np.stack([wall.block_a, wall.block_b], axis=1)[state.interface]
+    for onto, pair, force in zip(state.onto, pairs, state.force, strict=True):
+        borne[onto] += force
+        borne[pair[pair != onto]] -= force
+    loads = wall.dead + 0.25 * wall.live
+    assert borne[wall.free] == pytest.approx(-loads[wall.free, :2], rel=1e-6)
+    # Springs of 1e4 W a length scale: W on each below, half of W on each above; so little is found in one motion.
+    sinks = np.array([1.0, 1.5]) / GAPPED.stiffness
+    assert not gapped.rest.places.any()
+    assert -gapped.rest.moved[wall.free, 1] / wall.length_scale == pytest.approx(sinks, rel=1e-6)
+    assert gapped.drift >= sinks[1] * (1.0 - 1e-6)
 
 
 def test_a_block_on_its_corner_has_a_short_contact_about_that_corner():
@@ -65,3 +76,19 @@ def test_a_search_that_runs_out_of_work_says_how_wide_its_brackets_are():
     more = DampedHolds().solve(wall, coarse.model_copy(update={"work": 10_000}))
     assert more.status is Status.OK
     assert "not converged" not in more.sentence
+
+
+def test_of_tunings_that_do_not_converge_the_one_with_the_narrower_bracket_is_reported():
+    """One holds all it is asked until its work is over, on a wall with a tenth of the live load; one moves at .8."""
+    wall = assembly(stack(1, 0.4, 0.2), 0.5)
+    little = replace(wall, live=0.1 * wall.live)
+    slow, quick = MassScaling(0.4, 0.98), MassScaling(0.0, 0.95)
+    coarse = SweepSettings(orders=1, load_step=0.4, load_growth=0.5, work=50)
+
+    def engine(blocks: IntArray, joints: IntArray, tuning: MassScaling) -> Engine:
+        return SequentialImpulses(little if tuning == slow else wall, blocks, joints, coarse.iterations, tuning)
+
+    for candidates in ([slow, quick], [quick, slow]):
+        answer = solve_by_holds(wall, coarse, engine, 1e-6, candidates)
+        assert answer.bracket == pytest.approx((0.4, 0.8))
+    assert solve_by_holds(wall, coarse, engine, 1e-6, [slow]).bracket is None
