@@ -37,6 +37,20 @@ def test_open_and_slipping_points_of_a_path_are_those_of_its_states() -> None:
         assert slipping == np.count_nonzero(step.state >= SLIP_PLUS)
 
 
+def test_the_first_limit_of_a_path_is_the_multiplier_from_which_it_first_falls() -> None:
+    """55 bricks have a peak before their plateau, on a jagged path."""
+    model = build_model(running_bond(10, 5, 0.65), GapSpringsSettings())
+    record = PathRecord()
+    assert at_rest(model, make_factor(model)).run(record, 5000) == PathEnd.PLATEAU
+    path = np.array(record.multiplier)
+    highest = np.maximum.accumulate(path)
+    falls = int(np.argmax(path < highest * (1.0 - 1e-9)))
+    assert falls > 0
+    assert record.first_limit == highest[falls]
+    assert record.peak == path.max()
+    assert path[-1] < record.peak * (1.0 - 1e-4)
+
+
 def test_a_correction_that_does_not_bring_a_path_nearer_to_equilibrium_is_undone() -> None:
     """Corrections of springs a tenth as stiff go ten times too far."""
     model = build_model(block_on_halves((0.6, 0.4)), GapSpringsSettings())
