@@ -9,10 +9,12 @@ import pytest
 
 from harness.model.method import Answer, Finding, Status
 from methods.la.answers import moving_blocks
-from methods.la.bounds import bounded
+from methods.la.bounds import bounded, certified, with_bound
+from methods.la.certify.tree_certificate import certificate
 from methods.la.core.problem import Problem, make_problem
 from methods.la.core.state import CollapseState, friction_work, local_residuals, residuals
-from methods.la.settings import SearchSettings
+from methods.la.search import LimitAnalysis
+from methods.la.settings import BoundSettings, SearchSettings
 from methods.proof.search.window_search import Bracket, Stop
 from tests.la.bodies import block_on_halves
 
@@ -94,3 +96,35 @@ def test_a_bracket_in_scaled_units_bounds_the_multiplier_in_those_of_the_wall(pr
     assert answer.details["bound_windows"] == [0.5, 1.0]
     assert "at least 0.5," in answer.sentence
     assert bounded(scaled, known, replace(found, lower=0.03)).details["lower_bound"] == 0.25
+
+
+@pytest.fixture(scope="module")
+def least() -> Answer:
+    """What `la` finds of the block: it slides at .4, its smaller friction."""
+    return LimitAnalysis().solve(block_on_halves(), SearchSettings())
+
+
+def test_a_certificate_says_whether_the_least_state_is_proved_or_a_bound_below_it(least: Answer) -> None:
+    """It proves 2/5: of an answer of .4 it proves all, of one of .5, which it is not of, it says nothing."""
+    document = certificate(block_on_halves())
+    assert document is not None
+    proved = certified(least, document)
+    assert proved.sentence.startswith("The minimum collapse multiplier is 2/5 to two millionths, proved in fractions:")
+    assert "there is a collapse state there, and none below 0.39999" in proved.sentence
+    assert proved.details["certified_bound"] == pytest.approx(0.4, rel=2.5e-6)
+    assert certified(least, None) is least
+    other = replace(least, multiplier=0.5)
+    assert certified(other, document) is other
+
+
+def test_a_bound_keeps_its_certificate_unless_it_is_too_long(problem: Problem, least: Answer) -> None:
+    """By the tree, or by windows where the tree did not end; of a long certificate of windows the bound alone stays."""
+    wall = problem.assembly
+    assert "certificate" in with_bound(wall, problem, least, BoundSettings()).details
+    open_tree = replace(least, details=least.details | {"proved_least": False})
+    for most, kept in ((500_000, True), (10, False)):
+        answer = with_bound(wall, problem, open_tree, BoundSettings(largest_certificate=most))
+        assert ("certificate" in answer.details) is kept
+        assert answer.details["certified_bound"] == pytest.approx(0.4, rel=1e-6)
+    stopped = replace(least, details=least.details | {"stopped_by_limit": True})
+    assert with_bound(wall, problem, stopped, BoundSettings()) is stopped
