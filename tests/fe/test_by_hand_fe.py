@@ -8,12 +8,14 @@ import numpy as np
 import pytest
 
 from methods.fe.settings import GapSpringsSettings
-from methods.springs.model.factor import Factor, SingularTangent, make_factor, refactor_any
-from methods.springs.model.gap_law import OPEN, SLIP_PLUS
+from methods.springs.model.factor import DenseFactor, Factor, SingularTangent, make_factor, refactor_any
+from methods.springs.model.gap_law import OPEN, SLIP_PLUS, STICK
 from methods.springs.model.wall_model import WallModel, build_model
 from methods.springs.path.continuation import PathFollower
+from methods.springs.path.direction import PathDirection
 from methods.springs.path.path_record import PathEnd, PathRecord
 from methods.springs.path.plateau import check
+from methods.springs.path.tolerances import SOFT_MOTIONS
 from methods.springs.patterns import block_on_halves, running_bond
 from methods.springs.rest.equilibrium import gravity_state
 
@@ -65,6 +67,24 @@ def test_a_correction_that_does_not_bring_a_path_nearer_to_equilibrium_is_undone
         follower._remove_drift()
     for values, old in zip((follower.u, follower.opening, follower.trial), before, strict=True):
         np.testing.assert_allclose(values, old, atol=1e-12)
+
+
+def test_each_further_pin_has_the_response_to_a_unit_force_at_it() -> None:
+    """In the pinned wall, the tangent with a spring of stiffness one at each pin."""
+    model = build_model(running_bond(4, 2, 0.5), GapSpringsSettings())
+    state = np.full(model.n_points, STICK)
+    way = PathDirection(model, DenseFactor(model))
+    way.solve_anew(state, 100.0)
+    way.elastic *= 1e-14  # beside so small a first response every motion counts as soft
+    way.solve_anew(state, 100.0)
+    assert len(way.bordered) == SOFT_MOTIONS.most
+    assert [response.border for response in way.unit_responses] == way.bordered[1:]
+    pinned = model.tangent(state).toarray()
+    pinned[way.bordered, way.bordered] += 1.0
+    for response in way.unit_responses:
+        force = np.zeros(model.n_unknowns)
+        force[response.border] = 1.0
+        np.testing.assert_allclose(pinned @ (response.value + response.tail), force, atol=1e-10)
 
 
 def test_a_wall_that_does_not_move_is_no_collapse_state() -> None:
