@@ -8,14 +8,16 @@ import numpy as np
 import pytest
 
 from harness.model.assembly import IntArray
-from harness.model.method import Status
+from harness.model.method import Finding, Status
 from methods.de.answers import solve_by_holds
-from methods.de.damped_holds import DampedHolds
+from methods.de.damped_holds import DampedHolds, ReleasedCollapse
 from methods.de.engines.engine import Engine
 from methods.de.engines.mass_scaling import MassScaling
 from methods.de.engines.pymunk_blocks import PymunkBlocks
+from methods.de.engines.pymunk_joints import PymunkJoints
 from methods.de.engines.sequential_impulses import SequentialImpulses
-from methods.de.settings import SweepSettings
+from methods.de.engines.strips import CannotModel, require_lengths
+from methods.de.settings import ReleaseSettings, SweepSettings
 from methods.de.uneven.gapped import GAPPED, GappedWall
 from methods.de.uneven.settled_contacts import SETTLING, with_contacts
 from tests.walls import assembly, stack
@@ -92,3 +94,34 @@ def test_of_tunings_that_do_not_converge_the_one_with_the_narrower_bracket_is_re
         answer = solve_by_holds(wall, coarse, engine, 1e-6, candidates)
         assert answer.bracket == pytest.approx((0.4, 0.8))
     assert solve_by_holds(wall, coarse, engine, 1e-6, [slow]).bracket is None
+
+
+@pytest.mark.parametrize("kind", [PymunkJoints, SequentialImpulses])
+def test_a_moment_on_a_block_presses_one_end_of_its_joint(kind: type[PymunkJoints] | type[SequentialImpulses]):
+    """A block of width b and weight W under a moment W b / 8: its ends bear W / 2 less and more an eighth of W."""
+    wall = assembly(stack(1, 0.4, 0.2), 0.5)
+    block = int(wall.free[0])
+    weight = float(wall.weight[block])
+    live = np.zeros_like(wall.live)
+    live[block, 2] = 0.4 * weight / 8.0
+    turned = replace(wall, live=live)
+    engine = kind(turned, wall.free, np.arange(wall.n_interfaces), 50, MassScaling(0.0, 0.9))
+    engine.load(1.0)
+    engine.advance(300)
+    forces = engine.contact_forces()[0]
+    assert np.sort(forces[:2]) == pytest.approx([0.375 * weight, 0.625 * weight], rel=1e-3)
+    assert forces[2] == pytest.approx(0.0, abs=1e-3 * weight)
+
+
+def test_a_wall_that_stands_is_not_released():
+    wall = assembly(stack(1, 0.4, 0.2), 0.5, loads={"live": None})
+    answer = ReleasedCollapse().solve(wall, ReleaseSettings(orders=1))
+    assert answer.finding is Finding.STANDS
+    assert "release" not in answer.details
+
+
+def test_an_interface_without_length_is_refused():
+    wall = assembly(stack(2, 0.4, 0.2), 0.5)
+    require_lengths(wall)
+    with pytest.raises(CannotModel, match="length"):
+        require_lengths(replace(wall, end2=wall.end1.copy()))

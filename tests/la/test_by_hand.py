@@ -13,6 +13,7 @@ from methods.la.bounds import bounded, certified, with_bound
 from methods.la.certify.tree_certificate import certificate
 from methods.la.core.problem import Problem, make_problem
 from methods.la.core.state import CollapseState, friction_work, local_residuals, residuals
+from methods.la.core.vertex_programmes import ForceProgramme
 from methods.la.search import LimitAnalysis
 from methods.la.settings import BoundSettings, SearchSettings
 from methods.proof.search.window_search import Bracket, Stop
@@ -128,3 +129,17 @@ def test_a_bound_keeps_its_certificate_unless_it_is_too_long(problem: Problem, l
         assert answer.details["certified_bound"] == pytest.approx(0.4, rel=1e-6)
     stopped = replace(least, details=least.details | {"stopped_by_limit": True})
     assert with_bound(wall, problem, stopped, BoundSettings()) is stopped
+
+
+@pytest.mark.parametrize("greatest", [True, False])
+def test_the_mechanism_beside_an_extreme_work_has_that_work_of_the_dead_load(problem: Problem, greatest: bool) -> None:
+    """Where both ends of the left half open by one, it bears from none to all of the weight."""
+    strains = np.zeros((2, 3))
+    strains[0, :2] = 1.0
+    found = ForceProgramme(problem).extreme_work(strains, greatest)
+    assert not isinstance(found, str)
+    forces, velocities = found
+    work = float((forces * strains).sum())
+    assert abs(float(problem.dead @ velocities)) == pytest.approx(abs(work), abs=1e-9)
+    assert problem.imbalance(forces, 0.0) == pytest.approx(0.0, abs=1e-9)
+    assert abs(work) == pytest.approx(1.0 if greatest else 0.0, abs=1e-9)
