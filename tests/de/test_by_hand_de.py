@@ -17,7 +17,8 @@ from methods.de.engines.pymunk_blocks import PymunkBlocks
 from methods.de.engines.pymunk_joints import PymunkJoints
 from methods.de.engines.sequential_impulses import SequentialImpulses
 from methods.de.engines.strips import CannotModel, require_lengths
-from methods.de.settings import ReleaseSettings, SweepSettings
+from methods.de.settings import ReleaseSettings, SoftSettings, SweepSettings
+from methods.de.soft import DeformableJoints
 from methods.de.uneven.gapped import GAPPED, GappedWall
 from methods.de.uneven.settled_contacts import SETTLING, with_contacts
 from tests.walls import assembly, stack
@@ -125,3 +126,11 @@ def test_an_interface_without_length_is_refused():
     require_lengths(wall)
     with pytest.raises(CannotModel, match="length"):
         require_lengths(replace(wall, end2=wall.end1.copy()))
+
+
+def test_a_tenth_of_the_live_load_is_raised_in_ten_times_the_steps_of_its_multiplier():
+    wall = assembly(stack(1, 0.4, 0.2), 0.5)
+    whole = DeformableJoints().solve(wall, SoftSettings())
+    tenth = DeformableJoints().solve(replace(wall, live=0.1 * wall.live), SoftSettings())
+    assert tenth.path["multiplier"] == pytest.approx(10.0 * np.array(whole.path["multiplier"]), rel=1e-9)
+    assert tenth.bracket == pytest.approx(10.0 * np.array(whole.bracket), rel=1e-9)
