@@ -1,0 +1,98 @@
+"""What the path of gap springs counts and undoes, and a motion on which the live load does no work."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from methods.fe.settings import GapSpringsSettings
+from methods.springs.model.factor import DenseFactor, Factor, SingularTangent, make_factor, refactor_any
+from methods.springs.model.gap_law import OPEN, SLIP_PLUS, STICK
+from methods.springs.model.wall_model import WallModel, build_model
+from methods.springs.path.continuation import PathFollower
+from methods.springs.path.direction import PathDirection
+from methods.springs.path.path_record import PathEnd, PathRecord
+from methods.springs.path.plateau import check
+from methods.springs.path.tolerances import SOFT_MOTIONS
+from methods.springs.patterns import block_on_halves, running_bond
+from methods.springs.rest.equilibrium import gravity_state
+
+
+def at_rest(model: WallModel, factor: Factor) -> PathFollower:
+    """A path from the state under the dead load."""
+    return PathFollower.from_rest(model, factor, gravity_state(model, factor))
+
+
+def test_open_and_slipping_points_of_a_path_are_those_of_its_states() -> None:
+    model = build_model(running_bond(4, 2, 0.5), GapSpringsSettings())
+    record = PathRecord(most=1000)
+    follower = at_rest(model, make_factor(model))
+    opened = [int(np.count_nonzero(follower.state == OPEN))]
+    assert opened == [follower.n_open]
+    assert follower.run(record, 5000) == PathEnd.PLATEAU
+    assert follower.n_open == np.count_nonzero(follower.state == OPEN)
+    assert follower.n_slip == np.count_nonzero(follower.state >= SLIP_PLUS)
+    for step, slipping, n_open in zip(record.steps, record.slipping, record.open, strict=True):
+        assert n_open == np.count_nonzero(step.state == OPEN)
+        assert slipping == np.count_nonzero(step.state >= SLIP_PLUS)
+
+
+def test_the_first_limit_of_a_path_is_the_multiplier_from_which_it_first_falls() -> None:
+    """55 bricks have a peak before their plateau, on a jagged path."""
+    model = build_model(running_bond(10, 5, 0.65), GapSpringsSettings())
+    record = PathRecord()
+    assert at_rest(model, make_factor(model)).run(record, 5000) == PathEnd.PLATEAU
+    path = np.array(record.multiplier)
+    highest = np.maximum.accumulate(path)
+    falls = int(np.argmax(path < highest * (1.0 - 1e-9)))
+    assert falls > 0
+    assert record.first_limit == highest[falls]
+    assert record.peak == path.max()
+    assert path[-1] < record.peak * (1.0 - 1e-4)
+
+
+def test_a_correction_that_does_not_bring_a_path_nearer_to_equilibrium_is_undone() -> None:
+    """Corrections of springs a tenth as stiff go ten times too far."""
+    model = build_model(block_on_halves((0.6, 0.4)), GapSpringsSettings())
+    follower = at_rest(model, make_factor(model))
+    soft = replace(model, kn=0.1 * model.kn, kt=0.1 * model.kt)
+    factor = make_factor(soft)
+    refactor_any(factor, follower.state, False, [])
+    follower.direction.factor = factor
+    follower.multiplier += 0.01
+    before = [values.copy() for values in (follower.u, follower.opening, follower.trial)]
+    with pytest.raises(SingularTangent, match="lost to rounding"):
+        follower._remove_drift()
+    for values, old in zip((follower.u, follower.opening, follower.trial), before, strict=True):
+        np.testing.assert_allclose(values, old, atol=1e-12)
+
+
+def test_each_further_pin_has_the_response_to_a_unit_force_at_it() -> None:
+    """In the pinned wall, the tangent with a spring of stiffness one at each pin."""
+    model = build_model(running_bond(4, 2, 0.5), GapSpringsSettings())
+    state = np.full(model.n_points, STICK)
+    way = PathDirection(model, DenseFactor(model))
+    way.solve_anew(state, 100.0)
+    way.elastic *= 1e-14  # beside so small a first response every motion counts as soft
+    way.solve_anew(state, 100.0)
+    assert len(way.bordered) == SOFT_MOTIONS.most
+    assert [response.border for response in way.unit_responses] == way.bordered[1:]
+    pinned = model.tangent(state).toarray()
+    pinned[way.bordered, way.bordered] += 1.0
+    for response in way.unit_responses:
+        force = np.zeros(model.n_unknowns)
+        force[response.border] = 1.0
+        np.testing.assert_allclose(pinned @ (response.value + response.tail), force, atol=1e-10)
+
+
+def test_a_wall_that_does_not_move_is_no_collapse_state() -> None:
+    """Half a weight at either edge bears the block; without motion no work says which multiplier it is."""
+    wall = block_on_halves((0.6, 0.4))
+    forces = np.array([[0.5, 0.0, 0.0], [0.0, 0.5, 0.0]])
+    state = check(wall, 0.0, forces, np.zeros((2, 3)))
+    assert state.residuals["equilibrium"] == pytest.approx(0.0)
+    assert state.residuals["work"] == 1.0
+    assert state.residuals["complementarity"] == np.inf
+    assert state.work_multiplier == np.inf

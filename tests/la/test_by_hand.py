@@ -1,0 +1,145 @@
+"""Measures of a collapse state of one block, by hand, and bounds in the units of the wall."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from harness.model.method import Answer, Finding, Status
+from methods.la.answers import moving_blocks
+from methods.la.bounds import bounded, certified, with_bound
+from methods.la.certify.tree_certificate import certificate
+from methods.la.core.problem import Problem, make_problem
+from methods.la.core.state import CollapseState, friction_work, local_residuals, residuals
+from methods.la.core.vertex_programmes import ForceProgramme
+from methods.la.search import LimitAnalysis
+from methods.la.settings import BoundSettings, SearchSettings
+from methods.proof.search.window_search import Bracket, Stop
+from tests.la.bodies import block_on_halves
+
+
+@pytest.fixture(scope="module")
+def problem() -> Problem:
+    """One block 1 x .5 on two halves; scaled its weight and its live load are 1."""
+    return make_problem(block_on_halves())
+
+
+def state(problem: Problem, forces: list[list[float]], multiplier: float, motion: list[float]) -> CollapseState:
+    """A state of the block with end forces (2, 3) in weights and a motion (3,) in scaled units."""
+    return CollapseState(np.array(forces), multiplier, np.array(motion), np.zeros((2, 4), dtype=bool))
+
+
+NONE = [[0.0, 0.0, 0.0], [0.0, 0.0, 0.0]]
+
+
+def test_residuals_of_a_block_that_nothing_carries(problem: Problem) -> None:
+    """Its whole weight is out of balance; it sinks into both halves as fast as it moves."""
+    found = residuals(problem, state(problem, NONE, 0.0, [0.0, -2.0, 0.0]))
+    assert found["equilibrium"] == pytest.approx(1.0)
+    assert found["interpenetration"] == pytest.approx(1.0)
+    assert (found["yield"], found["complementarity"]) == (0.0, np.inf)
+
+
+def test_residuals_of_yield_and_complementarity_by_hand(problem: Problem) -> None:
+    """A tension of a quarter weight at one end; pressed ends that lift at the speed at which the live load works."""
+    pulled = residuals(problem, state(problem, [[-0.25, 0.5, 0.0], [0.5, 0.5, 0.0]], 0.0, [1.0, 0.0, 0.0]))
+    assert pulled["yield"] == pytest.approx(0.25)
+    lifted = residuals(problem, state(problem, [[0.25, 0.25, 0.0], [0.25, 0.25, 0.0]], 0.0, [1.0, 1.0, 0.0]))
+    slip = float(problem.slacks(np.array([[0.25, 0.25, 0.0]] * 2))[:, 2].sum())  # both halves slip one way at rate 1
+    assert lifted["complementarity"] == pytest.approx(1.0 + slip)
+
+
+def test_work_of_friction_as_a_share_of_the_live_load_at_its_multiplier(problem: Problem) -> None:
+    sliding = state(problem, [[0.0, 0.0, -0.1], [0.0, 0.0, -0.3]], 0.5, [2.0, 0.0, 0.0])
+    assert friction_work(problem, sliding) == pytest.approx((0.1 + 0.3) / 0.5)
+    assert friction_work(problem, replace(sliding, multiplier=-0.5)) == pytest.approx(0.8)
+    assert friction_work(problem, replace(sliding, velocities=-sliding.velocities)) == np.inf
+
+
+def test_residuals_where_they_arise_are_shares_of_what_acts_there(problem: Problem) -> None:
+    """Half the weight is carried; the wall sinks at both ends of one half and at none of the other when it turns."""
+    carried = state(problem, [[0.25, 0.25, 0.0], [0.0, 0.0, 0.0]], 0.25, [0.0, -3.0, 0.0])
+    equilibrium, tension, closing = local_residuals(problem, carried)
+    balance = abs(problem.imbalance(carried.forces, 0.25)).max()
+    size = max(0.5 + 1.0, 0.25 + 0.0)  # |forces| and |dead load| down; |live load| sideways
+    turning = float((abs(problem.statics) @ np.array([0.25, 0.25, 0.0, 0.0, 0.0, 0.0]))[2])
+    assert equilibrium == pytest.approx([balance / max(size, turning)])
+    assert tension.tolist() == [0.0, 0.0]
+    assert closing == pytest.approx([1.0, 1.0])
+    pulled = local_residuals(problem, state(problem, [[-0.5, 0.0, 0.0], [0.0, 0.0, 0.0]], 0.0, [0.0, 3.0, 0.0]))
+    assert pulled[1] == pytest.approx([0.5 / (0.5 + 1.0), 0.0])
+    assert pulled[2].tolist() == [0.0, 0.0]
+
+
+def test_blocks_that_move_are_counted_and_none_at_rest(problem: Problem) -> None:
+    wall = problem.assembly
+    motion = np.zeros((wall.n_blocks, 3))
+    assert moving_blocks(wall, motion) == 0
+    motion[~wall.fixed, 2] = 1.0
+    assert moving_blocks(wall, motion) == 1
+
+
+def test_a_search_may_be_told_to_give_up_after_one_failure() -> None:
+    assert SearchSettings(failures=1).failures == 1
+    with pytest.raises(ValueError, match="greater than or equal to 1"):
+        SearchSettings(failures=0)
+
+
+def test_a_bracket_in_scaled_units_bounds_the_multiplier_in_those_of_the_wall(problem: Problem) -> None:
+    """Of the bound of the bracket and the one known before the higher stands."""
+    scaled = replace(problem, unit_multiplier=4.0)
+    known = Answer(Status.OK, Finding.COLLAPSES, "", multiplier=2.0, details={"lower_bound": 0.25})
+    found = Bracket(lower=0.125, upper=0.5, windows=[0.125, 0.25], iterations=7, stopped=next(iter(Stop)))
+    answer = bounded(scaled, known, found)
+    assert answer.details["lower_bound"] == 0.5
+    assert answer.details["bound_windows"] == [0.5, 1.0]
+    assert "at least 0.5," in answer.sentence
+    assert bounded(scaled, known, replace(found, lower=0.03)).details["lower_bound"] == 0.25
+
+
+@pytest.fixture(scope="module")
+def least() -> Answer:
+    """What `la` finds of the block: it slides at .4, its smaller friction."""
+    return LimitAnalysis().solve(block_on_halves(), SearchSettings())
+
+
+def test_a_certificate_says_whether_the_least_state_is_proved_or_a_bound_below_it(least: Answer) -> None:
+    """It proves 2/5: of an answer of .4 it proves all, of one of .5, which it is not of, it says nothing."""
+    document = certificate(block_on_halves())
+    assert document is not None
+    proved = certified(least, document)
+    assert proved.sentence.startswith("The minimum collapse multiplier is 2/5 to two millionths, proved in fractions:")
+    assert "there is a collapse state there, and none below 0.39999" in proved.sentence
+    assert proved.details["certified_bound"] == pytest.approx(0.4, rel=2.5e-6)
+    assert certified(least, None) is least
+    other = replace(least, multiplier=0.5)
+    assert certified(other, document) is other
+
+
+def test_a_bound_keeps_its_certificate_unless_it_is_too_long(problem: Problem, least: Answer) -> None:
+    """By the tree, or by windows where the tree did not end; of a long certificate of windows the bound alone stays."""
+    wall = problem.assembly
+    assert "certificate" in with_bound(wall, problem, least, BoundSettings()).details
+    open_tree = replace(least, details=least.details | {"proved_least": False})
+    for most, kept in ((500_000, True), (10, False)):
+        answer = with_bound(wall, problem, open_tree, BoundSettings(largest_certificate=most))
+        assert ("certificate" in answer.details) is kept
+        assert answer.details["certified_bound"] == pytest.approx(0.4, rel=1e-6)
+    stopped = replace(least, details=least.details | {"stopped_by_limit": True})
+    assert with_bound(wall, problem, stopped, BoundSettings()) is stopped
+
+
+@pytest.mark.parametrize("greatest", [True, False])
+def test_the_mechanism_beside_an_extreme_work_has_that_work_of_the_dead_load(problem: Problem, greatest: bool) -> None:
+    """Where both ends of the left half open by one, it bears from none to all of the weight."""
+    strains = np.zeros((2, 3))
+    strains[0, :2] = 1.0
+    found = ForceProgramme(problem).extreme_work(strains, greatest)
+    assert not isinstance(found, str)
+    forces, velocities = found
+    work = float((forces * strains).sum())
+    assert abs(float(problem.dead @ velocities)) == pytest.approx(abs(work), abs=1e-9)
+    assert problem.imbalance(forces, 0.0) == pytest.approx(0.0, abs=1e-9)
+    assert abs(work) == pytest.approx(1.0 if greatest else 0.0, abs=1e-9)
