@@ -177,4 +177,4 @@ def test_what_is_proved_of_the_component_that_fails_is_not_said_of_a_wall_with_a
     assert both.details["proved_least"]
     assert both.details["lower_bound"] == pytest.approx(0.6, rel=2e-6)  # the margin of the tree
     assert "certificate" not in both.details
-    assert "found to rounding" in both.sentence
+    assert "The other components bear more, to rounding" in both.sentence

@@ -124,7 +124,7 @@ def test_the_seconds_for_what_methods_hand_on_are_shared_and_end() -> None:
     (item,) = with_certificates(run, seconds=0.0).cases
     assert item.certified is None
     assert set(item.refused) == {"first", "second"}
-    assert all("seconds" in why for why in item.refused.values())
+    assert all("time limit" in why for why in item.refused.values())
     assert with_certificates(run).cases[0].refused == {}
 
 

@@ -71,5 +71,5 @@ def test_how_many_digits_a_number_may_have_is_said_in_the_refusal():
     for name, words in (("digits", "at most 1000 digits"), ("bits", "more than 3000 bits")):
         with pytest.raises(CertificateError, match=words):
             BEYOND[name]()
-    with pytest.raises(CertificateError, match="more than 100,000 bits"):
+    with pytest.raises(CertificateError, match="more than 20,000 bits"):
         BEYOND["many bits"]()

@@ -88,7 +88,7 @@ def test_orders_searched_to_the_end_are_counted(monkeypatch: pytest.MonkeyPatch)
     alone, _ = solved("de", orders=1)
     assert accepted
     assert answer.bracket == alone.bracket
-    assert "1 of 3 body orders" in answer.sentence
+    assert "1 of 3 sweep orders" in answer.sentence
 
 
 def test_state_that_is_not_in_balance_shows_nothing(monkeypatch: pytest.MonkeyPatch):

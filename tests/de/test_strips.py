@@ -32,7 +32,7 @@ def test_neighbouring_strips_have_different_colours():
 
 def test_more_than_32_interfaces_in_one_place_are_refused():
     one = np.array([[0.0, 0.0], [1.0, 0.0], [1.0, 1.0]])
-    with pytest.raises(CannotModel, match="33 interfaces crowd one place"):
+    with pytest.raises(CannotModel, match="33 interfaces lie close together"):
         colour_strips(np.repeat(one[None], 33, axis=0), margin=0.0)
 
 

@@ -92,10 +92,10 @@ def test_only_the_first_of_a_switch_is_shown_and_cuts_are_told(tmp_path: Path) -
     body = '<switch><rect width="1" height="1"/><g><rect x="1" width="1" height="1"/></g></switch>'
     imported = read(tmp_path / "d.svg", svg(body), units="m")
     assert boxes(imported) == [(0, -1, 1, 0)]
-    assert not any("is not followed" in doubt for doubt in imported.wall.doubts)
+    assert not any("is not evaluated" in doubt for doubt in imported.wall.doubts)
     for cut in ('clip-path="url(#c)"', 'style="fill: red; clip-path : url(#c)"'):
         imported = read(tmp_path / "d.svg", svg(f'<rect width="1" height="1" {cut}/>'), units="m")
-        assert any("a clip-path is not followed" in doubt for doubt in imported.wall.doubts)
+        assert any("a clip-path is not evaluated" in doubt for doubt in imported.wall.doubts)
 
 
 def test_layers_of_inkscape_are_groups_and_an_unlabelled_group_lies_on_the_one_around_it(tmp_path: Path) -> None:
@@ -111,8 +111,8 @@ def test_rules_of_a_medium_are_told_and_rules_behind_them_followed(tmp_path: Pat
     body = style + "".join(f'<rect class="{k}" x="{n}" width="1" height="1"/>' for n, k in enumerate("abc"))
     imported = read(tmp_path / "d.svg", svg(body), units="m")
     assert boxes(imported) == [(0, -1, 1, 0), (2, -1, 3, 0)]
-    assert [doubt for doubt in imported.wall.doubts if "is not followed" in doubt] == [
-        'the style of "@media print" is not followed: it may hide or show shapes'
+    assert [doubt for doubt in imported.wall.doubts if "is ignored" in doubt] == [
+        'the style of "@media print" is ignored: it may hide or show shapes'
     ]
 
 

@@ -37,7 +37,7 @@ def test_least_state_known_is_exact_and_never_above_the_greatest_multiplier(case
     assert greatest is not None
     assert answer.multiplier <= greatest * (1.0 + 1e-9)
     assert max(answer.details["residuals"].values()) <= 1e-11
-    assert ("leaves none below" in answer.sentence) is answer.details["proved_least"]
+    assert ("excludes lower ones" in answer.sentence) is answer.details["proved_least"]
 
 
 def test_joints_cut_into_several_interfaces_give_the_multiplier_of_whole_joints() -> None:

@@ -35,7 +35,7 @@ def test_methods_that_disagree_whether_a_wall_stands_are_named():
 
 def test_limit_analysis_alone_stands_by_self_stress():
     said = split(found("fe", Finding.FALLS), found("la", Finding.COLLAPSES), found("de", Finding.FALLS))
-    assert said.startswith("Under the dead load the wall falls for fe, de and stands for la. Limit analysis lets")
+    assert said.startswith("Under the dead load the wall falls for fe, de and stands for la. Limit analysis allows")
     both = split(found("fe", Finding.FALLS), found("la", Finding.STANDS), found("de", Finding.STANDS))
     assert "or one of them is wrong" in both
     turned = split(found("la-associated", Finding.FALLS), found("la", Finding.STANDS))
@@ -87,4 +87,4 @@ def test_methods_are_listed_by_family_its_main_method_first_and_strangers_last()
 def test_tables_name_each_column_once_and_no_other():
     for names in (columns.PRINTED, columns.LISTED, columns.REPEATED):
         assert len(set(names)) == len(names)
-        assert set(names) <= set(columns.BY_NAME)
+        assert set(names) <= set(columns.RESULTS)

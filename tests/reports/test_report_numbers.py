@@ -379,7 +379,7 @@ def test_paper_section_tells_what_uneven_blocks_cost():
 def test_the_source_of_a_search_that_found_the_state_is_told_and_nothing_where_none_is_recorded():
     found = {"source": "central path", "multiplier": 0.5, "cpu_seconds": 0.025}
     sought = samples.solved(samples.block(), "la", 0.5, details={"improvements": [{**found, "source": "other"}, found]})
-    assert sections.origin(sought) == "found by “central path” after 25 ms of CPU time"
+    assert sections.origin(sought) == "found from “central path” after 25 ms of CPU time"
     higher = {"improvements": [{**found, "multiplier": 0.6}]}
     for details in ({}, {"improvements": []}, {"improvements": "many"}, {"improvements": [3]}, higher):
         assert sections.origin(samples.solved(samples.block(), "la", 0.5, details=details)) == ""
@@ -445,5 +445,5 @@ def test_what_head_joints_carry_is_said_from_the_forces_of_the_walls_that_differ
         (study,) = grid.grids(ComparisonRun("", "", "", items))
         return study.sentence
 
-    assert "its head joints press with 0.5 of the wall's weight there in the median, with 0.12 in FE" in said(0.5)
+    assert "its head joints carry 0.5 of the wall's weight there in the median, with 0.12 in FE" in said(0.5)
     assert "its head joints press with 0.25 of the wall's weight" in said(0.25)

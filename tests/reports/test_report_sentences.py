@@ -80,7 +80,7 @@ def test_a_plateau_is_drawn_to_three_times_the_displacement_at_which_it_begins_w
     path = {"live_displacement": moved, "multiplier": loads}
     row = samples.solved(CASE, "fe", loads[-1], path=path)
     ((caption, drawn),) = curves.curves(CaseResults(CASE, [row]))
-    assert caption.endswith("; the plateau goes on beyond the right edge.")
+    assert caption.endswith("; the plateau continues beyond the right edge.")
     assert max(drawn.chart.series[0].x) == pytest.approx(3.0)
     row = samples.solved(CASE, "fe", loads[10], path={name: values[:14] for name, values in path.items()})
     ((caption, drawn),) = curves.curves(CaseResults(CASE, [row]))

@@ -51,7 +51,7 @@ def test_what_matters_is_told_only_where_intervals_part():
     tables = tables_of(rows) | {"sensitivity": sensitivity}
     assert "Most depends on friction (Borgonovo's delta 0.60) by fe." in findings(tables, [])
     tables["sensitivity"] = sensitivity.assign(delta_confidence=0.3)
-    assert "200 walls do not tell" in findings(tables, [])[-1]
+    assert "200 walls do not decide" in findings(tables, [])[-1]
 
 
 def test_a_fitted_curve_lies_in_its_band_and_a_wall_that_falls_leaves_a_staircase():
