@@ -446,4 +446,4 @@ def test_what_head_joints_carry_is_said_from_the_forces_of_the_walls_that_differ
         return study.sentence
 
     assert "its head joints carry 0.5 of the wall's weight there in the median, with 0.12 in FE" in said(0.5)
-    assert "its head joints press with 0.25 of the wall's weight" in said(0.25)
+    assert "its head joints carry 0.25 of the wall's weight" in said(0.25)
