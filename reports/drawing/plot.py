@@ -35,7 +35,7 @@ def plot(ax: Axes, drawing: DisplayList, *, least: float = 4.5) -> None:
 
 def _points(ax: Axes) -> float:
     """Points of the page [pt] in a length of the wall."""
-    page: Any = ax.get_figure(root=True)
+    page: Any = ax.get_figure()
     place, (wide, high) = ax.get_position(), page.get_size_inches().tolist()
     (left, right), (low, top) = ax.get_xlim(), ax.get_ylim()
     return 72.0 * float(min(place.width * wide / (right - left), place.height * high / (top - low)))
