@@ -21,6 +21,7 @@
     }, { rootMargin: "800px" });
     figures.forEach((svg) => watcher.observe(svg));
     window.addEventListener("beforeprint", () => figures.forEach(fill));
+    document.getElementById("packed").dataset.unpacked = ""; // from here on, what is printed is complete
   };
   const packed = document.getElementById("packed");
   if (packed) unpack(packed.textContent);

@@ -262,6 +262,7 @@ def test_packed_drawings_are_the_same_as_those_that_are_not(
     assert figures.evaluate_all(read) == expected
     assert opened.complaints == []
     opened.page.reload()
+    opened.page.wait_for_selector("#packed[data-unpacked]", state="attached")
     opened.page.pdf(path=str(tmp_path / "report.pdf"))
     assert figures.evaluate_all(read) == expected, "printing fills what was not scrolled to yet"
     opened.context.close()
