@@ -12,6 +12,7 @@ from typing import Annotated, Any, Literal, Protocol
 
 from pydantic import BaseModel, Discriminator, Field, StrictBool, Tag, model_validator
 
+from harness.model.bar_fields import Prop, Tie
 from harness.model.fields import Angle, Coefficient, Name, NonNegative, Number, Point, Positive, Strict
 from harness.model.pattern_fields import Pattern
 from harness.model.pressure_fields import Pressure
@@ -382,6 +383,8 @@ class Wall(Strict):
     settlements: list[Settlement] = Field(
         default_factory=list, description="supports that move; asked about by `drystone reaction` alone"
     )
+    ties: list[Tie] = Field(default_factory=list, description="bars that bear tension alone")
+    props: list[Prop] = Field(default_factory=list, description="bars that bear compression alone")
 
     @model_validator(mode="after")
     def _one_friction(self) -> Wall:

@@ -8,6 +8,8 @@ from dataclasses import replace
 from fractions import Fraction
 from typing import Any
 
+import numpy as np
+
 from harness.model.answer_check import DEEPEST
 from harness.model.assembly import Assembly
 from harness.model.method import Answer, Finding, Status
@@ -40,8 +42,13 @@ def with_bound(assembly: Assembly, problem: Problem, known: Answer, settings: Bo
     if known.details.get("stopped_by_limit"):
         return known
     if assembly.dilates or assembly.strong:
-        own, why = known.sentence.rstrip("."), "have dilatancy" if assembly.dilates else "have strength"
-        return replace(known, sentence=f"{own}. No bound below it is sought: some joints {why}.")
+        own, why = (
+            known.sentence.rstrip("."),
+            "some joints have dilatancy" if assembly.dilates else "joints have strength",
+        )
+        if np.any(assembly.friction < 0.0):  # as `harness.model.bars.with_bars_as_joints` writes them
+            why = "the wall has ties or props"
+        return replace(known, sentence=f"{own}. No bound below it is sought: {why}.")
     began = time.process_time()
     document = None
     if known.details["proved_least"]:

@@ -185,7 +185,7 @@ def make_problem(assembly: Assembly) -> Problem:
     dead = dead * column / unit_force
     live = live * column / unit_force
     size = float(abs(live.reshape(-1, 3)).sum())
-    friction = np.where(assembly.friction < PROBLEM.friction, 0.0, assembly.friction)
+    friction = np.where(abs(assembly.friction) < PROBLEM.friction, 0.0, assembly.friction)
     unit_multiplier = assembly.n_free / size if size > 0.0 else 1.0
     return Problem(
         assembly=assembly,
