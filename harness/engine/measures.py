@@ -62,7 +62,7 @@ class Measures:
     def of(
         cls, assembly: Assembly, forces: FloatArray, multiplier: float, beyond: FloatArray | None = None
     ) -> Measures:
-        """Those of contact forces (m, 3) and tensions of bars beyond their prestress (k,) with dead + multiplier x live."""
+        """Those of contact forces (m, 3), and of bars beyond their prestress (k,), with dead + multiplier x live."""
         own = magnitudes(assembly, assembly.dead) + magnitudes(assembly, multiplier * assembly.live)
         contact = np.zeros(assembly.n_blocks)
         size = abs(forces).sum(axis=1)

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from operator import attrgetter
 
-from harness.model.bars import BAR_FORCES, state_of
+from harness.model.bars import bar_tensions, state_of
 from harness.model.case import Case
 from harness.model.result import Result
 from harness.model.table import TableColumn
@@ -48,8 +48,8 @@ BARS: tuple[TableColumn[BarForce], ...] = (
 def bar_forces_of(case: Case, result: Result) -> list[BarForce]:
     """The forces of the bars of an answer, at its `forces_multiplier`; none where it gives none of this wall."""
     bars, ids = case.assembly.bars, case.assembly.block_ids
-    listed = result.details.get(BAR_FORCES) if result.forces is not None else None
-    if not isinstance(listed, list) or len(listed) != len(bars):
+    listed = bar_tensions(case.assembly, result)
+    if listed is None:
         return []
     least, greatest = (bars.prestress + bars.least).tolist(), (bars.prestress + bars.greatest).tolist()
     return [
@@ -58,10 +58,10 @@ def bar_forces_of(case: Case, result: Result) -> list[BarForce]:
             bars.kinds[k],
             ids[bars.block_a[k]],
             ids[bars.block_b[k]],
-            float(tension),
+            tension,
             least[k],
             greatest[k],
-            state_of(bars.kinds[k], float(tension), least[k], greatest[k]),
+            state_of(bars.kinds[k], tension, least[k], greatest[k]),
         )
-        for k, tension in enumerate(listed)
+        for k, tension in enumerate(listed.tolist())
     ]

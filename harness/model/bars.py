@@ -18,6 +18,7 @@ from numpy.typing import NDArray
 
 if TYPE_CHECKING:
     from harness.model.assembly import Assembly
+    from harness.model.result import Result
 
 FloatArray = NDArray[np.float64]
 IntArray = NDArray[np.int64]
@@ -135,6 +136,13 @@ def with_bars_as_joints(assembly: Assembly) -> Assembly:
 def tensions(bars: Bars, forces: FloatArray) -> FloatArray:
     """(k,) tensions of the bars [force], from the forces (m + k, 3) of a wall of `with_bars_as_joints`."""
     return np.asarray(bars.prestress - forces[len(forces) - len(bars) :, 2])
+
+
+def bar_tensions(assembly: Assembly, result: Result | None) -> FloatArray | None:
+    """(k,) tensions that an answer gives of the bars of a wall [force]; None where it gives none of them."""
+    listed = None if result is None or result.forces is None else result.details.get(BAR_FORCES)
+    fits = isinstance(listed, list) and len(listed) == len(assembly.bars) > 0
+    return np.asarray(listed, dtype=float) if fits else None
 
 
 def state_of(kind: str, tension: float, least: float, greatest: float) -> str:

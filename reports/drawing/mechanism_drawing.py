@@ -7,6 +7,7 @@ import numpy as np
 from harness.model.assembly import Assembly, FloatArray
 from harness.model.case import Case
 from harness.model.result import Result, relative_velocities
+from reports.drawing.bars import bar_lines
 from reports.drawing.display_list import Circles, DisplayList, Frame, Group, Lines, Polygons, Shape, chosen
 from reports.drawing.wall_drawing import DRAWN_INTERFACES, length_scale
 from reports.findings import joints
@@ -53,6 +54,7 @@ def moved_wall(assembly: Assembly, result: Result, scale: float | None = None) -
         for k in np.flatnonzero(members).tolist():
             motion, values = (motions[k], tuple(mechanism[k].tolist())) if moves[k] else (None, ())
             drawn.parts.append(Group((Polygons(role, (placed[k],)),), motion, block=k, values=values))
+    drawn.parts.extend(bar_lines(drawn.frame, assembly, scale * mechanism))
     if scale > 0.0 and assembly.n_interfaces <= DRAWN_INTERFACES:
         drawn.parts.extend(_marks(drawn.frame, assembly, result, moves, motions))
     return drawn
