@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -10,6 +11,7 @@ import pytest
 from scipy.optimize import linprog
 
 from harness.engine.judge import answered, judge
+from harness.engine.reaction_judge import judge_reaction
 from harness.engine.symmetry import VIEWS, beside
 from harness.model.assembly import Assembly
 from harness.model.bars import BAR_FORCES, Bars
@@ -19,6 +21,8 @@ from harness.model.errors import InputError
 from harness.model.method import Finding, check_takes, load_method, method_names, methods_with
 from harness.model.result import Judgement, Result
 from harness.model.wall import Wall
+from methods.la.core.problem import make_problem
+from methods.la.core.reaction import ExtremeReaction, extreme_reaction
 from tests.walls import assembly
 
 TAKEN = ("la", "la-associated", "la-associated-cvxpy")
@@ -375,3 +379,36 @@ def test_faults_of_a_tie(wrong: dict[str, Any], sentence: str):
     data = block(ties=[bar(("left", SIDE), ("block", BLOCK), 2.0) | wrong])
     with pytest.raises(InputError, match=sentence):
         build(parse_wall(data, "wall.json"))
+
+
+def on_moving_side(**more: Any) -> Assembly:
+    """The tied block, pushed by no live load, whose fixed block on the left moves to the right by one."""
+    data = block(ties=[bar(("left", SIDE), ("block", BLOCK), 2.0, **more)])
+    moves = [{"blocks": ["left"], "translation": [1, 0]}]
+    push = {"dead": {"points": [{"block": "block", "at": [0.0, 1.8], "force": [2.5, 0.0]}]}}
+    return built(data | {"loads": push, "settlements": moves})
+
+
+@pytest.mark.parametrize("prestress", [0.0, 0.8])
+def test_reaction_along_a_tie(prestress: float):
+    """The block topples at a push of W b/(2 z) = 16/9: pushed by 2.5 its tie bears from 2.5 - 16/9 to its yield force.
+
+    On the fixed block the tie pulls to the right, along its motion.
+    """
+    wall = on_moving_side(prestress=prestress)
+    least = max(2.5 - 16.0 / 9.0, prestress)
+    for greatest, value in ((False, least), (True, 2.0)):
+        found = extreme_reaction(wall, greatest)
+        assert isinstance(found, ExtremeReaction)
+        assert found.reaction == pytest.approx(value, rel=EXACT)
+        assert found.tensions == pytest.approx([value], rel=EXACT)
+        parts = (found.forces, found.mechanism)
+        accepts = partial(judge_reaction, wall, found.reaction, *parts, greatest=greatest, tolerance=EXACT)
+        assert accepts(tensions=found.tensions).accepted
+        assert accepts(tensions=found.tensions + 0.1).accepted is False
+        assert accepts().accepted is (value == prestress)
+
+
+def test_walls_with_bars_are_never_scaled_without_them():
+    with pytest.raises(ValueError, match="ties or props"):
+        make_problem(tied(2.0))

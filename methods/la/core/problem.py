@@ -177,7 +177,13 @@ class Problem:
 
 
 def make_problem(assembly: Assembly) -> Problem:
-    """The scaled limit-analysis problem of an assembly."""
+    """The scaled limit-analysis problem of an assembly, whose ties and props are rows of the law of joints.
+
+    Raises:
+        ValueError: it has bars that are not (`harness.model.bars.with_bars_as_joints`).
+    """
+    if len(assembly.bars):
+        raise ValueError(f"{assembly.name} has ties or props that are no rows of the law of its joints")
     unit_force = assembly.force_scale / max(assembly.n_free, 1)
     unit_length = assembly.length_scale or 1.0
     column = np.tile([1.0, 1.0, 1.0 / unit_length], assembly.n_free)
