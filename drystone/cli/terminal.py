@@ -19,6 +19,7 @@ from harness.engine.regression import violations
 from harness.engine.run import Run
 from harness.model.assembly import Assembly
 from harness.model.bar_forces import BARS, bar_forces_of
+from harness.model.bars import BAR_FORCES, DEAD_BAR_FORCES
 from harness.model.case import Case
 from harness.model.columns import PRINTED, ResultColumn, ResultRow
 from harness.model.comparison import CaseResults, ComparisonRun
@@ -405,6 +406,16 @@ def foreign_answer(data: Any, assembly: Assembly, source: str) -> Answer:
             )
         return np.array(listed, dtype=float).reshape(rows, 3)
 
+    def tensions(name: str) -> list[float] | None:
+        listed = details.get(name) if data.get(name) is None else data[name]
+        count = len(assembly.bars)
+        if listed is None or not count:
+            return None
+        if not (isinstance(listed, list) and len(listed) == count and all(map(_is_number, listed))):
+            problem = f"it is not a list of {count} numbers up to {LARGEST:g}"
+            raise InputError(problem, "Give the tension of every tie and then of every prop", name, source)
+        return [float(tension) for tension in listed]
+
     finding = data.get("finding", "collapses")
     if not isinstance(finding, str) or finding not in list(Finding):
         raise InputError(f"{finding!r} is no finding", f"One of: {', '.join(Finding)}", "finding", source)
@@ -431,5 +442,6 @@ def foreign_answer(data: Any, assembly: Assembly, source: str) -> Answer:
         forces_multiplier=None if at is None else float(at),
         mechanism=table("mechanism", assembly.n_blocks, "ux, uy, omega of every block"),
         flow=flow,
-        details={name: proof.tolist() for name, proof in proofs.items() if proof is not None},
+        details={name: proof.tolist() for name, proof in proofs.items() if proof is not None}
+        | {name: listed for name in (BAR_FORCES, DEAD_BAR_FORCES) if (listed := tensions(name)) is not None},
     )
