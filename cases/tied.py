@@ -13,8 +13,8 @@ METHODS = ("la", "la-associated")
 SUITES = ("ties",)
 STATICS = "elementary statics"
 THRUST = (
-    "J. Heyman, The stone skeleton, International Journal of Solids and Structures 2 (1966) 249-279: an arch spreads at "
-    "its least thrust"
+    "J. Heyman, The stone skeleton, International Journal of Solids and Structures 2 (1966) 249-279: an arch spreads "
+    "at its least thrust"
 )
 
 
