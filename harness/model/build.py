@@ -74,9 +74,9 @@ def build(wall: Wall, name: str = "wall") -> Built:
     Raises:
         InputError: naming the block, interface or load that is wrong; or it has load cases, each a wall of its own.
     """
-    if wall.load_cases:
+    if named := wall.load_case_fields:
         raise InputError(
-            f"it has {len(wall.load_cases)} load case(s), and one is built at a time: {', '.join(wall.load_cases)}",
+            f"it has {len(named)} load case(s), and one is built at a time: {', '.join(named)}",
             "Choose one with --load-case of run, compare or expand; compare answers all of them without",
             "load_cases",
         )

@@ -95,6 +95,9 @@ def _named(wall: Wall) -> Iterator[tuple[str, str]]:
     for kind, bars in (("ties", wall.ties), ("props", wall.props)):
         for number, bar in enumerate(bars):
             yield from ((f"{kind}[{number}].{end}", at.block) for end, at in (("from", bar.start), ("to", bar.end)))
+    for title, travelling in wall.travelling.items():
+        for name in travelling.blocks or ():
+            yield f"travelling.{title}", name
     for number, settlement in enumerate(wall.settlements):
         for name in settlement.blocks or ():
             yield f"settlements[{number}]", name
