@@ -20,7 +20,7 @@ from methods.la.core.problem import Problem
 from methods.la.find_certificate import account, beyond
 from methods.la.least import SAME_MULTIPLIER
 from methods.la.settings import BoundSettings
-from methods.proof.search.tuning import WINDOWS
+from methods.proof.search.options import PROVED
 from methods.proof.search.window_search import Bracket
 from methods.proof.verify.checker import verify
 from methods.proof.words import in_words
@@ -90,7 +90,7 @@ def certified(known: Answer, document: dict[str, Any] | None) -> Answer:
         return known
     lower, shown = verify(document)
     upper = Fraction(known.multiplier) if shown is None else shown
-    if lower < upper * (1 - Fraction(WINDOWS.proved)):
+    if lower < upper * (1 - Fraction(PROVED)):
         return replace(
             known,
             sentence=f"The least collapse multiplier known is {known.multiplier:.7g}; there is none from zero to below "
