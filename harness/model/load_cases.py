@@ -9,7 +9,7 @@ from typing import Any
 
 from harness.model.build import Built, build
 from harness.model.case import Case
-from harness.model.errors import InputError, did_you_mean, raise_faults
+from harness.model.errors import MOST_NAMED, InputError, did_you_mean, first_few, raise_faults
 from harness.model.wall import Load, Wall
 
 
@@ -20,7 +20,11 @@ def under_load_case(wall: Wall, name: str) -> Wall:
         InputError: there is no such load case.
     """
     if name not in wall.load_cases:
-        there = f"There are: {', '.join(wall.load_cases)}" if wall.load_cases else 'A wall gives them in "load_cases"'
+        there = (
+            f"There are: {first_few(list(wall.load_cases), MOST_NAMED)}"
+            if wall.load_cases
+            else 'A wall gives them in "load_cases"'
+        )
         remedy = f"{did_you_mean(name, wall.load_cases)} {there}".strip()
         raise InputError(f'no load case is called "{name}"', remedy, "load_cases")
     common, own = wall.loads, wall.load_cases[name]

@@ -25,6 +25,8 @@ def salvaged(data: Any, source: str) -> tuple[Wall | None, tuple[InputError, ...
         return parse_wall(data, source), ()
     except InputError as error:
         faults = error.faults
+        if error.more:
+            faults += (InputError(f"it has {error.more:,} more faults", "Mend those listed first", source=source),)
     rest = copy.deepcopy(data)
     if not isinstance(rest, dict) or rest.get("format") != "wall/1":
         return None, faults
