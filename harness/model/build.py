@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections import Counter
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property, partial
@@ -85,6 +86,8 @@ def build(wall: Wall, name: str = "wall") -> Built:
     blocks = blocks_of_wall(wall)
     names = tuple(block.id for block in blocks)
     index = {block_id: k for k, block_id in enumerate(names)}
+    for load in (wall.loads.dead, wall.loads.live or Load()):
+        _check_pairs(load, blocks)
     polygons = tuple(polygons_of(blocks))
     fixed = np.array([block.fixed for block in blocks], dtype=bool)
     raise_faults(support_faults(fixed))
@@ -446,7 +449,6 @@ def _load(
     """Generalised forces (n, 3) of a load whose names are known to be of the wall."""
     generalised = np.zeros((len(blocks), 3))
     groups, everything = _groups(blocks), np.arange(len(blocks))
-    _check_pairs(load.body, groups, len(blocks))
     for body in load.body:
         if body.group is not None:
             chosen = groups[body.group]
@@ -465,22 +467,24 @@ def _load(
     return generalised
 
 
-def _check_pairs(forces: Sequence[BodyForce], groups: dict[str, IntArray], count: int) -> None:
-    """Refuse body forces that act on so many blocks each that their sum takes minutes.
+def _check_pairs(load: Load, blocks: Sequence[Block]) -> None:
+    """Refuse loads that act on so many blocks each, or are sought among so many faces, that their sum takes minutes.
 
     Raises:
         InputError: how many there are.
     """
+    members = Counter(group for block in blocks for group in block.groups)
     pairs = sum(
-        count if body.blocks is None and body.group is None else len(groups.get(body.group or "", body.blocks or ()))
-        for body in forces
+        members[body.group] if body.group is not None else len(blocks if body.blocks is None else body.blocks)
+        for body in load.body
     )
-    if pairs > MOST_PAIRS:
-        raise InputError(
-            f"it has {len(forces):,} body forces, which act on {pairs:,} blocks in all, one by one: too many",
-            "Add up those that act on the same blocks",
-            "loads",
-        )
+    faces = len(load.pressures) * sum(len(block.polygon) for block in blocks)
+    for count, what, remedy in (
+        (pairs, f"{len(load.body):,} body forces act on {pairs:,} blocks in all", "Add up those on the same blocks"),
+        (faces, f"{len(load.pressures):,} pressures are sought among {faces:,} faces in all", "Give longer segments"),
+    ):
+        if count > MOST_PAIRS:
+            raise InputError(f"{what}, and at most {MOST_PAIRS:,} are summed up", remedy, "loads")
 
 
 def _groups(blocks: Sequence[Block]) -> dict[str, IntArray]:
@@ -508,13 +512,6 @@ def _with_pressures(wall: Wall, blocks: list[Block], assembly: Assembly, size: f
         {block.id: k for k, block in enumerate(blocks)},
         _groups(blocks),
     )
-    given = [*wall.loads.dead.pressures, *(wall.loads.live or Load()).pressures]
-    if len(given) * len(outlines.block) > MOST_PAIRS:
-        raise InputError(
-            f"it has {len(given):,} pressures, each sought among {len(outlines.block):,} faces: too many",
-            "Let one pressure act along a longer segment",
-            "loads",
-        )
     sums = {}
     for kind, load in (("dead", wall.loads.dead), ("live", wall.loads.live or Load())):
         total = getattr(assembly, kind).copy()

@@ -74,6 +74,11 @@ class Vertex:
     dual_violation: float
 
     @property
+    def feasible(self) -> bool:
+        """Whether the vertex keeps all bounds to rounding."""
+        return self.primal <= VERTEX.accurate
+
+    @property
     def optimal(self) -> bool:
         """Whether the vertex is feasible and optimal to rounding."""
         return max(self.primal, self.dual_violation) <= VERTEX.accurate
