@@ -223,8 +223,8 @@ def rows_of(chosen: WallSet, compared: Comparison, speed: Speed) -> pd.DataFrame
 
     Columns: set, version, wall, blocks, interfaces, method, finding, status, judge, multiplier, lower, upper (of a
     measured bracket), answered, correct, exact (a state of the joint law, not a measured bracket), proved (minimum,
-    by a certificate or to rounding), cpu_seconds, wall_seconds, peak_memory_bytes, speed_seconds and speed_spread of the
-    machine, processor.
+    by a certificate or to rounding), cpu_seconds, wall_seconds, peak_memory_bytes, speed_seconds and speed_spread of
+    the machine, processor.
     """
     import pandas as pd
 
