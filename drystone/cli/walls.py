@@ -30,9 +30,10 @@ from harness.engine.store import open_store
 from harness.formats.registry import FORMATS
 from harness.model.case import Case, case_folders, case_of_wall, read_case, shipped_cases
 from harness.model.errors import InputError
+from harness.model.foreign.result_document import answer_from_file
 from harness.model.library import library
 from harness.model.load_cases import load_cases_of
-from harness.model.method import Finding, Status, load_method, method_names
+from harness.model.method import Finding, Status, listed_methods, load_method
 from harness.model.reading import read_json, read_wall, wall_json
 from harness.model.result import Result
 from harness.model.wall import Wall
@@ -47,7 +48,7 @@ from harness.model.writing import write_whole
 def list_(what: str, as_json: bool, folders: tuple[Path, ...]) -> None:
     """List the cases, the methods, the suites or the file formats there are."""
     if what == "methods":
-        rows = [_method_row(name) for name in method_names()]
+        rows = [_method_row(name) for name in listed_methods()]
     elif what == "formats":
         rows = [item.row() for item in FORMATS]
     else:
@@ -122,7 +123,7 @@ def judge(wall: Path, result: Path, tolerance: float, as_json: bool) -> None:
     described = wall_of_file(wall)
     for sentence in described.warnings:
         say(f"drystone: {sentence}", err=True)
-    answer = terminal.foreign_answer(read_json(result), described.assembly, str(result))
+    answer = answer_from_file(read_json(result), described.assembly, str(result))
     judgement = judge_answer(described, answer, tolerance)
     if as_json:
         print_json(

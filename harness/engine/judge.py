@@ -202,12 +202,17 @@ def _judge_collapse(
 ) -> Judgement:
     """Collapse at the multiplier that is reported, by a whole collapse state."""
     multiplier = result.multiplier
-    if forces is None or multiplier is None:
-        return _said(tolerance, False, NO_FORCES if forces is None else "It gives no multiplier.")
+    if multiplier is None:
+        return _said(tolerance, False, "It gives no multiplier.")
+    if forces is None:
+        return _said(tolerance, None, NO_FORCES)
     at = multiplier if result.forces_multiplier is None else result.forces_multiplier
     if mechanism is None:
-        said = _said(tolerance, False, "It gives no mechanism, so the collapse state cannot be checked.")
-        return said.model_copy(update={"residuals": force_residuals(assembly, forces, at)})
+        said = _decide(force_residuals(assembly, forces, at), tolerance, f"The contact forces at multiplier {at:.6g}")
+        if said.accepted:
+            said.accepted = None
+            said.sentence += " It gives no mechanism: that the wall collapses there is not shown."
+        return said
     residuals = collapse_residuals(assembly, forces, at, mechanism, result.flow)
     residuals["multiplier"] = apart(multiplier, at)
     said = _decide(residuals, tolerance, f"The collapse state ({result.flow} flow)")
@@ -264,7 +269,7 @@ def _judge_standing(assembly: Assembly, forces: FloatArray | None, result: Resul
     elif assembly.n_free == 0:
         return _said(tolerance, True, "Every block is fixed: nothing can move.")
     else:
-        return _said(tolerance, False, NO_FORCES)
+        return _said(tolerance, None, NO_FORCES)
     said = _decide(residuals, tolerance, what)
     if said.accepted and far:
         said.accepted, said.sentence = None, said.sentence + MOVED_FAR

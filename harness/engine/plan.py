@@ -12,7 +12,7 @@ from harness.engine.run import Limits, Run
 from harness.model.case import Case, case_folders, case_of_wall, id_of, read_case, shipped_cases
 from harness.model.errors import InputError, did_you_mean
 from harness.model.library import library
-from harness.model.method import Method, method_names
+from harness.model.method import Method, listed_methods, method_names
 from harness.model.reading import DRAWINGS
 
 
@@ -65,7 +65,7 @@ def gated_runs(case: Case, limits: Limits, tier: str) -> list[Run]:
 
 
 def check_methods(names: Sequence[str], element: str = "--methods") -> None:
-    """Refuse a method that is not installed; `element` is what named it.
+    """Refuse a method that there is not; `element` is what named it.
 
     Raises:
         InputError: naming it and those there are.
@@ -73,8 +73,13 @@ def check_methods(names: Sequence[str], element: str = "--methods") -> None:
     known = method_names()
     for name in names:
         if name not in known:
-            there = f"There are: {', '.join(known)}"
-            raise InputError(f'no method is called "{name}"', f"{did_you_mean(name, known)} {there}".strip(), element)
+            raise InputError(f'no method is called "{name}"', _methods_meant(name), element)
+
+
+def _methods_meant(name: str) -> str:
+    """What may have been meant by a name that no method has."""
+    known = listed_methods()
+    return f"{did_you_mean(name, known)} There are: {', '.join(known)}".strip()
 
 
 def check_shares(method: Method, processes: int) -> None:
