@@ -48,6 +48,7 @@ from harness.engine.residuals import (
     moving_parts,
     power,
 )
+from harness.model.answer_check import checked
 from harness.model.assembly import Assembly, FloatArray
 from harness.model.displaced import DisplacedState
 from harness.model.limit import accuracy, gross_power, least_told
@@ -161,7 +162,7 @@ def _with_motion(said: Judgement, residuals: dict[str, float], fault: str) -> Ju
 def answered(method: Method, assembly: Assembly, **settings: Any) -> tuple[Result, Judgement]:
     """What a method answers in this process, and what the judge says of it."""
     check_takes(method, assembly)
-    answer = method.solve(assembly.copied(), method.Settings.model_validate(settings))
+    answer = checked(method.solve(assembly.copied(), method.Settings.model_validate(settings)), assembly)
     result = result_of(
         answer, assembly, case=assembly.name, method=method.name, family=method.family, traits=method.traits
     )

@@ -109,6 +109,8 @@ def programs() -> dict[str, Program]:
             name.
     """
     path = methods_file()
+    if os.environ.get(VARIABLE):
+        os.environ[VARIABLE] = str(path)  # whole, since runs have folders of their own
     try:
         status = path.stat()
     except OSError:
