@@ -18,5 +18,4 @@ class AskingGroup(click.Group):
             return super().resolve_command(ctx, args)
         except click.UsageError as error:
             meant = did_you_mean(args[0], self.list_commands(ctx)) if args else ""
-            error.message = f"{error.message} {meant}".strip()
-            raise
+            raise click.UsageError(f"{error.message} {meant}".strip(), error.ctx or ctx) from None

@@ -16,6 +16,7 @@ from drystone.cli.options import (
     catching,
     json_flag,
     load_case_option,
+    methods_option,
     print_json,
     say,
     say_json,
@@ -143,9 +144,7 @@ def schema() -> None:
 
 @click.command()
 @click.argument("case")
-@click.option(
-    "--method", "methods", multiple=True, default=(library().methods.one,), show_default=True, help="May be repeated."
-)
+@methods_option(library().methods.one)
 @click.option(
     "--kind", type=click.Choice(["mechanism", "forces", "thrust", "comparison"]), default="mechanism", show_default=True
 )
@@ -156,7 +155,7 @@ def schema() -> None:
 @catching
 def figure(
     case: str,
-    methods: tuple[str, ...],
+    methods: list[str] | None,
     kind: str,
     suffix: str,
     output: Path | None,
@@ -166,7 +165,7 @@ def figure(
     """Draw the answers of methods on CASE as a figure for a paper."""
     from reports.drawing.figures import figure as draw
 
-    found, results = _answers(case, methods, store, folders)
+    found, results = _answers(case, methods or [library().methods.one], store, folders)
     path = output or Path(f"{found.id}-{kind}.{suffix}")
     draw(found, results, kind, path)
     say(str(path))
@@ -183,13 +182,13 @@ def animate(case: str, method: str, output: Path | None, store: Path, folders: t
     """Animate the mechanism a method finds on CASE."""
     from reports.drawing.animate import animate as draw
 
-    found, results = _answers(case, (method,), store, folders)
+    found, results = _answers(case, [method], store, folders)
     path = output or Path(f"{found.id}.gif")
     draw(found, results[0], path)
     say(str(path))
 
 
-def _answers(case: str, methods: tuple[str, ...], store: Path, folders: tuple[Path, ...]) -> tuple[Case, list[Result]]:
+def _answers(case: str, methods: list[str], store: Path, folders: tuple[Path, ...]) -> tuple[Case, list[Result]]:
     check_methods(methods)
     (found,) = find_cases([case], None, folders)
     warn(found)

@@ -210,9 +210,8 @@ def _judge_collapse(
     at = multiplier if result.forces_multiplier is None else result.forces_multiplier
     if mechanism is None:
         said = _decide(force_residuals(assembly, forces, at), tolerance, f"The contact forces at multiplier {at:.6g}")
-        if said.accepted:
-            said.accepted = None
-            said.sentence += " It gives no mechanism: that the wall collapses there is not shown."
+        said.accepted = None if said.accepted else said.accepted
+        said.sentence += " It gives no mechanism, so that it collapses there is not shown."
         return said
     residuals = collapse_residuals(assembly, forces, at, mechanism, result.flow)
     residuals["multiplier"] = apart(multiplier, at)

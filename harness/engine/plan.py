@@ -76,6 +76,32 @@ def check_methods(names: Sequence[str], element: str = "--methods") -> None:
             raise InputError(f'no method is called "{name}"', _methods_meant(name), element)
 
 
+def check_order(method: str, case: str) -> None:
+    """Refuse a method and a case that are given in the wrong order.
+
+    Raises:
+        InputError: that is so.
+    """
+    known = method_names()
+    if method not in known and case in known:
+        remedy = f"The method comes first: {case} {method}"
+        raise InputError(f'"{case}" is a method and "{method}" is not: their order is swapped', remedy, "method")
+
+
+def check_no_methods(words: Sequence[str], methods: Sequence[str] | None) -> None:
+    """Refuse words in the place of cases that are names of methods, as of a list without commas.
+
+    Raises:
+        InputError: one is a method, and there is no such file.
+    """
+    found = [word for word in words if word in method_names() and not Path(word).exists()]
+    if found:
+        asked = ",".join(dict.fromkeys([*(methods or ()), *found]))
+        raise InputError(
+            f'"{found[0]}" is a method and no case', f"Separate methods by commas: --methods {asked}", "cases"
+        )
+
+
 def _methods_meant(name: str) -> str:
     """What may have been meant by a name that no method has."""
     known = listed_methods()

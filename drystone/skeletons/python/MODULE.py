@@ -62,7 +62,7 @@ def greatest(
     friction = sp.diags(assembly.friction) @ (n1 + n2)
     slacks = sp.vstack([-n1, -n2, -friction - s, -friction + s])
     within: Any = sp.csr_matrix(sp.hstack([slacks, sp.csr_matrix((4 * m, 1))]))
-    found = linprog(
+    found: Any = linprog(
         np.append(np.zeros(3 * m), -1.0),
         within,
         np.zeros(4 * m),
