@@ -32,7 +32,7 @@ COMMANDS = {
     "bound": ("proof", "bound", "Write a certificate that no collapse state lies lower."),
     "verify-bound": ("proof", "verify_bound", "Check a certificate in fractions."),
     "reaction": ("reaction", "reaction", "Print the reactions of the supports of CASE that move."),
-    "schema": ("walls", "schema", "Print the JSON Schema of the wall format."),
+    "schema": ("walls", "schema", "Print the JSON Schema of a format: of walls, results or descriptions."),
     "validate": (
         "drawings",
         "validate",

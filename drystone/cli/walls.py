@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import Any
 
 import click
+from pydantic import BaseModel
 
 from drystone.analysis import judge as judge_answer
 from drystone.cli import terminal
@@ -31,7 +32,8 @@ from harness.engine.store import open_store
 from harness.formats.registry import FORMATS
 from harness.model.case import Case, case_folders, case_of_wall, read_case, shipped_cases
 from harness.model.errors import InputError
-from harness.model.foreign.result_document import answer_from_file
+from harness.model.foreign.description import Description
+from harness.model.foreign.result_document import ResultDocument, answer_from_file
 from harness.model.library import library
 from harness.model.load_cases import load_cases_of
 from harness.model.method import Finding, Status, listed_methods, load_method
@@ -136,10 +138,12 @@ def judge(wall: Path, result: Path, tolerance: float, as_json: bool) -> None:
 
 
 @click.command()
+@click.argument("what", type=click.Choice(["wall", "result", "describe"]), default="wall")
 @catching
-def schema() -> None:
-    """Print the JSON Schema of the wall format."""
-    print_json(Wall.model_json_schema(by_alias=True))
+def schema(what: str) -> None:
+    """Print the JSON Schema of a format: wall/1, result/1 or describe/1."""
+    models: dict[str, type[BaseModel]] = {"wall": Wall, "result": ResultDocument, "describe": Description}
+    print_json(models[what].model_json_schema(by_alias=True))
 
 
 @click.command()

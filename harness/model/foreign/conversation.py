@@ -7,14 +7,15 @@ import contextlib
 import functools
 import json
 import os
+import select
 import subprocess
 from typing import Any
 
 from harness.model.answer_check import AnswerFault
-from harness.model.errors import InputError
+from harness.model.errors import InputError, visible
 from harness.model.foreign.register import Program
 from harness.model.foreign.spawning import whole_address_space
-from harness.model.reading import LARGEST_FILE
+from harness.model.reading import LARGEST_FILE, json_of
 
 
 class Conversation:
@@ -30,6 +31,7 @@ class Conversation:
         self._program = program
         self._process: subprocess.Popen[bytes] | None = None
         self._owner = 0
+        self._said = bytearray()
 
     def processes(self) -> list[int]:
         """Its process, if it runs."""
@@ -51,35 +53,61 @@ class Conversation:
         except OSError as error:
             problem = f"the program {words[0]} cannot be started ({error.strerror or error})"
             raise InputError(problem, "Check the command", self._program.name) from None
-        self._owner = os.getpid()
+        self._owner, self._said = os.getpid(), bytearray()
 
-    def ask(self, request: dict[str, Any]) -> str:
-        """The line that answers a request. A process that fails or is interrupted is ended; the next request starts it.
+    def ask(self, request: dict[str, Any]) -> Any:
+        """The JSON value that answers a request.
+
+        A process that fails or is interrupted is ended, so that no later request is answered by what it says then; the
+        next request starts another.
 
         Raises:
-            AnswerFault: the process ended, or its line does not end.
+            AnswerFault: the process ended, spoke before it was asked, or its line is no JSON.
         """
         self.start()
         process = self._process
         assert process is not None
         assert process.stdin is not None
-        assert process.stdout is not None
         try:
-            try:
+            if self._said or self._ready():
+                early = self._line() or bytes(self._said)
+                raise AnswerFault(f'The program wrote "{_shown(early)}" before it was asked')
+            with contextlib.suppress(BrokenPipeError):
                 process.stdin.write(json.dumps(request).encode() + b"\n")
                 process.stdin.flush()
-                line = process.stdout.readline(LARGEST_FILE)
-            except BrokenPipeError:
-                line = b""
-            if not line.endswith(b"\n"):
-                raise AnswerFault(self._no_line(process, line))
+            line = self._line()
+            if not line:
+                raise AnswerFault(self._no_line(process))
+            try:
+                return json_of(line.decode("utf-8", "replace"), "its result")
+            except InputError as error:
+                said = f'The program wrote "{_shown(line)}" where one line of JSON was due'
+                raise AnswerFault(f"{said}: {error}") from None
         except BaseException:
             self.end()
             raise
-        return line.decode("utf-8", "replace")
 
-    def _no_line(self, process: subprocess.Popen[bytes], line: bytes) -> str:
-        if len(line) >= LARGEST_FILE:
+    def _ready(self) -> bool:
+        """Whether the program has written what was not read."""
+        assert self._process is not None
+        assert self._process.stdout is not None
+        return bool(select.select([self._process.stdout], [], [], 0.0)[0])
+
+    def _line(self) -> bytes:
+        """The next line of the program; empty where it ends before the line does, or the line does not end."""
+        assert self._process is not None
+        assert self._process.stdout is not None
+        while b"\n" not in self._said:
+            part = os.read(self._process.stdout.fileno(), 2**20)
+            self._said += part
+            if not part or len(self._said) > LARGEST_FILE:
+                return b""
+        line, _, rest = self._said.partition(b"\n")
+        self._said = bytearray(rest)
+        return bytes(line) or b" "
+
+    def _no_line(self, process: subprocess.Popen[bytes]) -> str:
+        if len(self._said) > LARGEST_FILE:
             return f"The program wrote more than {LARGEST_FILE:,} bytes in one line"
         with contextlib.suppress(subprocess.TimeoutExpired):
             code = process.wait(timeout=1.0)
@@ -89,6 +117,7 @@ class Conversation:
     def end(self) -> None:
         """End the process, if it is of this process."""
         process, self._process = self._process, None
+        self._said = bytearray()
         if process is None or self._owner != os.getpid():
             return
         process.kill()
@@ -105,3 +134,8 @@ def conversation_with(program: Program) -> Conversation:
     made = Conversation(program)
     atexit.register(made.end)
     return made
+
+
+def _shown(line: bytes) -> str:
+    """The begin of a line, for a sentence."""
+    return visible(line[:40].decode("utf-8", "replace").strip())
