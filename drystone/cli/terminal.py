@@ -15,6 +15,7 @@ from typing import Any
 from harness.engine.pipeline import Told
 from harness.engine.regression import violations
 from harness.engine.run import Run
+from harness.model.bar_forces import BARS, bar_forces_of
 from harness.model.case import Case
 from harness.model.columns import PRINTED, ResultColumn, ResultRow
 from harness.model.comparison import CaseResults, ComparisonRun
@@ -211,6 +212,8 @@ def result_json(
     """
     listed = result.model_dump(mode="json") if fields else result.summary()
     listed |= {"proof": proof.as_json()}
+    if len(case.assembly.bars):
+        listed["bars"] = [values(BARS, bar) for bar in bar_forces_of(case, result)]
     listed["reactions"] = [values(REACTIONS, reaction) for reaction in reactions_of(case, result)]
     if joints:
         listed["joints"] = [values(JOINTS, row) for row in joint_rows(case, result)]
@@ -221,6 +224,18 @@ def print_joints(case: Case, result: Result) -> None:
     """The margins of the joints of a result as a table, the most critical first."""
     columns = in_units(JOINTS, case.wall.units.force, case.wall.units.length)
     print_rows([{column.head: column.text(row) for column in columns} for row in joint_rows(case, result)])
+
+
+def _bar_lines(case: Case, result: Result, most: int = 8) -> Iterator[tuple[str, str]]:
+    """One line a tie or prop, up to so many, for a person."""
+    unit = case.wall.units.force
+    listed = bar_forces_of(case, result)
+    for bar in listed[:most]:
+        way = "tension" if bar.tension >= 0.0 else "compression"
+        size = f"{abs(bar.tension):.6g}" + ("" if unit == "1" else f" {unit}")
+        yield bar.kind, f"{bar.bar}, from {bar.start} to {bar.end}: {way} {size}, {bar.state}"
+    if len(listed) > most:
+        yield "", f"and {len(listed) - most} more ties and props; --json has all"
 
 
 def _reaction_lines(case: Case, result: Result, most: int = 8) -> Iterator[tuple[str, str]]:
@@ -260,7 +275,7 @@ def print_result(result: Result, case: Case, proof: Proof) -> None:
         rows.append(("bracket", f"[{result.bracket[0]:.7g}, {result.bracket[1]:.7g}] {result.bracket_meaning}"))
     if proof.sentence:
         rows.append(("proof", proof.sentence))
-    rows += _reaction_lines(case, result)
+    rows += [*_bar_lines(case, result), *_reaction_lines(case, result)]
     rows += [("status", str(result.status)), ("judge", result.judge.sentence)]
     rows += [("", f"{name} {value:.2e}") for name, value in result.judge.residuals.items()]
     for comparison in result.comparisons:

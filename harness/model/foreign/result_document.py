@@ -12,6 +12,7 @@ import numpy as np
 from pydantic import BaseModel, ConfigDict, Field, model_validator
 
 from harness.model.assembly import Assembly
+from harness.model.bars import BAR_FORCES, DEAD_BAR_FORCES
 from harness.model.errors import InputError
 from harness.model.fields import LARGEST
 from harness.model.method import MOVING_FORCES, Answer, Finding, Status
@@ -21,7 +22,8 @@ Finite = Annotated[float, Field(ge=-LARGEST, le=LARGEST, strict=True)]
 Triples = list[tuple[Finite, Finite, Finite]]
 OF_INTERFACES = ("forces", "live_forces", "dead_forces", MOVING_FORCES)
 OF_BLOCKS = ("mechanism", "dilatant_mechanism")
-IN_DETAILS = ("live_forces", "dead_forces", MOVING_FORCES, "dilatant_mechanism", "lower_bound", "certificate")
+OF_BARS = (BAR_FORCES, DEAD_BAR_FORCES)
+IN_DETAILS = (*OF_INTERFACES[1:], *OF_BARS, "dilatant_mechanism", "lower_bound", "certificate")
 """Fields that an `Answer` holds among its details."""
 
 
@@ -50,6 +52,8 @@ class ResultDocument(BaseModel):
     dead_forces: Triples | None = Field(None, description="under the dead load: proof of `at its limit`")
     moving_forces: Triples | None = Field(None, description="measured with a mechanism of flow `approximate`")
     dilatant_mechanism: Triples | None = Field(None, description="proof of `falls` beside a measured motion")
+    bar_forces: list[Finite] | None = Field(None, description="tensions of the ties and then the props, with `forces`")
+    dead_bar_forces: list[Finite] | None = Field(None, description="the same, with `dead_forces`")
     lower_bound: Finite | None = Field(None, description="no collapse state lies below it, in floating point")
     certificate: dict[str, Any] | None = Field(None, description="as `drystone bound` writes it: it is checked")
     iterations: Annotated[int, Field(ge=0)] = 0
@@ -87,6 +91,11 @@ def answer_of(data: Any, assembly: Assembly, source: str) -> Answer:
             columns = "n1, n2, s of every interface" if name in OF_INTERFACES else "ux, uy, omega of every block"
             remedy = f"Give {columns} in the order of the wall (`drystone expand` prints it)"
             raise InputError(f"it has {len(listed)} entries, and should have {rows}", remedy, name, source)
+    for name in OF_BARS:
+        listed = getattr(found, name)
+        if listed is not None and len(listed) != len(assembly.bars):
+            problem = f"it has {len(listed)} entries, and should have {len(assembly.bars)}"
+            raise InputError(problem, "Give the tension of every tie and then of every prop", name, source)
     own = {name: value for name in IN_DETAILS if (value := getattr(found, name)) is not None}
     shapes = {"forces": assembly.n_interfaces, "mechanism": assembly.n_blocks}
     fields = {
@@ -124,7 +133,7 @@ def answer_from_file(data: Any, assembly: Assembly, source: str) -> Answer:
     details = within if isinstance(within, dict) else {}
     names = ("finding", "multiplier", "forces", "forces_multiplier", "mechanism", "flow")
     taken = {name: data[name] for name in names if name in data}
-    proofs = ("live_forces", "dead_forces", "dilatant_mechanism")
+    proofs = ("live_forces", "dead_forces", "dilatant_mechanism", *(OF_BARS if len(assembly.bars) else ()))
     taken |= {name: listed for name in proofs if (listed := data.get(name, details.get(name))) is not None}
     return answer_of({"format": "result/1", "sentence": "An answer from a file."} | taken, assembly, source)
 
