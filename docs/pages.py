@@ -49,10 +49,10 @@ def columns_page(folder: Path) -> None:
 def settings_page(folder: Path) -> None:
     """Every installed method with its settings."""
     from harness.model.errors import InputError
-    from harness.model.method import load_method, method_names
+    from harness.model.method import listed_methods, load_method
 
     parts = ["# Methods and their settings", ""]
-    for name in method_names():
+    for name in listed_methods():
         try:
             method = load_method(name)
         except InputError as error:

@@ -19,8 +19,8 @@ from harness.model.method import (
     Answer,
     Method,
     checked_method,
+    listed_methods,
     load_method,
-    method_names,
 )
 from harness.model.proof import Proof, proof_of
 from harness.model.reading import validate
@@ -139,7 +139,7 @@ def methods() -> list[str]:
     >>> "la" in methods() and "fe" in methods() and "de" in methods()
     True
     """
-    return method_names()
+    return listed_methods()
 
 
 def analyse(

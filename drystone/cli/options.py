@@ -126,6 +126,33 @@ def say_json(text: str) -> None:
     )
 
 
+def _names(_context: click.Context, _option: click.Parameter, given: tuple[str, ...] | None) -> list[str] | None:
+    """Names out of words with commas, each once; None where the option is not given."""
+    if not given:
+        return None
+    names = list(dict.fromkeys(name.strip() for words in given for name in words.split(",") if name.strip()))
+    if not names:
+        raise click.BadParameter("it names no method; `drystone list methods` shows them.")
+    return names
+
+
+def methods_option(default: str) -> Callable[[Callable[..., Any]], Callable[..., Any]]:
+    """The option `--methods A,B`, with `--method` for the same.
+
+    Args:
+        default: what the help says is taken without it.
+    """
+    return click.option(
+        "--methods",
+        "--method",
+        "methods",
+        multiple=True,
+        callback=_names,
+        metavar="A,B,...",
+        help=f"Names of methods, separated by commas.  [default: {default}]",
+    )
+
+
 class OutputFile(click.Path):
     """The path of a file to write. What stands there is looked at before the work begins, not after it."""
 

@@ -27,7 +27,7 @@ from drystone.cli.options import (
 )
 from drystone.cli.settings import settings_of
 from drystone.walls import Wall
-from harness.engine.plan import check_methods, find_cases
+from harness.engine.plan import check_methods, check_order, find_cases
 from harness.engine.run import Limits
 from harness.model.envelope import envelope
 from harness.model.errors import InputError
@@ -80,6 +80,7 @@ def run(
     memory: int,
 ) -> None:
     """Run METHOD on CASE (an id, a case folder or a WALL.json) and print what it finds."""
+    check_order(method, case)
     check_methods([method], "method")
     (found,) = find_cases([case], None, folders)
     chosen = settings_of(method, settings)

@@ -53,6 +53,7 @@ from harness.engine.residuals import (
     moving_parts,
     power,
 )
+from harness.model.answer_check import checked
 from harness.model.assembly import Assembly, FloatArray
 from harness.model.bars import BAR_FORCES, DEAD_BAR_FORCES, Bars
 from harness.model.displaced import DisplacedState
@@ -169,7 +170,7 @@ def _with_motion(said: Judgement, residuals: dict[str, float], fault: str) -> Ju
 def answered(method: Method, assembly: Assembly, **settings: Any) -> tuple[Result, Judgement]:
     """What a method answers in this process, and what the judge says of it."""
     check_takes(method, assembly)
-    answer = method.solve(assembly.copied(), method.Settings.model_validate(settings))
+    answer = checked(method.solve(assembly.copied(), method.Settings.model_validate(settings)), assembly)
     result = result_of(
         answer, assembly, case=assembly.name, method=method.name, family=method.family, traits=method.traits
     )
@@ -216,14 +217,18 @@ def _judge_collapse(
 ) -> Judgement:
     """Collapse at the multiplier that is reported, by a whole collapse state."""
     multiplier = result.multiplier
-    if forces is None or multiplier is None:
-        return _said(tolerance, False, NO_FORCES if forces is None else "It gives no multiplier.")
+    if multiplier is None:
+        return _said(tolerance, False, "It gives no multiplier.")
+    if forces is None:
+        return _said(tolerance, None, NO_FORCES)
     at = multiplier if result.forces_multiplier is None else result.forces_multiplier
     beyond = _beyond(assembly, result)
     if mechanism is None:
-        said = _said(tolerance, False, "It gives no mechanism, so the collapse state cannot be checked.")
         found = force_residuals(assembly, forces, at, beyond=beyond)
-        return said.model_copy(update={"residuals": found})
+        said = _decide(found, tolerance, f"The contact forces at multiplier {at:.6g}")
+        said.accepted = None if said.accepted else said.accepted
+        said.sentence += " It gives no mechanism, so that it collapses there is not shown."
+        return said
     residuals = collapse_residuals(assembly, forces, at, mechanism, result.flow, beyond)
     residuals["multiplier"] = apart(multiplier, at)
     said = _decide(residuals, tolerance, f"The collapse state ({result.flow} flow)")
@@ -288,7 +293,7 @@ def _judge_standing(assembly: Assembly, forces: FloatArray | None, result: Resul
     elif assembly.n_free == 0:
         return _said(tolerance, True, "Every block is fixed: nothing can move.")
     else:
-        return _said(tolerance, False, NO_FORCES)
+        return _said(tolerance, None, NO_FORCES)
     said = _decide(residuals, tolerance, what)
     if said.accepted and far:
         said.accepted, said.sentence = None, said.sentence + MOVED_FAR

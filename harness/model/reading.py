@@ -10,7 +10,7 @@ import stat
 from collections import Counter
 from collections.abc import Callable
 from pathlib import Path
-from typing import Any, TypeVar
+from typing import IO, Any, TypeVar
 
 from pydantic import BaseModel, ValidationError
 
@@ -84,7 +84,7 @@ def read_bytes(path: Path, limit: int = LARGEST_FILE) -> bytes:
             status = os.fstat(file.fileno())
             if not stat.S_ISREG(status.st_mode):
                 raise InputError("it is not a regular file", "Write its content to a file first", source=source)
-            content = file.read(limit + 1) if status.st_size <= limit else b""
+            content = _up_to(limit + 1, file) if status.st_size <= limit else b""
     except FileNotFoundError:
         raise InputError("there is no such file", "Check the path", source=source) from None
     except (OSError, ValueError) as error:
@@ -98,6 +98,14 @@ def read_bytes(path: Path, limit: int = LARGEST_FILE) -> bytes:
             source=source,
         )
     return content
+
+
+def _up_to(most: int, file: IO[bytes]) -> bytes:
+    """So many bytes of a file at most; `read` of so many would reserve memory for all of them."""
+    content = bytearray()
+    while len(content) < most and (part := file.read(min(most - len(content), 2**20))):
+        content += part
+    return bytes(content)
 
 
 def _without_waiting(path: str, flags: int) -> int:

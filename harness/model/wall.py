@@ -365,6 +365,8 @@ class Wall(Strict):
     title: str = ""
     units: Units = Field(default_factory=Units)
     metadata: dict[str, Any] = Field(default_factory=dict, description="free: source, author, remarks")
+    schema_address: str = Field("", alias="$schema", description="for editors that check and complete a file")
+    comment: str | list[str] = Field("", description="free: remarks of the author")
     doubts: list[str] = Field(
         default_factory=list,
         description="what was ignored or assumed when the drawing was imported; a warning with every answer",

@@ -10,11 +10,12 @@ from typing import Any
 import numpy as np
 import pytest
 
-from drystone.cli.terminal import foreign_answer, print_result
+from drystone.cli.terminal import print_result
 from harness.engine.judge import judge
 from harness.model.assembly import Assembly
 from harness.model.build import build
 from harness.model.errors import InputError
+from harness.model.foreign.result_document import answer_from_file
 from harness.model.method import Answer, Finding, Status, load_method
 from harness.model.proof import Proof
 from harness.model.reading import read_json, read_wall
@@ -65,14 +66,14 @@ def bonded() -> tuple[Assembly, Answer]:
 )
 def test_wrong_answer_is_not_accepted(name: str, outcome: str):
     wall = read_wall(DATA / f"{name}.wall.json").assembly
-    answer = foreign_answer(read_json(DATA / f"{name}.result.json"), wall, name)
+    answer = answer_from_file(read_json(DATA / f"{name}.result.json"), wall, name)
     assert said(wall, answer).outcome == outcome
 
 
 def test_text_is_no_number():
     wall = read_wall(DATA / "nan-mech.wall.json").assembly
     with pytest.raises(InputError, match="mechanism"):
-        foreign_answer(read_json(DATA / "nan-mech.result.json"), wall, "nan-mech")
+        answer_from_file(read_json(DATA / "nan-mech.result.json"), wall, "nan-mech")
 
 
 @pytest.mark.parametrize("bad", [np.nan, np.inf])
@@ -241,7 +242,7 @@ def test_answer_of_a_run_is_judged_from_its_file_as_in_the_run(loads: dict[str, 
     offsets = {"offsets": [0.0, 0.2, 0.3]} if loads is PUSH else {}
     wall = assembly(stack(3) | offsets, 0.5, loads=loads)
     result = as_result(wall, state_of(wall, "fe"))
-    again = foreign_answer(result.model_dump(mode="json"), wall, "a file")
+    again = answer_from_file(result.model_dump(mode="json"), wall, "a file")
     assert result.finding in (Finding.FALLS, Finding.UNBOUNDED)
     assert said(wall, again, 1e-8).outcome == "accepted"
 
