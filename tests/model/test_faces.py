@@ -172,6 +172,17 @@ def test_given_joints_that_are_none_are_refused_by_their_number(joint: dict[str,
     assert "interfaces[0]" in str(beside.value)
 
 
+@pytest.mark.parametrize("size", [1e-3, 1.0, 1e6])
+def test_sides_of_a_given_joint_are_relative_to_the_blocks(size: float):
+    """A joint below two blocks in a row, of which one is higher by 1e-10 of a block: it has no side."""
+    base = box("base", -size, -size, 10.0 * size, size, fixed=True)
+    row = [box("a", 0.0, 0.0, size, size), box("b", size, 1e-10 * size, size, size)]
+    joint = {"between": ["a", "b"], "from": [0.5 * size, -0.5 * size], "to": [1.5 * size, -0.5 * size]}
+    wall = {"format": "wall/1", "unit_weight": 20.0, "friction": 0.5, "blocks": [base, *row]}
+    with pytest.raises(InputError, match="do not lie on opposite sides"):
+        build(Wall.model_validate(wall | {"interfaces": {"given": [joint]}}))
+
+
 @pytest.mark.parametrize("turned", [False, True])
 @pytest.mark.parametrize("swapped", [False, True])
 @pytest.mark.parametrize("far", [0.0, 100.0])
