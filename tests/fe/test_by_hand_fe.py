@@ -6,10 +6,12 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from pydantic import ValidationError
 
-from methods.fe.settings import GapSpringsSettings
+from methods.fe.settings import ConvexSettings, GapSpringsSettings, NewtonSettings
 from methods.springs.model.factor import DenseFactor, Factor, SingularTangent, make_factor, refactor_any
 from methods.springs.model.gap_law import OPEN, SLIP_PLUS, STICK
+from methods.springs.model.settings import GapSettings
 from methods.springs.model.wall_model import WallModel, build_model
 from methods.springs.path.continuation import PathFollower
 from methods.springs.path.direction import PathDirection
@@ -96,3 +98,21 @@ def test_a_wall_that_does_not_move_is_no_collapse_state() -> None:
     assert state.residuals["work"] == 1.0
     assert state.residuals["complementarity"] == np.inf
     assert state.work_multiplier == np.inf
+
+
+@pytest.mark.parametrize(
+    ("settings", "least", "refused"),
+    [
+        (GapSpringsSettings, {"max_events": 1, "load_steps": 0}, {"max_events": 0, "load_steps": -1}),
+        (GapSpringsSettings, {"load_steps": 1000, "friction_cap": 1e-9}, {"load_steps": 1001, "friction_cap": 0.0}),
+        (NewtonSettings, {"cuts": 0, "displacement_steps": 0}, {"cuts": -1, "displacement_steps": -1}),
+        (ConvexSettings, {"fixed_points": 1, "max_blocks": 1}, {"fixed_points": 0, "max_blocks": 0}),
+    ],
+)
+def test_settings_reach_to_their_ends_and_no_further(
+    settings: type[GapSettings], least: dict[str, float], refused: dict[str, float]
+) -> None:
+    assert settings(**least).model_dump(include=set(least)) == least
+    for name, value in refused.items():
+        with pytest.raises(ValidationError, match=name):
+            settings(**{name: value})

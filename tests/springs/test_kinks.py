@@ -144,6 +144,13 @@ def test_of_breakpoints_within_the_tolerance_the_one_crossed_fastest_is_taken() 
     assert (step, number) == (2.0, 0)
 
 
+def test_of_breakpoints_met_together_and_equally_fast_the_first_point_changes() -> None:
+    """Symmetric walls meet such ties, and their path must not depend on rounding."""
+    assert following([SLIPPING, CLOSING, CLOSING]) == (2.0, 1, SLIP_MINUS)
+    sticking = (SLIP_PLUS, -1.0, 1.5, 0.0, -0.25)
+    assert following([sticking, sticking]) == (2.0, 0, STICK)
+
+
 def test_a_change_just_made_is_not_taken_back_and_any_other_is() -> None:
     assert following([CLOSING, SLIPPING], barred_point=0, barred_state=SLIP_MINUS) == (4.0, 1, SLIP_PLUS)
     assert following([CLOSING, SLIPPING], barred_point=0, barred_state=SLIP_PLUS) == (2.0, 0, SLIP_MINUS)
