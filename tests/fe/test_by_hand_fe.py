@@ -8,9 +8,11 @@ import numpy as np
 import pytest
 from pydantic import ValidationError
 
+from harness.model.load_steps import STATES
+from methods.fe.load_steps import joint_states
 from methods.fe.settings import ConvexSettings, GapSpringsSettings, NewtonSettings
 from methods.springs.model.factor import DenseFactor, Factor, SingularTangent, make_factor, refactor_any
-from methods.springs.model.gap_law import OPEN, SLIP_PLUS, STICK
+from methods.springs.model.gap_law import OPEN, SLIP_MINUS, SLIP_PLUS, STICK
 from methods.springs.model.settings import GapSettings
 from methods.springs.model.wall_model import WallModel, build_model
 from methods.springs.path.continuation import PathFollower
@@ -116,3 +118,28 @@ def test_settings_reach_to_their_ends_and_no_further(
     for name, value in refused.items():
         with pytest.raises(ValidationError, match=name):
             settings(**{name: value})
+
+
+def test_states_of_a_joint_are_those_of_its_points() -> None:
+    """It rocks where an end is open, opens where all points are, and slips where all that touch do."""
+    model = build_model(block_on_halves((0.6, 0.4)), GapSettings(points=4))
+    first = np.flatnonzero(model.interface == 0)
+    ends = [int(first[model.position[first] == place][0]) for place in (0.0, 1.0)]
+    inner = first[(model.position[first] > 0.0) & (model.position[first] < 1.0)]
+    assert len(inner) > 0
+
+    def named(others: int, at: object = (), there: int = STICK) -> str:
+        state = np.full(model.n_points, STICK)
+        state[first] = others
+        state[np.array(at, dtype=int)] = there
+        names = joint_states(model, state)
+        assert STATES[names[1]] == "stick"  # the other joint
+        return STATES[names[0]]
+
+    assert [named(state) for state in (STICK, SLIP_PLUS, SLIP_MINUS, OPEN)] == ["stick", "slip", "slip", "open"]
+    for end in ends:
+        assert named(STICK, end, OPEN) == named(SLIP_PLUS, end, OPEN) == "rock"
+        assert named(STICK, end, SLIP_PLUS) == "stick"
+    assert named(STICK, inner, OPEN) == "stick"
+    assert named(SLIP_PLUS, inner, OPEN) == "slip"
+    assert named(OPEN, inner, STICK) == "rock"
