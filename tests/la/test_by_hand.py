@@ -11,12 +11,15 @@ from harness.model.method import Answer, Finding, Status
 from methods.la.answers import moving_blocks
 from methods.la.bounds import bounded, certified, with_bound
 from methods.la.certify.tree_certificate import certificate
+from methods.la.core.exact import exact_forces
+from methods.la.core.newton_matrix import NewtonMatrix
 from methods.la.core.problem import Problem, make_problem
 from methods.la.core.state import CollapseState, friction_work, local_residuals, residuals
-from methods.la.core.vertex_programmes import ForceProgramme
+from methods.la.core.vertex_programmes import ForceProgramme, row_scaling
 from methods.la.search import LimitAnalysis
 from methods.la.settings import BoundSettings, SearchSettings
 from methods.proof.search.window_search import Bracket, Stop
+from tests.known_walls import box, of_blocks
 from tests.la.bodies import block_on_halves
 
 
@@ -143,3 +146,29 @@ def test_the_mechanism_beside_an_extreme_work_has_that_work_of_the_dead_load(pro
     assert abs(float(problem.dead @ velocities)) == pytest.approx(abs(work), abs=1e-9)
     assert problem.imbalance(forces, 0.0) == pytest.approx(0.0, abs=1e-9)
     assert abs(work) == pytest.approx(1.0 if greatest else 0.0, abs=1e-9)
+
+
+def test_exact_forces_bear_the_loads_at_the_multiplier_of_the_live_load_and_without_one(problem: Problem) -> None:
+    """Near given forces whose shears add to .09 and that lack balance by some hundredths of the weight."""
+    tight = np.zeros((2, 4), dtype=bool)
+    near = np.array([[0.3, 0.2, -0.05], [0.2, 0.3, -0.04]])
+    forces, multiplier = exact_forces(problem, NewtonMatrix(problem), near, 0.1, tight)
+    assert abs(problem.imbalance(forces, multiplier)).max() < 1e-14
+    assert multiplier == pytest.approx(0.09, abs=0.03)  # by as much as the given forces lack
+    bare = replace(problem, live=np.zeros_like(problem.live))
+    still, kept = exact_forces(bare, NewtonMatrix(bare), near, 0.1, tight)
+    assert abs(bare.imbalance(still, 0.0)).max() < 1e-14
+    assert kept == 0.1
+
+
+@pytest.mark.parametrize("ratio", [1e9, 3.3e12])
+def test_units_of_uneven_loads_are_the_powers_of_two_next_to_them(ratio: float) -> None:
+    """A light stone beside a heavy one: the equilibrium of each is measured by the power of two next to its load."""
+    wall = of_blocks([box("a", 0.0, 0.0, weight=1.0), box("b", 4.0, 0.0, weight=ratio)])
+    problem = make_problem(wall)
+    scaling = row_scaling(problem)
+    assert scaling is not None
+    own = abs(problem.dead).reshape(-1, 3).max(axis=1)
+    assert np.log2(scaling.blocks) == pytest.approx(np.round(np.log2(own)), abs=1e-12)
+    assert np.log2(scaling.blocks).tolist() == np.round(np.log2(scaling.blocks)).tolist()
+    assert row_scaling(make_problem(of_blocks([box("a", 0.0, 0.0), box("b", 4.0, 0.0)]))) is None
