@@ -10,7 +10,7 @@ import shapely
 from pydantic import ValidationError
 
 from harness.model.assembly import IntArray
-from harness.model.method import Finding, Status
+from harness.model.method import Answer, Finding, Status
 from methods.de.answers import solve_by_holds
 from methods.de.damped_holds import DampedHolds, ReleasedCollapse
 from methods.de.engines.edges import FacingEdges
@@ -21,7 +21,7 @@ from methods.de.engines.pymunk_joints import PymunkJoints
 from methods.de.engines.sequential_impulses import SequentialImpulses
 from methods.de.engines.strips import CannotModel, require_lengths
 from methods.de.settings import ReleaseSettings, SoftSettings, SweepSettings
-from methods.de.soft import DeformableJoints
+from methods.de.soft import DeformableJoints, _saying_soft
 from methods.de.uneven.gapped import GAPPED, GappedWall
 from methods.de.uneven.settled_contacts import SETTLING, with_contacts
 from tests.walls import assembly, running_bond, stack
@@ -170,3 +170,14 @@ def test_residuals_that_a_user_may_ask_for_are_shares_of_the_weight(name: str):
     for value in (0.0, 1.0, 1.5):
         with pytest.raises(ValidationError, match=name):
             SweepSettings(**{name: value})
+
+
+@pytest.mark.parametrize(("lean", "words"), [(0.052, "rigid ones would bear about +5.2 %"), (-0.031, "about -3.1 %")])
+def test_an_answer_says_by_how_much_rigid_joints_would_change_it(lean: float, words: str):
+    """The lean is the share of the multiplier that the deformation of the joints takes."""
+    found = Answer(Status.OK, Finding.COLLAPSES, "fell", 0.4, details={"lean": lean})
+    assert words in _saying_soft(found, SoftSettings(lean=0.03)).sentence
+    assert found.details["soft_joints"] is True
+    firm = Answer(Status.OK, Finding.COLLAPSES, "fell", 0.4, details={"lean": lean})
+    assert _saying_soft(firm, SoftSettings(lean=0.06)).sentence == "fell"
+    assert firm.details["soft_joints"] is False

@@ -119,6 +119,7 @@ def test_the_first_breakpoint_is_taken_whatever_the_order_of_points() -> None:
         ((SLIP_MINUS, -1.0, -1.5, 0.0, 0.25), 2.0, STICK),
         ((OPEN, 0.5, -1.0, -0.25, 0.75), 2.0, SLIP_PLUS),  # by its shear when it closes, 1/2
         ((OPEN, 0.0, 1.0, -0.25, 0.0), 0.0, SLIP_PLUS),
+        ((SLIP_PLUS, -1.0, 1.0, 0.0, -0.25), 0.0, STICK),
     ],
 )
 def test_step_to_the_breakpoint_of_one_point(point: Any, step: float, behind: int) -> None:
