@@ -19,9 +19,10 @@ from methods.de.engines.mass_scaling import MassScaling, number_of_courses
 from methods.de.engines.pymunk_blocks import PymunkBlocks, convex_parts
 from methods.de.engines.pymunk_joints import PymunkJoints
 from methods.de.engines.sequential_impulses import SequentialImpulses
+from methods.de.engines.soft_wall import SoftWall
 from methods.de.engines.strips import CannotModel, require_lengths
-from methods.de.settings import ReleaseSettings, SoftSettings, SweepSettings
-from methods.de.soft import DeformableJoints, _saying_soft
+from methods.de.settings import SOFT_HOLDS, ReleaseSettings, SoftSettings, SweepSettings
+from methods.de.soft import DeformableJoints, Holds, _fall_above, _saying_soft
 from methods.de.uneven.gapped import GAPPED, GappedWall
 from methods.de.uneven.settled_contacts import SETTLING, with_contacts
 from tests.walls import assembly, running_bond, stack
@@ -181,3 +182,12 @@ def test_an_answer_says_by_how_much_rigid_joints_would_change_it(lean: float, wo
     firm = Answer(Status.OK, Finding.COLLAPSES, "fell", 0.4, details={"lean": lean})
     assert _saying_soft(firm, SoftSettings(lean=0.06)).sentence == "fell"
     assert firm.details["soft_joints"] is False
+
+
+def test_the_fall_above_a_multiplier_is_sought_by_rises_that_double():
+    """From .45 by .9e-3, 1.8e-3 and so on: the block slides at .5, between .45 + 28.8e-3 and .45 + 57.6e-3."""
+    wall = assembly(stack(1, 0.4, 0.2), 0.5)
+    holds = Holds(SoftWall(wall, 1e4, 0.5, 1e-3), SoftSettings())
+    assert holds.rests(0.0)
+    assert _fall_above(holds, 0.45, 1.0) == pytest.approx(0.45 + 64 * SOFT_HOLDS.beyond * 0.45)
+    assert _fall_above(holds, 0.45, 0.48) is None
