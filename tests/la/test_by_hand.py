@@ -16,6 +16,9 @@ from methods.la.core.newton_matrix import NewtonMatrix
 from methods.la.core.problem import Problem, make_problem
 from methods.la.core.state import CollapseState, friction_work, local_residuals, residuals
 from methods.la.core.vertex_programmes import ForceProgramme, row_scaling
+from methods.la.interior.interior_point import PathResult
+from methods.la.interior.newton_step import Point
+from methods.la.interior.region import in_whole, moving_region
 from methods.la.search import LimitAnalysis
 from methods.la.settings import BoundSettings, SearchSettings
 from methods.proof.search.window_search import Bracket, Stop
@@ -52,6 +55,30 @@ def test_residuals_of_yield_and_complementarity_by_hand(problem: Problem) -> Non
     lifted = residuals(problem, state(problem, [[0.25, 0.25, 0.0], [0.25, 0.25, 0.0]], 0.0, [1.0, 1.0, 0.0]))
     slip = float(problem.slacks(np.array([[0.25, 0.25, 0.0]] * 2))[:, 2].sum())  # both halves slip one way at rate 1
     assert lifted["complementarity"] == pytest.approx(1.0 + slip)
+
+
+def test_forces_that_lack_are_relative_to_the_weight_of_the_whole_wall() -> None:
+    """Two equal blocks without forces: half of the weight is out of balance at either; a tension of its tenth."""
+    pair = make_problem(of_blocks([box("a", 0.0, 0.0), box("b", 4.0, 0.0)]))
+    tenth = 0.1 * 40.0 / pair.unit_force
+    none = CollapseState(np.zeros((2, 3)), 0.0, np.zeros(6), np.zeros((2, 4), dtype=bool))
+    assert residuals(pair, none)["equilibrium"] == pytest.approx(0.5)
+    pulled = replace(none, forces=np.array([[-tenth, 0.0, 0.0], [0.0, 0.0, 0.0]]))
+    assert residuals(pair, pulled)["yield"] == pytest.approx(0.1)
+
+
+def test_a_mechanism_of_a_part_is_one_of_the_whole_wall_with_the_rates_of_its_motion() -> None:
+    """The second of two blocks slides; its motion in the part has another scale than the live work of the whole."""
+    pair = make_problem(of_blocks([box("a", 0.0, 0.0), box("b", 4.0, 0.0, 2.0, 1.0)]))
+    sliding = np.array([0.0, 0.0, 0.0, 1.0, 0.0, 0.0])
+    region = moving_region(pair, sliding)
+    assert region.kept.tolist() == [False, True]
+    motion = np.array([7.0, 0.0, 0.0])
+    rates = region.problem.rates_of_velocities(motion, associated=True)
+    point = Point(np.ones((1, 4)), 0.5, motion, rates)
+    whole = in_whole(pair, region, PathResult(point, True, 1, 0.0, 0.0, 0.0, [])).point
+    assert float(pair.live @ whole.velocities) == pytest.approx(pair.live_work)
+    assert whole.rates == pytest.approx(pair.rates_of_velocities(whole.velocities, associated=True), abs=1e-12)
 
 
 def test_work_of_friction_as_a_share_of_the_live_load_at_its_multiplier(problem: Problem) -> None:

@@ -186,6 +186,12 @@ def test_of_both_breakpoints_of_a_point_the_nearer_is_coming() -> None:
     points, targets = np.full(2, -1), np.full(2, -1)
     assert coming_breakpoints(*arrays([point]), points, targets) == 1
     assert (points[0], targets[0]) == (0, SLIP_MINUS)
+    sooner = (OPEN, 0.25, 1.0, -0.25, 0.0)  # closes after one step, before the other slips
+    assert coming_breakpoints(*arrays([point, sooner]), points, targets) == 2
+    assert points.tolist() == [1, 0]
+    slower = (STICK, -1.0, 0.0, 0.0, -0.25)  # slips after four
+    assert coming_breakpoints(*arrays([slower, point]), points, targets) == 2
+    assert points.tolist() == [1, 0]
     both = (SLIP_PLUS, -1.0, 1.5, 0.25, -0.125)  # opens after 4; shear 1.5 - t/8 meets 1 - t/4 nowhere
     assert coming_breakpoints(*arrays([both]), points, targets) == 1
     assert targets[0] == OPEN
