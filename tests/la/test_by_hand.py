@@ -16,14 +16,15 @@ from methods.la.core.newton_matrix import NewtonMatrix
 from methods.la.core.problem import Problem, make_problem
 from methods.la.core.state import CollapseState, friction_work, local_residuals, residuals
 from methods.la.core.vertex_programmes import ForceProgramme, row_scaling
+from methods.la.interior.associated import _by_interior_point, solve_associated
 from methods.la.interior.interior_point import PathResult
-from methods.la.interior.newton_step import Point
+from methods.la.interior.newton_step import Direction, Point
 from methods.la.interior.region import in_whole, moving_region
 from methods.la.search import LimitAnalysis
 from methods.la.settings import BoundSettings, SearchSettings
 from methods.proof.search.window_search import Bracket, Stop
 from tests.known_walls import box, of_blocks
-from tests.la.bodies import block_on_halves
+from tests.la.bodies import block_on_halves, running_bond
 
 
 @pytest.fixture(scope="module")
@@ -199,3 +200,23 @@ def test_units_of_uneven_loads_are_the_powers_of_two_next_to_them(ratio: float) 
     assert np.log2(scaling.blocks) == pytest.approx(np.round(np.log2(own)), abs=1e-12)
     assert np.log2(scaling.blocks).tolist() == np.round(np.log2(scaling.blocks)).tolist()
     assert row_scaling(make_problem(of_blocks([box("a", 0.0, 0.0), box("b", 4.0, 0.0)]))) is None
+
+
+def test_a_change_and_half_another_add_in_every_part() -> None:
+    def change(k: float) -> Direction:
+        return Direction(np.full((2, 3), k), np.full((2, 4), k), k, np.full(3, k), np.full((2, 4), k))
+
+    both = change(3.0).plus(0.5, change(4.0))
+    for name in ("forces", "slack", "multiplier", "velocities", "rates"):
+        assert np.all(getattr(both, name) == 5.0), name
+
+
+@pytest.mark.parametrize("friction", [0.3, 0.7])
+def test_the_central_path_alone_ends_at_the_associated_maximum_of_the_simplex_method(friction: float) -> None:
+    problem = make_problem(running_bond(3, 2, 0.2, friction))
+    newton = NewtonMatrix(problem)
+    ended, least = _by_interior_point(problem, newton), solve_associated(problem, newton, "highs")
+    assert ended is not None
+    assert ended.state is not None
+    assert least.state is not None
+    assert ended.state.multiplier == pytest.approx(least.state.multiplier, rel=1e-9)
