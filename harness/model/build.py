@@ -98,7 +98,7 @@ def build(wall: Wall, name: str = "wall") -> Built:
     size = geometry.typical_size(shapes[~fixed])
     joints_found = find_joints(wall.interfaces, polygons, names, fixed, shapes, size)
     interfaces = joints_found.interfaces
-    block_a, block_b, face1, face2 = faces_of(interfaces, index, fixed)
+    block_a, block_b, face1, face2 = faces_of(joints_found, index, fixed)
     check_held(names, fixed, block_a, block_b, joints_found)
     trusted = joints_found.trusted
     normal = normals_of(polygons, centroids, block_a, block_b, face1, face2, interfaces, trusted=trusted, size=size)

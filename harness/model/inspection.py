@@ -186,7 +186,7 @@ def _lying(
             faults.append(error)
     index = {name: k for k, name in enumerate(names)}
     known = [item for item in joints.interfaces if set(item.between) <= index.keys()]
-    faults += faults_of_given(known, index, fixed)
+    faults += faults_of_given(joints, index, fixed)
     pairs = _joined(known, faults, index)
     held = fixed | _beside(polygons, hulls, limits.sight)
     faults += [floating(names, group, joints) for group in floating_groups(held, pairs)]
