@@ -12,6 +12,7 @@ import numpy as np
 
 from harness.model import geometry
 from harness.model.assembly import Assembly, BoolArray, FloatArray, IntArray, polygon_area
+from harness.model.bars import Bars
 from harness.model.errors import MOST_NAMED, InputError, Spot, first_few, of_each, raise_faults
 from harness.model.fields import MOST_BLOCKS
 from harness.model.input_checks import input_warnings, thickness_of
@@ -76,10 +77,9 @@ def build(wall: Wall, name: str = "wall") -> Built:
     Raises:
         InputError: naming the block, interface or load that is wrong; or it has load cases, each a wall of its own.
     """
-    if wall.load_cases:
+    if named := wall.load_case_fields:
         raise InputError(
-            f"it has {len(wall.load_cases)} load case(s), and one is built at a time: "
-            f"{first_few(list(wall.load_cases), MOST_NAMED)}",
+            f"it has {len(named)} load case(s), and one is built at a time: {first_few(named, MOST_NAMED)}",
             "Choose one with --load-case of run, compare or expand; compare answers all of them without",
             "load_cases",
         )
@@ -131,6 +131,10 @@ def build(wall: Wall, name: str = "wall") -> Built:
         assembly = _with_pressures(wall, blocks, assembly, size)
     if wall.settlements:
         assembly = replace(assembly, support_motion=_support_motion(wall, blocks, assembly))
+    if wall.ties or wall.props:
+        bars = _bars(wall, index)
+        prestress = np.where(fixed[:, None], 0.0, bars.generalised(bars.prestress, centroids))
+        assembly = replace(assembly, bars=bars, dead=assembly.dead + prestress)
     if laws.strong:
         faces = np.linalg.norm(assembly.face2 - assembly.face1, axis=1)
         area = np.asarray(faces * _joint_thickness(wall, blocks, assembly))
@@ -379,6 +383,27 @@ def _support_motion(wall: Wall, blocks: list[Block], assembly: Assembly) -> Floa
             turn = settlement.rotation
             motion[k] += [settlement.translation[0] - turn * y, settlement.translation[1] + turn * x, turn]
     return motion
+
+
+def _bars(wall: Wall, index: dict[str, int]) -> Bars:
+    """Ties and then props as arrays; tension is positive."""
+    given = [("tie", 1.0, tie) for tie in wall.ties] + [("prop", -1.0, prop) for prop in wall.props]
+    kinds = tuple(kind for kind, _, _ in given)
+    numbers = [*range(1, len(wall.ties) + 1), *range(1, len(wall.props) + 1)]
+    names = zip(kinds, numbers, given, strict=True)
+    prestress = np.array([sign * bar.prestress for _, sign, bar in given])
+    further = np.array([sign * bar.yield_force for _, sign, bar in given]) - prestress
+    return Bars(
+        names=tuple(bar.id or f"{kind} {number}" for kind, number, (_, _, bar) in names),
+        kinds=kinds,
+        block_a=np.array([index[bar.start.block] for _, _, bar in given]),
+        block_b=np.array([index[bar.end.block] for _, _, bar in given]),
+        end1=np.array([bar.start.at for _, _, bar in given], dtype=float),
+        end2=np.array([bar.end.at for _, _, bar in given], dtype=float),
+        prestress=prestress,
+        least=np.minimum(further, 0.0),
+        greatest=np.maximum(further, 0.0),
+    )
 
 
 def _joint_thickness(wall: Wall, blocks: list[Block], assembly: Assembly) -> FloatArray:

@@ -63,6 +63,12 @@ def _groups_and_supports(wall: Wall, blocks: list[Block]) -> list[InputError]:
                 problem, place = f'block "{point.block}" is fixed', f"{where}.points[{number}]"
                 spot = Spot((point.block,), point.at)
                 faults.append(InputError(problem, "Load a block that is free to move", place, spot=spot))
+    for kind, bars in (("ties", wall.ties), ("props", wall.props)):
+        for number, bar in enumerate(bars):
+            ends = (bar.start.block, bar.end.block)
+            if fixed.issuperset(ends):
+                remedy = "Join a block that is free to move to another or to a fixed one"
+                faults.append(InputError("both of its blocks are fixed", remedy, f"{kind}[{number}]", spot=Spot(ends)))
     return faults
 
 
@@ -88,6 +94,12 @@ def _named(wall: Wall) -> Iterator[tuple[str, str]]:
         for number, pressure in enumerate(load.pressures):
             for name in pressure.blocks or ():
                 yield f"{where}.pressures[{number}]", name
+    for kind, bars in (("ties", wall.ties), ("props", wall.props)):
+        for number, bar in enumerate(bars):
+            yield from ((f"{kind}[{number}].{end}", at.block) for end, at in (("from", bar.start), ("to", bar.end)))
+    for title, travelling in wall.travelling.items():
+        for name in travelling.blocks or ():
+            yield f"travelling.{title}", name
     for number, settlement in enumerate(wall.settlements):
         for name in settlement.blocks or ():
             yield f"settlements[{number}]", name

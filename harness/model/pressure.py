@@ -81,7 +81,8 @@ def pressure_forces(
         for begins, ends in _cut_at_level(pressure, start, along, first, last):
             points = start + np.outer([begins, ends], along)
             traction = _traction(pressure, points, [begins / length, ends / length], inward, unit_weight_factor)
-            extent = pressure.factor * thickness[block] * (ends - begins)
+            deep = thickness[block] if pressure.line_load is None else 1.0
+            extent = pressure.factor * deep * (ends - begins)
             weighted = np.array([[2.0, 1.0], [1.0, 2.0]]) @ traction
             arm = points - centroids[block]
             moment = float((arm[:, 0] * weighted[:, 1] - arm[:, 1] * weighted[:, 0]).sum())
@@ -154,7 +155,12 @@ def _cut_at_level(
 def _traction(
     pressure: Pressure, points: FloatArray, shares: Sequence[float], inward: FloatArray, unit_weight_factor: float
 ) -> FloatArray:
-    """Forces (2, 2) per area at two points (2, 2) of a face, where `shares` (2,) of the segment lie behind them."""
+    """Forces (2, 2) per area, of a line load per length, at two points (2, 2) of a face.
+
+    `shares` (2,) of the segment lie behind them.
+    """
+    if pressure.line_load is not None:
+        return np.tile(pressure.line_load, (2, 1))
     if pressure.water is not None:
         depth = np.maximum(0.0, pressure.water.level - points[:, 1])
         return np.outer(unit_weight_factor * pressure.water.unit_weight * depth, inward)

@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 
 from harness.model.assembly import Assembly, FloatArray
+from harness.model.bars import BAR_FORCES, DEAD_BAR_FORCES
 from harness.model.errors import first_few
 from harness.model.method import Answer, Finding, Status
 from methods.la.core.newton_matrix import NewtonMatrix
@@ -107,7 +108,7 @@ def with_residual(plastic: Answer, residual: Answer) -> Answer:
         "flow": residual.flow,
         "details": {
             name: residual.details[name]
-            for name in ("live_forces", "dilatant_mechanism", "dead_forces")
+            for name in ("live_forces", "dilatant_mechanism", "dead_forces", BAR_FORCES, DEAD_BAR_FORCES)
             if name in residual.details
         },
     }

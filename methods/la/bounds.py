@@ -8,6 +8,8 @@ from dataclasses import replace
 from fractions import Fraction
 from typing import Any
 
+import numpy as np
+
 from harness.model.answer_check import DEEPEST
 from harness.model.assembly import Assembly
 from harness.model.method import Answer, Finding, Status
@@ -18,7 +20,7 @@ from methods.la.core.problem import Problem
 from methods.la.find_certificate import account, beyond
 from methods.la.least import SAME_MULTIPLIER
 from methods.la.settings import BoundSettings
-from methods.proof.search.tuning import WINDOWS
+from methods.proof.search.options import PROVED
 from methods.proof.search.window_search import Bracket
 from methods.proof.verify.checker import verify
 from methods.proof.words import in_words
@@ -40,8 +42,13 @@ def with_bound(assembly: Assembly, problem: Problem, known: Answer, settings: Bo
     if known.details.get("stopped_by_limit"):
         return known
     if assembly.dilates or assembly.strong:
-        own, why = known.sentence.rstrip("."), "have dilatancy" if assembly.dilates else "have strength"
-        return replace(known, sentence=f"{own}. No bound below it is sought: some joints {why}.")
+        own, why = (
+            known.sentence.rstrip("."),
+            "some joints have dilatancy" if assembly.dilates else "joints have strength",
+        )
+        if np.any(assembly.friction < 0.0):  # as `harness.model.bars.with_bars_as_joints` writes them
+            why = "the wall has ties or props"
+        return replace(known, sentence=f"{own}. No bound below it is sought: {why}.")
     began = time.process_time()
     document = None
     if known.details["proved_least"]:
@@ -85,7 +92,7 @@ def certified(known: Answer, document: dict[str, Any] | None) -> Answer:
         return known
     lower, shown = verify(document)
     upper = Fraction(known.multiplier) if shown is None else shown
-    if lower < upper * (1 - Fraction(WINDOWS.proved)):
+    if lower < upper * (1 - Fraction(PROVED)):
         return replace(
             known,
             sentence=f"The least collapse multiplier known is {known.multiplier:.7g}; there is none from zero to below "
