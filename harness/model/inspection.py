@@ -116,7 +116,7 @@ def inspect(wall: Wall, name: str = "wall", before: Sequence[InputError] = ()) -
     blocks = written_out(wall)
     apart = _told_apart(blocks)
     fixed = np.array([block.fixed for block in blocks], dtype=bool)
-    bad, polygons = sorted_out(_outline, blocks)
+    bad, polygons = _outlines(blocks)
     faults = [*faults_of_wall(wall, blocks), *bad, *sorted_out(lambda block: weight_of(block, wall), blocks)[0]]
     faults += support_faults(fixed)
     doubts: list[Mark] = []
@@ -139,6 +139,14 @@ def inspect(wall: Wall, name: str = "wall", before: Sequence[InputError] = ()) -
     names = tuple(block.id for block in apart)
     outlines = tuple(polygons.get(k, np.array(block.polygon, dtype=float)) for k, block in enumerate(blocks))
     return Inspection(wall, names, outlines, fixed, tuple(_placed(mark, middle) for mark in _once(marks)), built)
+
+
+def _outlines(blocks: Sequence[Block]) -> tuple[list[InputError], dict[int, FloatArray]]:
+    """The faults of outlines that are no polygons, and the others by their numbers: all at once where all are sound."""
+    try:
+        return [], dict(enumerate(polygons_of(blocks)))
+    except InputError:
+        return sorted_out(_outline, blocks)
 
 
 def _outline(block: Block) -> FloatArray:
