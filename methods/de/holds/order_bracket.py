@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 from harness.model.assembly import FloatArray
 from methods.de.engines.engine import Engine
 from methods.de.holds.load_step import LoadStep, State, hold, least_motion, settle
-from methods.de.holds.motion import MotionProof
+from methods.de.holds.motion import MotionProof, StaticLimit
 from methods.de.settings import HoldSettings
 
 
@@ -121,6 +121,7 @@ class BracketSearch:
     Args:
         engine: the wall in that order.
         settings: steps and tolerances.
+        statics: the multipliers that statics bears on the wall.
         unit: multiplier at which the live load equals the dead load.
         order: name of the order.
 
@@ -128,9 +129,10 @@ class BracketSearch:
         states: multiplier and contact state of the engine of everything that was held, the highest last.
     """
 
-    def __init__(self, engine: Engine, settings: HoldSettings, unit: float, order: str) -> None:
+    def __init__(self, engine: Engine, settings: HoldSettings, statics: StaticLimit, unit: float, order: str) -> None:
         self.engine = engine
         self.settings = settings
+        self.statics = statics
         self.unit = unit
         self.found = OrderBracket(order)
         self.states: list[tuple[float, FloatArray]] = []
@@ -154,7 +156,7 @@ class BracketSearch:
             self.engine.restore(found.state)
         self.engine.load(multiplier)
         patience = BRACKET.patience if multiplier == 0.0 else 1
-        end = hold(self.engine, self.settings, patience)
+        end = hold(self.engine, self.settings, self.statics, patience)
         found.steps = self.engine.steps
         found.holds += 1
         found.trials.append((multiplier, end.residual))
@@ -248,7 +250,7 @@ def held_forces(engine: Engine, settings: HoldSettings, found: OrderBracket) -> 
 
 
 def mechanism_at(
-    engine: Engine, settings: HoldSettings, found: OrderBracket, excess: float = BRACKET.excess
+    engine: Engine, settings: HoldSettings, statics: StaticLimit, found: OrderBracket, excess: float = BRACKET.excess
 ) -> tuple[FloatArray, FloatArray]:
     """Velocity field (n, 3) from the highest held state and the contact forces (m, 3) that were measured with it.
 
@@ -259,5 +261,5 @@ def mechanism_at(
     assert found.state is not None
     engine.restore(found.state)
     engine.load(found.moving if found.nothing else excess * found.middle)
-    velocity = hold(engine, settings).velocity
+    velocity = hold(engine, settings, statics).velocity
     return velocity, engine.contact_forces()
