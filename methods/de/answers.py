@@ -13,6 +13,7 @@ from harness.model.method import MOVING_FORCES, Answer, Finding, OutOfTime, Stat
 from methods.de.engines.engine import Engine
 from methods.de.engines.mass_scaling import MassScaling, courses, insertion_orders, tunings
 from methods.de.holds.bracket_state import BracketState, stopped_answer
+from methods.de.holds.motion import StaticLimit
 from methods.de.holds.order_bracket import LOOSE, BracketSearch, OrderBracket, held_forces, mechanism_at
 from methods.de.settings import HoldSettings
 
@@ -49,14 +50,15 @@ def solve_by_holds(
     course = courses(assembly)
     orders = insertion_orders(assembly, course, settings.orders, settings.seed)
     candidates = candidates or tunings(course, settings.mass_decay)
-    known = BracketState(len(orders))
+    known, statics = BracketState(len(orders)), StaticLimit(assembly)
 
-    def searches(tuning: MassScaling, first: int) -> list[BracketSearch]:
-        return [BracketSearch(make_engine(b, j, tuning), settings, unit, name) for name, b, j in orders[first:]]
+    def searches(tuning: MassScaling, first: int, last: int | None = None) -> list[BracketSearch]:
+        chosen = orders[first:last]
+        return [BracketSearch(make_engine(b, j, tuning), settings, statics, unit, name) for name, b, j in chosen]
 
     try:
         known.search_ahead(searches(candidates[0], 0), assembly.has_live_load)
-        tuning, first = first_bracket(assembly, settings, make_engine, orders[0], candidates, known)
+        tuning, first = first_bracket(lambda tuning: searches(tuning, 0, 1)[0], assembly, candidates, known)
         known.finished.append(first)
         if tuning is not candidates[0]:
             known.search_ahead(searches(tuning, 1), assembly.has_live_load)
@@ -70,7 +72,7 @@ def solve_by_holds(
         if best is None:
             return answer
         _, blocks, joints = next(order for order in orders if order[0] == best.order)
-        return _with_state(answer, make_engine(blocks, joints, tuning), settings, best)
+        return _with_state(answer, make_engine(blocks, joints, tuning), settings, statics, best)
     except OutOfTime:
         found = [search.found for search in known.counted()]
         return stopped_answer(assembly, known, tolerance, describe(assembly, found))
@@ -80,7 +82,9 @@ def _of_tuning(tuning: MassScaling) -> dict[str, Any]:
     return {"mass_decay": tuning.mass_decay, "damping": tuning.damping}
 
 
-def _with_state(answer: Answer, engine: Engine, settings: HoldSettings, best: OrderBracket) -> Answer:
+def _with_state(
+    answer: Answer, engine: Engine, settings: HoldSettings, statics: StaticLimit, best: OrderBracket
+) -> Answer:
     """The answer with the contact forces, the motion and the way of the order that is reported."""
     forces, residual = held_forces(engine, settings, best)
     answer = replace(
@@ -91,7 +95,7 @@ def _with_state(answer: Answer, engine: Engine, settings: HoldSettings, best: Or
         path=best.path,
     )
     if answer.finding is Finding.COLLAPSES:
-        answer.mechanism, forces = mechanism_at(engine, settings, best)
+        answer.mechanism, forces = mechanism_at(engine, settings, statics, best)
         answer.flow = "approximate"
         answer.details[MOVING_FORCES] = forces.tolist()
     answer.iterations += engine.steps
@@ -99,10 +103,8 @@ def _with_state(answer: Answer, engine: Engine, settings: HoldSettings, best: Or
 
 
 def first_bracket(
+    search: Callable[[MassScaling], BracketSearch],
     assembly: Assembly,
-    settings: HoldSettings,
-    make_engine: EngineMaker,
-    order: tuple[str, IntArray, IntArray],
     candidates: list[MassScaling],
     known: BracketState,
 ) -> tuple[MassScaling, OrderBracket]:
@@ -110,12 +112,14 @@ def first_bracket(
 
     The tunings decide only how fast a wall settles; a bracket of either is a bracket. A wall falls under its dead load
     only where it moves with every tuning: what one of them holds, stands.
+
+    Args:
+        search: begins the search of the first order with a tuning.
+        assembly: the wall; candidates: tunings to try in turn; known: what the searches found.
     """
-    name, blocks, joints = order
     tried: list[tuple[tuple[bool, float, bool, int], MassScaling, OrderBracket]] = []
     for k, tuning in enumerate(candidates):
-        search = BracketSearch(make_engine(blocks, joints, tuning), settings, assembly.load_unit, name)
-        found = known.searched(search, assembly.has_live_load)
+        found = known.searched(search(tuning), assembly.has_live_load)
         if found.held is not None and found.told(assembly.has_live_load):
             return tuning, found
         width = 1.0 if found.width is None else found.width

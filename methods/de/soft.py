@@ -20,7 +20,7 @@ from methods.de.engines.soft_wall import SoftWall
 from methods.de.holds.bracket_state import STOPPED, undecided, unmoved
 from methods.de.holds.load_step import ConvergenceMonitor, LoadStep, State
 from methods.de.holds.loading import raise_until_it_falls
-from methods.de.holds.motion import MotionProof, by_travel
+from methods.de.holds.motion import MotionProof, StaticLimit, by_travel
 from methods.de.holds.order_bracket import LOOSE
 from methods.de.settings import LOOK, RISE, SoftSettings
 from methods.numerics.claims import at_limit, with_proof
@@ -81,6 +81,7 @@ class Holds:
     def __post_init__(self) -> None:
         """The wall as it is."""
         self.rest = self.wall.save()
+        self._statics = StaticLimit(self.wall.assembly)
         high = number_of_courses(courses(self.wall.assembly)) / self.options.low
         self._looks = int(self.settings.hold_steps * max(1.0, high**2)) // LOOK
 
@@ -130,7 +131,7 @@ class Holds:
             motion = by_travel(wall.assembly, load, places - before, settings.reach)
             far = float(np.abs((places - before)[:, :2]).max(initial=0.0)) > away
             if motion is None and (over or watch.doubled or far):
-                motion = watch.motion(wall)
+                motion = watch.motion(wall, self._statics)
                 away *= 2.0 if far else 1.0
             if motion is not None:
                 return LoadStep(State.MOVING, residual, wall.steps - start, places - before, motion.proof)

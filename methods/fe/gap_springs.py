@@ -48,6 +48,8 @@ class BreakpointLimits:
         fewest_beside, multiple: once a history reached its plateau, the next are given up above so many events and
             this multiple of its own.
         intervals: of commits, as shares of the multiplier, by default; only the first of them above `three` blocks.
+        agreeing: relative difference of the first two plateaus up to which no third history is traced by default:
+            published values of gap springs agree within as much.
     """
 
     fewest: int = 2000
@@ -57,6 +59,7 @@ class BreakpointLimits:
     multiple: int = 4
     intervals: tuple[float, ...] = (0.0, 0.01, 0.002)
     three: int = 1200
+    agreeing: float = 1e-3
 
 
 class GapSprings(Solver):
@@ -101,6 +104,8 @@ class GapSprings(Solver):
         ]
         limit = limits[model.assembly.n_free > histories.large]
         for step in chosen_histories(model, settings, events):
+            if settings.histories is None and _agree(results, events.agreeing):
+                break
             plan = Plan(step, scale, limit, load_steps=settings.load_steps, options=histories)
             result = trace_history(model, factor, start, plan)
             results.append(result)
@@ -143,6 +148,14 @@ def chosen_histories(model: WallModel, settings: GapSpringsSettings, limits: Bre
     if settings.histories is not None:
         return settings.histories
     return limits.intervals if model.assembly.n_free <= limits.three else limits.intervals[:1]
+
+
+def _agree(results: list[HistoryResult], within: float) -> bool:
+    """Whether histories without and with updates of the plastic slip came to one plateau, within a relative width."""
+    plateaus = [result.state.multiplier for result in results if result.state is not None]
+    if len(plateaus) < 2 or len(plateaus) < len(results):
+        return False
+    return max(plateaus) - min(plateaus) <= within * abs(min(plateaus))
 
 
 def _unit(assembly: Assembly) -> float:

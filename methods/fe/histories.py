@@ -1,7 +1,7 @@
 """One path from gravity to collapse under one friction history, and the spread over several.
 
-Real joints remember in which order they slipped. A history commits the shears (T0, s0) every so often along the path;
-none, 1 % and 0.2 % of the multiplier are the three that the answer is reported for. What they differ by is scatter
+Real joints remember in which order they slipped. A history commits the shears (T0, s0) every so often along the path:
+never, and at every 1 % of the multiplier; where these two end apart, at every 0.2 % too. What they differ by is scatter
 from data nobody can know.
 """
 

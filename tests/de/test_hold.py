@@ -10,8 +10,9 @@ from methods.de.answers import solve_by_holds
 from methods.de.engines.mass_scaling import MassScaling
 from methods.de.engines.pymunk_joints import PymunkJoints
 from methods.de.holds.load_step import ConvergenceMonitor
-from methods.de.holds.motion import Trend, by_power, by_travel, by_virtual_work
+from methods.de.holds.motion import StaticLimit, Trend, by_power, by_travel, by_virtual_work
 from methods.de.settings import HoldSettings
+from methods.numerics.statics import admissible_forces
 from tests.walls import assembly, stack
 
 MECHANISM = np.random.default_rng(0).normal(size=(12, 3))
@@ -81,6 +82,23 @@ def test_loads_move_a_block_by_what_friction_does_not_take(multiplier, moves):
     lifted = slide.copy()
     lifted[wall.free[0], 1] = 1.0
     assert by_power(wall, load, lifted, forces) is None
+
+
+@pytest.mark.parametrize("multiplier", [0.0, 0.1, 0.2999999, 0.3000001, 0.31, -0.1])
+def test_statics_bears_what_virtual_work_cannot_move(multiplier):
+    wall, slide, _ = block(0.3)
+    # A block that slides at its friction: what it bears to either side is known from zero on only.
+    assert StaticLimit(wall).bears(multiplier) == (0.0 <= multiplier < 0.3)
+    if StaticLimit(wall).bears(multiplier):
+        assert by_virtual_work(wall, wall.dead + multiplier * wall.live, slide) is None
+
+
+def test_statics_bears_nothing_where_the_dead_load_is_not_borne():
+    # The centroid of the top block lies 0.03 outside: the live load, 0.1 above the joint, turns it back from 0.3 on.
+    wall = assembly(stack(3) | {"offsets": [0.0, 0.0, -0.18]}, 0.7)
+    borne = [admissible_forces(wall, wall.dead + multiplier * wall.live) is not None for multiplier in (0.0, 0.2, 0.4)]
+    assert borne == [False, False, True]
+    assert not any(StaticLimit(wall).bears(multiplier) for multiplier in (0.0, 0.2))
 
 
 def test_travel_against_the_loads_or_too_short_shows_nothing():

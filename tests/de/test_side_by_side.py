@@ -49,7 +49,7 @@ def test_another_tuning_than_the_first_gives_the_same_answer_too(monkeypatch: py
 
 
 def test_a_limit_leaves_what_the_orders_had_shown_and_no_process():
-    wall = assembly(running_bond(14, 7))
+    wall = assembly(running_bond(24, 12))
     measured = run_isolated(Task("de", wall, {}, 3.0, 2**32, processes=2), "large")
     result = measured.result
     assert result.details["stopped_by_limit"], result.sentence

@@ -9,7 +9,7 @@ import numpy as np
 
 from harness.model.assembly import FloatArray
 from methods.de.engines.engine import Engine, MeasuredState, motion_units
-from methods.de.holds.motion import Motion, MotionProof, Trend, by_power, by_virtual_work
+from methods.de.holds.motion import Motion, MotionProof, StaticLimit, Trend, by_power, by_virtual_work
 from methods.de.settings import HoldSettings
 
 SMALL = 0.01
@@ -126,20 +126,20 @@ class ConvergenceMonitor:
             return count >= usual
         return not 0.0 < count * self.decay < relaxations
 
-    def motion(self, engine: MeasuredState) -> Motion | None:
-        """The motion, where it is shown that the wall moves; else None."""
+    def motion(self, engine: MeasuredState, statics: StaticLimit) -> Motion | None:
+        """The motion, where it is shown that the wall moves; else None. Virtual work is asked where statics fails."""
         if len(self.velocities) < 8 or self.residuals[-1] <= self.moving:
             return None
         wall, load = engine.assembly, engine.assembly.dead + engine.multiplier * engine.assembly.live
         quarters = self.quarters
         last = (self.velocities[-1] if self.steady else quarters[-1]) * self.units
-        motion = by_virtual_work(wall, load, last)
+        motion = None if statics.bears(engine.multiplier) else by_virtual_work(wall, load, last)
         if motion is None and self.trend.goes_on(quarters):
             motion = by_power(wall, load, last, engine.contact_forces())
         return motion
 
 
-def hold(engine: Engine, settings: HoldSettings, patience: int = 1) -> LoadStep:
+def hold(engine: Engine, settings: HoldSettings, statics: StaticLimit, patience: int = 1) -> LoadStep:
     """Let the engine settle under its present load.
 
     Held: the residual stays below `held_residual` at two checks in a row. Moving: `motion.py` shows it; this
@@ -150,6 +150,7 @@ def hold(engine: Engine, settings: HoldSettings, patience: int = 1) -> LoadStep:
     Args:
         engine: the wall with its load.
         settings: tolerances.
+        statics: the multipliers that statics bears on the wall.
         patience: factor on the longest time.
     """
     check = max(10, round(engine.relaxation / 3.0))
@@ -166,7 +167,7 @@ def hold(engine: Engine, settings: HoldSettings, patience: int = 1) -> LoadStep:
             return LoadStep(State.HELD, residual, engine.steps - start, velocity)
         over = watch.over(usual, affordable, patience * settings.hold_steps)
         if over or watch.steady or watch.doubled:
-            motion = watch.motion(engine)
+            motion = watch.motion(engine, statics)
             if motion is not None:
                 return LoadStep(State.MOVING, residual, engine.steps - start, motion.field, motion.proof)
         if over or not np.isfinite(residual):

@@ -21,11 +21,12 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 from enum import StrEnum
+from functools import cached_property
 
 import numpy as np
 
 from harness.model.assembly import Assembly, FloatArray
-from methods.numerics.statics import dilatant_mechanism
+from methods.numerics.statics import admissible_forces, dilatant_mechanism, greatest_multiplier
 
 
 class MotionProof(StrEnum):
@@ -89,6 +90,28 @@ class Motion:
 
     proof: MotionProof
     field: FloatArray
+
+
+@dataclass(frozen=True, eq=False)
+class StaticLimit:
+    """The multipliers that statics bears on a wall: there no dilatant mechanism gains work (Farkas' lemma).
+
+    Contact forces within yield form a convex set, so what bears the dead load and the greatest multiplier bears every
+    multiplier between them. Both programmes are solved when first asked, once a wall.
+    """
+
+    assembly: Assembly
+
+    def bears(self, multiplier: float) -> bool:
+        """Whether contact forces within yield are known to balance the dead load and this multiple of the live load."""
+        return not self.assembly.strong and 0.0 <= multiplier <= self._greatest
+
+    @cached_property
+    def _greatest(self) -> float:
+        """The greatest multiplier of statics; minus infinity where the dead load is not borne or none is greatest."""
+        found = greatest_multiplier(self.assembly)
+        borne = found is not None and admissible_forces(self.assembly, self.assembly.dead) is not None
+        return found[0] if found is not None and borne else -np.inf
 
 
 def by_virtual_work(assembly: Assembly, load: FloatArray, field: FloatArray, near: float = 0.3) -> Motion | None:

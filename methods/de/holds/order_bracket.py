@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 from harness.model.assembly import FloatArray
 from methods.de.engines.engine import Engine
 from methods.de.holds.load_step import LoadStep, State, hold, least_motion, settle
-from methods.de.holds.motion import MotionProof
+from methods.de.holds.motion import MotionProof, StaticLimit
 from methods.de.settings import HoldSettings
 
 
@@ -118,6 +118,7 @@ class BracketSearch:
     Args:
         engine: the wall in that order.
         settings: steps and tolerances.
+        statics: the multipliers that statics bears on the wall.
         unit: multiplier at which the live load equals the dead load.
         order: name of the order.
         options: of the search.
@@ -130,6 +131,7 @@ class BracketSearch:
         self,
         engine: Engine,
         settings: HoldSettings,
+        statics: StaticLimit,
         unit: float,
         order: str,
         options: BracketTuning = BracketTuning(),
@@ -137,6 +139,7 @@ class BracketSearch:
         self._options = options
         self.engine = engine
         self.settings = settings
+        self.statics = statics
         self.unit = unit
         self.found = OrderBracket(order)
         self.states: list[tuple[float, FloatArray]] = []
@@ -160,7 +163,7 @@ class BracketSearch:
             self.engine.restore(found.state)
         self.engine.load(multiplier)
         patience = self._options.patience if multiplier == 0.0 else 1
-        end = hold(self.engine, self.settings, patience)
+        end = hold(self.engine, self.settings, self.statics, patience)
         found.steps = self.engine.steps
         found.holds += 1
         found.trials.append((multiplier, end.residual))
@@ -254,7 +257,7 @@ def held_forces(engine: Engine, settings: HoldSettings, found: OrderBracket) -> 
 
 
 def mechanism_at(
-    engine: Engine, settings: HoldSettings, found: OrderBracket, excess: float = 1.02
+    engine: Engine, settings: HoldSettings, statics: StaticLimit, found: OrderBracket, excess: float = 1.02
 ) -> tuple[FloatArray, FloatArray]:
     """Velocity field (n, 3) from the highest held state and the contact forces (m, 3) that were measured with it.
 
@@ -265,5 +268,5 @@ def mechanism_at(
     assert found.state is not None
     engine.restore(found.state)
     engine.load(found.moving if found.nothing else excess * found.middle)
-    velocity = hold(engine, settings).velocity
+    velocity = hold(engine, settings, statics).velocity
     return velocity, engine.contact_forces()

@@ -70,7 +70,14 @@ def _near(follower: PathFollower, u: FloatArray, ahead: float) -> bool:
 
 
 def change_states(model: WallModel, factor: Factor, state: IntArray, wanted: IntArray) -> None:
-    """Bring a factor from one set of states (changed in place) to another. Raises SingularTangent."""
+    """Bring a factor from one set of states (changed in place) to another.
+
+    A tangent that turns singular on the way belongs to a step gone astray, which is not worth a regularised factor; one
+    that was regularised before has a free motion of its own, and stays so.
+
+    Raises:
+        SingularTangent: the tangent is singular, and was not before.
+    """
     points = np.flatnonzero(state != wanted).tolist()
     changes = [change for p in points for change in _way(p, int(state[p]), int(wanted[p]))]
     if len(points) <= model.options.commits.updates and factor.count + len(changes) < factor.capacity:
@@ -83,7 +90,10 @@ def change_states(model: WallModel, factor: Factor, state: IntArray, wanted: Int
             state[:] = wanted
             return
     state[:] = wanted
-    refactor_any(factor, state)
+    if factor.is_regularised:
+        refactor_any(factor, state)
+    else:
+        factor.refactor(state)
 
 
 def _way(point: int, old: int, new: int) -> tuple[Change, ...]:
