@@ -15,6 +15,8 @@ from reports.charts.styles import SHAPES, Mark
 
 LANE, MARK = 8, 0.95
 """Height of the line that one method's marks stand on [px], and size of a mark against that of line charts."""
+ROOM = 15.0
+"""Least distance of the labels of ticks [%]: five letters of 12 px where an axis is 200 px long."""
 REFERENCE = Mark("", "|", "solid")
 
 
@@ -133,11 +135,11 @@ def plain_scale(values: list[float], *, log: bool = False) -> Scale:
 
 def html(plot: DotPlot) -> Markup:
     """The plot as an element of a page: a list of rows, the axis below, and a legend."""
-    lanes = {name: number for number, name in enumerate(plot.names)}
+    crowded = any(len(row.dots) > 1 for row in plot.rows)
+    lanes = {name: number if crowded else 0 for number, name in enumerate(plot.names)}
     rows = Markup("").join(_row(plot, row, lanes, number) for number, row in enumerate(plot.rows))
-    texts = [(plot.scale.place(value), plot.scale.text(value)) for value in plot.scale.ticks]
     ticks = Markup("").join(
-        Markup('<span style="left:{:.2f}%">{}</span>').format(place, text) for place, text in texts if place is not None
+        Markup('<span style="left:{:.2f}%">{}</span>').format(place, text) for place, text in _labels(plot.scale)
     )
     return Markup(
         '<div class="dots" role="group" aria-label="{}">{}<ol>{}</ol><div class="ticks" aria-hidden="true"><b></b>'
@@ -170,7 +172,7 @@ def _mark(mark: Mark, *, filled: bool, text: str = "") -> Markup:
 
 
 def _row(plot: DotPlot, row: DotRow, lanes: dict[str, int], number: int) -> Markup:
-    place, height = plot.scale.place, LANE * (len(lanes) + 1)
+    place, height = plot.scale.place, max(2 * LANE, LANE * (max(lanes.values(), default=0) + 2))
     drawn = Markup('<use href="#{}"/>').format(_grid_id(plot))
     for value, what in row.levels:
         drawn += _upright("level", place(value), what)
@@ -178,19 +180,31 @@ def _row(plot: DotPlot, row: DotRow, lanes: dict[str, int], number: int) -> Mark
         y, x = LANE * (lanes[dot.name] + 1), place(dot.value)
         bar = [place(end) for end in dot.ends or ()]
         if len(bar) == 2 and bar[0] is not None and bar[1] is not None:
-            drawn += Markup(
-                '<line class="bar" style="stroke:{}" x1="{:.2f}%" x2="{:.2f}%" y1="{y}" y2="{y}"/>'
-            ).format(dot.mark.colour, bar[0], bar[1], y=y)
+            drawn += Markup('<line class="bar" style="stroke:{}" x1="{:.2f}%" x2="{:.2f}%" y1="{y}" y2="{y}"/>').format(
+                dot.mark.colour, bar[0], bar[1], y=y
+            )
         if x is not None:
             drawn += Markup('<svg x="{:.2f}%" y="{}">{}</svg>').format(
                 x, y, _mark(dot.mark, filled=dot.filled, text=dot.text)
             )
     said = "; ".join([*(dot.text for dot in row.dots), *(what for _, what in row.levels)]) or row.said
-    name = Markup('<a href="{}">{}</a>').format(row.href, row.name) if row.href else Markup("<b>{}</b>").format(row.name)
+    name = (
+        Markup('<a href="{}">{}</a>').format(row.href, row.name) if row.href else Markup("<b>{}</b>").format(row.name)
+    )
     return Markup(
         '<li data-place="{}" data-spread="{}">{}<svg class="track" height="{}" role="img" aria-label="{}">{}</svg>'
         "<span>{}</span></li>"
     ).format(number, f"{row.spread:.9g}", name, height, said, drawn, row.said)
+
+
+def _labels(scale: Scale) -> list[tuple[float, str]]:
+    """Places and texts of ticks, those left out that have no room beside the one before."""
+    kept: list[tuple[float, str]] = []
+    for value in scale.ticks:
+        place = scale.place(value)
+        if place is not None and (not kept or place - kept[-1][0] >= ROOM):
+            kept.append((place, scale.text(value)))
+    return kept
 
 
 def _grid_id(plot: DotPlot) -> str:

@@ -31,7 +31,9 @@ def overview_plot(run: ComparisonRun) -> DotPlot:
 def wall_plot(item: CaseResults) -> DotPlot:
     """The multipliers of one wall, a row a method."""
     shown = [result for result in plotted(item) if result.multiplier is not None]
-    rows = [DotRow(r.method, [dot(item, r, 0.0)], value_in_words(r), levels=_levels(item, 0.0, r.method)) for r in shown]
+    rows = [
+        DotRow(r.method, [dot(item, r, 0.0)], value_in_words(r), levels=_levels(item, 0.0, r.method)) for r in shown
+    ]
     values = [value for row in rows for value in _values(row)]
     return DotPlot(f"Multipliers of {item.case.id}", plain_scale(values), rows)
 

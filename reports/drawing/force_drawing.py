@@ -9,7 +9,19 @@ import numpy as np
 from harness.model.assembly import Assembly, FloatArray
 from harness.model.case import Case
 from harness.model.result import Result
-from reports.drawing.display_list import BELOW, LETTERS, Circles, DisplayList, Frame, Group, Lines, Polygons, Shape, Text, chosen
+from reports.drawing.display_list import (
+    BELOW,
+    LETTERS,
+    Circles,
+    DisplayList,
+    Frame,
+    Group,
+    Lines,
+    Polygons,
+    Shape,
+    Text,
+    chosen,
+)
 from reports.drawing.wall_drawing import length_scale
 from reports.geometry import shapes, thrust_lines
 from reports.labels import numbers
@@ -126,7 +138,7 @@ def _force_scale(frame: Frame, largest: float, unit: str) -> list[Shape]:
     """A line as wide as a round force is drawn, below the wall on the right, and no wider than there is room."""
     room = 0.6 * BELOW
     force = thrust_lines.round_number(largest * min(1.0, room / _width(frame, 1.0)))
-    x, y = frame.extent.width * frame.scale - 200, frame.extent.height * frame.scale + frame.below - BELOW // 2
+    x, y = frame.extent.width * frame.scale, frame.extent.height * frame.scale + frame.below - BELOW // 2
     line = np.array([(x - 330, y), (x, y)])
     text = Text("", (x + 60, y + 0.35 * LETTERS), numbers.quantity(force, unit), LETTERS, "start")
     return [Lines("force-scale", (line,), _width(frame, force / largest)), text]

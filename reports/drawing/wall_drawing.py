@@ -9,7 +9,18 @@ import numpy as np
 from harness.model.assembly import Assembly, FloatArray, polygon_area
 from harness.model.case import Case
 from harness.model.wall import Units
-from reports.drawing.display_list import BELOW, LETTERS, Arrows, DisplayList, Frame, Lines, Polygons, Shape, Text, chosen
+from reports.drawing.display_list import (
+    BELOW,
+    LETTERS,
+    Arrows,
+    DisplayList,
+    Frame,
+    Lines,
+    Polygons,
+    Shape,
+    Text,
+    chosen,
+)
 from reports.geometry import shapes, thrust_lines
 from reports.labels import numbers
 from reports.memo import memo

@@ -25,7 +25,7 @@ from reports.drawing.mechanism_drawing import mechanism_drawing, moved_wall
 from reports.drawing.svg import inline
 from reports.findings.agreement import agreement, mains
 from reports.findings.joints import joints_in_words, motion
-from reports.findings.reasons import SAME_MOTION
+from reports.findings.reasons import SAME_MOTION, mechanism_in_words
 from reports.geometry import shapes
 from reports.labels import labels, numbers
 from reports.labels.wall_summary import value_in_words
@@ -75,7 +75,7 @@ class Glance:
         sentence: how far their mechanisms agree.
         parts: plots beside them.
         governs: for a comparison of one wall that is not the paper's: what governs it.
-        drawing: its mechanism.
+        drawing, words: its mechanism.
         further: questions that a command answers.
     """
 
@@ -87,6 +87,7 @@ class Glance:
     parts: list[Part] = field(default_factory=list)
     governs: Governing | None = None
     drawing: Markup = field(default_factory=Markup)
+    words: str = ""
     further: list[tuple[str, str]] = field(default_factory=list)
 
 
@@ -108,6 +109,7 @@ def glance(run: ComparisonRun) -> Glance:
     elif item is not block:
         plot = wall_plot(item)
         parts.append(Part("Multiplier by method", html(plot), "Filled: proved minimum. A bar is a measured bracket."))
+    drawing, words = _governing_mechanism(own)
     return Glance(
         headline(run),
         number,
@@ -116,9 +118,22 @@ def glance(run: ComparisonRun) -> Glance:
         mechanisms_compared(item),
         parts,
         own,
-        Markup("") if own is None or own.shown is None else inline(mechanism_drawing(item.case, own.shown)),
+        drawing,
+        words,
         [] if own is None else _further(run, own),
     )
+
+
+def _governing_mechanism(own: Governing | None) -> tuple[Markup, str]:
+    """The mechanism of the state that governs an only wall, and what it is in words."""
+    least = None if own is None else least_known(own.item)
+    drawn = least if own is None or (least is not None and least.mechanism is not None) else own.shown
+    if own is None or drawn is None:
+        return Markup(""), ""
+    case = own.item.case
+    words = mechanism_in_words(case.assembly, np.asarray(drawn.mechanism, dtype=float), case.wall.units.length)
+    at = f"{words[0].upper()}{words[1:]}, at {numbers.multiplier(drawn.multiplier)} ({drawn.method})."
+    return inline(mechanism_drawing(case, drawn)), at
 
 
 def _further(run: ComparisonRun, own: Governing) -> list[tuple[str, str]]:
@@ -138,15 +153,16 @@ def _further(run: ComparisonRun, own: Governing) -> list[tuple[str, str]]:
 
 
 def headline(run: ComparisonRun) -> str:
-    """What was compared, e.g. "Finite elements and limit analysis on 21 walls"."""
+    """What was compared, e.g. "Finite elements and limit analysis on 21 walls"; the title of an only wall."""
     found = {r.family: labels.order(r) for item in run.cases for r in item.results}
     known = library().families
     names = sorted(found, key=lambda name: found[name])
     families = [known[name][0].lower() + known[name][1:] if name in known else name for name in names]
     walls = {item.case.wall_id or item.case.id: item.case.file.title for item in run.cases}
-    where = f"“{next(iter(walls.values()))}”" if len(walls) == 1 else numbers.count(len(walls), "wall")
+    if len(walls) == 1:
+        return next(iter(walls.values()))
     who = labels.and_(families) if families else "no method"
-    return f"{who[0].upper()}{who[1:]} on {where}"
+    return f"{who[0].upper()}{who[1:]} on {numbers.count(len(walls), 'wall')}"
 
 
 def _own(run: ComparisonRun, items: list[CaseResults]) -> Governing | None:
@@ -201,7 +217,9 @@ def mechanisms_compared(item: CaseResults) -> str:
     sentences = [f"{labels.all_of([first.method, second.method])} find {alike} (cosine {_cosine(cosine)})."]
     for other in (r for r in drawn if r is not first and r is not second):
         near = max(c for c, a, b in pairs if other in (a, b))
-        sentences.append(f"{other.method.upper()} finds another mechanism (cosine {_cosine(near)}){_below(item, other, drawn)}.")
+        sentences.append(
+            f"{other.method.upper()} finds another mechanism (cosine {_cosine(near)}){_below(item, other, drawn)}."
+        )
     return " ".join(filter(None, [*sentences, _paper_found(item)]))
 
 
@@ -275,17 +293,23 @@ def _cost(run: ComparisonRun, item: CaseResults) -> Part | None:
             return None
         value = base * ours.cpu.sort / first
         early = None if ours.until_value is None else base * ours.until_value / first
-        text = f"{ours.method} {ours.ratio} here" + ("" if early is None else f", {numbers.plain(early, 2)} until its value")
+        text = f"{ours.method} {ours.ratio} here" + (
+            "" if early is None else f", {numbers.plain(early, 2)} until its value"
+        )
         ends = (early, value) if early is not None and early < value else None
         marks = [
             Dot("paper", printed.minutes, PRINTED, f"{ours.method} {ours.paper_ratio} in the paper"),
             Dot("Drystone", value, Mark(PRINTED.colour, "s", "solid"), text, ends, filled=True),
         ]
-        rows.append(DotRow(ours.method.upper(), marks, f"{numbers.given(printed.minutes, 3)} → {numbers.plain(value, 2)}"))
+        rows.append(
+            DotRow(ours.method.upper(), marks, f"{numbers.given(printed.minutes, 3)} → {numbers.plain(value, 2)}")
+        )
     values = [end for row in rows for mark in row.dots for end in (mark.value, *(mark.ends or ()))]
     plot = DotPlot("CPU time as ratios, the paper's and ours", plain_scale(values, log=True), rows)
     until = f" ({found.ratio_to_value} until a search first reached its value)" if found.ratio_to_value else ""
-    sentence = f"{found.names} is {found.ratio_paper} in the paper and {found.ratio_ours} here{until}. {largest_walls(run)}"
+    sentence = (
+        f"{found.names} is {found.ratio_paper} in the paper and {found.ratio_ours} here{until}. {largest_walls(run)}"
+    )
     return Part("CPU time, ratio", html(plot) + legend(plot), sentence)
 
 

@@ -7,6 +7,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from harness.model.comparison import CaseResults
+from harness.model.envelope import EQUAL
 from harness.model.joint_margins import JOINTS, JointColumn, JointRow, joint_rows
 from harness.model.live_load import direction_in_words
 from harness.model.method import Finding, Status
@@ -72,6 +73,7 @@ def governing(items: Sequence[CaseResults], joints: int = 8) -> Governing:
         joints: number of most critical joints to list.
     """
     item = min(items, key=_collapse)
+    lowest = _collapse(item)
     case, shown = item.case, _shown(item)
     listed = [] if shown is None else reactions_of(case, shown)
     balance = None
@@ -79,7 +81,7 @@ def governing(items: Sequence[CaseResults], joints: int = 8) -> Governing:
         balance = out_of_balance(case.assembly, listed, shown.forces_multiplier or 0.0)
     return Governing(
         item=item,
-        ways=[_way(each, item) for each in items],
+        ways=[_way(each, governs=lowest < math.inf and _collapse(each) <= lowest * (1.0 + EQUAL)) for each in items],
         shown=shown,
         reactions=listed,
         balance=balance,
@@ -97,12 +99,12 @@ def _collapse(item: CaseResults) -> float:
     return 0.0 if falls else math.inf
 
 
-def _way(item: CaseResults, governs: CaseResults) -> Way:
+def _way(item: CaseResults, *, governs: bool) -> Way:
     least = least_known(item)
     answers = dict.fromkeys(labels.FINDING[result.finding] for result in item.mains)
     value = ", ".join(answers) if least is None else f"{numbers.multiplier(least.multiplier)} ({least.method})"
     proved = "" if least is None else proof_of(item, least).label
-    return Way(item.case.load_case or direction_in_words(item.case), value, proved, item is governs)
+    return Way(item.case.load_case or direction_in_words(item.case), value, proved, governs)
 
 
 def _shown(item: CaseResults) -> Result | None:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 
 import numpy as np
+
 from harness.model.comparison import CaseResults, ComparisonRun
 from harness.model.errors import first_few
 from harness.model.live_load import direction_in_words
@@ -68,8 +69,12 @@ def summary(run: ComparisonRun, governs: CaseResults | None = None) -> Summary:
     items = [item for item in run.cases if not shapes.problem(item.case)]
     found, missed = _broken_theory(run)
     told = governs or (items[0] if len(run.cases) == len(items) == 1 else None)
-    found.extend([wall_findings(told)] if told is not None else _suite(items))
-    return Summary([*found, *missed], "" if told is None else which_number(told), red_rows(run))
+    advice = "" if told is None else which_number(told)
+    if told is None:
+        found.extend(_suite(items))
+    elif not advice:
+        found.append(wall_findings(told))
+    return Summary([*found, *missed], advice, red_rows(run))
 
 
 @memo
