@@ -21,7 +21,7 @@ AGREE = 0.01
 
 
 def overview_plot(run: ComparisonRun) -> DotPlot:
-    """A row a wall: differences from the least collapse state known, one mark a family and one the associated maximum."""
+    """A row a wall: differences from the least collapse state known, a mark a family and one the associated maximum."""
     rows = [_row(number, item) for number, item in enumerate(run.cases)]
     values = [value for row in rows for value in _values(row)]
     title = "Multiplier of each method above the least collapse state known of its wall"

@@ -99,7 +99,7 @@ class BlockRow:
 
 @dataclass(frozen=True)
 class CostRow:
-    """CPU time of one method as a ratio, beside the paper's; `until_value` [s]: until a search first reached its value."""
+    """CPU time of one method as a ratio, beside the paper's; `until_value` [s]: when a search first had its value."""
 
     method: str
     paper_ratio: str

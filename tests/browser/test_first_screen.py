@@ -14,7 +14,8 @@ pytestmark = pytest.mark.browser
 SMALLEST = 10.9
 """Least size of letters [px]: 11, less what a browser rounds."""
 SEEN = """() => {
-  const seen = (e) => e.checkVisibility({ checkVisibilityCSS: true }) && !e.closest(".sr, .skip, [hidden], title, script, style");
+  const aside = ".sr, .skip, [hidden], title, script, style";
+  const seen = (e) => e.checkVisibility({ checkVisibilityCSS: true }) && !e.closest(aside);
   const written = (e) => [...e.childNodes].some((n) => n.nodeType === 3 && n.textContent.trim());
   return [...document.body.querySelectorAll("*")].filter((e) => seen(e) && written(e)).map((e) => {
     const matrix = e instanceof SVGTextElement ? e.getScreenCTM() : null;

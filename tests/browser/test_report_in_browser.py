@@ -76,7 +76,7 @@ def test_page_asks_for_nothing_and_complains_of_nothing(opened: Opened, report: 
 def test_hostile_names_are_shown_as_text(opened: Opened):
     opened.look_at("#case-2 [data-kind=mechanism] svg")
     assert opened.page.locator("img").count() == 0
-    assert opened.page.get_by_text(samples.SCRIPT).first.is_visible()
+    assert opened.page.locator("main").get_by_text(samples.SCRIPT).first.is_visible()
     opened.page.locator("#case-2 [data-kind=mechanism] path[data-block='1']").first.hover()
     tip = opened.page.locator(".tip")
     assert samples.CLOSING in tip.inner_text()
@@ -312,7 +312,7 @@ def test_sixty_five_cases_by_eight_methods_open_fast(browser: Browser, tmp_path:
     session.send("Performance.enable", {"timeDomain": "threadTicks"})
     page.goto(path.as_uri())
     metrics = {item["name"]: item["value"] for item in session.send("Performance.getMetrics")["metrics"]}
-    assert page.locator("#runs-count").inner_text() == "520 runs"
+    assert page.locator("#runs-count").text_content() == "520 runs"
     context.close()
     # CPU seconds of the page's thread, which other work on the machine does not count in. A second is the
     # requirement and 0.7 is usual; half as much again is left for a slower processor.
