@@ -2,14 +2,18 @@
 
 from __future__ import annotations
 
+import io
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
+from tempfile import TemporaryDirectory
 from typing import Any
 
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
+from PIL import Image
+from PIL.PngImagePlugin import PngInfo
 
 from reports.drawing.looks import COLOURS
 
@@ -178,18 +182,46 @@ def friction_figure(folder: Path) -> None:
         axes.legend(frameon=False)
 
 
-def readme_figure(folder: Path) -> None:
-    """The 21-brick wall in three methods, as the README shows it: `python docs/figures.py` draws it again."""
+def readme_figures(folder: Path) -> None:
+    """What the README shows: mechanisms of the 21-brick wall, that of its minimum, and the first screen of the report.
+
+    `python docs/figures.py` draws them again.
+    """
     import drystone
     from reports.drawing.figures import figure
 
     wall = drystone.library_wall("wall-21")
     answers: list[Any] = [drystone.analyse(wall, name) for name in ("fe", "la", "de")]
     figure(wall.case, answers, "comparison", folder / "wall-21.svg")
+    figure(wall.case, [answers[1]], "mechanism", folder / "mechanism.svg")
+    words, picture = first_screen()
+    about = PngInfo()
+    about.add_text("Description", words)
+    Image.open(io.BytesIO(picture)).quantize(128).save(folder / "first-screen.png", pnginfo=about, optimize=True)
+
+
+def first_screen() -> tuple[str, bytes]:
+    """The first screen of the report on the paper's block and wall: its words without those of CPU time, and a PNG."""
+    from playwright.sync_api import sync_playwright
+
+    import drystone
+
+    walls = [drystone.library_wall(name) for name in ("single-block", "wall-21")]
+    with TemporaryDirectory() as folder, sync_playwright() as playwright:
+        path = drystone.compare(walls, ["fe", "la", "la-associated", "de"]).report(Path(folder) / "report.html")
+        browser = playwright.chromium.launch(executable_path="/usr/bin/chromium", args=["--no-sandbox"])
+        page = browser.new_page(viewport={"width": 1280, "height": 900})
+        page.goto(path.as_uri())
+        page.locator("nav, .head p").evaluate_all("all => all.forEach((one) => one.remove())")
+        words = page.locator(".glance > div:first-child").inner_text()
+        end = page.locator(".glance").evaluate("e => e.getBoundingClientRect().bottom")
+        picture = page.screenshot(clip={"x": 0, "y": 0, "width": 1280, "height": end + 12})
+        browser.close()
+    return words, picture
 
 
 ALL = (signs_figure, laws_figure, block_figure, friction_figure)
 """Every figure."""
 
 if __name__ == "__main__":
-    readme_figure(Path(__file__).parent)
+    readme_figures(Path(__file__).parent)

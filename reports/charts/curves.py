@@ -62,6 +62,10 @@ def _load_displacement(item: CaseResults, result: Result, moved: list[float], lo
     for name, value in (("peak", details.peak), ("plateau", details.plateau)):
         if value is not None and not any(abs(value - level) < 1e-3 * abs(value) for _, level in levels):
             levels.append((f"{name} {numbers.multiplier(value)}", value))
+    if (
+        loads[0] > 0.0
+    ):  # the first point of a path is a breakpoint: up to there the wall is linear, from no live load on
+        moved, loads = [0.0, *moved], [0.0, *loads]
     shown = _until_plateau(moved, loads)
     chart = charts.Chart(
         title=f"Multiplier against live displacement, {result.method}",

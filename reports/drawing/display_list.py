@@ -18,6 +18,8 @@ from reports.geometry import shapes
 SIZE = 4000
 MARGIN = 560
 BELOW = 240
+LETTERS = 150.0
+"""Size of letters that are read in a page: 11 px where a drawing takes a third of it."""
 Box = tuple[float, float, float, float]
 """Left, top, width and height in drawing units."""
 

@@ -11,7 +11,19 @@ from harness.model.bar_forces import bar_forces_of
 from harness.model.case import Case
 from harness.model.result import Result
 from reports.drawing.bars import bar_forces
-from reports.drawing.display_list import BELOW, Circles, DisplayList, Frame, Group, Lines, Polygons, Shape, Text, chosen
+from reports.drawing.display_list import (
+    BELOW,
+    LETTERS,
+    Circles,
+    DisplayList,
+    Frame,
+    Group,
+    Lines,
+    Polygons,
+    Shape,
+    Text,
+    chosen,
+)
 from reports.drawing.wall_drawing import length_scale
 from reports.geometry import shapes, thrust_lines
 from reports.labels import numbers
@@ -20,6 +32,8 @@ from reports.memo import memo
 WIDEST, THINNEST = 0.16, 0.02
 """Width of the largest and of the smallest force, in block sizes."""
 LAYERS = ("forces", "thrust")
+WORTH = 0.05
+"""Share of the largest force from which a force has a number."""
 
 
 @memo
@@ -61,15 +75,15 @@ def _groups(
     points, width = frame.place(found.point), [_width(frame, share) for share in (found.size / found.size.max())]
     arrows = _arrows(frame, frame.place(thrust_lines.drawn_ends(assembly, found)), np.array(width))
     lines = _through_blocks(frame, assembly, found)
-    labelled = len(found.size) <= thrust_lines.LABELLED
+    level = abs(assembly.normal[found.interface, 1]) > 0.5
+    said = _sizes(frame, points, found.size, level) if len(found.size) <= thrust_lines.LABELLED else {}
     drawn = []
     for k, p in enumerate(found.interface.tolist()):
         parts: list[Shape] = []
         if "forces" in layers:
             parts.append(Polygons("full" if full[p] else "force", (arrows[k],)))
-            if labelled:
-                level = abs(float(assembly.normal[p, 1])) > 0.5
-                parts.append(_size(frame, points[k], float(found.size[k]), level=level))
+            if k in said:
+                parts.append(said[k])
             if full[p]:
                 parts.append(Circles("ring", points[k][None], max(0.05 * frame.block, 0.5 * width[k] + 9)))
         if "thrust" in layers:
@@ -106,11 +120,23 @@ def _through_blocks(frame: Frame, assembly: Assembly, found: shapes.Thrusts) -> 
     return frame.place(np.stack([first, point, second], axis=1))
 
 
-def _size(frame: Frame, point: FloatArray, size: float, *, level: bool) -> Text:
-    """The size of a force beside it."""
-    across, up = (0.09, 0.05) if level else (0.0, 0.1)
-    at = (float(point[0]) + across * frame.block, float(point[1]) - up * frame.block)
-    return Text("said", at, numbers.given(size, 3), min(110.0, 0.17 * frame.block), "start" if level else "middle")
+def _sizes(frame: Frame, points: FloatArray, sizes: FloatArray, level: np.ndarray) -> dict[int, Text]:
+    """The sizes of forces beside them, of the largest first, as long as one has room beside those before it."""
+    placed: dict[int, Text] = {}
+    boxes: list[tuple[float, float, float, float]] = []
+    for k in np.argsort(-sizes, kind="stable").tolist():
+        if sizes[k] < WORTH * sizes.max():
+            break
+        text = numbers.given(float(sizes[k]), 3)
+        across, up = (0.09, 0.05) if level[k] else (0.0, 0.1)
+        x, y = float(points[k, 0]) + across * frame.block, float(points[k, 1]) - up * frame.block
+        wide = 0.6 * LETTERS * len(text)  # of a figure of the widest of our fonts
+        left = x if level[k] else x - 0.5 * wide
+        box = (left, left + wide, y - 0.8 * LETTERS, y)
+        if not any(box[0] < b[1] and b[0] < box[1] and box[2] < b[3] and b[2] < box[3] for b in boxes):
+            boxes.append(box)
+            placed[k] = Text("said", (x, y), text, LETTERS, "start" if level[k] else "middle")
+    return placed
 
 
 def _force_scale(frame: Frame, largest: float, unit: str) -> list[Shape]:
@@ -119,5 +145,5 @@ def _force_scale(frame: Frame, largest: float, unit: str) -> list[Shape]:
     force = thrust_lines.round_number(largest * min(1.0, room / _width(frame, 1.0)))
     x, y = frame.extent.width * frame.scale, frame.extent.height * frame.scale + frame.below - BELOW // 2
     line = np.array([(x - 330, y), (x, y)])
-    text = Text("", (x + 60, y + 38), numbers.quantity(force, unit), 110, "start")
+    text = Text("", (x + 60, y + 0.35 * LETTERS), numbers.quantity(force, unit), LETTERS, "start")
     return [Lines("force-scale", (line,), _width(frame, force / largest)), text]

@@ -10,7 +10,18 @@ from harness.model.assembly import Assembly, FloatArray, polygon_area
 from harness.model.case import Case
 from harness.model.wall import Units
 from reports.drawing.bars import bar_lines
-from reports.drawing.display_list import BELOW, Arrows, DisplayList, Frame, Lines, Polygons, Shape, Text, chosen
+from reports.drawing.display_list import (
+    BELOW,
+    LETTERS,
+    Arrows,
+    DisplayList,
+    Frame,
+    Lines,
+    Polygons,
+    Shape,
+    Text,
+    chosen,
+)
 from reports.geometry import shapes, thrust_lines
 from reports.labels import numbers
 from reports.memo import memo
@@ -18,6 +29,8 @@ from reports.memo import memo
 LABELLED_BLOCKS = 160
 DOTTED_INTERFACES = 240
 DRAWN_INTERFACES = 4000
+READ = 130.0
+"""Size of ids that are 11 px in half of a page; smaller ones are for files, which can be zoomed."""
 
 
 @memo
@@ -85,7 +98,8 @@ def _labels(frame: Frame, assembly: Assembly) -> list[Shape]:
         if size >= 44.0:
             x, y = frame.place(assembly.centroid[k]).tolist()
             below = (0.35 if assembly.fixed[k] else -0.22) * size
-            drawn.append(Text("", (x, y + below), label, size, title=f"block {name}"))
+            role = "" if size >= READ else "fine"
+            drawn.append(Text(role, (x, y + below), label, size, title=f"block {name}"))
     return drawn
 
 
@@ -116,4 +130,4 @@ def length_scale(frame: Frame, unit: str) -> list[Shape]:
     bar = [[(0, y), (x, y)], *([(end, y - 40), (end, y + 40)] for end in (0, x))]
     text = numbers.quantity(length, unit)
     lines = tuple(np.array(line) for line in bar)
-    return [Lines("scale", lines), Text("", (x + 60, y + 38), text, 110, "start")]
+    return [Lines("scale", lines), Text("", (x + 60, y + 0.35 * LETTERS), text, LETTERS, "start")]

@@ -26,7 +26,8 @@ def given(value: float, digits: int = 6) -> str:
     if value != 0.0 and not 1e-4 <= abs(value) < 1e6:
         mantissa = f"{value:.{digits - 1}e}".split("e")[0].rstrip("0").rstrip(".")
         return power(value, max(1, len(mantissa.lstrip("-").replace(".", ""))))
-    return f"{value:.{digits}g}".replace("-", "−")
+    text = f"{value:.{digits}g}"
+    return (f"{float(text):.0f}" if "e+" in text else text).replace("-", "−")
 
 
 def quantity(value: float, unit: str, digits: int = 3) -> str:

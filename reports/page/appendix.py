@@ -5,7 +5,6 @@ from __future__ import annotations
 import hashlib
 import io
 import json
-import math
 from dataclasses import dataclass
 from importlib.resources import files
 from pathlib import Path
@@ -17,13 +16,9 @@ from harness.model.assembly import FloatArray
 from harness.model.bar_forces import bar_forces_of
 from harness.model.case import Case
 from harness.model.comparison import CaseResults, ComparisonRun
-from harness.model.joint_margins import JOINTS, joint_rows
 from harness.model.live_load import direction_in_words
-from harness.model.method import Finding, Status
-from harness.model.proof import least_known, proof_of
+from harness.model.method import Status
 from harness.model.result import Result
-from harness.model.support_reactions import SupportReaction, out_of_balance, reactions_of
-from harness.model.table import in_units
 from harness.model.writing import write_whole
 from reports.drawing.figures import results_figure, style, wall_figure
 from reports.environment import environment
@@ -31,6 +26,7 @@ from reports.findings.strength import strength_text
 from reports.geometry import shapes
 from reports.labels import labels, numbers
 from reports.labels.wall_summary import value_in_words, wall_summary
+from reports.page.governing import governing
 from reports.page.summary import wall_findings, which_number
 
 BLOCK_ROWS = 36
@@ -84,14 +80,6 @@ class BlockRow:
     live: str
 
 
-_CRITICAL = tuple(
-    column
-    for column in JOINTS
-    if column.name not in ("interface", "joint", "utilisation", "eccentricity", "length", "thickness")
-)
-"""Columns of the most critical joints."""
-
-
 def write_appendix(run: ComparisonRun, path: Path) -> None:
     """Write the appendix of one wall as one HTML file, ready to print on A4."""
     write_whole(path, render(run))
@@ -104,9 +92,8 @@ def render(run: ComparisonRun) -> str:
         run: a comparison of one wall; or of two, the second with the opposite live load. The one that collapses at the
             lower multiplier governs, and is the one whose state is shown.
     """
-    item = min(run.cases, key=_collapse)
-    case, shown = item.case, _shown(item)
-    listed, balance = _reactions(item, shown)
+    found = governing(run.cases, JOINT_ROWS)
+    item, case, shown = found.item, found.item.case, found.shown
     document = json.dumps(run.cases[0].case.wall.document(), sort_keys=True, ensure_ascii=False)
     return (
         environment()
@@ -118,7 +105,7 @@ def render(run: ComparisonRun) -> str:
             digest=hashlib.sha256(document.encode()).hexdigest()[:16],
             finding=wall_findings(item),
             advice=which_number(item),
-            ways=_ways(run.cases, item) if len(run.cases) > 1 else [],
+            found=found,
             direction=direction_in_words(item.case),
             facts=wall_summary(case),
             assumptions=assumptions(case),
@@ -134,10 +121,6 @@ def render(run: ComparisonRun) -> str:
             shown=shown,
             value=value_in_words(shown) if shown else "",
             bars=bar_forces_of(case, shown) if shown else [],
-            reactions=listed,
-            balance=balance,
-            joints=joint_rows(case, shown)[:JOINT_ROWS] if shown else [],
-            joint_columns=in_units(_CRITICAL, case.wall.units.force, case.wall.units.length),
             warnings=(*case.warnings, *item.refusals),
             units=case.wall.units,
             style=Markup(files("reports").joinpath("static/appendix.css").read_text(encoding="utf-8")),
@@ -146,47 +129,8 @@ def render(run: ComparisonRun) -> str:
     )
 
 
-def _collapse(item: CaseResults) -> float:
-    """The multiplier by which a direction of the live load governs: none is known where nothing collapses."""
-    least = least_known(item)
-    if least is not None and least.multiplier is not None:
-        return least.multiplier
-    falls = any(r.finding is Finding.FALLS and r.judge.accepted is not False for r in item.results)
-    return 0.0 if falls else math.inf
-
-
-def _ways(items: list[CaseResults], governing: CaseResults) -> list[tuple[str, str, str, bool]]:
-    """For each direction of the live load: its name, the least multiplier, what is proved of it, whether it governs."""
-    rows = []
-    for item in items:
-        least = least_known(item)
-        answers = dict.fromkeys(labels.FINDING[result.finding] for result in item.mains)
-        value = ", ".join(answers) if least is None else f"{numbers.multiplier(least.multiplier)} ({least.method})"
-        proved = "" if least is None else proof_of(item, least).label
-        rows.append((direction_in_words(item.case), value, proved, item is governing))
-    return rows
-
-
 def _drawn(item: CaseResults) -> bool:
     return item.case.assembly.n_blocks <= DRAWN_BLOCKS
-
-
-def _shown(item: CaseResults) -> Result | None:
-    """The state that is drawn and whose reactions are told: the least, or any accepted one with forces."""
-    least = least_known(item)
-    if least is not None and least.forces is not None and least.mechanism is not None:
-        return least
-    return next(
-        (r for r in labels.in_order(item) if r.status is Status.OK and r.forces is not None and r.mechanism),
-        None,
-    )
-
-
-def _reactions(item: CaseResults, shown: Result | None) -> tuple[list[SupportReaction], float | None]:
-    if shown is None or shown.forces is None:
-        return [], None
-    listed = reactions_of(item.case, shown)
-    return listed, out_of_balance(item.case.assembly, listed, shown.forces_multiplier or 0.0)
 
 
 def _loads(item: CaseResults) -> list[tuple[str, str, str]]:

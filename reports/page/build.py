@@ -20,8 +20,11 @@ from harness.model.envelope import by_wall, envelopes
 from harness.model.result_texts import answer_text, settings_text
 from harness.model.units import DIMENSIONLESS
 from harness.model.writing import write_whole
+from reports.charts import dots
 from reports.charts.curves import curves
+from reports.charts.overview import overview_plot
 from reports.charts.studies import studies
+from reports.charts.styles import Mark
 from reports.drawing.looks import HATCH, css
 from reports.drawing.svg import inline
 from reports.drawing.wall_drawing import wall_drawing
@@ -33,14 +36,21 @@ from reports.labels import labels, numbers
 from reports.memo import each_once
 from reports.page import paper, tables
 from reports.page.export import export
-from reports.page.governing import governing_case
+from reports.page.glance import glance
 from reports.page.page_drawings import PageDrawings, fields_drawn
 from reports.page.sections import CaseSection, case_section
 from reports.page.summary import run_in_order, summary
 
-DRAWING_BUDGET, INLINE = 1_600_000, 300_000
+DRAWING_BUDGET, INLINE = 1_500_000, 300_000
 """Bytes that drawings of mechanisms and forces may take in the page, packed, and more for some that are not, so that it
-stays below 5 MB: at 65 cases of 60 blocks and 8 methods all else takes 3 MB."""
+stays below 5 MB: at 65 cases of 60 blocks and 8 methods all else takes 3.1 MB."""
+
+
+SIGNS = (
+    ("filled: proved minimum", dots.sign(Mark("#14202b", "s", "solid"), filled=True)),
+    ("reference", dots.sign(dots.REFERENCE)),
+)
+"""Signs of the overview beside the marks of methods."""
 
 
 def write_report(run: ComparisonRun, path: Path, *, drawn: bool = False) -> None:
@@ -72,13 +82,17 @@ def render(run: ComparisonRun, *, data_folder: str, listed: Sequence[ResultColum
     scripts = [_static(name) for name in ("table.js", "move.js")]
     fields, drawings = fields_drawn(run, DRAWING_BUDGET), PageDrawings(INLINE)
     sections = _sections(run, rows, fields, drawings)
+    first, overview = glance(run), overview_plot(run)
     template = environment().get_template("report.html.j2")
     return template.render(
         run=run,
         created=_date(run.created),
         digest=_digest(rows),
         versions=run.provenance.get("versions", {}),
-        summary=summary(run),
+        glance=first,
+        summary=summary(run, None if first.governs is None else first.governs.item),
+        overview=dots.html(overview),
+        overview_signs=dots.legend(overview, SIGNS),
         findings=tables.findings(run),
         columns=tables.columns(run),
         shown=shown,
@@ -91,8 +105,7 @@ def render(run: ComparisonRun, *, data_folder: str, listed: Sequence[ResultColum
         references=tables.reference_rows(run),
         compared=COMPARED,
         purposes=labels.PURPOSE,
-        load_cases=(load_cases := by_wall(envelopes(run.cases))),
-        governing={wall: governing_case(run, found) for wall, found in load_cases.items()},
+        load_cases=by_wall(envelopes(run.cases)),
         answer_text=answer_text,
         gates=[(number, item.case.id, gate) for number, item in enumerate(run.cases) for gate in item.gates],
         paper=paper.paper_comparison(run),

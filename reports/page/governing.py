@@ -1,51 +1,118 @@
-"""The load case of a wall that governs, as a drawing with its mechanism and its loads."""
+"""The load case or direction that governs a wall, with what an engineer asks of it: reactions and critical joints."""
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from markupsafe import Markup
+from harness.model.comparison import CaseResults
+from harness.model.envelope import EQUAL
+from harness.model.joint_margins import JOINTS, JointColumn, JointRow, joint_rows
+from harness.model.live_load import direction_in_words
+from harness.model.method import Finding, Status
+from harness.model.proof import least_known, proof_of
+from harness.model.result import Result
+from harness.model.support_reactions import SupportReaction, out_of_balance, reactions_of
+from harness.model.table import in_units
+from reports.labels import labels, numbers
 
-from harness.model.comparison import ComparisonRun
-from harness.model.envelope import Envelope
-from reports.drawing.mechanism_drawing import loaded_mechanism
-from reports.drawing.svg import inline
-from reports.labels.wall_summary import value_in_words
+_CRITICAL = tuple(
+    column
+    for column in JOINTS
+    if column.name not in ("interface", "joint", "utilisation", "eccentricity", "length", "thickness")
+)
+"""Columns of the most critical joints."""
 
-MOST_BLOCKS = 2_000
-"""Blocks of a wall that is drawn: a drawing of more takes as much room as the rest of the page."""
+
+@dataclass(frozen=True)
+class Way:
+    """One load case or direction of the live load.
+
+    Attributes:
+        name: in words.
+        value: the least multiplier with its method, or what was found instead.
+        proved: what is proved of it.
+        governs: whether no other has a lower one.
+    """
+
+    name: str
+    value: str
+    proved: str
+    governs: bool
 
 
 @dataclass(frozen=True)
 class Governing:
-    """The governing load case of one wall by one method.
+    """What governs one wall.
 
     Attributes:
-        number: of its section; drawing: of its mechanism; sentence: what it shows.
+        item: the load case with the lowest multiplier.
+        ways: all load cases.
+        shown: the state that is drawn and whose forces stand in the tables; None without one.
+        reactions: of the supports in that state.
+        balance: part of the loads that the reactions do not balance; None without a state.
+        joints: the most critical ones of that state.
+        joint_columns: of their table.
     """
 
-    number: int
-    drawing: Markup
-    sentence: str
+    item: CaseResults
+    ways: list[Way]
+    shown: Result | None
+    reactions: list[SupportReaction]
+    balance: float | None
+    joints: list[JointRow]
+    joint_columns: tuple[JointColumn, ...]
 
 
-def governing_case(run: ComparisonRun, found: Sequence[Envelope]) -> Governing | None:
-    """The governing load case of the envelopes of one wall: by a method that seeks the least state, else by the first.
+def governing(items: Sequence[CaseResults], joints: int = 8) -> Governing:
+    """The load case that governs a wall.
 
-    None where none governs, or its answer has no mechanism.
+    Args:
+        items: its load cases, one or more.
+        joints: number of most critical joints to list.
     """
-    known = [each for each in found if each.governing]
-    if not known:
-        return None
-    chosen = next((each for each in known if each.results[0].traits.seeks_least), known[0])
-    name = chosen.governing[0]
-    result = chosen.results[chosen.names.index(name)]
-    places = (k for k, item in enumerate(run.cases) if (item.case.wall_id, item.case.load_case) == (chosen.wall, name))
-    number = next(places, None)
-    if number is None or result.mechanism is None or len(result.mechanism) > MOST_BLOCKS:
-        return None
-    drawing = Markup(inline(loaded_mechanism(run.cases[number].case, result)))
-    others = f" (and {len(chosen.governing) - 1} more alike)" if len(chosen.governing) > 1 else ""
-    sentence = f"{result.method}: {name}{others} governs, {value_in_words(result)}. Its mechanism, with the loads"
-    return Governing(number, drawing, sentence)
+    item = min(items, key=_collapse)
+    lowest = _collapse(item)
+    case, shown = item.case, _shown(item)
+    listed = [] if shown is None else reactions_of(case, shown)
+    balance = None
+    if shown is not None and listed:
+        balance = out_of_balance(case.assembly, listed, shown.forces_multiplier or 0.0)
+    return Governing(
+        item=item,
+        ways=[_way(each, governs=lowest < math.inf and _collapse(each) <= lowest * (1.0 + EQUAL)) for each in items],
+        shown=shown,
+        reactions=listed,
+        balance=balance,
+        joints=joint_rows(case, shown)[:joints] if shown else [],
+        joint_columns=in_units(_CRITICAL, case.wall.units.force, case.wall.units.length),
+    )
+
+
+def _collapse(item: CaseResults) -> float:
+    """The multiplier by which a load case governs: none is known where nothing collapses."""
+    least = least_known(item)
+    if least is not None and least.multiplier is not None:
+        return least.multiplier
+    falls = any(r.finding is Finding.FALLS and r.judge.accepted is not False for r in item.results)
+    return 0.0 if falls else math.inf
+
+
+def _way(item: CaseResults, *, governs: bool) -> Way:
+    least = least_known(item)
+    answers = dict.fromkeys(labels.FINDING[result.finding] for result in item.mains)
+    value = ", ".join(answers) if least is None else f"{numbers.multiplier(least.multiplier)} ({least.method})"
+    proved = "" if least is None else proof_of(item, least).label
+    return Way(item.case.load_case or direction_in_words(item.case), value, proved, governs)
+
+
+def _shown(item: CaseResults) -> Result | None:
+    """The state that is drawn and whose reactions are told: the least, or any accepted one with forces."""
+    least = least_known(item)
+    if least is not None and least.forces is not None and least.mechanism is not None:
+        return least
+    return next(
+        (r for r in labels.in_order(item) if r.status is Status.OK and r.forces is not None and r.mechanism),
+        None,
+    )

@@ -33,10 +33,11 @@ class PrintedBlock(Strict):
 
 
 class PrintedCost(Strict):
-    """CPU minutes of a method on the paper's wall, and the work it asks of the user."""
+    """CPU minutes of a method on the paper's wall, blocks of its largest wall, and the work it asks of the user."""
 
     method: str
     minutes: float
+    largest: int
     work: str
 
 
@@ -45,6 +46,7 @@ class PrintedWall(Strict):
 
     case: str
     experiment: float
+    mechanisms: str
     study: str
     rows: list[PrintedCost]
 
@@ -97,13 +99,14 @@ class BlockRow:
 
 @dataclass(frozen=True)
 class CostRow:
-    """CPU time of one method as a ratio, beside the paper's."""
+    """CPU time of one method as a ratio, beside the paper's; `until_value` [s]: when a search first had its value."""
 
     method: str
     paper_ratio: str
     ratio: str
     cpu: Cell
     anchor: str
+    until_value: float | None
     paper_work: str
     settings: int
     changed: str
@@ -143,8 +146,7 @@ def paper_comparison(run: ComparisonRun) -> Paper | None:
         return None
     cost = [] if wall is None else _cost(*wall)
     times = {row.method: row.cpu.sort for row in cost if row.cpu.sort}
-    to_value = {row.method: _to_value(wall[1], row.method) for row in cost} if wall is not None else {}
-    earlier = {name: value for name, value in to_value.items() if value is not None}
+    earlier = {row.method: row.until_value for row in cost if row.until_value is not None}
     return Paper(
         block=[] if block is None else _block(*block),
         cost=cost,
@@ -219,6 +221,7 @@ def _cost(number: int, item: CaseResults) -> list[CostRow]:
                 ratio=numbers.NOTHING if not cpu or not base else numbers.plain(paper[first].minutes * cpu / base, 3),
                 cpu=Cell(numbers.seconds(cpu), "" if cpu is None else f"{cpu!r} s", cpu),
                 anchor=anchor_of(number, entry[0]),
+                until_value=_to_value(item, method),
                 paper_work=paper[method].work,
                 settings=len(result.settings),
                 changed=", ".join(asked) or "none",

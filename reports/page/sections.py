@@ -24,7 +24,7 @@ from reports.geometry import shapes, thrust_lines
 from reports.labels import numbers
 from reports.labels.wall_summary import wall_summary
 from reports.page.page_drawings import PageDrawings
-from reports.page.summary import figure_of, is_calm
+from reports.page.summary import figure_of, is_calm, wall_findings
 from reports.page.tables import RunRow
 
 
@@ -71,6 +71,7 @@ class CaseSection:
     agreements: list[Agreement]
     curves: list[tuple[str, Markup]]
     problem: str = ""
+    finding: str = ""
     cut: str = "all"
     reasons: tuple[str, ...] = ()
     calm: bool = False
@@ -78,6 +79,21 @@ class CaseSection:
     overlay_caption: str = ""
     strength: list[StrengthRow] = field(default_factory=list)
     bars: list[BarRow] = field(default_factory=list)
+
+    @property
+    def families(self) -> list[Panel]:
+        """The drawings of the main method of every family."""
+        return [panel for panel in self.drawn if panel.row.result.is_main]
+
+    @property
+    def checks(self) -> list[Panel]:
+        """Those of the other methods."""
+        return [panel for panel in self.drawn if not panel.row.result.is_main]
+
+    @property
+    def drawn(self) -> list[Panel]:
+        """Panels with a drawing."""
+        return [panel for panel in self.panels if panel.mechanism or panel.forces]
 
     @property
     def packed(self) -> bool:
@@ -158,6 +174,7 @@ def case_section(
         without_drawing=without,
         agreements=agreements,
         curves=curves,
+        finding=wall_findings(item),
         cut=fields,
         reasons=tuple(reasons(item)),
         calm=calm,

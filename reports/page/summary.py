@@ -1,11 +1,10 @@
-"""What the page opens with: the findings in a paragraph, the number to use, all that went wrong, and one figure."""
+"""What the page says of its walls: findings in sentences, the number to use, and all that went wrong."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
 
 import numpy as np
-from markupsafe import Markup
 
 from harness.model.comparison import CaseResults, ComparisonRun
 from harness.model.errors import first_few
@@ -14,9 +13,9 @@ from harness.model.method import Status
 from harness.model.proof import least_known, proof_of
 from harness.model.ranges import percent_text
 from harness.model.result import Result, Verdict
+from reports.charts.overview import AGREE
 from reports.drawing.display_list import DisplayList
 from reports.drawing.mechanism_drawing import mechanism_drawing, overlay_drawing
-from reports.drawing.svg import inline
 from reports.findings.agreement import agreement, mains, spread
 from reports.findings.joints import joints_in_words, motion
 from reports.findings.reasons import SAME_MOTION, mechanism_in_words
@@ -27,8 +26,6 @@ from reports.memo import memo
 from reports.page import paper
 from reports.page.tables import anchor_of
 
-CLOSE = 0.01
-"""Methods that lie within a hundredth of each other agree, in the words of the paper's comparison."""
 JOINTS_OF_ONE = "Joints that slide (red) or open (violet) in one of them only are marked, those of the second dashed."
 
 
@@ -49,44 +46,35 @@ class RedRow:
 
 @dataclass(frozen=True)
 class Summary:
-    """The first screen.
+    """The sentences of the first screen.
 
     Attributes:
         findings: sentences.
         advice: which number to use; empty where there is more than one wall.
         red: every run and statement that went wrong, by name.
-        figure, caption: one drawing.
     """
 
     findings: list[str]
     advice: str
     red: list[RedRow]
-    figure: Markup
-    caption: str
 
 
-def summary(run: ComparisonRun) -> Summary:
-    """The opening of a comparison: of one wall, of the paper's walls, or of a suite."""
-    built = [(number, item) for number, item in enumerate(run.cases) if not shapes.problem(item.case)]
-    items = [item for _, item in built]
+def summary(run: ComparisonRun, governs: CaseResults | None = None) -> Summary:
+    """The sentences of a comparison: of one wall, or of a suite.
+
+    Args:
+        run: the comparison.
+        governs: the load case that governs its only wall; None of several walls.
+    """
+    items = [item for item in run.cases if not shapes.problem(item.case)]
     found, missed = _broken_theory(run)
-    one = len(run.cases) == 1
-    if one:
-        found.extend(wall_findings(item) for item in items)
-    else:
-        told = [item for item in items if item.case.id in paper.printed().cases]
-        found.extend(wall_findings(item, short=True) for item in told)
+    told = governs or (items[0] if len(run.cases) == len(items) == 1 else None)
+    advice = "" if told is None else which_number(told)
+    if told is None:
         found.extend(_suite(items))
-    found.extend(missed)
-    focus = _focus(items, one)
-    figure, caption = (None, "") if focus is None else figure_of(focus)
-    return Summary(
-        findings=[sentence for sentence in found if sentence],
-        advice="" if not one or not items else which_number(items[0]),
-        red=red_rows(run),
-        figure=Markup("") if figure is None else inline(figure),
-        caption=caption,
-    )
+    elif not advice:
+        found.append(wall_findings(told))
+    return Summary([*found, *missed], advice, red_rows(run))
 
 
 @memo
@@ -111,7 +99,7 @@ def _rank(item: CaseResults) -> int:
     if item.case.id in paper.printed().cases:
         return 1
     wrong = any(gate.passed is False for gate in item.gates) or any(_wrong(result) for result in item.results)
-    return 2 if wrong or _apart(item) > CLOSE else 3
+    return 2 if wrong or _apart(item) > AGREE else 3
 
 
 def red_rows(run: ComparisonRun) -> list[RedRow]:
@@ -154,8 +142,8 @@ def _broken_theory(run: ComparisonRun) -> tuple[list[str], list[str]]:
     )
 
 
-def wall_findings(item: CaseResults, *, short: bool = False) -> str:
-    """What was found of one wall, in a few sentences; `short` leaves the mechanism out."""
+def wall_findings(item: CaseResults) -> str:
+    """What was found of one wall, in a few sentences."""
     least, assembly = least_known(item), item.case.assembly
     answered = mains(item)
     others = ", ".join(f"{r.method.upper()} {value_in_words(r)}" for r in answered if r is not least)
@@ -167,7 +155,7 @@ def wall_findings(item: CaseResults, *, short: bool = False) -> str:
     under = f" under the live load {way}" if way in ("to the left", "to the right") else ""
     said = f"{item.case.id} collapses at {numbers.multiplier(least.multiplier)}{under} ({called})"
     sentences = [f"{said}{'; ' + others if others else ''}.", _agreement(item)]
-    if not short and least.mechanism is not None:
+    if least.mechanism is not None:
         mechanism = np.asarray(least.mechanism, dtype=float)
         joints = motion(assembly, least)
         how = mechanism_in_words(assembly, mechanism, item.case.wall.units.length)
@@ -196,9 +184,9 @@ def _agreement(item: CaseResults) -> str:
     least, most = apart
     if most <= 1e-4:
         return "The methods agree."
-    if most <= CLOSE:
+    if most <= AGREE:
         return f"They lie within {100.0 * most:.2f} % of each other."
-    if least <= CLOSE:
+    if least <= AGREE:
         return f"A measured bracket does not decide whether they agree: they differ by {percent_text(least, most)}."
     why = _mechanisms(item)
     return f"They differ by {percent_text(least, most)}{': ' + why if why else ''}."
@@ -264,8 +252,8 @@ def _suite(items: list[CaseResults]) -> list[str]:
     spreads = [(by, item.case.id) for item in items if (by := spread(item)) is not None]
     found = []
     if spreads:
-        apart = sorted((entry for entry in spreads if entry[0][0] > CLOSE), reverse=True)
-        open_ = [name for (least, most), name in spreads if least <= CLOSE < most]
+        apart = sorted((entry for entry in spreads if entry[0][0] > AGREE), reverse=True)
+        open_ = [name for (least, most), name in spreads if least <= AGREE < most]
         sentence = (
             f"At least two families give a collapse multiplier of {numbers.count(len(spreads), 'wall')}; on "
             f"{len(spreads) - len(apart) - len(open_)} of them all lie within 1 % of each other"
@@ -281,17 +269,6 @@ def _suite(items: list[CaseResults]) -> list[str]:
             f"The families find different things on {numbers.count(len(split), 'wall')}: {first_few(split, 6)}."
         )
     return found
-
-
-def _focus(items: list[CaseResults], one: bool) -> CaseResults | None:
-    """The wall whose mechanism is drawn: the only one, the paper's, or the one on which methods part most."""
-    drawn = [item for item in items if (least := least_known(item)) is not None and least.mechanism is not None]
-    if not drawn:
-        return None
-    return next(
-        (item for item in drawn if one or item.case.id == paper.printed().wall.case),
-        max(drawn, key=_apart),
-    )
 
 
 @memo

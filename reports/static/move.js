@@ -44,18 +44,40 @@
     };
   };
 
-  for (const section of document.querySelectorAll("section.case")) {
-    section.querySelectorAll(".tools").forEach((tools) => { tools.hidden = false; });
+  const still = matchMedia("(prefers-reduced-motion: reduce)");
+  for (const section of document.querySelectorAll("[data-case]")) {
+    section.querySelectorAll(".tools, .play").forEach((tools) => { tools.hidden = false; });
     const slider = section.querySelector("input[type=range]");
-    if (slider) {
-      const output = section.querySelector("output");
-      let movers;
-      slider.addEventListener("input", () => {
-        movers ??= [...section.querySelectorAll("[data-kind=mechanism] svg")].map((svg) => (fill(svg), mover(svg)));
-        output.textContent = `${slider.value} %`;
-        movers.forEach((move) => move(Number(slider.value) / 100));
-      });
-    }
+    let movers;
+    const amplitude = (percent) => {
+      movers ??= [...section.querySelectorAll("[data-kind=mechanism] svg")].map((svg) => (fill(svg), mover(svg)));
+      movers.forEach((move) => move(percent / 100));
+      if (!slider) return;
+      slider.value = percent;
+      section.querySelector("output").textContent = `${Math.round(percent)} %`;
+    };
+    if (slider) slider.addEventListener("input", () => amplitude(Number(slider.value)));
+    /* The mechanism grows from rest and returns, until it is stopped; then it stands as it is drawn. */
+    const play = section.querySelector(".play");
+    let frame = 0;
+    const stop = () => {
+      cancelAnimationFrame(frame);
+      frame = 0;
+      play.setAttribute("aria-pressed", "false");
+      amplitude(100);
+    };
+    if (play) play.addEventListener("click", () => {
+      if (frame) { stop(); return; }
+      if (still.matches) return;
+      play.setAttribute("aria-pressed", "true");
+      const began = performance.now();
+      const step = (now) => {
+        amplitude(50 * (1 - Math.cos((now - began) / 800)));
+        frame = requestAnimationFrame(step);
+      };
+      frame = requestAnimationFrame(step);
+    });
+    if (play) still.addEventListener("change", () => { if (still.matches && frame) stop(); });
     for (const radio of section.querySelectorAll("input[type=radio]")) {
       radio.addEventListener("change", () => {
         if (radio.checked) section.dataset.layer = radio.value;
@@ -63,23 +85,33 @@
     }
   }
 
-  /* Sections far off have an estimated height until they are laid out, so a jump is corrected as they come near. */
+  /* A link opens what its target is folded into. Sections far off have an estimated height until they are laid out, so
+     a jump is corrected as they come near. */
   const settle = () => {
     const target = location.hash.length > 1 ? document.getElementById(location.hash.slice(1)) : null;
     if (!target) return;
+    for (let fold = target.closest("details"); fold; fold = fold.parentElement.closest("details")) fold.open = true;
+    const below = Number.parseFloat(getComputedStyle(document.documentElement).scrollPaddingTop) || 0;
     let left = 8;
     const correct = () => {
-      if (Math.abs(target.getBoundingClientRect().top) > 2) target.scrollIntoView({ behavior: "instant" });
+      if (Math.abs(target.getBoundingClientRect().top - below) > 2) target.scrollIntoView({ behavior: "instant" });
       if (--left > 0) requestAnimationFrame(correct);
     };
     requestAnimationFrame(correct);
   };
   window.addEventListener("hashchange", settle);
   document.addEventListener("click", (event) => {
-    const link = event.target instanceof Element ? event.target.closest("a[href^='#']") : null;
+    const inside = event.target instanceof Element ? event.target : null;
+    document.querySelectorAll("nav details[open]").forEach((menu) => { if (!inside || inside.closest("a") || !menu.contains(inside)) menu.open = false; });
+    const link = inside ? inside.closest("a[href^='#']") : null;
     if (link && link.getAttribute("href") === location.hash) settle();
   });
   settle();
+
+  /* Folded parts that belong on paper are open while the page prints. */
+  const folds = [...document.querySelectorAll("details[data-print]:not([open])")];
+  window.addEventListener("beforeprint", () => folds.forEach((fold) => { fold.open = true; }));
+  window.addEventListener("afterprint", () => folds.forEach((fold) => { fold.open = false; }));
 
   /* Values of the block or interface under the pointer. */
   const tip = document.createElement("div");
@@ -88,7 +120,7 @@
   tip.setAttribute("aria-hidden", "true");
   document.body.appendChild(tip);
   const lines = (target, section, kind) => {
-    const said = cases[Number(section.id.slice("case-".length))];
+    const said = cases[Number(section.dataset.case)];
     const { block, joint, values } = target.dataset;
     const head = block !== undefined ? said.blocks[block] : said.joints[joint];
     const forms = block !== undefined ? said.moves : kind === "mechanism" ? said.joint : said.force;
@@ -104,7 +136,7 @@
     const figure = target && target.closest("[data-kind]");
     tip.hidden = !figure;
     if (!figure) return;
-    tip.replaceChildren(...lines(target, figure.closest("section.case"), figure.dataset.kind).map((line) => {
+    tip.replaceChildren(...lines(target, figure.closest("[data-case]"), figure.dataset.kind).map((line) => {
       const row = document.createElement("div");
       row.textContent = line;
       return row;

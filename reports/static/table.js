@@ -1,6 +1,18 @@
-/* Sorting and filtering of the table of runs. Without this script the table stands as it was made. */
+/* Order of the overview, sorting and filtering of the table of runs. Without this script both stand as they were made. */
 (() => {
   "use strict";
+  const order = document.getElementById("dots-order");
+  if (order) {
+    const list = document.querySelector("#dots ol");
+    const walls = [...list.children];
+    const sortings = {
+      place: (a, b) => a.dataset.place - b.dataset.place,
+      spread: (a, b) => b.dataset.spread - a.dataset.spread || a.dataset.place - b.dataset.place,
+      name: (a, b) => a.firstElementChild.textContent.localeCompare(b.firstElementChild.textContent),
+    };
+    order.hidden = false;
+    order.addEventListener("change", (event) => list.append(...walls.sort(sortings[event.target.value])));
+  }
   const table = document.getElementById("runs-table");
   if (!table) return;
   const body = table.tBodies[0];

@@ -19,6 +19,10 @@ PHONE, DESKTOP = {"width": 360, "height": 780}, {"width": 1280, "height": 900}
 TABLET, WIDE = {"width": 768, "height": 1024}, {"width": 1920, "height": 1080}
 
 
+UNDER_MENU = 48
+"""Where the target of a link stands: below the menu, which stays in sight."""
+
+
 class Opened:
     """A page with what it asked for and complained about."""
 
@@ -33,8 +37,13 @@ class Opened:
         self.page.on("dialog", lambda dialog: (self.complaints.append(f"dialog {dialog.message}"), dialog.dismiss()))
         self.page.goto(path.as_uri())
 
+    def unfold(self) -> None:
+        """Open all that is folded."""
+        self.page.evaluate("document.querySelectorAll('main details').forEach((fold) => { fold.open = true; })")
+
     def see_everything(self) -> None:
-        """Scroll through the page, so that every figure is drawn."""
+        """Unfold and scroll through the page, so that every figure is drawn."""
+        self.unfold()
         top = 0
         # The page grows as it is seen, because sections far off are laid out only when they come near.
         while top < int(self.page.evaluate("document.documentElement.scrollHeight")):
@@ -53,6 +62,7 @@ class Opened:
 @pytest.fixture
 def opened(browser: Browser, report: Path) -> Iterator[Opened]:
     found = Opened(browser, report)
+    found.unfold()
     yield found
     found.context.close()
 
@@ -66,7 +76,7 @@ def test_page_asks_for_nothing_and_complains_of_nothing(opened: Opened, report: 
 def test_hostile_names_are_shown_as_text(opened: Opened):
     opened.look_at("#case-2 [data-kind=mechanism] svg")
     assert opened.page.locator("img").count() == 0
-    assert opened.page.get_by_text(samples.SCRIPT).first.is_visible()
+    assert opened.page.locator("main").get_by_text(samples.SCRIPT).filter(visible=True).count() > 0
     opened.page.locator("#case-2 [data-kind=mechanism] path[data-block='1']").first.hover()
     tip = opened.page.locator(".tip")
     assert samples.CLOSING in tip.inner_text()
@@ -76,7 +86,7 @@ def test_hostile_names_are_shown_as_text(opened: Opened):
 def test_every_figure_is_drawn(opened: Opened):
     opened.see_everything()
     figures = opened.page.locator("[data-kind] svg")
-    assert figures.count() == 2 * (4 + 5 + 1)
+    assert figures.count() == 2 * (4 + 5 + 1) + opened.page.locator(".trio svg").count()
     empty = figures.evaluate_all("all => all.filter(svg => svg.childElementCount === 0).length")
     assert empty == 0
 
@@ -133,7 +143,7 @@ def test_resultants_are_arrows_with_their_size_and_a_scale(opened: Opened):
     forces = opened.page.locator("#case-1 [data-kind=forces] svg").first
     groups = forces.locator("g[data-joint]")
     arrows = forces.locator("path:is(.force, .full)")
-    assert groups.count() == arrows.count() == forces.locator("text.said").count() > 0
+    assert groups.count() == arrows.count() >= forces.locator("text.said").count() > 0
     assert re.fullmatch(r"[0-9.]+ m[0-9.]+ kN", "".join(forces.locator("text:not(.said)").all_text_contents()))
     assert (opened.page.locator("#case-1 .sheet svg.wall text:not(.said)").last.text_content() or "").endswith(" m")
 
@@ -272,9 +282,10 @@ def test_tables_stand_without_the_script(browser: Browser, report: Path):
     context = browser.new_context(java_script_enabled=False)
     page = context.new_page()
     page.goto(report.as_uri())
+    page.evaluate("document.querySelectorAll('main details').forEach((fold) => { fold.open = true; })")
     assert page.locator("#runs-table tbody tr:visible").count() == 12
     assert page.locator("svg.wall").first.is_visible()
-    drawn = page.locator(".panel [data-kind] svg.wall:visible").count()
+    drawn = page.locator("[data-kind] svg.wall:visible").count()
     assert drawn == page.locator("[data-kind] svg").count() > 0, "mechanisms and forces are drawn"
     assert not page.locator("#runs-filter").is_visible(), "no controls that would do nothing"
     context.close()
@@ -286,7 +297,7 @@ def test_links_lead_to_their_place(browser: Browser, report: Path, size: Any):
     for target in ("#case-2", "#provenance", "#case-1", "#how-run-1-2", "#run-0-1"):
         opened.page.locator(f"a[href='{target}']").first.evaluate("link => link.click()")
         opened.page.wait_for_timeout(400)
-        top = opened.page.locator(target).evaluate("e => e.getBoundingClientRect().top")
+        top = opened.page.locator(target).evaluate("e => e.getBoundingClientRect().top") - UNDER_MENU
         bottom = opened.page.evaluate("document.documentElement.scrollHeight - window.scrollY - window.innerHeight")
         assert -3 <= top <= 3 or (0 <= top < size["height"] and bottom <= 3), target
     opened.context.close()
@@ -301,7 +312,7 @@ def test_sixty_five_cases_by_eight_methods_open_fast(browser: Browser, tmp_path:
     session.send("Performance.enable", {"timeDomain": "threadTicks"})
     page.goto(path.as_uri())
     metrics = {item["name"]: item["value"] for item in session.send("Performance.getMetrics")["metrics"]}
-    assert page.locator("#runs-count").inner_text() == "520 runs"
+    assert page.locator("#runs-count").text_content() == "520 runs"
     context.close()
     # CPU seconds of the page's thread, which other work on the machine does not count in. A second is the
     # requirement and 0.7 is usual; half as much again is left for a slower processor.

@@ -201,7 +201,9 @@ def test_what_a_result_does_not_have_is_not_drawn():
     for without, kind in (("forces", "mechanism"), ("mechanism", "forces")):
         item = CaseResults(case, [whole.model_copy(update={without: None})])
         page = build.render(ComparisonRun("one", "", "", [item]), data_folder="x")
-        assert re.findall(r'data-kind="(\w+)"', page.split("<script")[0]) == [kind]
+        drawn = page.split("<script")[0].split('<section id="cases">')
+        assert re.findall(r'data-kind="(\w+)"', drawn[1]) == [kind]
+        assert ('data-kind="mechanism"' in drawn[0]) is (without == "forces"), "of the first screen"
 
 
 def texts_of(page: Figure) -> list[tuple[Text, tuple[float, float, float, float]]]:

@@ -1,0 +1,139 @@
+"""The first screen and the walls as they are seen: nothing too small, nothing over something else, and what moves."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import pytest
+from playwright.sync_api import Browser
+
+from tests.browser.test_report_in_browser import DESKTOP, PHONE, UNDER_MENU, WIDE, Opened
+
+pytestmark = pytest.mark.browser
+SMALLEST = 10.9
+"""Least size of letters [px]: 11, less what a browser rounds."""
+SEEN = """() => {
+  const aside = ".sr, .skip, [hidden], title, script, style";
+  const seen = (e) => e.checkVisibility({ checkVisibilityCSS: true }) && !e.closest(aside);
+  const written = (e) => [...e.childNodes].some((n) => n.nodeType === 3 && n.textContent.trim());
+  return [...document.body.querySelectorAll("*")].filter((e) => seen(e) && written(e)).map((e) => {
+    const matrix = e instanceof SVGTextElement ? e.getScreenCTM() : null;
+    const size = Number.parseFloat(getComputedStyle(e).fontSize) * (matrix ? Math.hypot(matrix.a, matrix.b) : 1);
+    return [size, e.textContent.trim().slice(0, 30), e.getAttribute("class") || e.tagName];
+  });
+}"""
+COVERED = """() => [...document.querySelectorAll("svg.wall, svg.chart")].flatMap((svg) => {
+  const texts = [...svg.querySelectorAll("text")].filter((t) => t.checkVisibility() && t.getBoundingClientRect().width);
+  const boxes = texts.map((t) => [t.getBoundingClientRect(), t.textContent]);
+  const frame = svg.getBoundingClientRect();
+  const out = boxes.filter(([b]) => b.left < frame.left - 1 || b.right > frame.right + 1 || b.bottom > frame.bottom + 2)
+    .map(([, text]) => `clipped: ${text}`);
+  /* The box of a line of text is a third higher than its letters: only what overlaps by more is a fault. */
+  const over = (a, b) => Math.min(a.right, b.right) - Math.max(a.left, b.left) > 1
+    && Math.min(a.bottom, b.bottom) - Math.max(a.top, b.top) > 0.35 * Math.min(a.height, b.height);
+  boxes.forEach(([a, text], k) => boxes.slice(k + 1).forEach(([b, other]) => {
+    if (over(a, b)) out.push(`${svg.getAttribute("aria-label")}: ${text} over ${other}`);
+  }));
+  return out;
+})"""
+
+
+@pytest.mark.parametrize("size", [DESKTOP, WIDE], ids=["desktop", "wide"])
+def test_first_screen_holds_the_three_mechanisms_at_one_scale_beside_the_papers_values(
+    browser: Browser, report: Path, size: Any
+):
+    opened = Opened(browser, report, size)
+    pictures = opened.page.locator(".trio svg.wall")
+    boxes = [box for k in range(pictures.count()) if (box := pictures.nth(k).bounding_box())]
+    assert len(boxes) == 3
+    assert all(box["y"] + box["height"] <= size["height"] for box in boxes)
+    assert len({round(box["y"]) for box in boxes}) == 1, "side by side"
+    scales = pictures.evaluate_all("all => all.map(svg => svg.getScreenCTM().a)")
+    assert max(scales) - min(scales) < 1e-6
+    assert opened.page.locator(".glance .dots").count() == 2
+    assert all(
+        opened.page.locator(".glance .dots").nth(k).evaluate("e => e.getBoundingClientRect().bottom") <= size["height"]
+        for k in range(2)
+    )
+    opened.context.close()
+
+
+@pytest.mark.parametrize("size", [DESKTOP, PHONE, WIDE], ids=["desktop", "phone", "wide"])
+def test_letters_are_large_enough_to_read(browser: Browser, report: Path, size: Any):
+    opened = Opened(browser, report, size)
+    opened.see_everything()
+    found = opened.page.evaluate(SEEN)
+    opened.context.close()
+    assert len(found) > 200
+    assert [entry for entry in found if entry[0] < SMALLEST] == []
+
+
+@pytest.mark.parametrize("size", [DESKTOP, PHONE], ids=["desktop", "phone"])
+def test_labels_cover_neither_each_other_nor_the_edge(browser: Browser, report: Path, size: Any):
+    opened = Opened(browser, report, size)
+    opened.see_everything()
+    found = opened.page.evaluate(COVERED)
+    opened.context.close()
+    assert found == []
+
+
+def test_menu_stays_in_sight_and_leads_back_to_the_top(browser: Browser, report: Path):
+    opened = Opened(browser, report)
+    opened.page.locator("a[href='#provenance']").first.click()
+    opened.page.wait_for_timeout(400)
+    menu = opened.page.locator("nav")
+    assert menu.evaluate("e => e.getBoundingClientRect().top") == 0
+    assert menu.evaluate("e => e.getBoundingClientRect().height") <= UNDER_MENU
+    opened.page.get_by_role("link", name="Top").click()
+    opened.page.wait_for_timeout(400)
+    assert opened.page.evaluate("window.scrollY") < UNDER_MENU
+    opened.context.close()
+
+
+def test_link_opens_what_its_target_is_folded_into(browser: Browser, report: Path):
+    opened = Opened(browser, report)
+    row = opened.page.locator("#run-0-1")
+    assert not row.is_visible()
+    opened.page.goto(f"{report.as_uri()}#run-0-1")
+    opened.page.wait_for_timeout(400)
+    assert row.is_visible()
+    opened.context.close()
+
+
+def test_mechanism_moves_on_request_and_not_where_the_reader_wants_no_motion(browser: Browser, report: Path):
+    opened = Opened(browser, report)
+    button = opened.page.locator("#findings .play")
+    read = "all => all.map(path => path.getAttribute('transform')).join()"
+    moving = opened.page.locator("#findings path.moves")
+    before = moving.evaluate_all(read)
+    button.click()
+    opened.page.wait_for_timeout(300)
+    assert moving.evaluate_all(read) != before
+    assert button.get_attribute("aria-pressed") == "true"
+    button.click()
+    assert button.get_attribute("aria-pressed") == "false"
+    placed = moving.evaluate_all("all => all.map(path => path.transform.baseVal.consolidate().matrix.e)")
+    opened.page.reload()
+    again = moving.evaluate_all("all => all.map(path => path.transform.baseVal.consolidate().matrix.e)")
+    assert placed == pytest.approx(again), "it stands as it was drawn"
+    opened.page.emulate_media(reduced_motion="reduce")
+    assert not button.is_visible()
+    opened.context.close()
+
+
+def test_overview_is_sorted_by_difference(browser: Browser, report: Path):
+    opened = Opened(browser, report)
+    names = opened.page.locator("#dots li > :first-child")
+    first = names.all_inner_texts()
+    opened.page.get_by_label("Order").select_option("spread")
+    spreads = opened.page.locator("#dots li").evaluate_all("all => all.map(row => Number(row.dataset.spread))")
+    assert spreads == sorted(spreads, reverse=True)
+    assert spreads[0] > 0.0
+    opened.page.get_by_label("Order").select_option("place")
+    assert names.all_inner_texts() == first
+    names.first.click()
+    opened.page.wait_for_timeout(400)
+    top = opened.page.locator(names.first.get_attribute("href") or "").evaluate("e => e.getBoundingClientRect().top")
+    assert abs(top - UNDER_MENU) <= 3
+    opened.context.close()
