@@ -39,7 +39,7 @@ CERTIFICATES: dict[str, Callable[[], dict[str, Any]]] = {
 
 SMALL = ("bond in cases", "two frictions in cases")
 """Certificates of which every case is gone through, of others one at each division."""
-OF_STEPS = 0.25
+OF_STEPS = 0.1
 """Share of the steps of cases that are tried with another proof too."""
 
 
