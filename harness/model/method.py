@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import math
-import signal
 from abc import ABC, abstractmethod
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager, suppress
@@ -19,24 +17,8 @@ import numpy as np
 from pydantic import BaseModel, ConfigDict, Field
 
 from harness.model.assembly import Assembly, FloatArray
+from harness.model.deadline import OutOfTime as OutOfTime
 from harness.model.errors import InputError
-
-
-class OutOfTime(Exception):
-    """Raised inside `solve` shortly before the time limit of a run.
-
-    A method that catches it can still say how far it came, with status `not_converged`; the engine waits for that
-    answer until the limit. A method that lets it pass is listed as `timeout`.
-    """
-
-
-def seconds_left() -> float:
-    """Seconds until `OutOfTime` is raised in this process, for libraries that hear of it only when they return [s].
-
-    Infinite where no limit was set.
-    """
-    return signal.getitimer(signal.ITIMER_REAL)[0] or math.inf
-
 
 _processes: ContextVar[int] = ContextVar("processes", default=1)
 
