@@ -97,6 +97,12 @@ class Result(Record):
 
         return reaction_frame(self._wall.case, self)
 
+    def bars_to_pandas(self) -> pd.DataFrame:
+        """Forces of the ties and props: one row a bar, tension positive, with its range; `attrs["units"]`: units."""
+        from reports.page.export import bar_frame
+
+        return bar_frame(self._wall.case, self)
+
     def mechanism_to_pandas(self) -> pd.DataFrame:
         """The mechanism: one row a block with ux, uy, omega, scaled so that the fastest vertex has speed 1."""
         import pandas as pd

@@ -23,7 +23,7 @@ from harness.model.assembly import Assembly, FloatArray
 from harness.model.case import Case
 from harness.model.errors import InputError
 from harness.model.live_load import with_live_load
-from harness.model.load_cases import load_cases_of
+from harness.model.load_cases import load_cases_of, named_loads
 from harness.model.method import Method, check_takes, load_method
 from harness.model.reading import validate
 from harness.model.result import Result
@@ -92,12 +92,13 @@ class LoadPair:
                 raise InputError(
                     f"a domain is that of two different {kind}", f"Give two of them instead of {len(set(given))}"
                 )
-        if load_cases or (case.wall.load_cases and not live):
-            names = list(load_cases) or [name for name, load in case.wall.load_cases.items() if load.live is not None]
+        if load_cases or (case.wall.load_case_fields and not live):
+            cases = named_loads(case.wall)
+            names = list(load_cases) or [name for name, load in cases.items() if load.own.live is not None]
             if len(names) != 2:
                 raise InputError(
                     f"the wall has {len(names)} load cases with a live load",
-                    f"Name two of {', '.join(case.wall.load_cases)} (--load-cases A,B)",
+                    f"Name two of {', '.join(cases)} (--load-cases A,B)",
                     "load_cases",
                     case.origin,
                 )

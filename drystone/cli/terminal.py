@@ -18,6 +18,8 @@ from harness.engine.pipeline import Told
 from harness.engine.regression import violations
 from harness.engine.run import Run
 from harness.model.assembly import Assembly
+from harness.model.bar_forces import BARS, bar_forces_of
+from harness.model.bars import BAR_FORCES, DEAD_BAR_FORCES
 from harness.model.case import Case
 from harness.model.columns import PRINTED, ResultColumn, ResultRow
 from harness.model.comparison import CaseResults, ComparisonRun
@@ -215,6 +217,8 @@ def result_json(
     """
     listed = result.model_dump(mode="json") if fields else result.summary()
     listed |= {"proof": proof.as_json()}
+    if len(case.assembly.bars):
+        listed["bars"] = [values(BARS, bar) for bar in bar_forces_of(case, result)]
     listed["reactions"] = [values(REACTIONS, reaction) for reaction in reactions_of(case, result)]
     if joints:
         listed["joints"] = [values(JOINTS, row) for row in joint_rows(case, result)]
@@ -225,6 +229,18 @@ def print_joints(case: Case, result: Result) -> None:
     """The margins of the joints of a result as a table, the most critical first."""
     columns = in_units(JOINTS, case.wall.units.force, case.wall.units.length)
     print_rows([{column.head: column.text(row) for column in columns} for row in joint_rows(case, result)])
+
+
+def _bar_lines(case: Case, result: Result, most: int = 8) -> Iterator[tuple[str, str]]:
+    """One line a tie or prop, up to so many, for a person."""
+    unit = case.wall.units.force
+    listed = bar_forces_of(case, result)
+    for bar in listed[:most]:
+        way = "tension" if bar.tension >= 0.0 else "compression"
+        size = f"{abs(bar.tension):.6g}" + ("" if unit == "1" else f" {unit}")
+        yield bar.kind, f"{bar.bar}, from {bar.start} to {bar.end}: {way} {size}, {bar.state}"
+    if len(listed) > most:
+        yield "", f"and {len(listed) - most} more ties and props; --json has all"
 
 
 def _reaction_lines(case: Case, result: Result, most: int = 8) -> Iterator[tuple[str, str]]:
@@ -264,7 +280,7 @@ def print_result(result: Result, case: Case, proof: Proof) -> None:
         rows.append(("bracket", f"[{result.bracket[0]:.7g}, {result.bracket[1]:.7g}] {result.bracket_meaning}"))
     if proof.sentence:
         rows.append(("proof", proof.sentence))
-    rows += _reaction_lines(case, result)
+    rows += [*_bar_lines(case, result), *_reaction_lines(case, result)]
     rows += [("status", str(result.status)), ("judge", result.judge.sentence)]
     rows += [("", f"{name} {value:.2e}") for name, value in result.judge.residuals.items()]
     for comparison in result.comparisons:
@@ -390,6 +406,16 @@ def foreign_answer(data: Any, assembly: Assembly, source: str) -> Answer:
             )
         return np.array(listed, dtype=float).reshape(rows, 3)
 
+    def tensions(name: str) -> list[float] | None:
+        listed = details.get(name) if data.get(name) is None else data[name]
+        count = len(assembly.bars)
+        if listed is None or not count:
+            return None
+        if not (isinstance(listed, list) and len(listed) == count and all(map(_is_number, listed))):
+            problem = f"it is not a list of {count} numbers up to {LARGEST:g}"
+            raise InputError(problem, "Give the tension of every tie and then of every prop", name, source)
+        return [float(tension) for tension in listed]
+
     finding = data.get("finding", "collapses")
     if not isinstance(finding, str) or finding not in list(Finding):
         raise InputError(f"{finding!r} is no finding", f"One of: {', '.join(Finding)}", "finding", source)
@@ -416,5 +442,6 @@ def foreign_answer(data: Any, assembly: Assembly, source: str) -> Answer:
         forces_multiplier=None if at is None else float(at),
         mechanism=table("mechanism", assembly.n_blocks, "ux, uy, omega of every block"),
         flow=flow,
-        details={name: proof.tolist() for name, proof in proofs.items() if proof is not None},
+        details={name: proof.tolist() for name, proof in proofs.items() if proof is not None}
+        | {name: listed for name in (BAR_FORCES, DEAD_BAR_FORCES) if (listed := tensions(name)) is not None},
     )

@@ -15,7 +15,7 @@ STEP = 1.37e-6
 
 
 def content_of(assembly: Assembly) -> str:
-    """A hash of free blocks, interfaces, what joints bear, loads and settlements; names, place, units apart.
+    """A hash of free blocks, interfaces, what joints bear, loads, settlements, bars; names, place, units apart.
 
     The order of blocks and interfaces does: walls that differ in it have different keys.
     Walls of one key are equal to a few millionths, and nearly all equal walls have one: it is a way to find a wall,
@@ -34,6 +34,12 @@ def content_of(assembly: Assembly) -> str:
     besides = [(assembly.constant, load)] if assembly.strong else []
     if np.any(assembly.support_motion):
         besides.append((assembly.support_motion, float(abs(assembly.support_motion).max())))
+    bars = assembly.bars
+    if len(bars):
+        for joined in (number[bars.block_a], number[bars.block_b]):
+            digest.update(np.asarray(joined, dtype="<i8").tobytes() + b";")
+        besides.append((np.hstack([bars.end1 - origin, bars.end2 - origin]), assembly.length_scale))
+        besides.append((np.column_stack([bars.prestress, bars.least, bars.greatest]), load))
     for values, size in (
         (points - origin, assembly.length_scale),
         (assembly.normal, 1.0),

@@ -20,7 +20,7 @@ from harness.model.contacts import check_gap
 from harness.model.errors import InputError, Spot, sorted_out
 from harness.model.input_checks import unknown_in_rules
 from harness.model.interfaces import Joints, faults_of_given, floating, floating_groups, joints_of, limits_of
-from harness.model.load_cases import build_load_case
+from harness.model.load_cases import build_load_case, named_loads
 from harness.model.names import faults_of_wall
 from harness.model.plausibility import NEAR_MISS, allowing, saying, span
 from harness.model.wall import Block, Detection, Interface, Wall
@@ -127,7 +127,7 @@ def inspect(wall: Wall, name: str = "wall", before: Sequence[InputError] = ()) -
     built = None
     if not faults and not before:
         try:
-            made = [build_load_case(wall, each, name) for each in wall.load_cases] or [build(wall, name)]
+            made = [build_load_case(wall, each, name) for each in named_loads(wall)] or [build(wall, name)]
             built = made[0]
         except InputError as error:
             faults += error.faults

@@ -18,7 +18,7 @@ from pydantic import BaseModel, ConfigDict, Field
 
 from harness.model.assembly import Assembly, FloatArray
 from harness.model.deadline import OutOfTime as OutOfTime
-from harness.model.errors import InputError
+from harness.model.errors import InputError, first_few
 
 _processes: ContextVar[int] = ContextVar("processes", default=1)
 
@@ -138,6 +138,7 @@ class Traits(BaseModel):
         any_self_stress: it lets joints carry any self-stress that statics and friction allow; others start without.
         any_dilatancy: it follows the dilatancy that a wall gives its joints; other methods refuse such a wall.
         any_strength: it takes joints with cohesion and tensile strength; other methods refuse such a wall.
+        any_bars: it takes ties and props; other methods refuse such a wall.
         moves_no_lower: it measures when rigid blocks on even faces move (`details["lowest_moving"]`): where theory
             knows the least multiplier, moving below it is an error.
         colour: of its curves, as "#rrggbb"; empty: the drawing chooses.
@@ -157,6 +158,7 @@ class Traits(BaseModel):
     any_self_stress: bool = False
     any_dilatancy: bool = False
     any_strength: bool = False
+    any_bars: bool = False
     moves_no_lower: bool = False
     colour: str = Field(default="", pattern="^(#[0-9a-f]{6})?$")
     marker: str = ""
@@ -261,8 +263,8 @@ class Listed(Method):
 def check_takes(method: Method, assembly: Assembly) -> None:
     """Refuse a wall with joints or supports that a method does not take.
 
-    Dilatancy and strength of joints are taken by methods whose traits say so; supports that move are taken by none yet,
-    only by the programmes of `methods.la`.
+    Dilatancy and strength of joints, ties and props are taken by methods whose traits say so; supports that move are
+    taken by none yet, only by the programmes of `methods.la`.
 
     Raises:
         InputError: the wall has such joints or supports.
@@ -285,6 +287,11 @@ def check_takes(method: Method, assembly: Assembly) -> None:
             "tensile strength",
             f"Take a method that knows the strength of joints ({', '.join(methods_with('any_strength'))}), or leave "
             "cohesion and tensile strength out",
+        )
+    if len(assembly.bars) and not method.traits.any_bars:
+        raise InputError(
+            f"{method.name} takes no ties and props; the wall has {first_few(assembly.bars.names, 4)}",
+            f"Take a method that knows them ({', '.join(methods_with('any_bars'))}), or leave them out",
         )
     if np.any(assembly.support_motion):
         block = int(np.argmax(np.any(assembly.support_motion, axis=1)))

@@ -63,7 +63,7 @@ class Vertex:
         basic: (c,) columns that the basis leaves between their bounds.
         primal: largest violation of a bound; dual_violation: of the sign of a multiplier or reduced cost; both
             relative to the terms beside it.
-        optimal: whether the vertex is feasible and optimal to rounding.
+        feasible: whether it keeps all bounds to rounding; optimal: whether it is optimal too.
     """
 
     value: FloatArray
@@ -72,6 +72,7 @@ class Vertex:
     basic: BoolArray
     primal: float
     dual_violation: float
+    feasible: bool
     optimal: bool
 
 
@@ -145,6 +146,7 @@ class StandardForm:
             best.status[own] == BASIC,
             best.primal,
             best.dual_violation,
+            best.primal <= self._tolerances.accurate,
             _worst(best) <= self._tolerances.accurate,
         )
 

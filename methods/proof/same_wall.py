@@ -50,6 +50,8 @@ def _require_dry(assembly: Assembly) -> None:
         raise CertificateError("it is of a wall without dilatancy, and joints of this one have dilatancy")
     if not assembly.law.dry.all():
         raise CertificateError("it is of a wall with dry joints, and joints of this one have strength of their own")
+    if len(assembly.bars):
+        raise CertificateError("it is of a wall without ties and props, and this one has some")
     if np.any(assembly.support_motion):
         raise CertificateError("it is of a wall whose supports rest, and supports of this one move")
     across = np.abs((assembly.tangent * assembly.normal).sum(axis=1))

@@ -7,8 +7,10 @@ from collections.abc import Collection
 import numpy as np
 
 from harness.model.assembly import Assembly, FloatArray
+from harness.model.bar_forces import bar_forces_of
 from harness.model.case import Case
 from harness.model.result import Result
+from reports.drawing.bars import bar_forces
 from reports.drawing.display_list import BELOW, Circles, DisplayList, Frame, Group, Lines, Polygons, Shape, Text, chosen
 from reports.drawing.wall_drawing import length_scale
 from reports.geometry import shapes, thrust_lines
@@ -37,6 +39,9 @@ def force_drawing(case: Case, result: Result, layers: Collection[str] = LAYERS) 
     drawn.parts.extend(length_scale(frame, case.wall.units.length))
     forces = np.asarray(result.forces, dtype=float)
     found = shapes.thrusts(assembly, forces, smallest=thrust_lines.SMALLEST)
+    listed = bar_forces_of(case, result)
+    if listed:
+        drawn.parts.extend(bar_forces(frame, assembly, listed))
     if len(found.size):
         drawn.parts.extend(_groups(frame, assembly, found, forces, layers))
         drawn.parts.extend(_force_scale(frame, float(found.size.max()), case.wall.units.force))

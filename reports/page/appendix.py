@@ -14,6 +14,7 @@ from markupsafe import Markup
 from matplotlib.figure import Figure
 
 from harness.model.assembly import FloatArray
+from harness.model.bar_forces import bar_forces_of
 from harness.model.case import Case
 from harness.model.comparison import CaseResults, ComparisonRun
 from harness.model.joint_margins import JOINTS, joint_rows
@@ -132,6 +133,7 @@ def render(run: ComparisonRun) -> str:
             else [],
             shown=shown,
             value=value_in_words(shown) if shown else "",
+            bars=bar_forces_of(case, shown) if shown else [],
             reactions=listed,
             balance=balance,
             joints=joint_rows(case, shown)[:JOINT_ROWS] if shown else [],

@@ -171,7 +171,13 @@ class Problem:
 
 
 def make_problem(assembly: Assembly) -> Problem:
-    """The scaled limit-analysis problem of an assembly."""
+    """The scaled limit-analysis problem of an assembly, whose ties and props are rows of the law of joints.
+
+    Raises:
+        ValueError: it has bars that are not (`harness.model.bars.with_bars_as_joints`).
+    """
+    if len(assembly.bars):
+        raise ValueError(f"{assembly.name} has ties or props that are no rows of the law of its joints")
     unit_force = assembly.force_scale / max(assembly.n_free, 1)
     unit_length = assembly.length_scale or 1.0
     column = np.tile([1.0, 1.0, 1.0 / unit_length], assembly.n_free)
@@ -179,7 +185,7 @@ def make_problem(assembly: Assembly) -> Problem:
     dead = dead * column / unit_force
     live = live * column / unit_force
     size = float(abs(live.reshape(-1, 3)).sum())
-    friction = np.where(assembly.friction < NO_FRICTION, 0.0, assembly.friction)
+    friction = np.where(abs(assembly.friction) < NO_FRICTION, 0.0, assembly.friction)
     unit_multiplier = assembly.n_free / size if size > 0.0 else 1.0
     return Problem(
         assembly=assembly,

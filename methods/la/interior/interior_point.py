@@ -106,6 +106,7 @@ def start_point(
         tilt = generator.uniform(-0.5, 0.5, m)
         target = np.exp(generator.uniform(-spread, spread, (m, 4)))
     tight = close_tight(problem) if tight is None else tight
+    normal = np.minimum(normal, 0.25 * problem.law.greatest_compression[:, None])
     normal = np.where(tight[:, :2], 0.0, normal)
     tilt = np.where(tight[:, 2], -1.0, np.where(tight[:, 3], 1.0, tilt))
     forces = np.column_stack([normal, tilt * problem.law.strength(normal)])
