@@ -30,6 +30,7 @@ import numpy as np
 from harness.engine.resource_use import cpu_seconds
 from harness.model.answer_check import MISSING_PACKAGE, AnswerFault, checked, encodable
 from harness.model.assembly import Assembly, FloatArray
+from harness.model.deadline import Deadline, OutOfTime, answering_by
 from harness.model.errors import InputError, MissingPackage, visible
 from harness.model.foreign.program_method import method_of
 from harness.model.foreign.register import Program
@@ -37,7 +38,6 @@ from harness.model.method import (
     Answer,
     Finding,
     Method,
-    OutOfTime,
     Settings,
     Status,
     Traits,
@@ -51,6 +51,9 @@ from harness.model.run_context import running_in
 
 LAST_WORDS = (0.05, 5.0)
 """Share of the time limit, and at most so many seconds, that are left to a method to say how far it came."""
+
+ALARM = 0.25
+"""Share of that time after which a method that does not ask for its deadline is stopped wherever it is."""
 
 
 @dataclass(frozen=True)
@@ -291,17 +294,19 @@ def _memory_of_ended() -> int:
 
 @contextlib.contextmanager
 def _warned_of_the_limit(seconds: float, begun: float) -> Iterator[None]:
-    """Raise OutOfTime shortly before the limit of a run begun then, in Python or when a library call returns to it."""
+    """Give a run begun then a deadline shortly before its limit, and raise OutOfTime where it does not ask for it.
 
-    def stop(*_: object) -> None:
-        raise OutOfTime
-
+    The alarm rings in Python, or when a library call returns to it; a run that was stopped before does not hear it.
+    """
     share, most = LAST_WORDS
-    signal.signal(signal.SIGALRM, stop)
-    left = begun + seconds - min(share * seconds, most) - time.perf_counter()
+    last_words = min(share * seconds, most)
+    deadline = Deadline(begun + seconds - last_words)
+    signal.signal(signal.SIGALRM, lambda *_: deadline.stop())
+    left = deadline.at + ALARM * last_words - time.perf_counter()
     signal.setitimer(signal.ITIMER_REAL, max(left, 1e-6))
     try:
-        yield
+        with answering_by(deadline):
+            yield
     finally:
         signal.setitimer(signal.ITIMER_REAL, 0.0)
 

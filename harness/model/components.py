@@ -8,15 +8,17 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace
+from functools import partial
 from typing import Any
 
 import numpy as np
 
 from harness.model.assembly import OF_BLOCKS, Assembly, BoolArray, FloatArray, IntArray
+from harness.model.deadline import OutOfTime, best_so_far
 from harness.model.details import AnswerDetails
 from harness.model.errors import first_few
 from harness.model.groups import groups_of
-from harness.model.method import MOVING_FORCES, Answer, Finding, OutOfTime, Status
+from harness.model.method import MOVING_FORCES, Answer, Finding, Status
 
 NAMED = 8
 """Blocks of a component that are named at most."""
@@ -118,15 +120,20 @@ def analysed_apart(assembly: Assembly, solve: Solve, bear: Bear) -> Answer:
     answers: dict[int, Answer] = {}
     stopped = False
     for k in sorted(range(len(parts)), key=lambda k: parts[k].assembly.n_free):
-        try:
-            answers[k] = _not_reached(parts[k]) if stopped else solve(parts[k].assembly)
-        except OutOfTime:
-            if not answers:
-                raise
-            answers[k] = _not_reached(parts[k])
-            stopped = True
-        stopped = stopped or AnswerDetails(answers[k].details).stopped_by_limit
+        missed = _not_reached(parts[k])
+        if stopped:
+            answers[k] = missed
+            continue
+        answers[k] = best_so_far(partial(solve, parts[k].assembly), partial(_beside, answers, missed))
+        stopped = answers[k] is missed or AnswerDetails(answers[k].details).stopped_by_limit
     return joined(assembly, parts, [answers[k] for k in range(len(parts))], bear)
+
+
+def _beside(others: dict[int, Answer], missed: Answer) -> Answer:
+    """The answer for a component in which the time was over; raises OutOfTime where no other has an answer."""
+    if not others:
+        raise OutOfTime
+    return missed
 
 
 def _not_reached(part: Component) -> Answer:

@@ -16,11 +16,10 @@ import numpy as np
 from pydantic import BaseModel, ConfigDict, Field
 
 from harness.model.assembly import Assembly, FloatArray
+from harness.model.deadline import OutOfTime as OutOfTime
 from harness.model.errors import InputError, first_few
-from harness.model.run_context import OutOfTime as OutOfTime
 from harness.model.run_context import allowing as allowing
 from harness.model.run_context import processes_allowed as processes_allowed
-from harness.model.run_context import seconds_left as seconds_left
 
 
 class Status(StrEnum):

@@ -1,29 +1,10 @@
-"""What a run may ask of where it is made: the time it has left, the processes it may use, a folder for its files."""
+"""What a run may ask of where it is made: the processes it may use, a folder for its files."""
 
 from __future__ import annotations
 
-import math
-import signal
 from collections.abc import Iterator
 from contextlib import contextmanager
 from contextvars import ContextVar
-
-
-class OutOfTime(Exception):
-    """Raised inside `solve` shortly before the time limit of a run.
-
-    A method that catches it can still say how far it came, with status `not_converged`; the engine waits for that
-    answer until the limit. A method that lets it pass is listed as `timeout`.
-    """
-
-
-def seconds_left() -> float:
-    """Seconds until `OutOfTime` is raised in this process, for libraries that hear of it only when they return [s].
-
-    Infinite where no limit was set.
-    """
-    return signal.getitimer(signal.ITIMER_REAL)[0] or math.inf
-
 
 _processes: ContextVar[int] = ContextVar("processes", default=1)
 

@@ -9,7 +9,8 @@ from typing import Any
 import numpy as np
 
 from harness.model.assembly import Assembly, IntArray
-from harness.model.method import MOVING_FORCES, Answer, Finding, OutOfTime, Status
+from harness.model.deadline import best_so_far
+from harness.model.method import MOVING_FORCES, Answer, Finding, Status
 from methods.de.engines.engine import Engine
 from methods.de.engines.mass_scaling import MassScaling, courses, insertion_orders, tunings
 from methods.de.holds.bracket_state import BracketState, stopped_answer
@@ -56,7 +57,7 @@ def solve_by_holds(
         chosen = orders[first:last]
         return [BracketSearch(make_engine(b, j, tuning), settings, statics, unit, name) for name, b, j in chosen]
 
-    try:
+    def to_its_end() -> Answer:
         known.search_ahead(searches(candidates[0], 0), assembly.has_live_load)
         tuning, first = first_bracket(lambda tuning: searches(tuning, 0, 1)[0], assembly, candidates, known)
         known.finished.append(first)
@@ -73,9 +74,12 @@ def solve_by_holds(
             return answer
         _, blocks, joints = next(order for order in orders if order[0] == best.order)
         return _with_state(answer, make_engine(blocks, joints, tuning), settings, statics, best)
-    except OutOfTime:
+
+    def stopped() -> Answer:
         found = [search.found for search in known.counted()]
         return stopped_answer(assembly, known, tolerance, describe(assembly, found))
+
+    return best_so_far(to_its_end, stopped)
 
 
 def _of_tuning(tuning: MassScaling) -> dict[str, Any]:

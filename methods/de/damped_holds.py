@@ -5,7 +5,8 @@ from __future__ import annotations
 import numpy as np
 
 from harness.model.assembly import Assembly, IntArray
-from harness.model.method import Answer, Finding, OutOfTime, Solver, Status
+from harness.model.deadline import STOPPED, best_so_far
+from harness.model.method import Answer, Finding, Solver, Status
 from methods.de.answers import solve_by_holds
 from methods.de.engines.compile_impulses import load_impulses
 from methods.de.engines.engine import Engine, motion_units
@@ -85,10 +86,9 @@ class ReleasedCollapse(Solver):
         if not fails or answer.details.get("stopped_by_limit"):
             return answer
         multiplier = settings.excess * (answer.multiplier or 0.0)
-        try:
-            collapse = release(assembly, multiplier, settings)
-        except OutOfTime:
-            answer.sentence += "; what follows a release was stopped by the time limit"
+        collapse = best_so_far(lambda: release(assembly, multiplier, settings), lambda: None)
+        if collapse is None:
+            answer.sentence += f"; what follows a release was {STOPPED}"
             return answer
         pairs = [
             (assembly.block_ids[assembly.block_a[p]], assembly.block_ids[assembly.block_b[p]])

@@ -13,11 +13,12 @@ from typing import Any
 import numpy as np
 
 from harness.model.assembly import Assembly, FloatArray
-from harness.model.method import Answer, Finding, OutOfTime, Solver, Status
+from harness.model.deadline import Deadline, best_so_far
+from harness.model.method import Answer, Finding, Solver, Status
 from methods.de.engines.engine import motion_units
 from methods.de.engines.mass_scaling import courses, number_of_courses
 from methods.de.engines.soft_wall import SoftWall
-from methods.de.holds.bracket_state import STOPPED, undecided, unmoved
+from methods.de.holds.bracket_state import SEARCH_STOPPED, undecided, unmoved
 from methods.de.holds.load_step import ConvergenceMonitor, LoadStep, State
 from methods.de.holds.loading import raise_until_it_falls
 from methods.de.holds.motion import MotionProof, StaticLimit, by_travel
@@ -119,8 +120,9 @@ class Holds:
         away = self.options.away * float(np.abs(before[:, :2]).max()) if np.any(before[:, :2]) else np.inf
         watch = ConvergenceMonitor(settings.held_residual, settings.held_residual, motion_units(wall.assembly))
         places, start = before, wall.steps
-        affordable = settings.relaxations * looks
+        affordable, deadline = settings.relaxations * looks, Deadline.of_run()
         while True:
+            deadline.ask()
             residual = wall.advance(LOOK)
             moved, places = wall.places - places, wall.places.copy()
             watch.note(moved, residual)
@@ -160,16 +162,13 @@ class DeformableJoints(Solver):
     def _with_joints(self, assembly: Assembly, settings: SoftSettings, stiffness: float, round_by: float) -> Answer:
         """The answer with joints of one stiffness [force/length^2], corners rounded by so much where nothing is set."""
         rounding = settings.rounding or round_by
-        try:
-            wall = SoftWall(assembly, stiffness, settings.shear_ratio, rounding)
-        except OutOfTime:
-            return replace(undecided(), details={"stopped_by_limit": True, "lean": None})
+        wall = SoftWall(assembly, stiffness, settings.shear_ratio, rounding)
         holds = Holds(wall, settings)
         joints = _described(wall, stiffness, settings.shear_ratio)
-        try:
-            answer = self._at_zero(assembly, holds, joints) or self._loaded(holds, joints, assembly.load_unit)
-        except OutOfTime:
-            answer = _stopped(holds, joints)
+        answer = best_so_far(
+            lambda: self._at_zero(assembly, holds, joints) or self._loaded(holds, joints, assembly.load_unit),
+            lambda: _stopped(holds, joints),
+        )
         answer.iterations, answer.path, answer.flow = wall.steps, holds.path, "approximate"
         answer.forces_multiplier = holds.path["multiplier"][-1] if holds.path["multiplier"] else None
         if answer.finding in (Finding.COLLAPSES, Finding.FALLS):
@@ -246,8 +245,8 @@ def _stopped(holds: Holds, joints: str) -> Answer:
     if fell is None or fell <= stood:
         return replace(unmoved(stood, f", with {joints}"), details=details)
     sentence = (
-        f"came to rest at {stood:.6g} and fell at {fell:.6g}, with {joints}; {STOPPED}, and the multiplier is no more "
-        "than the middle of what is known so far"
+        f"came to rest at {stood:.6g} and fell at {fell:.6g}, with {joints}; {SEARCH_STOPPED}, and the multiplier is "
+        "no more than the middle of what is known so far"
     )
     answer = Answer(Status.OK, Finding.COLLAPSES, sentence, 0.5 * (stood + fell), (stood, fell), details=details)
     answer.bracket_meaning = BRACKET_MEANING
@@ -261,7 +260,7 @@ def _better(answer: Answer, again: Answer) -> Answer:
     if answer.status is not Status.OK:
         return again
     if again.details.get("stopped_by_limit"):
-        answer.sentence += f"; the run with stiffer joints is incomplete: {STOPPED}"
+        answer.sentence += f"; the run with stiffer joints is incomplete: {SEARCH_STOPPED}"
         answer.details["stopped_by_limit"] = True
     return answer
 

@@ -240,6 +240,7 @@ def _settle(
     scale = load_scale(model, multiplier)
     least, left = np.inf, count
     while left:
+        model.deadline.ask()
         answer = programme.solve(multiplier, limit)
         if answer is None or np.abs(answer[0]).max() > options.runaway * scale:
             programme.without_minimum |= answer is not None

@@ -14,8 +14,8 @@ from functools import partial
 import numpy as np
 
 from harness.model.assembly import FloatArray
+from harness.model.deadline import STOPPED, best_so_far
 from harness.model.errors import first_few
-from harness.model.method import OutOfTime
 from methods.springs.model.factor import Factor, SingularTangent
 from methods.springs.model.gap_law import OPEN, SLIP_PLUS
 from methods.springs.model.wall_model import WallModel
@@ -59,7 +59,7 @@ SENTENCES = {
     PathEnd.BREAKDOWN: "the path was lost",
     PathEnd.TARGET: "the path reached its target",
     PathEnd.TURNED_DOWN: "the path turned down",
-    PathEnd.TIME: "the path was stopped at the time limit",
+    PathEnd.TIME: f"the path was {STOPPED}",
 }
 BELOW_ZERO = "the path has a peak but runs down below zero: past its peak the wall falls under its dead load alone"
 
@@ -183,14 +183,17 @@ def _as_far_as_possible(trace: Callable[[PathRecord], HistoryResult], plan: Plan
     """What a trace into a record leads to, or how far the record came where the time is over or the path is lost."""
     record = PathRecord(most=plan.load_steps)
     try:
-        return trace(record)
-    except OutOfTime:
-        end, sentence = PathEnd.TIME, SENTENCES[PathEnd.TIME]
-        if record.multiplier:
-            sentence += f", at {record.multiplier[-1]:.4g} times the live load (greatest so far {record.peak:.4g})"
+        return best_so_far(partial(trace, record), partial(_stopped, plan, record))
     except SingularTangent:
-        end, sentence = PathEnd.BREAKDOWN, SENTENCES[PathEnd.BREAKDOWN]
-    return HistoryResult(plan, end, sentence, record, None, 0, 0.0)
+        return HistoryResult(plan, PathEnd.BREAKDOWN, SENTENCES[PathEnd.BREAKDOWN], record, None, 0, 0.0)
+
+
+def _stopped(plan: Plan, record: PathRecord) -> HistoryResult:
+    """How far a record came in the time there was."""
+    sentence = SENTENCES[PathEnd.TIME]
+    if record.multiplier:
+        sentence += f", at {record.multiplier[-1]:.4g} times the live load (greatest so far {record.peak:.4g})"
+    return HistoryResult(plan, PathEnd.TIME, sentence, record, None, 0, 0.0)
 
 
 def _trace_in_time(

@@ -200,6 +200,7 @@ def _controlled(
     scale, share = load_scale(model, multiplier), 1.0
     seen: set[bytes] = set()
     for count in range(options.iterations):
+        model.deadline.ask()
         if state.tobytes() in seen:
             share = max(0.5 * share, options.damped)
         seen.add(state.tobytes())

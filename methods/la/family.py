@@ -11,7 +11,8 @@ import numpy as np
 
 from harness.model.assembly import Assembly
 from harness.model.bars import BAR_FORCES, DEAD_BAR_FORCES, Bars, tensions, with_bars_as_joints
-from harness.model.method import Answer, Finding, OutOfTime, Solver, Status
+from harness.model.deadline import best_so_far
+from harness.model.method import Answer, Finding, Solver, Status
 from methods.la.answers import dead_load_answer, not_converged, with_residual
 from methods.la.core.newton_matrix import NewtonMatrix
 from methods.la.core.problem import Problem, make_problem
@@ -72,10 +73,10 @@ class LimitAnalysisFamily(Solver):
         found = self._of_components(assembly, settings, answer)
         if not assembly.strong or found.status is not Status.OK:
             return found
-        try:
-            residual = self._of_components(assembly.without_strength, settings, answer)
-        except OutOfTime:
-            residual = not_converged("The time was over before the wall without strength was solved.")
+        residual = best_so_far(
+            lambda: self._of_components(assembly.without_strength, settings, answer),
+            lambda: not_converged("The time was over before the wall without strength was solved."),
+        )
         return with_residual(found, residual)
 
     def _of_components(self, assembly: Assembly, settings: Any, answer: Answering | None = None) -> Answer:

@@ -15,8 +15,9 @@ from contextlib import suppress
 from dataclasses import replace
 from typing import Any
 
+from harness.model.deadline import STOPPED, OutOfTime, best_so_far
 from harness.model.errors import first_few
-from harness.model.method import Answer, OutOfTime, Status
+from harness.model.method import Answer, Status
 from methods.la.answers import (
     LOCAL_RESIDUAL,
     NO_MOTION,
@@ -63,17 +64,21 @@ def least_known(
     """
     rounds = rounds_of(settings, problem)
     search = Search(problem, newton, settings.seed, Budget(rounds[0]), choices=choices)
-    try:
+
+    def to_its_end() -> Answer:
         for limits in rounds:
             search.begin_round(limits)
             explore(search, sources)
         return _found(search, settings, tolerance)
-    except OutOfTime:
+
+    def known() -> Answer:
         if search.record.known:
             return _stopped(search, tolerance)
         if search.associated.state is None:
-            raise
+            raise OutOfTime
         return _stopped_before_the_first(search, search.associated.state, tolerance)
+
+    return best_so_far(to_its_end, known)
 
 
 def _found(search: Search, settings: SearchSettings, tolerance: float) -> Answer:
@@ -128,7 +133,7 @@ def _stopped(search: Search, tolerance: float) -> Answer:
         best = found.state if exact else polished(problem, search.newton, found.state)
         sentence = (
             f"The least collapse multiplier known so far is {problem.to_multiplier(best.multiplier):.7g}: the search "
-            f"was stopped by the time limit at {search.record.source}, with more left to try."
+            f"was {STOPPED} at {search.record.source}, with more left to try."
         )
         answer = collapse_answer(problem, best, sentence, tolerance, search.budget.spent.newton_steps, details)
         if answer.status is Status.OK:
@@ -141,7 +146,7 @@ def _stopped_before_the_first(search: Search, associated: CollapseState, toleran
     problem = search.problem
     greatest = problem.to_multiplier(associated.multiplier)
     sentence = (
-        f"No collapse state without dilatancy is known yet: the search was stopped by the time limit. None lies above "
+        f"No collapse state without dilatancy is known yet: the search was {STOPPED}. None lies above "
         f"{greatest:.7g}, at which the wall collapses under associated flow."
     )
     details = _details(search, None, None) | {"stopped_by_limit": True}

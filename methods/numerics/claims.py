@@ -7,8 +7,9 @@ from dataclasses import dataclass, replace
 
 from harness.model.assembly import Assembly, FloatArray
 from harness.model.components import analysed_apart
+from harness.model.deadline import best_so_far
 from harness.model.limit import accuracy, gross_power, least_told, strengthened
-from harness.model.method import Answer, Finding, OutOfTime, Status
+from harness.model.method import Answer, Finding, Status
 from methods.numerics.statics import admissible_forces, dilatant_mechanism, greatest_multiplier, strength_power
 
 SMALL = 1e-3
@@ -70,10 +71,9 @@ def at_limit(assembly: Assembly, answer: Answer) -> Answer:
     numbers tell. It is asked where an answer leaves that open: a multiplier near zero, a fall that is measured or by
     less than the numbers tell, and a run without an end.
     """
-    try:
-        return _at_limit(assembly, answer) if _leaves_open(assembly, answer) else answer
-    except OutOfTime:
+    if not _leaves_open(assembly, answer):
         return answer
+    return best_so_far(lambda: _at_limit(assembly, answer), lambda: answer)
 
 
 def _leaves_open(assembly: Assembly, answer: Answer) -> bool:
@@ -220,10 +220,7 @@ def with_proof(assembly: Assembly, answer: Answer) -> Answer:
     """
     if answer.status is not Status.OK:
         return answer
-    try:
-        return _proved(assembly, answer)
-    except OutOfTime:
-        return answer
+    return best_so_far(lambda: _proved(assembly, answer), lambda: answer)
 
 
 def _proved(assembly: Assembly, answer: Answer) -> Answer:

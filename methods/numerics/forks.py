@@ -11,7 +11,7 @@ import time
 from collections.abc import Callable, Iterator, Sequence
 from typing import Any, Generic, NoReturn, TypeVar
 
-from harness.model.method import seconds_left
+from harness.model.deadline import Deadline
 
 T = TypeVar("T")
 
@@ -85,27 +85,27 @@ def _answer(call: Callable[[], Any], place: int, seconds: float) -> NoReturn:
 def in_forks(calls: Sequence[Callable[[], T]], processes: int) -> Iterator[tuple[int, T]]:
     """Numbers and results of calls as they end, each made in a fork of this process, at most so many at a time.
 
-    The alarm of a time limit rings in the forks, whose calls may say how far they came, and here when all that were
-    begun have ended; none is begun after it.
+    A deadline is asked for in the forks, whose calls may say how far they came, and here when all that were begun have
+    ended; none is begun after it. The alarm behind it rings in the forks too.
 
     Raises:
         OutOfTime: the time was over; what had been found was given before.
         ForkLost: a fork ended without a result; or whatever a call raises.
     """
-    seconds = seconds_left()
-    deadline = time.monotonic() + seconds
-    signal.setitimer(signal.ITIMER_REAL, 0.0)
+    deadline, alarm = Deadline.of_run(), signal.setitimer(signal.ITIMER_REAL, 0.0)[0]
+    rings = time.monotonic() + (alarm or float("inf"))
     coming = iter(enumerate(calls))
     under_way: dict[int, tuple[int, _Fork[T]]] = {}
     try:
         while True:
-            while len(under_way) < processes and (left := deadline - time.monotonic()) > 0.0:
+            while len(under_way) < processes and not deadline.passed:
                 number, call = next(coming, (-1, None))
                 if call is None:
                     break
-                fork = _Fork(call, left)
+                fork = _Fork(call, rings - time.monotonic())
                 under_way[fork.place] = number, fork
             if not under_way:
+                deadline.ask()
                 break
             for place in select.select(list(under_way), [], [])[0]:
                 number, fork = under_way[place]
@@ -117,5 +117,5 @@ def in_forks(calls: Sequence[Callable[[], T]], processes: int) -> Iterator[tuple
     finally:
         for _, fork in under_way.values():
             fork.end()
-        if seconds < float("inf"):
-            signal.setitimer(signal.ITIMER_REAL, max(deadline - time.monotonic(), 1e-6))
+        if rings < float("inf"):
+            signal.setitimer(signal.ITIMER_REAL, max(rings - time.monotonic(), 1e-6))

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import time
 from typing import Any
 
 import highspy
@@ -10,14 +9,18 @@ import numpy as np
 import scipy.sparse as sp
 
 from harness.model.assembly import FloatArray, IntArray
-from harness.model.method import OutOfTime, seconds_left
+from harness.model.deadline import Deadline
 from methods.numerics.vertex import StandardForm, Vertex
 
 INFINITY = highspy.kHighsInf
 
 
 class Programme:
-    """A linear programme held in HiGHS: columns with bounds, rows with bounds, one matrix."""
+    """A linear programme held in HiGHS: columns with bounds, rows with bounds, one matrix.
+
+    Attributes:
+        deadline: of the run in which it is made.
+    """
 
     def __init__(
         self,
@@ -26,6 +29,7 @@ class Programme:
         column: tuple[FloatArray, FloatArray],
         row: tuple[FloatArray, FloatArray],
     ) -> None:
+        self.deadline = Deadline.of_run()
         self.highs: Any = highspy.Highs()
         for option, value in (
             ("output_flag", False),
@@ -100,12 +104,12 @@ class Programme:
         return names.get(status, "unknown"), np.array(solution.col_value), np.array(solution.row_dual)
 
     def _run(self) -> Any:
-        self.highs.setOptionValue("time_limit", self.highs.getRunTime() + seconds_left())
+        self.deadline.ask()
+        self.highs.setOptionValue("time_limit", self.highs.getRunTime() + self.deadline.left)
         self.highs.run()
         status = self.highs.getModelStatus()
         if status == highspy.HighsModelStatus.kTimeLimit:
-            time.sleep(seconds_left())  # The alarm is to ring here, not while an answer is made of what is known.
-            raise OutOfTime
+            self.deadline.stop()
         return status
 
     def ray(self) -> FloatArray | None:

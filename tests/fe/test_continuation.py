@@ -214,7 +214,7 @@ def test_a_path_left_at_the_time_limit_says_where_it_was() -> None:
     result = run_isolated(Task("fe", wall, {}, 6.0, 2**31), "large").result
     assert result.status is Status.NOT_CONVERGED
     assert result.multiplier is None
-    assert "stopped at the time limit, at 0." in result.sentence
+    assert "stopped by the time limit, at 0." in result.sentence
 
 
 def test_fe_history_whose_path_runs_in_a_loop_is_taken_out_of_it() -> None:

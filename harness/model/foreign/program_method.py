@@ -17,6 +17,7 @@ from typing import IO, Any
 
 from harness.model.answer_check import AnswerFault
 from harness.model.assembly import Assembly
+from harness.model.deadline import Deadline
 from harness.model.errors import InputError, visible
 from harness.model.foreign.conversation import conversation_with
 from harness.model.foreign.description import About, Description, settings_class
@@ -26,7 +27,7 @@ from harness.model.foreign.result_document import answer_of
 from harness.model.foreign.spawning import whole_address_space
 from harness.model.method import Answer, Method, Settings
 from harness.model.reading import json_of, read_json, validate
-from harness.model.run_context import run_folder, seconds_left
+from harness.model.run_context import run_folder
 
 DESCRIBE_SECONDS = 30.0
 """In which a program must have described itself: the slowest of interpreters start within a few."""
@@ -129,7 +130,7 @@ class ProgramMethod(Method):
 
 
 def _seconds() -> float:
-    return min(seconds_left(), FAREST)
+    return min(Deadline.of_run().left, FAREST)
 
 
 def _run(words: list[str], folder: Path, output: IO[bytes]) -> int:

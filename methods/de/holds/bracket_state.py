@@ -7,12 +7,13 @@ from dataclasses import dataclass, field
 from typing import Any
 
 from harness.model.assembly import Assembly, FloatArray
-from harness.model.method import Answer, Finding, OutOfTime, Status, processes_allowed
+from harness.model.deadline import STOPPED, OutOfTime, best_so_far
+from harness.model.method import Answer, Finding, Status, processes_allowed
 from methods.de.holds.order_bracket import BracketSearch, OrderBracket
 from methods.de.holds.side_by_side import Findings, searched_ahead
 from methods.numerics.statics import out_of_balance
 
-STOPPED = "the search was stopped by the time limit"
+SEARCH_STOPPED = f"the search was {STOPPED}"
 BRACKET_MEANING = (
     "[multiplier held, multiplier moving], at the time limit: the sweep orders that were searched to the "
     "end, or the first, were held at or above the lower end and moved at or below the upper end"
@@ -21,12 +22,16 @@ BRACKET_MEANING = (
 
 def undecided(how: str = "") -> Answer:
     """Not even the dead load was held, or moved the wall; `how` tells what the wall was given, after a comma."""
-    return Answer(Status.NOT_CONVERGED, Finding.NONE, f"whether the dead load is held was not decided{how}: {STOPPED}")
+    return Answer(
+        Status.NOT_CONVERGED, Finding.NONE, f"whether the dead load is held was not decided{how}: {SEARCH_STOPPED}"
+    )
 
 
 def unmoved(stood: float, how: str = "") -> Answer:
     """The wall stands at a multiplier, and nothing moved it above; `how` as in `undecided`."""
-    return Answer(Status.NOT_CONVERGED, Finding.NONE, f"stands at {stood:.6g}{how}; no motion was shown: {STOPPED}")
+    return Answer(
+        Status.NOT_CONVERGED, Finding.NONE, f"stands at {stood:.6g}{how}; no motion was shown: {SEARCH_STOPPED}"
+    )
 
 
 @dataclass(eq=False)
@@ -65,9 +70,7 @@ class BracketState:
         def take(search: BracketSearch, findings: Findings) -> None:
             self.ahead[search.found.order] = findings
 
-        try:
-            searched_ahead(searches, ask_multiplier, processes, take)
-        except OutOfTime:
+        def keep() -> None:
             for search in searches:
                 findings = self.ahead.get(search.found.order)
                 if findings is not None:
@@ -75,7 +78,9 @@ class BracketState:
                     found = findings.taken_by(search)
                     if not findings.stopped and found.told(ask_multiplier):
                         self.finished.append(found)
-            raise
+            raise OutOfTime
+
+        best_so_far(lambda: searched_ahead(searches, ask_multiplier, processes, take), keep)
 
     def counted(self) -> list[BracketSearch]:
         """The searches of the orders that were searched to the end; without any, all of the first order."""
@@ -137,7 +142,7 @@ def _without_rest(known: BracketState) -> Answer:
     """Nothing is shown to bear even the dead load."""
     moved = [bracket for bracket in known.finished if bracket.held is None and bracket.moving is not None]
     if moved and len(moved) == len(known.finished):
-        sentence = f"falls under its dead load: it moved at multiplier 0 in {_so_far(known)}; {STOPPED}"
+        sentence = f"falls under its dead load: it moved at multiplier 0 in {_so_far(known)}; {SEARCH_STOPPED}"
         answer = Answer(Status.OK, Finding.FALLS, sentence, mechanism=moved[0].velocity)
         answer.flow = "approximate"
         return answer
@@ -147,7 +152,7 @@ def _without_rest(known: BracketState) -> Answer:
 def _with_rest(assembly: Assembly, known: BracketState, found: list[OrderBracket], stood: RestState) -> Answer:
     """A state at rest is shown; the upper end is that of the motions above it, if there are any."""
     if not assembly.has_live_load:
-        return Answer(Status.OK, Finding.STANDS, f"the dead load is held in {_so_far(known)}; {STOPPED}")
+        return Answer(Status.OK, Finding.STANDS, f"the dead load is held in {_so_far(known)}; {SEARCH_STOPPED}")
     low = min([stood.multiplier, *(b.held for b in known.finished if b.held is not None)])
     moving = [b for b in found if b.moving is not None and b.moving > low]
     if not moving:
@@ -156,8 +161,8 @@ def _with_rest(assembly: Assembly, known: BracketState, found: list[OrderBracket
     assert best.moving is not None
     middle = 0.0 if best.nothing else 0.5 * (low + best.moving)
     sentence = (
-        f"collapses between {low:.6g} (held) and {best.moving:.6g} (moving) in {_so_far(known)}; {STOPPED}, and the "
-        f"multiplier {middle:.6g} is only the middle of the bracket so far"
+        f"collapses between {low:.6g} (held) and {best.moving:.6g} (moving) in {_so_far(known)}; {SEARCH_STOPPED}, "
+        f"and the multiplier {middle:.6g} is only the middle of the bracket so far"
     )
     answer = Answer(
         Status.OK, Finding.COLLAPSES, sentence, multiplier=middle, bracket=(low, best.moving), mechanism=best.velocity

@@ -8,6 +8,7 @@ from enum import StrEnum
 import numpy as np
 
 from harness.model.assembly import FloatArray
+from harness.model.deadline import Deadline
 from methods.de.engines.engine import Engine, MeasuredState, motion_units
 from methods.de.holds.motion import Motion, MotionProof, StaticLimit, Trend, by_power, by_virtual_work
 from methods.de.settings import HoldSettings
@@ -158,7 +159,9 @@ def hold(engine: Engine, settings: HoldSettings, statics: StaticLimit, patience:
     units = motion_units(engine.assembly)
     start, watch = engine.steps, ConvergenceMonitor(*reported_residuals(engine, settings), units)
     affordable = (watch.trend.followed * settings.work / max(engine.interfaces, 1) - engine.steps) / check
+    deadline = Deadline.of_run()
     while True:
+        deadline.ask()
         engine.advance(check)
         velocity = engine.velocity()
         watch.note(velocity, engine.unbalance(velocity))
@@ -205,7 +208,9 @@ def settle(engine: Engine, settings: HoldSettings) -> float:
     check = max(10, round(engine.relaxation / 3.0))
     best = residual = engine.unbalance(engine.velocity())
     stale = 0
+    deadline = Deadline.of_run()
     for _ in range(3 * settings.hold_steps):
+        deadline.ask()
         if residual < settings.force_residual or stale == 6:
             break
         engine.advance(check)

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from harness.model.assembly import Assembly, FloatArray
+from harness.model.deadline import Deadline
 from methods.de.engines.pymunk_blocks import PymunkBlocks
 from methods.de.settings import ReleaseSettings
 
@@ -37,12 +38,17 @@ def release(assembly: Assembly, multiplier: float, settings: ReleaseSettings) ->
         assembly: the wall.
         multiplier: load it is released under.
         settings: see `ReleaseSettings`.
+
+    Raises:
+        OutOfTime: the time of the run is over.
     """
     space = PymunkBlocks(assembly)
     space.load(multiplier)
     times, places = [0.0], [space.places()]
     stride, made = 20, 0
+    deadline = Deadline.of_run()
     while made < settings.release_steps:
+        deadline.ask()
         space.advance(stride)
         made += stride
         times.append(made * space.options.time_step)

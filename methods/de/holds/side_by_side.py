@@ -11,7 +11,7 @@ from dataclasses import dataclass
 from functools import partial
 
 from harness.model.assembly import FloatArray
-from harness.model.method import OutOfTime
+from harness.model.deadline import best_so_far
 from methods.de.holds.order_bracket import BracketSearch, OrderBracket
 from methods.numerics.forks import in_forks
 
@@ -53,9 +53,9 @@ def searched_ahead(
 
 
 def _findings(search: BracketSearch, ask_multiplier: bool) -> Findings:
-    stopped = False
-    try:
+    def to_its_end() -> bool:
         search.run(ask_multiplier)
-    except OutOfTime:
-        stopped = True
+        return False
+
+    stopped = best_so_far(to_its_end, lambda: True)
     return Findings(search.found, search.states, search.engine.steps, stopped)

@@ -12,6 +12,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from harness.model.assembly import Assembly, FloatArray
+from harness.model.deadline import Deadline
 from methods.de.engines.engine import motion_units
 from methods.de.engines.pymunk_blocks import PymunkBlocks
 from methods.de.holds.loading import raise_until_it_falls, shown_to_fall
@@ -113,7 +114,9 @@ def come_to_rest(
     """
     unit, units = space.assembly.length_scale, motion_units(space.assembly)
     start = before = space.places()
+    deadline = Deadline.of_run()
     for _ in range(max(1, most_steps // options.look)):
+        deadline.ask()
         space.advance(options.look)
         now = space.places()
         if float(np.abs((now - before) / units).max()) < options.still and space.speed() < options.slow:

@@ -7,7 +7,7 @@ Source: Baggio and Trovalusci (1995), equations 1 to 7.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cached_property
 
 import numpy as np
@@ -15,6 +15,7 @@ import scipy.sparse as sp
 from scipy.sparse.linalg import spsolve
 
 from harness.model.assembly import Assembly, BoolArray, FloatArray
+from harness.model.deadline import Deadline
 from harness.model.joint_law import JointLaw
 
 NO_FRICTION = 1e-12
@@ -41,6 +42,7 @@ class Problem:
         unit_force: mean dead load of a free block [force].
         unit_length: typical size of a block [length].
         unit_multiplier: multiplier per scaled multiplier.
+        deadline: of the run in which it is made; all that goes on for long asks for it.
     """
 
     assembly: Assembly
@@ -51,6 +53,7 @@ class Problem:
     unit_force: float
     unit_length: float
     unit_multiplier: float
+    deadline: Deadline = field(default_factory=Deadline.of_run)
 
     @property
     def friction(self) -> FloatArray:

@@ -113,6 +113,7 @@ class ArcPath:
         result: PathResult | None = None
         history: list[float] = []
         for iteration in range(max_iterations + 1):
+            self._problem.deadline.ask()
             point = self._here.point
             try:
                 step = NewtonStep(self._problem, self._newton, point, 0.0, self._tight)

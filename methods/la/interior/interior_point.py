@@ -131,6 +131,7 @@ def follow_path(
 
     Raises:
         SingularMatrix: the first Newton matrix is singular to rounding.
+        OutOfTime: the time of the run is over.
     """
     point = start
     tight = close_tight(problem) if tight is None else tight
@@ -140,6 +141,7 @@ def follow_path(
     best_merit, best_at = np.inf, 0
     dilatancy = 1.0 if settings.fade is not None else settings.dilatancy
     for iteration in range(settings.max_iterations + 1):
+        problem.deadline.ask()
         product = point.slack * np.where(tight, 0.0, point.rates)
         gap = float(product.sum()) / problem.live_work
         if settings.fade is not None:

@@ -77,6 +77,7 @@ def tresca_mechanism(
     least = options.end_gap * problem.live_work / point.slack.size
     taken = 0
     for _ in range(steps):
+        problem.deadline.ask()
         held = with_bounds(problem, bound)
         try:
             step = NewtonStep(held, newton, point, 1.0, tight)

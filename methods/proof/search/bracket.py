@@ -3,9 +3,8 @@
 from __future__ import annotations
 
 import time
-from contextlib import suppress
 
-from harness.model.method import OutOfTime
+from harness.model.deadline import best_so_far
 from methods.proof.search.equations import Equations
 from methods.proof.search.rate_bounds import RateProgramme
 from methods.proof.search.slack_bounds import SlackProgramme
@@ -28,11 +27,14 @@ def bracket(
     search = WindowSearch(equations, SlackProgramme(equations), Bracket(lower, upper), until, certify)
     found = search.found
     found.stopped = Stop.TIME
-    with suppress(OutOfTime):  # What is known by then is the bracket.
+
+    def windows() -> None:
         while not found.closed and time.process_time() < until:
             if not search.window():
                 branched(search)
                 break
+
+    best_so_far(windows, lambda: None)  # What is known by then is the bracket.
     if found.closed:
         found.stopped = None
     elif search.unbounded:

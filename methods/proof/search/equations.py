@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cached_property
 
 import numpy as np
 import scipy.sparse as sp
 
 from harness.model.assembly import FloatArray
+from harness.model.deadline import Deadline
 from harness.model.joint_law import JointLaw, block_diagonal
 from methods.proof.search.options import ProofOptions
 
@@ -22,6 +23,7 @@ class Equations:
         dead, live: (3n,) loads in mean block weights.
         friction: (m,) friction coefficients.
         options: of the search for a bound of its multiplier.
+        deadline: of the run in which they are made.
     """
 
     kinematic: sp.csr_matrix
@@ -29,6 +31,7 @@ class Equations:
     live: FloatArray
     friction: FloatArray
     options: ProofOptions = ProofOptions()
+    deadline: Deadline = field(default_factory=Deadline.of_run)
 
     @property
     def n_interfaces(self) -> int:

@@ -45,11 +45,12 @@ class Splitting:
     _checked: tuple[FloatArray, FloatArray] | None = field(default=None, repr=False)
 
     def run(self, until: float, stop: Callable[[DualBound | None, float], bool]) -> None:
-        """Iterate to this CPU time, or until `stop(bound, primal cost)` says so at a check."""
+        """Iterate to this CPU time, or until `stop(bound, primal cost)` says so at a check. Raises OutOfTime."""
         restarts, iterates = self.relaxation.options.restarts, self._iterates()
         check = self.iterations + restarts.checked_every
         first, before = 0.0, np.inf
         while True:
+            self.relaxation.equations.deadline.ask()
             residual = iterates.advance(self.step)
             self.iterations += 1
             first = residual if iterates.count == 1 else first

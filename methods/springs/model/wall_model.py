@@ -8,7 +8,7 @@ scale of the displacements only.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cached_property
 from typing import cast
 
@@ -16,6 +16,7 @@ import numpy as np
 import scipy.sparse as sp
 
 from harness.model.assembly import Assembly, FloatArray, IntArray
+from harness.model.deadline import Deadline
 from harness.model.joint_law import JointLaw
 from methods.numerics.block_lu import elimination_order
 from methods.numerics.compiled import compiled
@@ -54,6 +55,7 @@ class WallModel:
         column_start, row_index: CSC pattern of the tangent; slot: (m, 36) where each interface adds to its values.
         force, length, displacement: what one unit inside is worth outside.
         options: of all that is done with the model.
+        deadline: of the run in which it is made; all that goes on for long asks for it.
     """
 
     assembly: Assembly
@@ -78,6 +80,7 @@ class WallModel:
     length: float
     displacement: float
     options: SpringOptions = SpringOptions()
+    deadline: Deadline = field(default_factory=Deadline.of_run)
 
     @property
     def n_unknowns(self) -> int:

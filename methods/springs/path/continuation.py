@@ -162,6 +162,7 @@ class PathFollower:
         """
         try:
             while record.events < max_events:
+                self.model.deadline.ask()
                 end = self._piece(record, target, turn, note)
                 if end is not None:
                     return end

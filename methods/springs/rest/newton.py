@@ -59,6 +59,7 @@ def newton(
     scale = load_scale(model, multiplier)
     iterations = 0
     while iterations < limit and state.tobytes() not in seen:
+        model.deadline.ask()
         seen.add(state.tobytes())
         try:
             refactor_any(factor, state)

@@ -175,6 +175,7 @@ class PseudoTransient:
         rounding = options.rounding * largest(model.kn) * largest(now.u)
         balanced = options.balanced * load_scale(model, multiplier) + rounding
         for count in range(1, options.steps + 1):
+            model.deadline.ask()
             np.multiply(model.kn, opening < 0.0, out=resisting.kn)
             np.multiply(model.kt, np.abs(trial) < now.limit, out=resisting.kt)
             try:
