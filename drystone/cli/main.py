@@ -19,6 +19,7 @@ COMMANDS = {
     "sweep": ("sweep", "sweep_", "Run a study: many walls, many settings."),
     "store": ("sweep", "store_", "Merge result stores."),
     "learn": ("learn", "learn", "Make a page for teaching: a block with sliders, a wall over friction."),
+    "bench": ("bench", "bench_", "Run methods on a frozen set of walls: success, error, CPU time."),
     "report": ("compare", "report", "Rebuild the report of the last comparison."),
     "check": ("check", "check", "Compare the methods with their checked references."),
     "diff": ("diff", "diff", "Compare the answers of two stores or baselines."),

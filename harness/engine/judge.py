@@ -8,7 +8,8 @@ collapses at lambda  forces in equilibrium with dead + lambda x live at the mult
 bracket              (flow "approximate") a live load; forces in equilibrium within yield at its lower end or above;
                      the upper end is measured and is not judged, but it lies no lower than what these forces bear;
                      nor is it shown that the motion is the one at collapse, but it must be one that the joints allow
-                     and the loads drive (`harness.engine.measured_motion`); without a bracket, not judged
+                     and the loads drive (`harness.engine.measured_motion`); without a bracket, or with one so wide that
+                     its lower end is zero beside the upper end within the tolerance, not judged
 at its limit         multiplier 0; forces in equilibrium within yield under the dead load, and a dilatant mechanism of a
                      multiplier that the numbers of the wall do not tell from zero (`harness.model.limit`): no forces
                      bear more, whatever the flow
@@ -57,7 +58,7 @@ from harness.model.bars import BAR_FORCES, DEAD_BAR_FORCES, Bars
 from harness.model.displaced import DisplacedState
 from harness.model.limit import accuracy, gross_power, least_told
 from harness.model.method import Finding, Method, Status, check_takes
-from harness.model.result import Judgement, Result, relative_velocities, residual_of, result_of
+from harness.model.result import Judgement, Result, bracket_is_wide, relative_velocities, residual_of, result_of
 
 
 def judge(assembly: Assembly, result: Result, tolerance: float) -> Judgement:
@@ -261,8 +262,16 @@ def _judge_bracket(assembly: Assembly, forces: FloatArray | None, result: Result
     elif said.accepted and result.bracket is None:
         said.accepted = None
         said.sentence += " It gives no bracket: how far above them the wall collapses was not measured."
-    elif said.accepted:
-        said.sentence += " They prove the lower end; the collapse above it is measured and not judged."
+    elif said.accepted and result.bracket is not None:
+        upper = result.bracket[1]
+        if bracket_is_wide(result, result.traits) and lower <= tolerance * upper:
+            said.accepted = None
+            said.sentence += (
+                f" The lower end of its bracket is zero beside the upper end {upper:.6g}, within the tolerance of the "
+                "judge: it states no multiplier."
+            )
+        else:
+            said.sentence += " They prove the lower end; the collapse above it is measured and not judged."
     return said
 
 

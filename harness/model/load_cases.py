@@ -11,7 +11,7 @@ from typing import Any
 
 from harness.model.build import Built, blocks_of_wall, build, polygons_of
 from harness.model.case import Case
-from harness.model.errors import InputError, did_you_mean, raise_faults
+from harness.model.errors import MOST_NAMED, InputError, did_you_mean, first_few, raise_faults
 from harness.model.load_case_fields import DEAD
 from harness.model.load_sums import times, together
 from harness.model.travelling import travelling_loads
@@ -110,7 +110,7 @@ def under_load_case(wall: Wall, name: str, known: dict[str, NamedLoads] | None =
     """
     known = named_loads(wall) if known is None else known
     if name not in known:
-        there = f"There are: {', '.join(known)}" if known else 'A wall gives them in "load_cases"'
+        there = f"There are: {first_few(list(known), MOST_NAMED)}" if known else 'A wall gives them in "load_cases"'
         remedy = f"{did_you_mean(name, known)} {there}".strip()
         raise InputError(f'no load case is called "{name}"', remedy, "load_cases")
     own, factor = known[name].own, known[name].common

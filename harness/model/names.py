@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator
 from typing import Any
 
-from harness.model.errors import InputError, Spot, did_you_mean
+from harness.model.errors import MOST_NAMED, InputError, Spot, did_you_mean, first_few
 from harness.model.wall import Block, Detection, Friction, Load, Wall
 
 MOST_COMPARED = 2000
@@ -42,7 +42,7 @@ def faults_of_wall(wall: Wall, blocks: list[Block]) -> list[InputError]:
 
 def _groups_and_supports(wall: Wall, blocks: list[Block]) -> list[InputError]:
     """Loads of groups that no block is in, and of blocks that cannot move."""
-    groups = sorted({group for block in blocks for group in block.groups})
+    groups = {group for block in blocks for group in block.groups}
     fixed = {block.id for block in blocks if block.fixed}
     faults = []
     for where, load in (("loads.dead", wall.loads.dead), ("loads.live", wall.loads.live or Load())):
@@ -50,7 +50,9 @@ def _groups_and_supports(wall: Wall, blocks: list[Block]) -> list[InputError]:
         grouped += [(f"{where}.pressures[{number}]", pressure.group) for number, pressure in enumerate(load.pressures)]
         for place, group in grouped:
             if group is not None and group not in groups:
-                remedy = f"{did_you_mean(group, groups)} Groups of this wall: {', '.join(groups) or 'none'}"
+                known = sorted(groups)[:MOST_COMPARED]
+                there = first_few(known, MOST_NAMED) or "none"
+                remedy = f"{did_you_mean(group, known)} Groups of this wall: {there}"
                 faults.append(InputError(f'no block is in a group "{group}"', remedy.strip(), place))
         for number, pressure in enumerate(load.pressures):
             for name in sorted(fixed.intersection(pressure.blocks or ())):

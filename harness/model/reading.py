@@ -16,7 +16,7 @@ from pydantic import BaseModel, ValidationError
 
 from harness.model.broken_json import MOST_SHOWN, broken
 from harness.model.build import Built, build
-from harness.model.errors import InputError, did_you_mean, raise_faults
+from harness.model.errors import MOST_WORDED, InputError, did_you_mean, raise_faults
 from harness.model.fields import MOST_BLOCKS
 from harness.model.names import faults_of_data
 from harness.model.scope import SCOPE, outside_the_model
@@ -238,11 +238,15 @@ def validate(
     try:
         return model.model_validate(data)
     except ValidationError as error:
-        found = error.errors()
-        faults = [_fault(model, data, fault, source) for fault in found if fault["loc"]] + more(data)
+        found = error.errors(include_url=False)
+        beyond = max(0, len(found) - MOST_WORDED)
+        found = found[:MOST_WORDED]
+        faults = [_fault(model, data, fault, source) for fault in found if fault["loc"]]
+        if not beyond:
+            faults += more(data)
         faults = faults or [_fault(model, data, fault, source) for fault in found]
         first_of_place = {fault.element: fault for fault in reversed(faults)}.values()
-        raise_faults(sorted(first_of_place, key=lambda fault: _order(fault.element, data)), source)
+        raise_faults(sorted(first_of_place, key=lambda fault: _order(fault.element, data)), source, beyond)
         raise AssertionError("a validation error has faults") from None
 
 

@@ -21,6 +21,8 @@ from harness.model.units import DIMENSIONLESS, KILONEWTONS, METRES, ForceUnit, L
 
 MOST_VERTICES = 5_000
 """Of one outline: joints of two faces are found in time that grows with the square of their vertices."""
+MOST_LOAD_CASES = 500
+"""Each is built, and answered, as a wall of its own."""
 LOAD_CASE_NAME = r"[a-z0-9][a-z0-9-]{0,59}"
 """A load case is part of the id of a case, which users type."""
 TAGS = ONE, MANY, OBJECT, OTHER = "(one)", "(many)", "(object)", "(other)"
@@ -379,7 +381,9 @@ class Wall(Strict):
     contact_inset: Inset | None = None
     loads: Loads = Field(default_factory=Loads)
     load_cases: dict[str, Loads] = Field(
-        default_factory=dict, description="by name, each on top of the gravity and the dead load of `loads`"
+        default_factory=dict,
+        max_length=MOST_LOAD_CASES,
+        description="by name, each on top of the gravity and the dead load of `loads`",
     )
     travelling: dict[str, Travelling] = Field(
         default_factory=dict, description="by name, each a load case for every place of the force: NAME-1, NAME-2, ..."

@@ -190,7 +190,7 @@ def _through(item: CaseResults) -> str:
     """What lines through the blocks are: the line of thrust where each result has one, else how forces flow."""
     drawn = [np.asarray(result.forces, dtype=float) for result in item.results if result.forces is not None]
     assembly = item.case.assembly
-    found = [shapes.thrusts(assembly, forces, thrust_lines.STYLE.smallest) for forces in drawn if len(forces)]
+    found = [shapes.thrusts(assembly, forces, thrust_lines.SMALLEST) for forces in drawn if len(forces)]
     return "line of thrust" if all(thrust_lines.has_line_of_thrust(assembly, f) for f in found) else "flow of forces"
 
 

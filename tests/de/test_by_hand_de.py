@@ -19,8 +19,8 @@ from methods.de.engines.sequential_impulses import SequentialImpulses
 from methods.de.engines.strips import CannotModel, require_lengths
 from methods.de.settings import ReleaseSettings, SoftSettings, SweepSettings
 from methods.de.soft import DeformableJoints
-from methods.de.uneven.gapped import GAPPED, GappedWall
-from methods.de.uneven.settled_contacts import SETTLING, with_contacts
+from methods.de.uneven.gapped import GappedTuning, GappedWall
+from methods.de.uneven.settled_contacts import SettlingTuning, with_contacts
 from tests.walls import assembly, stack
 
 
@@ -40,7 +40,7 @@ def test_contacts_with_gaps_bear_the_loads_of_two_blocks_at_rest(size: float):
     loads = wall.dead + 0.25 * wall.live
     assert borne[wall.free] == pytest.approx(-loads[wall.free, :2], rel=1e-6)
     # Springs of 1e4 W a length scale: W on each below, half of W on each above; so little is found in one motion.
-    sinks = np.array([1.0, 1.5]) / GAPPED.stiffness
+    sinks = np.array([1.0, 1.5]) / GappedTuning().stiffness
     assert not gapped.rest.places.any()
     assert -gapped.rest.moved[wall.free, 1] / wall.length_scale == pytest.approx(sinks, rel=1e-6)
     assert gapped.drift >= sinks[1] * (1.0 - 1e-6)
@@ -60,7 +60,7 @@ def test_a_block_on_its_corner_has_a_short_contact_about_that_corner():
     space.advance(1)
     structure, single = with_contacts(wall, space, space.places())
     assert (single, structure.n_interfaces) == (1, 1)
-    assert structure.length == pytest.approx([SETTLING.point * wall.length_scale])
+    assert structure.length == pytest.approx([SettlingTuning().point * wall.length_scale])
     middle = 0.5 * (structure.end1[0] + structure.end2[0])
     assert middle == pytest.approx(corner, abs=0.01 * wall.length_scale)
     along = structure.end2[0] - structure.end1[0]

@@ -20,6 +20,7 @@ from harness.model.proof import Proof
 from harness.model.reading import read_json, read_wall
 from harness.model.result import Result, result_of
 from harness.model.wall import Wall
+from methods.numerics.statics import admissible_forces
 from reports.labels import numbers
 from tests.walls import PUSH, assembly, case, running_bond, stack
 
@@ -119,6 +120,38 @@ def test_lower_end_of_a_bracket_is_what_forces_show(bonded: tuple[Assembly, Answ
     assert said(wall, replace(measured, bracket=(low, high))).outcome == "accepted"
     assert said(wall, replace(measured, bracket=(high, high + 0.1))).outcome == "rejected"
     assert said(wall, replace(measured, forces=None, bracket=(low, high))).outcome == "not_judged"
+
+
+@pytest.mark.parametrize(
+    ("bracket", "outcome"),
+    [
+        ((0.0, 1e-3), "not_judged"),  # it stands under its dead load, which is no multiplier
+        ((0.0, 1e50), "not_judged"),
+        ((0.2, 1e50), "not_judged"),
+        ((0.2, 3.0), "accepted"),  # wide, and its lower end is a proof of a good part of it
+        ((0.0, np.inf), "rejected"),
+    ],
+)
+def test_a_bracket_whose_lower_end_is_zero_beside_its_upper_end_states_nothing(
+    bonded: tuple[Assembly, Answer], bracket: tuple[float, float], outcome: str
+):
+    """The forces bear the lower end, on the way from the dead load to the collapse state: yield is convex."""
+    wall, state = bonded
+    assert state.multiplier is not None
+    dead = admissible_forces(wall, wall.dead)
+    assert dead is not None
+    share = bracket[0] / state.multiplier
+    assert share < 1.0
+    measured = Answer(
+        Status.OK,
+        Finding.COLLAPSES,
+        "",
+        bracket[0],
+        bracket,
+        forces=(1.0 - share) * dead + share * np.asarray(state.forces),
+        flow="approximate",
+    )
+    assert said(wall, measured).outcome == outcome
 
 
 def two_blocks(weight: float, friction: float = 0.5) -> Assembly:

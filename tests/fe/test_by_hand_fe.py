@@ -10,12 +10,12 @@ import pytest
 from methods.fe.settings import GapSpringsSettings
 from methods.springs.model.factor import DenseFactor, Factor, SingularTangent, make_factor, refactor_any
 from methods.springs.model.gap_law import OPEN, SLIP_PLUS, STICK
+from methods.springs.model.options import SoftMotions
 from methods.springs.model.wall_model import WallModel, build_model
 from methods.springs.path.continuation import PathFollower
 from methods.springs.path.direction import PathDirection
 from methods.springs.path.path_record import PathEnd, PathRecord
 from methods.springs.path.plateau import check
-from methods.springs.path.tolerances import SOFT_MOTIONS
 from methods.springs.patterns import block_on_halves, running_bond
 from methods.springs.rest.equilibrium import gravity_state
 
@@ -77,7 +77,7 @@ def test_each_further_pin_has_the_response_to_a_unit_force_at_it() -> None:
     way.solve_anew(state, 100.0)
     way.elastic *= 1e-14  # beside so small a first response every motion counts as soft
     way.solve_anew(state, 100.0)
-    assert len(way.bordered) == SOFT_MOTIONS.most
+    assert len(way.bordered) == SoftMotions().most
     assert [response.border for response in way.unit_responses] == way.bordered[1:]
     pinned = model.tangent(state).toarray()
     pinned[way.bordered, way.bordered] += 1.0
