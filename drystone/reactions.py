@@ -7,12 +7,15 @@ from typing import Any
 
 import numpy as np
 
+from drystone.released_supports import released
 from drystone.walls import Wall
+from harness.engine.judge import answered
 from harness.engine.reaction_judge import judge_reaction
-from harness.model.assembly import FloatArray
-from harness.model.bars import with_bars_as_joints
+from harness.model.assembly import Assembly, FloatArray
+from harness.model.bars import bar_tensions, with_bars_as_joints
 from harness.model.errors import InputError
-from harness.model.result import Judgement
+from harness.model.method import load_method
+from harness.model.result import Judgement, fastest_vertex
 
 
 @dataclass(frozen=True, eq=False)
@@ -22,7 +25,7 @@ class Reaction:
     Attributes:
         value: work on the motion: a force where the motion is a translation by one, a moment for a rotation by one.
         forces: (m, 3) contact forces [force]; tensions: (k,) of ties and props [force].
-        mechanism: (n, 3) motion of all blocks dual to them.
+        mechanism: (n, 3) motion of all blocks that belongs to them.
         moving: names of the free blocks that move in it.
         judgement: of the judge.
     """
@@ -73,9 +76,7 @@ def reactions(wall: Wall, tolerance: float = 1e-9) -> tuple[Reaction, Reaction] 
                     "No equilibrium within yield exists under the dead load: the wall falls, wherever its supports go."
                 )
             return f"The linear programme of the {'greatest' if greatest else 'least'} reaction is {answer}."
-        speed = abs(answer.mechanism * [1.0, 1.0, assembly.length_scale]).max(axis=1)
-        moves = ~assembly.fixed & (speed > 1e-9 * speed.max())
-        names = tuple(assembly.block_ids[k] for k in np.flatnonzero(moves))
+        names = _moving(assembly, answer.mechanism)
         said = judge_reaction(
             assembly,
             answer.reaction,
@@ -86,4 +87,60 @@ def reactions(wall: Wall, tolerance: float = 1e-9) -> tuple[Reaction, Reaction] 
             tensions=answer.tensions,
         )
         found.append(Reaction(answer.reaction, answer.forces, answer.tensions, answer.mechanism, names, said))
+    return found[0], found[1]
+
+
+def _moving(assembly: Assembly, mechanism: FloatArray) -> tuple[str, ...]:
+    """Names of the free blocks that move in a mechanism (n, 3)."""
+    speed = abs(mechanism * [1.0, 1.0, assembly.length_scale]).max(axis=1)
+    moves = ~assembly.fixed & (speed > 1e-9 * speed.max())
+    return tuple(assembly.block_ids[k] for k in np.flatnonzero(moves))
+
+
+def least_known_reactions(
+    wall: Wall, method: str = "la", inside: float = 0.01, tolerance: float = 1e-9
+) -> tuple[Reaction, Reaction] | str:
+    """The reactions at which the wall collapses without dilatancy, as far as known; or why there are none.
+
+    The first is that of supports that give way, the greatest known; the second that of supports that push against their
+    motion, the least known. Both lie between the extremes of associated flow. The judge holds each to be a collapse
+    state (`drystone.released_supports`).
+
+    Args:
+        wall: with settlements of one rigid motion; its live load does not act.
+        method: that looks for collapse states and takes props, as "la".
+        inside: share of the range between the extremes by which the search begins inside it, where the wall stands
+            beyond doubt: states in that share are not found.
+        tolerance: the largest residual that the judge accepts.
+
+    Raises:
+        InputError: no support with a joint moves, or the supports do not move as one rigid body.
+    """
+    extremes = reactions(wall, tolerance)
+    if isinstance(extremes, str):
+        return extremes
+    assembly, (low, high) = wall.assembly, (each.value for each in extremes)
+    speed = fastest_vertex(assembly, assembly.support_motion)
+    if high - low <= 1e-9 * max(assembly.force_scale * speed, abs(low)):
+        return f"Equilibrium leaves one reaction alone, {low:.7g}: it does not depend on the flow."
+    found: list[Reaction] = []
+    for greatest, begins in ((False, high - inside * (high - low)), (True, low + inside * (high - low))):
+        guided = released(assembly, begins, greatest)
+        result, judgement = answered(load_method(method), guided.assembly)
+        tensions = bar_tensions(guided.assembly, result)
+        if result.multiplier is None or result.mechanism is None or result.forces is None or tensions is None:
+            return f"No reaction without dilatancy is known: {result.sentence}"
+        if not guided.holds(tensions):
+            return "No reaction without dilatancy is known: the support would leave its direction by immense forces."
+        mechanism = guided.of_wall(np.asarray(result.mechanism, dtype=float), assembly)
+        found.append(
+            Reaction(
+                begins + (result.multiplier if greatest else -result.multiplier),
+                np.asarray(result.forces, dtype=float),
+                tensions[: len(assembly.bars)],
+                mechanism,
+                _moving(assembly, mechanism),
+                judgement,
+            )
+        )
     return found[0], found[1]

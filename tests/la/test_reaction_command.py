@@ -68,7 +68,7 @@ def test_command_refuses_a_wall_whose_supports_rest(tmp_path: Path):
     path.write_text(json.dumps(data()), encoding="utf-8")
     done = command("reaction", path)
     assert done.returncode == 2
-    assert "no support with a joint moves" in done.stderr
+    assert "no support with a joint, a tie or a prop moves" in done.stderr
 
 
 def test_command_says_that_a_wall_falls(tmp_path: Path):
