@@ -42,8 +42,8 @@ lint: $(READY)  ## style, types and the layer contract
 docs: $(READY)  ## build the documentation into out/docs; a warning is an error
 	$(RUN)/python -m sphinx -W --keep-going -q -b html docs out/docs
 
-schema: $(READY)  ## write the JSON Schema of the wall format again
-	$(BIN)/drystone schema > docs/wall-1.schema.json
+schema: $(READY)  ## write the JSON Schemas of the formats again
+	for format in wall result describe; do $(BIN)/drystone schema $$format > docs/$$format-1.schema.json; done
 
 lock: $(READY)  ## resolve the dependencies anew (versions and hashes only)
 	$(BIN)/uv pip compile --quiet --universal --python-version 3.11 --generate-hashes --extra dev --extra mujoco \

@@ -22,7 +22,7 @@ from methods.la.certify.window_certificate import certified_bracket
 from methods.la.core.problem import make_problem
 from methods.la.search import LimitAnalysis
 from methods.la.settings import SearchSettings
-from methods.proof.search.tuning import WINDOWS
+from methods.proof.search.options import PROVED
 
 
 def small_wall(seed: int) -> Assembly:
@@ -66,7 +66,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     seeds = range(int(first), int(first) + int(count))
     every = [gaps(seed, float(seconds), KINDS[kind](seed)) for seed in seeds]
     known = [pair for pair in every if pair is not None]
-    closed, certified = (sum(gap <= WINDOWS.proved for gap in each) for each in zip(*known, strict=True))
+    closed, certified = (sum(gap <= PROVED for gap in each) for each in zip(*known, strict=True))
     within = sum(gap <= 0.01 for gap, _ in known)
     print(
         f"{len(known)} walls collapse; within {seconds} s {closed} are closed to rounding, {certified} of them "

@@ -12,10 +12,10 @@ from dataclasses import dataclass, field
 
 from benchmarks.walls import random_wall
 from harness.model.method import Status, load_method
-from methods.fe.answers import TOLD
+from methods.fe.answers import SPREAD
 from methods.fe.gap_springs import GapSprings
 from methods.fe.settings import GapSpringsSettings
-from methods.springs.path.plateau import COLLAPSE
+from methods.springs.model.options import CollapseTolerances
 
 ABOVE = 1e-6
 """Relative: how far a plateau may lie above the associated maximum, for the accuracy of the linear programme."""
@@ -51,7 +51,7 @@ def run(seed: int, tally: Tally) -> None:
     tally.worst = max(tally.worst, *answer.details["residuals"].values())
     spread = answer.details["spread"] or 0.0
     tally.spread = max(tally.spread, spread)
-    if spread > TOLD.spread:
+    if spread > SPREAD:
         tally.wide.append(seed)
     if any(history["plateau"] is None for history in answer.details["histories"]):
         tally.lost.append(seed)
@@ -69,11 +69,11 @@ def main(arguments: Sequence[str] | None = None) -> int:
     )
     print(f"plateaus: {tally.plateaus}; without one: {tally.without or 'none'}")
     print(f"above the associated maximum: {tally.above or 'none'}")
-    print(f"worst residual of a collapse state: {tally.worst:.1e} (certificate {COLLAPSE.certificate:g})")
+    print(f"worst residual of a collapse state: {tally.worst:.1e} (certificate {CollapseTolerances().certificate:g})")
     print(f"largest spread of the histories: {100.0 * tally.spread:.2f} %")
-    print(f"spread above {100.0 * TOLD.spread:g} %: {tally.wide or 'none'}")
+    print(f"spread above {100.0 * SPREAD:g} %: {tally.wide or 'none'}")
     print(f"walls with a history that reached no plateau: {tally.lost or 'none'}")
-    return int(bool(tally.above) or tally.worst > COLLAPSE.certificate)
+    return int(bool(tally.above) or tally.worst > CollapseTolerances().certificate)
 
 
 if __name__ == "__main__":

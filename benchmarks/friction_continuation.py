@@ -17,7 +17,7 @@ from harness.model.assembly import Assembly
 from methods.la.core.newton_matrix import NewtonMatrix
 from methods.la.core.problem import Problem, make_problem
 from methods.la.sources import explore
-from methods.la.sources.budget import SIZES, Budget
+from methods.la.sources.budget import Budget, Sizes
 from methods.la.sources.friction_continuation import FrictionContinuation
 from methods.la.sources.paths import CentralPath, ReducedFriction
 from methods.la.sources.search import Search
@@ -28,20 +28,22 @@ LOWER = 1e-7
 
 def least(problem: Problem, newton: NewtonMatrix, ladder: tuple[float, ...]) -> float:
     """The least multiplier (scaled) that central paths and a ladder lead to; infinite where they lead to none."""
-    search = Search(problem, newton, 0, Budget(replace(SIZES.limits("normal", problem), ladder=ladder)))
+    search = Search(problem, newton, 0, Budget(replace(Sizes().limits("normal", problem), ladder=ladder)))
     explore(search, [ReducedFriction(), CentralPath(), FrictionContinuation()])
     return search.record.least
 
 
 def suits(wall: Assembly) -> bool:
     """Whether all rungs are tried on a wall, which has a live load."""
-    return wall.has_live_load and 2 < wall.n_free <= SIZES.few_blocks
+    return wall.has_live_load and 2 < wall.n_free <= Sizes().few_blocks
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
     """Print the table."""
     count = int([*(sys.argv[1:] if arguments is None else arguments), "40"][0])
-    ladders = {"none": ()} | {f"without {rung:g}": tuple(r for r in SIZES.ladder if r != rung) for rung in SIZES.ladder}
+    ladders = {"none": ()} | {
+        f"without {rung:g}": tuple(r for r in Sizes().ladder if r != rung) for rung in Sizes().ladder
+    }
     gains = {name: [0, 0] for name in ladders}
     walls, began = 0, time.process_time()
     for wall in (wall for seed in range(count) for wall in (random_wall(seed), drawn(seed, 3, 5))):
@@ -49,7 +51,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
             continue
         problem = make_problem(wall)
         newton = NewtonMatrix(problem)
-        whole = least(problem, newton, SIZES.ladder)
+        whole = least(problem, newton, Sizes().ladder)
         if whole == float("inf"):
             continue
         walls += 1

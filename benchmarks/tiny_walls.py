@@ -18,7 +18,7 @@ from harness.model.assembly import Assembly
 from methods.la.certify.window_certificate import certifier_of, equations_of
 from methods.la.core.problem import make_problem
 from methods.proof.search.bracket import bracket
-from methods.proof.search.tuning import WINDOWS
+from methods.proof.search.options import PROVED
 from tests.bound.by_cases import in_cases
 from tests.enumeration import least_by_enumeration
 from tests.la.bodies import stack
@@ -48,10 +48,10 @@ def main(arguments: Sequence[str] | None = None) -> int:
         windows = bracket(equations_of(problem), upper, SECONDS, certify=certifier_of(problem))
         cases = in_cases(problem, 1.1 * upper, SECONDS)
         lower = np.array([windows.lower, cases.lower]) / upper
-        closed += lower >= 1.0 - WINDOWS.proved
+        closed += lower >= 1.0 - PROVED
         if lower.max() > 1.0 + AGREES:
             passed.append(seed)
-        if lower.max() > 1.0 + AGREES or lower[0] < 1.0 - WINDOWS.proved:
+        if lower.max() > 1.0 + AGREES or lower[0] < 1.0 - PROVED:
             told = f"{seed:4d} {wall.n_free} blocks, {wall.n_interfaces} interfaces, least {least:.9f}, bounds over it"
             print(f"{told} {lower[0]:.9f} {lower[1]:.9f}", flush=True)
     print(

@@ -16,7 +16,7 @@ import pages  # noqa: E402
 
 import drystone  # noqa: E402
 
-project, author, release = "Drystone", "the Drystone authors", drystone.__version__
+project, author, release = "Drystone", "the Drystone developers", drystone.__version__
 extensions = ["myst_parser", "sphinx.ext.autodoc", "sphinx.ext.napoleon"]
 myst_enable_extensions = ["dollarmath", "deflist"]
 myst_heading_anchors = 4

@@ -27,6 +27,7 @@ def command_pages(folder: Path) -> None:
 def columns_page(folder: Path) -> None:
     """The columns of tables of results, of their comparisons with references, and of studies."""
     from harness.engine.sweep.running import STUDY
+    from harness.model.bar_forces import BARS
     from harness.model.columns import COMPARISONS, RESULTS
     from harness.model.joint_margins import ANSWERED
     from harness.model.support_reactions import REACTIONS
@@ -37,6 +38,7 @@ def columns_page(folder: Path) -> None:
         ("Of comparisons.csv.", COMPARISONS),
         ("Of joints.csv and `joints_to_pandas()`, one row a joint, in the units of the wall.", ANSWERED),
         ("Of `reactions_to_pandas()`, and names of `reactions` in JSON, in the units of the wall.", REACTIONS),
+        ("Of `bars_to_pandas()` and bars.csv, and names of `bars` in JSON, in the units of the wall.", BARS),
         ("Of the runs.csv of a study; the varied quantities follow `case`.", STUDY),
     ):
         parts += ["", sentence, "", "| column | type | unit | meaning |", "|---|---|---|---|"]
@@ -47,10 +49,10 @@ def columns_page(folder: Path) -> None:
 def settings_page(folder: Path) -> None:
     """Every installed method with its settings."""
     from harness.model.errors import InputError
-    from harness.model.method import load_method, method_names
+    from harness.model.method import listed_methods, load_method
 
     parts = ["# Methods and their settings", ""]
-    for name in method_names():
+    for name in listed_methods():
         try:
             method = load_method(name)
         except InputError as error:

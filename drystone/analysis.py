@@ -19,8 +19,8 @@ from harness.model.method import (
     Answer,
     Method,
     checked_method,
+    listed_methods,
     load_method,
-    method_names,
 )
 from harness.model.proof import Proof, proof_of
 from harness.model.reading import validate
@@ -97,6 +97,12 @@ class Result(Record):
 
         return reaction_frame(self._wall.case, self)
 
+    def bars_to_pandas(self) -> pd.DataFrame:
+        """Forces of the ties and props: one row a bar, tension positive, with its range; `attrs["units"]`: units."""
+        from reports.page.export import bar_frame
+
+        return bar_frame(self._wall.case, self)
+
     def mechanism_to_pandas(self) -> pd.DataFrame:
         """The mechanism: one row a block with ux, uy, omega, scaled so that the fastest vertex has speed 1."""
         import pandas as pd
@@ -133,7 +139,7 @@ def methods() -> list[str]:
     >>> "la" in methods() and "fe" in methods() and "de" in methods()
     True
     """
-    return method_names()
+    return listed_methods()
 
 
 def analyse(

@@ -10,6 +10,7 @@ import numpy as np
 from drystone.walls import Wall
 from harness.engine.reaction_judge import judge_reaction
 from harness.model.assembly import FloatArray
+from harness.model.bars import with_bars_as_joints
 from harness.model.errors import InputError
 from harness.model.result import Judgement
 
@@ -20,13 +21,15 @@ class Reaction:
 
     Attributes:
         value: work on the motion: a force where the motion is a translation by one, a moment for a rotation by one.
-        forces: (m, 3) contact forces [force]; mechanism: (n, 3) motion of all blocks dual to them.
+        forces: (m, 3) contact forces [force]; tensions: (k,) of ties and props [force].
+        mechanism: (n, 3) motion of all blocks dual to them.
         moving: names of the free blocks that move in it.
         judgement: of the judge.
     """
 
     value: float
     forces: FloatArray
+    tensions: FloatArray
     mechanism: FloatArray
     moving: tuple[str, ...]
     judgement: Judgement
@@ -38,6 +41,7 @@ class Reaction:
             "moving": list(self.moving),
             "judge": self.judgement.model_dump(mode="json"),
             "forces": self.forces.tolist(),
+            "tensions": self.tensions.tolist(),
             "mechanism": self.mechanism.tolist(),
         }
 
@@ -57,9 +61,9 @@ def reactions(wall: Wall, tolerance: float = 1e-9) -> tuple[Reaction, Reaction] 
     from methods.la.core.reaction import extreme_reaction
 
     assembly = wall.assembly
-    if not np.any(assembly.support_strains):
+    if not np.any(with_bars_as_joints(assembly).support_strains):
         remedy = 'Give "settlements": [{"blocks": [...], "translation": [0, -1]}]'
-        raise InputError("no support with a joint moves", remedy, "settlements")
+        raise InputError("no support with a joint, a tie or a prop moves", remedy, "settlements")
     found: list[Reaction] = []
     for greatest in (False, True):
         answer = extreme_reaction(assembly, greatest)
@@ -73,7 +77,13 @@ def reactions(wall: Wall, tolerance: float = 1e-9) -> tuple[Reaction, Reaction] 
         moves = ~assembly.fixed & (speed > 1e-9 * speed.max())
         names = tuple(assembly.block_ids[k] for k in np.flatnonzero(moves))
         said = judge_reaction(
-            assembly, answer.reaction, answer.forces, answer.mechanism, greatest=greatest, tolerance=tolerance
+            assembly,
+            answer.reaction,
+            answer.forces,
+            answer.mechanism,
+            greatest=greatest,
+            tolerance=tolerance,
+            tensions=answer.tensions,
         )
-        found.append(Reaction(answer.reaction, answer.forces, answer.mechanism, names, said))
+        found.append(Reaction(answer.reaction, answer.forces, answer.tensions, answer.mechanism, names, said))
     return found[0], found[1]

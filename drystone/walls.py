@@ -64,7 +64,7 @@ class Wall:
         return {
             each.load_case: Wall(each)
             for each in load_cases_of(self.case)
-            if each.load_case and self.case.wall.load_cases
+            if each.load_case and self.case.wall.load_case_fields
         }
 
     def called(self, name: str) -> Wall:
@@ -96,8 +96,8 @@ class Wall:
         return html(f"{self.title}: {free} free blocks, {joints} interfaces", self.plot())
 
     def __repr__(self) -> str:
-        if self.case.wall.load_cases:
-            return f"<Wall {self.name}: load cases {', '.join(self.case.wall.load_cases)}>"
+        if named := self.case.wall.load_case_fields:
+            return f"<Wall {self.name}: load cases {', '.join(named)}>"
         free, joints = self.assembly.n_free, self.assembly.n_interfaces
         return f"<Wall {self.name}: {free} free blocks, {joints} interfaces>"
 

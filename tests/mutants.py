@@ -69,8 +69,6 @@ SECONDS = 300
 """After which a mutant counts as found, and is printed as such: on a busy machine it need not be."""
 TIME_OVER = 99
 """What stands for the exit code of pytest where the time was over."""
-NEAR_SECONDS = 60
-"""Of the tests that run the changed line: the quickest that take no longer than this together."""
 CANNOT_START = (3, 4, 5)
 """Exit codes of pytest that say nothing of the tests: an internal error, wrong words, no test found."""
 COMPARED = {
@@ -176,10 +174,12 @@ def copy_loops(folder: Path) -> None:
         shutil.copy2(kept, place)
 
 
-def pytest(folder: Path, tests: list[str], *words: str, seconds: float | None = None) -> int:
+def pytest(folder: Path, tests: list[str], *words: str, seconds: float | None = None, uncompiled: bool = False) -> int:
     """Exit code of tests in a copy of the checkout; `TIME_OVER` where the time was over."""
     command = [sys.executable, "-m", "pytest", "-q", "-p", "no:cacheprovider", "-m", "not slow and not browser", *words]
     environment = os.environ | {"PYTHONPATH": str(folder), "OMP_NUM_THREADS": "1", "OPENBLAS_NUM_THREADS": "1"}
+    if uncompiled:
+        environment["NUMBA_DISABLE_JIT"] = "1"
     environment.pop("PYTHONDONTWRITEBYTECODE", None)  # most of the time of a mutant would be that of compiling others
     process = subprocess.Popen(
         [*command, *tests], cwd=folder, env=environment, start_new_session=True,
@@ -212,9 +212,11 @@ class Map:
 
     Args:
         package: whose map was made.
+        most: of the tests that run a changed line, the quickest that take no longer than this together are asked [s].
     """
 
-    def __init__(self, package: str) -> None:
+    def __init__(self, package: str, most: float) -> None:
+        self.most = most
         self.seconds: defaultdict[str, float] = defaultdict(float)
         for case in ElementTree.parse(KEPT / f"{package}.xml").iter("testcase"):
             module, function = case.attrib["classname"].split(".")[-1], case.attrib["name"].split("[")[0]
@@ -230,7 +232,7 @@ class Map:
         of_file = {last_two(test) for tests in lines.values() for test in tests if test}
         ordered = sorted(of_line or of_file or self.seconds, key=lambda test: (self.seconds[test], test))
         sums = itertools.accumulate(self.seconds[test] for test in ordered)
-        return [test for test, total in zip(ordered, sums, strict=True) if test == ordered[0] or total < NEAR_SECONDS]
+        return [test for test, total in zip(ordered, sums, strict=True) if test == ordered[0] or total < self.most]
 
 
 def last_two(test: str) -> str:
@@ -245,22 +247,26 @@ def node(test: str, folder: Path) -> list[str]:
     return [f"{path.relative_to(folder)}::{function}" for path in found]
 
 
-def survives(package: str, mutant: Mutant, folder: Path, tests: Map | list[str], near_only: bool) -> bool:
+def survives(
+    package: str, mutant: Mutant, folder: Path, tests: Map | list[str], near_only: bool, uncompiled: bool
+) -> bool:
     """Whether a mutant passes the tests that run its line, and then, unless those are enough, all of its package.
 
     Args:
         package: of the mutant; folder: a copy of the checkout.
         tests: the map of the package, or tests that are asked instead of those near the line.
         near_only: they are enough.
+        uncompiled: whether a file with compiled loops is tried as Python.
     """
     place = folder / mutant.path
     source = place.read_text("utf-8")
+    as_python = uncompiled and "@compiled" in source
 
     def passes(asked: list[str]) -> bool:
         """Whether the mutant passes these tests."""
         place.write_text(mutant.applied(source), "utf-8")
         forget()
-        code = pytest(folder, asked, "-x", seconds=SECONDS)
+        code = pytest(folder, asked, "-x", seconds=SECONDS, uncompiled=as_python)
         restore()
         if code == TIME_OVER:
             print("TIME OVER", mutant.shown(source), flush=True)
@@ -297,20 +303,26 @@ def survives(package: str, mutant: Mutant, folder: Path, tests: Map | list[str],
 @click.option("--near", is_flag=True, help="Ask only the tests that run the changed line, where there are any.")
 @click.option("--ask", multiple=True, metavar="FILE", help="Ask these tests alone.")
 @click.option(
-    "--uncompiled", is_flag=True, help="Run compiled loops as Python: for tests that call them on few numbers."
+    "--seconds", default=60.0, show_default=True, help="Of the tests that run a line, the quickest up to this."
 )
+@click.option("--uncompiled", is_flag=True, help="Run all loops as Python for mutants of files with compiled ones.")
 def main(
-    words: tuple[str, ...], count: int, seed: int, jobs: int, near: bool, ask: tuple[str, ...], uncompiled: bool
+    words: tuple[str, ...],
+    count: int,
+    seed: int,
+    jobs: int,
+    near: bool,
+    ask: tuple[str, ...],
+    seconds: float,
+    uncompiled: bool,
 ) -> None:
     """Make the map of PACKAGES (`map PACKAGE...`), or try mutants of them."""
     if words[0] == "map":
         for package in words[1:]:
             make_map(package)
         return
-    if uncompiled:
-        os.environ["NUMBA_DISABLE_JIT"] = "1"
     for package in words:
-        tests, drawn = list(ask) or Map(package), sample(package, count, seed)
+        tests, drawn = list(ask) or Map(package, seconds), sample(package, count, seed)
         with tempfile.TemporaryDirectory() as room, ThreadPoolExecutor(jobs) as pool:
             free: Queue[Path] = Queue()
             for number in range(jobs):
@@ -324,7 +336,7 @@ def main(
                 mutant: Mutant, package: str = package, tests: Map | list[str] = tests, free: Queue[Path] = free
             ) -> bool:
                 folder = free.get()
-                alive = survives(package, mutant, folder, tests, near or bool(ask))
+                alive = survives(package, mutant, folder, tests, near or bool(ask), uncompiled)
                 free.put(folder)
                 click.echo("." if not alive else "", nl=alive, err=True)
                 if alive:

@@ -1,4 +1,4 @@
-"""A class name of the methods leads to one place, and benchmarks run on one runner."""
+"""A class name of the methods leads to one place, options are passed, and benchmarks run on one runner."""
 
 from __future__ import annotations
 
@@ -52,3 +52,80 @@ def test_list_of_benchmarks_ends_without_a_word_where_its_reader_has_left():
     )
     os.close(writing)
     assert (done.returncode, done.stderr) == (0, b"")
+
+
+def modules() -> list[tuple[Path, ast.Module]]:
+    """The modules in which options are passed, parsed."""
+    paths = [path for room in ("methods", "harness", "reports") for path in (ROOT / room).rglob("*.py")]
+    return [(path, ast.parse(path.read_text(encoding="utf-8"))) for path in paths]
+
+
+def dataclasses_of(parsed: list[tuple[Path, ast.Module]]) -> dict[str, tuple[bool, set[str]]]:
+    """By name of each dataclass whether it is frozen, and its fields with a default."""
+    found: dict[str, tuple[bool, set[str]]] = {}
+    for _, module in parsed:
+        for node in ast.walk(module):
+            if not isinstance(node, ast.ClassDef):
+                continue
+            made_by = [ast.unparse(decorator) for decorator in node.decorator_list]
+            if any(word.startswith("dataclass") for word in made_by):
+                fields = [line for line in node.body if isinstance(line, ast.AnnAssign) and line.value is not None]
+                names = {ast.unparse(line.target) for line in fields if "ClassVar" not in ast.unparse(line.annotation)}
+                found[node.name] = any("frozen=True" in word for word in made_by), names
+    return found
+
+
+def called(node: ast.AST | None) -> str:
+    """The name of what an expression calls; empty where it is no call."""
+    return ast.unparse(node.func).split(".")[-1] if isinstance(node, ast.Call) else ""
+
+
+def test_no_module_holds_an_instance_of_a_dataclass():
+    """Options are passed as arguments. `Listed` is the row of a method in the registry; tables of rows are data."""
+    parsed = modules()
+    known = dataclasses_of(parsed).keys() - {"Listed"}
+    held = []
+    for path, module in parsed:
+        for line in module.body:
+            if isinstance(line, ast.Assign | ast.AnnAssign) and line.value is not None:
+                several = isinstance(line, ast.Assign) and isinstance(line.targets[0], ast.Tuple)
+                values = line.value.elts if several and isinstance(line.value, ast.Tuple) else [line.value]
+                held += [f"{path.relative_to(ROOT)}: {called(value)}" for value in values if called(value) in known]
+    assert len(known) > 200
+    assert held == []
+
+
+def test_no_default_of_an_option_is_read_from_its_class():
+    """Read so, it would be the same for all who pass another."""
+    parsed = modules()
+    defaults = {name: fields for name, (_, fields) in dataclasses_of(parsed).items()}
+    read = [
+        f"{path.relative_to(ROOT)}: {node.value.id}.{node.attr}"
+        for path, module in parsed
+        for node in ast.walk(module)
+        if isinstance(node, ast.Attribute) and isinstance(node.value, ast.Name)
+        if node.attr in defaults.get(node.value.id, ())
+    ]
+    assert read == []
+
+
+def test_defaults_of_arguments_and_fields_that_are_instances_are_frozen():
+    """One instance serves all calls, so none may change it."""
+    parsed = modules()
+    known = dataclasses_of(parsed)
+    used = []
+    for path, module in parsed:
+        for node in ast.walk(module):
+            if isinstance(node, ast.FunctionDef):
+                values: list[ast.expr | None] = [*node.args.defaults, *node.args.kw_defaults]
+            elif isinstance(node, ast.ClassDef):
+                values = [line.value for line in node.body if isinstance(line, ast.AnnAssign)]
+            else:
+                continue
+            used += [(f"{path.relative_to(ROOT)}: {called(value)}", called(value)) for value in values if called(value)]
+    given = [(where, name) for where, name in used if name in known]
+    assert len(given) > 40
+    assert [where for where, name in given if not known[name][0]] == []
+    # Calls that make no instance of our own, or an immutable one; `Traits` is a frozen model of pydantic.
+    plain = {"field", "Field", "PrivateAttr", "float", "Path", "TypeAdapter", "frozenset", "Traits"}
+    assert sorted({name for _, name in used} - known.keys() - plain) == []

@@ -23,6 +23,7 @@ from drystone.cli.options import (
     live_option,
     load_case_option,
     memory_option,
+    methods_option,
     print_json,
     report_option,
     say,
@@ -39,11 +40,10 @@ from drystone.walls import Wall
 from harness.engine import regression
 from harness.engine.executors import LocalExecutor
 from harness.engine.isolate import preload_methods
-from harness.engine.plan import check_methods, find_cases, plan_case
+from harness.engine.plan import check_methods, check_no_methods, find_cases, plan_case
 from harness.engine.run import Limits
 from harness.engine.store import open_store
 from harness.model.comparison import ComparisonRun
-from harness.model.errors import InputError
 from harness.model.library import library
 from harness.model.live_load import is_horizontal, reversed_live
 
@@ -51,10 +51,7 @@ from harness.model.live_load import is_horizontal, reversed_live
 @click.command()
 @click.argument("cases", nargs=-1)
 @click.option("--suite", help='A suite of cases, or "all".  [default: small]')
-@click.option(
-    "--methods",
-    help=f"Names of methods, separated by commas.  [default: {','.join(library().methods.compare)} and those gated]",
-)
+@methods_option(f"{','.join(library().methods.compare)} and those gated")
 @click.option(
     "--study",
     "studied",
@@ -82,7 +79,7 @@ from harness.model.live_load import is_horizontal, reversed_live
 def compare(
     cases: tuple[str, ...],
     suite: str | None,
-    methods: str | None,
+    methods: list[str] | None,
     studied: str | None,
     settings: tuple[str, ...],
     load_case: str | None,
@@ -100,26 +97,24 @@ def compare(
     folders: tuple[Path, ...],
 ) -> None:
     """Run methods on CASES (ids, case folders, WALL.json files) or a suite, judge, store and report."""
+    check_no_methods(cases, methods)
     named = find_cases(cases, suite, folders)
     chosen = [each for case in named for each in as_loaded(case, load_case, live, both_signs=both_signs)]
-    names = [name.strip() for name in methods.split(",") if name.strip()] if methods is not None else None
-    if names is not None:
-        if not names:
-            raise InputError("it names no method", "`drystone list methods` shows them", "--methods")
-        check_methods(names)
+    if methods is not None:
+        check_methods(methods)
     limits = Limits(seconds, memory * 2**20)
     for case in chosen:
         warn(case)
     title = ", ".join(case.id for case in named) if cases else f"suite {suite or 'small'}"
     asked = method_settings(settings)
     written = None if no_report else report
-    planned = [run for case in chosen for run in plan_case(case, names, limits, settings=asked)]
+    planned = [run for case in chosen for run in plan_case(case, methods, limits, settings=asked)]
     preload_methods(run.method for run in planned)
     study = [] if studied is None else [curve_of_shipped(studied, jobs, store, fresh=fresh, quiet=as_json)]
     with terminal.progress(len(planned), quiet=as_json) as told:
         made = make_comparison(
             [Wall(case) for case in chosen],
-            names,
+            methods,
             jobs=jobs,
             seconds=limits.seconds,
             memory_bytes=limits.memory_bytes,

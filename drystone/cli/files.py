@@ -11,6 +11,7 @@ from typing import Any, get_args, get_type_hints
 import click
 
 from drystone.cli import terminal
+from drystone.cli.groups import AskingGroup
 from drystone.cli.options import (
     INPUT_ERROR,
     OUTPUT,
@@ -141,25 +142,29 @@ def _settings(method: str, given: tuple[str, ...], output: Path) -> dict[str, An
     return chosen
 
 
-class Kinds(click.Group):
-    """A group with a command for every kind of wall, its options those of the maker."""
+class Kinds(AskingGroup):
+    """A group with a command for every kind of wall, its options those of the maker, and one for a method."""
 
     def list_commands(self, ctx: click.Context) -> list[str]:
         """Names of all kinds."""
         from cases.start import STARTS
 
-        return list(STARTS)
+        return [*STARTS, "method"]
 
     def get_command(self, ctx: click.Context, cmd_name: str) -> click.Command | None:
         """The command that makes a wall of this kind; None if there is none."""
         from cases.start import STARTS
 
+        if cmd_name == "method":
+            from drystone.cli.methods import new_method
+
+            return new_method
         return _kind(cmd_name, STARTS[cmd_name]) if cmd_name in STARTS else None
 
 
 @click.group(cls=Kinds)
 def new() -> None:
-    """Make a wall of a kind from a few numbers; asks for them on a terminal when none is given."""
+    """Make a wall of a kind from a few numbers, asked for on a terminal when none is given; or begin a method."""
 
 
 def _kind(name: str, maker: Callable[..., Wall]) -> click.Command:

@@ -6,9 +6,11 @@ Nothing but click is imported until it is known which command is meant.
 from __future__ import annotations
 
 import importlib
+import os
 
 import click
 
+from drystone.cli.groups import AskingGroup
 from harness import formats
 from harness.engine.threads import pin
 
@@ -19,8 +21,10 @@ COMMANDS = {
     "sweep": ("sweep", "sweep_", "Run a study: many walls, many settings."),
     "store": ("sweep", "store_", "Merge result stores."),
     "learn": ("learn", "learn", "Make a page for teaching: a block with sliders, a wall over friction."),
+    "bench": ("bench", "bench_", "Run methods on a frozen set of walls: success, error, CPU time."),
     "report": ("compare", "report", "Rebuild the report of the last comparison."),
     "check": ("check", "check", "Compare the methods with their checked references."),
+    "conformance": ("conformance", "conformance", "Run the conformance suite on METHODS."),
     "diff": ("diff", "diff", "Compare the answers of two stores or baselines."),
     "baseline": ("check", "baseline", "Compare today's values with the recorded ones."),
     "list": ("walls", "list_", "List the cases, the methods, the suites or the formats there are."),
@@ -29,7 +33,7 @@ COMMANDS = {
     "bound": ("proof", "bound", "Write a certificate that no collapse state lies lower."),
     "verify-bound": ("proof", "verify_bound", "Check a certificate in fractions."),
     "reaction": ("reaction", "reaction", "Print the reactions of the supports of CASE that move."),
-    "schema": ("walls", "schema", "Print the JSON Schema of the wall format."),
+    "schema": ("walls", "schema", "Print the JSON Schema of a format: of walls, results or descriptions."),
     "validate": (
         "drawings",
         "validate",
@@ -38,16 +42,18 @@ COMMANDS = {
     "repair": ("drawings", "repair", "Close the gaps and overlaps of a drawing, and list the displacements."),
     "show": ("drawings", "show", "Draw CASE to a file or in a window."),
     "factor": ("factor", "factor", "Find the factor of safety on friction of CASE."),
+    "domain": ("domain", "domain", "Find the pairs of multipliers of two live loads under which CASE stands."),
     "figure": ("walls", "figure", "Draw the answers of methods as a figure for a paper."),
     "import": ("files", "import_", "Convert a drawing to WALL.json."),
     "export": ("files", "export", "Write a wall and its answer for other programs."),
+    "methods": ("methods", "methods", "Make programs in any language methods."),
     "new": ("files", "new", "Make a parametric wall."),
     "animate": ("walls", "animate", "Animate the mechanism of a method."),
 }
 """Every command: the module of this package it is in, its name there, and what the list of commands says of it."""
 
 
-class Commands(click.Group):
+class Commands(AskingGroup):
     """A group whose commands are imported when they are called."""
 
     def list_commands(self, ctx: click.Context) -> list[str]:
@@ -78,8 +84,20 @@ def _version(ctx: click.Context, _option: click.Parameter, wanted: bool) -> None
         ctx.exit()
 
 
+def _methods_from(ctx: click.Context, _option: click.Parameter, path: str | None) -> None:
+    if path is not None and not ctx.resilient_parsing:
+        os.environ["DRYSTONE_METHODS"] = os.path.abspath(path)
+
+
 @click.group(cls=Commands, context_settings={"help_option_names": ["-h", "--help"], "max_content_width": 100})
 @click.option("--version", is_flag=True, expose_value=False, is_eager=True, callback=_version, help="Show the version.")
+@click.option(
+    "--methods-file",
+    expose_value=False,
+    callback=_methods_from,
+    metavar="PATH",
+    help="Programs that are methods.  [default: methods.toml in the working folder]",
+)
 def main() -> None:
     """Collapse multipliers of dry-jointed masonry by three families of methods, judged and compared.
 

@@ -85,7 +85,8 @@ def _finite(_context: click.Context, _option: click.Parameter, value: float) -> 
     return value
 
 
-def _pair(text: str) -> tuple[float, float]:
+def pair(text: str) -> tuple[float, float]:
+    """Two numbers with a comma between them; raises click.BadParameter."""
     try:
         x, y = (float(part) for part in text.split(","))
     except ValueError:
@@ -122,6 +123,33 @@ def say_json(text: str) -> None:
         "\n".join(
             "".join(letter if letter.isprintable() else json.dumps(letter)[1:-1] for letter in line) for line in lines
         )
+    )
+
+
+def _names(_context: click.Context, _option: click.Parameter, given: tuple[str, ...] | None) -> list[str] | None:
+    """Names out of words with commas, each once; None where the option is not given."""
+    if not given:
+        return None
+    names = list(dict.fromkeys(name.strip() for words in given for name in words.split(",") if name.strip()))
+    if not names:
+        raise click.BadParameter("it names no method; `drystone list methods` shows them.")
+    return names
+
+
+def methods_option(default: str) -> Callable[[Callable[..., Any]], Callable[..., Any]]:
+    """The option `--methods A,B`, with `--method` for the same.
+
+    Args:
+        default: what the help says is taken without it.
+    """
+    return click.option(
+        "--methods",
+        "--method",
+        "methods",
+        multiple=True,
+        callback=_names,
+        metavar="A,B,...",
+        help=f"Names of methods, separated by commas.  [default: {default}]",
     )
 
 
@@ -174,7 +202,7 @@ junit_option = click.option("--junit", type=OUTPUT, help="Also write the outcome
 live_option = click.option(
     "--live",
     metavar="X,Y",
-    callback=lambda _context, _option, value: None if value is None else _pair(value),
+    callback=lambda _context, _option, value: None if value is None else pair(value),
     help="Live load as a multiple of every weight, in place of that of the file: 1,0 is to the right.",
 )
 load_case_option = click.option("--load-case", metavar="NAME", help="One of the named load cases of the wall.")

@@ -60,6 +60,8 @@ def bound(
     if found.assembly.strong:
         remedy = "Leave cohesion and tensile strength out: certificates are of dry joints"
         raise InputError("some joints have cohesion or tensile strength", remedy, case)
+    if len(found.assembly.bars):
+        raise InputError("the wall has ties or props", "Leave them out: certificates are of blocks and joints", case)
     search = SearchSettings(effort=effort)
     attempt = find_certificate(found.assembly, seconds, search, nodes, lambda sentence: say(sentence, err=True))
     if attempt.document is None:

@@ -27,10 +27,11 @@ from drystone.cli.options import (
 )
 from drystone.cli.settings import settings_of
 from drystone.walls import Wall
-from harness.engine.plan import check_methods, find_cases
+from harness.engine.plan import check_methods, check_order, find_cases
 from harness.engine.run import Limits
 from harness.model.envelope import envelope
 from harness.model.errors import InputError
+from harness.model.load_cases import named_loads
 from harness.model.method import Status
 
 
@@ -79,12 +80,13 @@ def run(
     memory: int,
 ) -> None:
     """Run METHOD on CASE (an id, a case folder or a WALL.json) and print what it finds."""
+    check_order(method, case)
     check_methods([method], "method")
     (found,) = find_cases([case], None, folders)
     chosen = settings_of(method, settings)
-    if found.wall.load_cases and load_case is None:
+    if found.wall.load_case_fields and load_case is None:
         raise InputError(
-            f"it has the load cases {', '.join(found.wall.load_cases)}",
+            f"it has the load cases {', '.join(named_loads(found.wall))}",
             "Choose one: --load-case NAME; `drystone compare` answers all of them",
             "load_cases",
             found.origin,

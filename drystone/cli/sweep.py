@@ -19,6 +19,7 @@ from drystone.cli.options import (
     jobs_option,
     json_flag,
     memory_option,
+    methods_option,
     print_json,
     say,
     seconds_option,
@@ -51,10 +52,7 @@ OUT = Path("out")
     help=f"Size of defects over the block height ({library().settings['imperfection']}).",
 )
 @click.option("--seeds", type=click.IntRange(1), help="So many seeds of the defects.")
-@click.option(
-    "--methods",
-    help=f"Names of methods, separated by commas.  [default: {','.join(library().methods.sweep)}, or the study's]",
-)
+@methods_option(f"{','.join(library().methods.sweep)}, or the study's")
 @click.option("--set", "settings", multiple=True, metavar="METHOD.NAME=VALUE", help="A setting; may be repeated.")
 @click.option(
     "--at", "multipliers", type=float, multiple=True, help="Report the probability of failure at a multiplier."
@@ -99,7 +97,7 @@ def sweep_(what: str, dry_run: bool, scheduler: str | None, jobs: int, store: Pa
 def _study(what: str, rest: dict[str, Any]) -> tuple[Study, Path | None]:
     quick = {name: rest[name] for name in ("vary", "imperfection", "seeds") if rest[name]}
     file = study_file(what)
-    methods = [name.strip() for name in rest["methods"].split(",") if name.strip()] if rest["methods"] else None
+    methods = rest["methods"]
     settings = method_settings(rest["settings"])
     if file is not None and file.suffix == ".toml" and not quick:
         return changed(read_study(file), methods, settings, rest["multipliers"], rest["neighbours"]), file.parent

@@ -12,22 +12,19 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
-import numpy as np
-
 from harness.engine.pipeline import Told
 from harness.engine.regression import violations
 from harness.engine.run import Run
-from harness.model.assembly import Assembly
+from harness.model.bar_forces import BARS, bar_forces_of
 from harness.model.case import Case
 from harness.model.columns import PRINTED, ResultColumn, ResultRow
 from harness.model.comparison import CaseResults, ComparisonRun
 from harness.model.difference import Difference, Kind
 from harness.model.envelope import Envelope, by_wall, envelopes
-from harness.model.errors import InputError, first_few, visible
-from harness.model.fields import LARGEST
+from harness.model.errors import first_few, visible
 from harness.model.joint_margins import JOINTS, joint_rows
 from harness.model.live_load import direction_in_words
-from harness.model.method import Answer, Finding, Status
+from harness.model.method import Finding, Status
 from harness.model.proof import LABELS, Proof, Standing, least_known, proof_of
 from harness.model.result import Judgement, Result, Verdict, residual_of
 from harness.model.result_texts import PROVED, VERDICT_TEXTS, answer_text
@@ -215,6 +212,8 @@ def result_json(
     """
     listed = result.model_dump(mode="json") if fields else result.summary()
     listed |= {"proof": proof.as_json()}
+    if len(case.assembly.bars):
+        listed["bars"] = [values(BARS, bar) for bar in bar_forces_of(case, result)]
     listed["reactions"] = [values(REACTIONS, reaction) for reaction in reactions_of(case, result)]
     if joints:
         listed["joints"] = [values(JOINTS, row) for row in joint_rows(case, result)]
@@ -225,6 +224,18 @@ def print_joints(case: Case, result: Result) -> None:
     """The margins of the joints of a result as a table, the most critical first."""
     columns = in_units(JOINTS, case.wall.units.force, case.wall.units.length)
     print_rows([{column.head: column.text(row) for column in columns} for row in joint_rows(case, result)])
+
+
+def _bar_lines(case: Case, result: Result, most: int = 8) -> Iterator[tuple[str, str]]:
+    """One line a tie or prop, up to so many, for a person."""
+    unit = case.wall.units.force
+    listed = bar_forces_of(case, result)
+    for bar in listed[:most]:
+        way = "tension" if bar.tension >= 0.0 else "compression"
+        size = f"{abs(bar.tension):.6g}" + ("" if unit == "1" else f" {unit}")
+        yield bar.kind, f"{bar.bar}, from {bar.start} to {bar.end}: {way} {size}, {bar.state}"
+    if len(listed) > most:
+        yield "", f"and {len(listed) - most} more ties and props; --json has all"
 
 
 def _reaction_lines(case: Case, result: Result, most: int = 8) -> Iterator[tuple[str, str]]:
@@ -264,7 +275,7 @@ def print_result(result: Result, case: Case, proof: Proof) -> None:
         rows.append(("bracket", f"[{result.bracket[0]:.7g}, {result.bracket[1]:.7g}] {result.bracket_meaning}"))
     if proof.sentence:
         rows.append(("proof", proof.sentence))
-    rows += _reaction_lines(case, result)
+    rows += [*_bar_lines(case, result), *_reaction_lines(case, result)]
     rows += [("status", str(result.status)), ("judge", result.judge.sentence)]
     rows += [("", f"{name} {value:.2e}") for name, value in result.judge.residuals.items()]
     for comparison in result.comparisons:
@@ -355,66 +366,3 @@ def _cell(value: Any) -> str:
     if isinstance(value, dict):
         return ", ".join(f"{name}={item}" for name, item in value.items())
     return str(value)
-
-
-def _is_number(value: Any) -> bool:
-    return isinstance(value, int | float) and not isinstance(value, bool) and abs(value) <= LARGEST
-
-
-def foreign_answer(data: Any, assembly: Assembly, source: str) -> Answer:
-    """An answer from JSON data of any origin, as `drystone judge` takes it.
-
-    Raises:
-        InputError: a field that is missing or of the wrong shape.
-    """
-    if not isinstance(data, dict):
-        raise InputError("a result is a JSON object", 'Give "multiplier", "forces" and "mechanism"', source=source)
-
-    within = data.get("details")
-    details: dict[str, Any] = within if isinstance(within, dict) else {}
-
-    def table(name: str, rows: int, columns: str) -> np.ndarray | None:
-        listed = details.get(name) if data.get(name) is None else data[name]
-        if listed is None:
-            return None
-        if not (
-            isinstance(listed, list)
-            and len(listed) == rows
-            and all(isinstance(row, list) and len(row) == 3 and all(map(_is_number, row)) for row in listed)
-        ):
-            raise InputError(
-                f"it is not a list of {rows} triples of numbers up to {LARGEST:g}",
-                f"Give {columns} in the order of `drystone expand`",
-                name,
-                source,
-            )
-        return np.array(listed, dtype=float).reshape(rows, 3)
-
-    finding = data.get("finding", "collapses")
-    if not isinstance(finding, str) or finding not in list(Finding):
-        raise InputError(f"{finding!r} is no finding", f"One of: {', '.join(Finding)}", "finding", source)
-    multiplier = data.get("multiplier")
-    if not _is_number(multiplier) and (finding == Finding.COLLAPSES or multiplier is not None):
-        raise InputError("it is missing or no number", "Give the collapse multiplier", "multiplier", source)
-    flow = data.get("flow", "non-associated")
-    if not isinstance(flow, str) or flow not in ("non-associated", "associated", "approximate"):
-        raise InputError(f"{flow!r} is no flow rule", "non-associated, associated or approximate", "flow", source)
-    at = data.get("forces_multiplier")
-    if at is not None and not _is_number(at):
-        raise InputError("it is no number", "Give the multiplier the forces belong to", "forces_multiplier", source)
-    proofs = {
-        "live_forces": table("live_forces", assembly.n_interfaces, "n1, n2, s of every interface"),
-        "dead_forces": table("dead_forces", assembly.n_interfaces, "n1, n2, s of every interface"),
-        "dilatant_mechanism": table("dilatant_mechanism", assembly.n_blocks, "ux, uy, omega of every block"),
-    }
-    return Answer(
-        status=Status.OK,
-        finding=Finding(finding),
-        sentence="An answer from a file.",
-        multiplier=None if multiplier is None else float(multiplier),
-        forces=table("forces", assembly.n_interfaces, "n1, n2, s of every interface"),
-        forces_multiplier=None if at is None else float(at),
-        mechanism=table("mechanism", assembly.n_blocks, "ux, uy, omega of every block"),
-        flow=flow,
-        details={name: proof.tolist() for name, proof in proofs.items() if proof is not None},
-    )

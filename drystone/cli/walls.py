@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import Any
 
 import click
+from pydantic import BaseModel
 
 from drystone.analysis import judge as judge_answer
 from drystone.cli import terminal
@@ -16,6 +17,7 @@ from drystone.cli.options import (
     catching,
     json_flag,
     load_case_option,
+    methods_option,
     print_json,
     say,
     say_json,
@@ -30,9 +32,11 @@ from harness.engine.store import open_store
 from harness.formats.registry import FORMATS
 from harness.model.case import Case, case_folders, case_of_wall, read_case, shipped_cases
 from harness.model.errors import InputError
+from harness.model.foreign.description import Description
+from harness.model.foreign.result_document import ResultDocument, answer_from_file
 from harness.model.library import library
 from harness.model.load_cases import load_cases_of
-from harness.model.method import Finding, Status, load_method, method_names
+from harness.model.method import Finding, Status, listed_methods, load_method
 from harness.model.reading import read_json, read_wall, wall_json
 from harness.model.result import Result
 from harness.model.wall import Wall
@@ -47,7 +51,7 @@ from harness.model.writing import write_whole
 def list_(what: str, as_json: bool, folders: tuple[Path, ...]) -> None:
     """List the cases, the methods, the suites or the file formats there are."""
     if what == "methods":
-        rows = [_method_row(name) for name in method_names()]
+        rows = [_method_row(name) for name in listed_methods()]
     elif what == "formats":
         rows = [item.row() for item in FORMATS]
     else:
@@ -122,7 +126,7 @@ def judge(wall: Path, result: Path, tolerance: float, as_json: bool) -> None:
     described = wall_of_file(wall)
     for sentence in described.warnings:
         say(f"drystone: {sentence}", err=True)
-    answer = terminal.foreign_answer(read_json(result), described.assembly, str(result))
+    answer = answer_from_file(read_json(result), described.assembly, str(result))
     judgement = judge_answer(described, answer, tolerance)
     if as_json:
         print_json(
@@ -134,17 +138,17 @@ def judge(wall: Path, result: Path, tolerance: float, as_json: bool) -> None:
 
 
 @click.command()
+@click.argument("what", type=click.Choice(["wall", "result", "describe"]), default="wall")
 @catching
-def schema() -> None:
-    """Print the JSON Schema of the wall format."""
-    print_json(Wall.model_json_schema(by_alias=True))
+def schema(what: str) -> None:
+    """Print the JSON Schema of a format: wall/1, result/1 or describe/1."""
+    models: dict[str, type[BaseModel]] = {"wall": Wall, "result": ResultDocument, "describe": Description}
+    print_json(models[what].model_json_schema(by_alias=True))
 
 
 @click.command()
 @click.argument("case")
-@click.option(
-    "--method", "methods", multiple=True, default=(library().methods.one,), show_default=True, help="May be repeated."
-)
+@methods_option(library().methods.one)
 @click.option(
     "--kind", type=click.Choice(["mechanism", "forces", "thrust", "comparison"]), default="mechanism", show_default=True
 )
@@ -155,7 +159,7 @@ def schema() -> None:
 @catching
 def figure(
     case: str,
-    methods: tuple[str, ...],
+    methods: list[str] | None,
     kind: str,
     suffix: str,
     output: Path | None,
@@ -165,7 +169,7 @@ def figure(
     """Draw the answers of methods on CASE as a figure for a paper."""
     from reports.drawing.figures import figure as draw
 
-    found, results = _answers(case, methods, store, folders)
+    found, results = _answers(case, methods or [library().methods.one], store, folders)
     path = output or Path(f"{found.id}-{kind}.{suffix}")
     draw(found, results, kind, path)
     say(str(path))
@@ -182,13 +186,13 @@ def animate(case: str, method: str, output: Path | None, store: Path, folders: t
     """Animate the mechanism a method finds on CASE."""
     from reports.drawing.animate import animate as draw
 
-    found, results = _answers(case, (method,), store, folders)
+    found, results = _answers(case, [method], store, folders)
     path = output or Path(f"{found.id}.gif")
     draw(found, results[0], path)
     say(str(path))
 
 
-def _answers(case: str, methods: tuple[str, ...], store: Path, folders: tuple[Path, ...]) -> tuple[Case, list[Result]]:
+def _answers(case: str, methods: list[str], store: Path, folders: tuple[Path, ...]) -> tuple[Case, list[Result]]:
     check_methods(methods)
     (found,) = find_cases([case], None, folders)
     warn(found)

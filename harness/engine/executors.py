@@ -13,10 +13,11 @@ from typing import Protocol
 
 from harness.engine import preload
 from harness.engine.isolate import LOOK_SECONDS, Child, Retry, own_context, start_context
+from harness.engine.resource_use import cpu_seconds
 from harness.engine.run import TimedResult, measured_result
-from harness.engine.worker import Task, solved
+from harness.engine.worker import Task, loaded, solved
 from harness.model.answer_check import checked
-from harness.model.method import Method, allowing, check_takes, load_method, prepared
+from harness.model.method import Method, allowing, check_takes, prepared
 from harness.model.reading import validate
 
 RUNS_A_CHILD = 500
@@ -104,20 +105,21 @@ class InProcess:
 
     def _measured(self, job: Job) -> TimedResult:
         task = job.task
-        method = prepared(self._method or load_method(task.method))
+        method = prepared(self._method or loaded(task))
         settings = validate(method.Settings, task.settings, "settings")
         check_takes(method, task.assembly)
         own = replace(task, assembly=task.assembly.copied())  # what a method does to its wall is its own
-        begun, clock, work = datetime.now(UTC), time.perf_counter(), time.process_time()
+        begun, clock, work = datetime.now(UTC), time.perf_counter(), cpu_seconds(method.processes_kept())
         with allowing(task.processes):
             answer = checked(solved(method, own, settings), task.assembly)
         record = {
             "answer": answer,
-            "cpu_seconds": time.process_time() - work,
+            "cpu_seconds": cpu_seconds(method.processes_kept()) - work,
             "wall_seconds": time.perf_counter() - clock,
             "peak_memory_bytes": None,
             "settings": settings.model_dump(mode="json"),
             "family": method.family,
+            "version": method.version,
             "traits": method.traits.model_dump(),
             "tolerance": method.tolerance,
         }

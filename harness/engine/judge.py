@@ -8,7 +8,8 @@ collapses at lambda  forces in equilibrium with dead + lambda x live at the mult
 bracket              (flow "approximate") a live load; forces in equilibrium within yield at its lower end or above;
                      the upper end is measured and is not judged, but it lies no lower than what these forces bear;
                      nor is it shown that the motion is the one at collapse, but it must be one that the joints allow
-                     and the loads drive (`harness.engine.measured_motion`); without a bracket, not judged
+                     and the loads drive (`harness.engine.measured_motion`); without a bracket, or with one so wide that
+                     its lower end is zero beside the upper end within the tolerance, not judged
 at its limit         multiplier 0; forces in equilibrium within yield under the dead load, and a dilatant mechanism of a
                      multiplier that the numbers of the wall do not tell from zero (`harness.model.limit`): no forces
                      bear more, whatever the flow
@@ -19,6 +20,9 @@ falls                a dilatant mechanism, at rest on the supports, on which the
                      equilibrium exists (Farkas); a measured motion is no proof and is not judged
 unbounded            forces within the yield of dry joints that balance the live load alone, besides forces under the
                      dead load: their sum bears any multiplier
+
+A wall with ties or props comes with their tensions in the detail `bar_forces`; equilibrium, yield, flow and virtual
+work of all claims are those with them (`harness.engine.bar_checks`). A live load without end is borne by joints alone.
 
 A wall with strength of its joints may come with the answer for the same wall without, in the detail
 `without_strength`; it is judged on that wall by the same rules, and where it is rejected the whole answer is.
@@ -37,6 +41,7 @@ from typing import Any
 
 import numpy as np
 
+from harness.engine.bar_checks import dissipated_by_bars, tensions_beyond
 from harness.engine.measured_motion import motion_faults
 from harness.engine.residuals import (
     collapse_residuals,
@@ -48,11 +53,13 @@ from harness.engine.residuals import (
     moving_parts,
     power,
 )
+from harness.model.answer_check import checked
 from harness.model.assembly import Assembly, FloatArray
+from harness.model.bars import BAR_FORCES, DEAD_BAR_FORCES, Bars
 from harness.model.displaced import DisplacedState
 from harness.model.limit import accuracy, gross_power, least_told
 from harness.model.method import Finding, Method, Status, check_takes
-from harness.model.result import Judgement, Result, relative_velocities, residual_of, result_of
+from harness.model.result import Judgement, Result, bracket_is_wide, relative_velocities, residual_of, result_of
 
 
 def judge(assembly: Assembly, result: Result, tolerance: float) -> Judgement:
@@ -72,6 +79,8 @@ def judge(assembly: Assembly, result: Result, tolerance: float) -> Judgement:
     for name, value in numbers.items():
         if value is not None and not _countable(value):
             return _said(tolerance, False, f"Its {name}: not finite, or larger than {COUNTABLE:g}.")
+    if forces is not None and isinstance(fault := tensions_beyond(assembly, result.details), str):
+        return _said(tolerance, False, fault)
     if fault := _contradiction(assembly, result, tolerance):
         return _said(tolerance, False, fault)
     said = _judge_finding(assembly, forces, mechanism, result, tolerance)
@@ -161,7 +170,7 @@ def _with_motion(said: Judgement, residuals: dict[str, float], fault: str) -> Ju
 def answered(method: Method, assembly: Assembly, **settings: Any) -> tuple[Result, Judgement]:
     """What a method answers in this process, and what the judge says of it."""
     check_takes(method, assembly)
-    answer = method.solve(assembly.copied(), method.Settings.model_validate(settings))
+    answer = checked(method.solve(assembly.copied(), method.Settings.model_validate(settings)), assembly)
     result = result_of(
         answer, assembly, case=assembly.name, method=method.name, family=method.family, traits=method.traits
     )
@@ -197,18 +206,30 @@ MOVED_FAR = " Its blocks rest so far from where they were drawn that this shows 
 NO_FORCES = "It gives no contact forces, so it cannot be checked."
 
 
+def _beyond(assembly: Assembly, result: Result, name: str = BAR_FORCES) -> FloatArray | None:
+    """The tensions (k,) of bars beyond their prestress, None without bars; `judge` has refused what cannot be read."""
+    found = tensions_beyond(assembly, result.details, name)
+    return None if isinstance(found, str) else found
+
+
 def _judge_collapse(
     assembly: Assembly, forces: FloatArray | None, mechanism: FloatArray | None, result: Result, tolerance: float
 ) -> Judgement:
     """Collapse at the multiplier that is reported, by a whole collapse state."""
     multiplier = result.multiplier
-    if forces is None or multiplier is None:
-        return _said(tolerance, False, NO_FORCES if forces is None else "It gives no multiplier.")
+    if multiplier is None:
+        return _said(tolerance, False, "It gives no multiplier.")
+    if forces is None:
+        return _said(tolerance, None, NO_FORCES)
     at = multiplier if result.forces_multiplier is None else result.forces_multiplier
+    beyond = _beyond(assembly, result)
     if mechanism is None:
-        said = _said(tolerance, False, "It gives no mechanism, so the collapse state cannot be checked.")
-        return said.model_copy(update={"residuals": force_residuals(assembly, forces, at)})
-    residuals = collapse_residuals(assembly, forces, at, mechanism, result.flow)
+        found = force_residuals(assembly, forces, at, beyond=beyond)
+        said = _decide(found, tolerance, f"The contact forces at multiplier {at:.6g}")
+        said.accepted = None if said.accepted else said.accepted
+        said.sentence += " It gives no mechanism, so that it collapses there is not shown."
+        return said
+    residuals = collapse_residuals(assembly, forces, at, mechanism, result.flow, beyond)
     residuals["multiplier"] = apart(multiplier, at)
     said = _decide(residuals, tolerance, f"The collapse state ({result.flow} flow)")
     if said.accepted:
@@ -229,7 +250,7 @@ def _judge_bracket(assembly: Assembly, forces: FloatArray | None, result: Result
         return _said(tolerance, False, f"Its forces bear {at:.6g}, above the upper end of its bracket.")
     far = False
     if forces is not None:
-        residuals = force_residuals(assembly, forces, at)
+        residuals = force_residuals(assembly, forces, at, beyond=_beyond(assembly, result))
         what = f"Equilibrium and yield of the contact forces at multiplier {at:.6g}"
     else:
         moved = DisplacedState.of(result.details)
@@ -246,8 +267,16 @@ def _judge_bracket(assembly: Assembly, forces: FloatArray | None, result: Result
     elif said.accepted and result.bracket is None:
         said.accepted = None
         said.sentence += " It gives no bracket: how far above them the wall collapses was not measured."
-    elif said.accepted:
-        said.sentence += " They prove the lower end; the collapse above it is measured and not judged."
+    elif said.accepted and result.bracket is not None:
+        upper = result.bracket[1]
+        if bracket_is_wide(result, result.traits) and lower <= tolerance * upper:
+            said.accepted = None
+            said.sentence += (
+                f" The lower end of its bracket is zero beside the upper end {upper:.6g}, within the tolerance of the "
+                "judge: it states no multiplier."
+            )
+        else:
+            said.sentence += " They prove the lower end; the collapse above it is measured and not judged."
     return said
 
 
@@ -255,7 +284,7 @@ def _judge_standing(assembly: Assembly, forces: FloatArray | None, result: Resul
     """Stands under its dead load, where nothing more was asked."""
     what, far = "Equilibrium and yield of the contact forces under the dead load", False
     if forces is not None:
-        residuals = force_residuals(assembly, forces, 0.0)
+        residuals = force_residuals(assembly, forces, 0.0, beyond=_beyond(assembly, result))
     elif (moved := DisplacedState.of(result.details)) is not None:
         if fault := displaced_fault(assembly, moved):
             return _said(tolerance, False, f"The state of rest is no proof: {fault}.")
@@ -264,7 +293,7 @@ def _judge_standing(assembly: Assembly, forces: FloatArray | None, result: Resul
     elif assembly.n_free == 0:
         return _said(tolerance, True, "Every block is fixed: nothing can move.")
     else:
-        return _said(tolerance, False, NO_FORCES)
+        return _said(tolerance, None, NO_FORCES)
     said = _decide(residuals, tolerance, what)
     if said.accepted and far:
         said.accepted, said.sentence = None, said.sentence + MOVED_FAR
@@ -285,8 +314,8 @@ def _judge_unbounded(assembly: Assembly, forces: FloatArray | None, result: Resu
     ray = np.asarray(growth, dtype=float).reshape(-1, 3)
     if ray.shape != forces.shape or not _countable(ray):
         return _said(tolerance, False, f"`live_forces` are not {len(forces)} finite triples.")
-    residuals = force_residuals(assembly, forces, 0.0)
-    alone = replace(assembly, dead=np.zeros_like(assembly.dead), constant=np.zeros_like(assembly.constant))
+    residuals = force_residuals(assembly, forces, 0.0, beyond=_beyond(assembly, result))
+    alone = replace(assembly, dead=np.zeros_like(assembly.dead), constant=np.zeros_like(assembly.constant), bars=Bars())
     residuals |= {f"live_{name}": value for name, value in force_residuals(alone, ray, 1.0).items()}
     what = "Forces under the dead load and forces that balance the live load alone"
     return _decide(residuals, tolerance, what, dict.fromkeys(("live_equilibrium", "live_yield"), WITHOUT_END))
@@ -314,9 +343,12 @@ def _judge_limit(
     sizes = [(assembly.n_interfaces, 3), (assembly.n_blocks, 3)]
     if [forces.shape, mechanism.shape] != sizes or not (np.isfinite(forces).all() and np.isfinite(mechanism).all()):
         return _said(tolerance, False, "Its forces or its mechanism are not finite triples of all joints and blocks.")
+    stated = DEAD_BAR_FORCES if by_statics[0] is not None else BAR_FORCES
+    if isinstance(beyond := tensions_beyond(assembly, result.details, stated), str):
+        return _said(tolerance, False, beyond)
     within, told = accuracy(assembly), least_told(assembly, mechanism)
     what = "The collapse state (associated flow) under the dead load"
-    residuals = collapse_residuals(assembly, forces, 0.0, mechanism, "associated")
+    residuals = collapse_residuals(assembly, forces, 0.0, mechanism, "associated", beyond)
     if told > 0.0:
         residuals["virtual_work"] *= within * assembly.load_unit / told
     said = _decide(residuals, within, what)
@@ -324,7 +356,7 @@ def _judge_limit(
     if said.accepted or not 0.0 < abs(at) <= min(told, MOST_OPEN * within * assembly.load_unit):
         return said
     return _decide(
-        collapse_residuals(assembly, forces, at, mechanism, "associated"), within, f"{what}, but for {at:.1g}"
+        collapse_residuals(assembly, forces, at, mechanism, "associated", beyond), within, f"{what}, but for {at:.1g}"
     )
 
 
@@ -336,6 +368,7 @@ def _multiplier_of(assembly: Assembly, mechanism: FloatArray) -> float:
     live = power(assembly.live, mechanism)
     opening, slip = relative_velocities(assembly, mechanism)
     taken = dissipated_by_strength(assembly, opening - (assembly.friction * abs(slip))[:, None], slip)
+    taken += dissipated_by_bars(assembly, mechanism)
     return (taken - power(assembly.dead, mechanism)) / live if live > 0.0 else 0.0
 
 
@@ -353,7 +386,7 @@ def _judge_fall(assembly: Assembly, mechanism: FloatArray | None, result: Result
         told = "The motion was measured, which is no proof" if mechanism is not None else "It gives no mechanism"
         return _said(tolerance, None, f"{told}; there is no proof that no equilibrium exists.")
     supports, parts = moving_parts(assembly, mechanism)
-    shown_by = [_fall_of(part, motion, tolerance) for part, _, motion in parts]
+    shown_by = [_fall_of(part.assembly, motion, tolerance) for part, motion in parts]
     proves, gain, closing, work = max(shown_by, default=(False, 0.0, 0.0, 0.0))
     proved = proves and supports <= tolerance
     sentence = (
@@ -380,7 +413,8 @@ def _fall_of(part: Assembly, motion: FloatArray, tolerance: float) -> tuple[bool
     lift = (part.friction * abs(slip))[:, None]
     closings = np.maximum(0.0, lift - opening)
     closing = float(closings.max(initial=0.0))
-    gain = (power(part.dead, motion) - dissipated_by_strength(part, opening - lift, slip)) / part.force_scale
+    taken = dissipated_by_strength(part, opening - lift, slip) + dissipated_by_bars(part, motion)
+    gain = (power(part.dead, motion) - taken) / part.force_scale
     work = IMMENSE * float(closings.sum())
     beyond_rounding = gain * part.force_scale > GAIN * gross_power(part, motion)
     return closing <= tolerance and beyond_rounding and work < gain, gain, closing, work

@@ -107,7 +107,8 @@ def motion_residuals(
     lost = max(0.0, -power(loaded.dead, mechanism)) / gross if gross > 0.0 else 0.0
     residuals = {"motion_supports": supports, "motion_interpenetration": 0.0, "motion_against_loads": lost}
     scale = None if forces is None else between(assembly, Measures.of(assembly, forces, multiplier).acting)
-    for part, interfaces, motion in parts:
+    for component, motion in parts:
+        part, interfaces = component.assembly, component.interfaces
         opening, slip = relative_velocities(part, motion)
         found = {"motion_interpenetration": max(0.0, float((-opening).max(initial=0.0)))}
         if forces is not None and scale is not None:

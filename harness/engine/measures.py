@@ -18,6 +18,7 @@ from fractions import Fraction
 import numpy as np
 
 from harness.model.assembly import Assembly, FloatArray, IntArray
+from harness.model.bars import Bars
 from harness.model.components import components_of
 
 UNLOADED = 1e-6
@@ -58,13 +59,18 @@ class Measures:
     acting: FloatArray
 
     @classmethod
-    def of(cls, assembly: Assembly, forces: FloatArray, multiplier: float) -> Measures:
-        """Those of contact forces (m, 3) with dead + multiplier x live."""
+    def of(
+        cls, assembly: Assembly, forces: FloatArray, multiplier: float, beyond: FloatArray | None = None
+    ) -> Measures:
+        """Those of contact forces (m, 3), and of bars beyond their prestress (k,), with dead + multiplier x live."""
         own = magnitudes(assembly, assembly.dead) + magnitudes(assembly, multiplier * assembly.live)
         contact = np.zeros(assembly.n_blocks)
         size = abs(forces).sum(axis=1)
         np.add.at(contact, assembly.block_a, size)
         np.add.at(contact, assembly.block_b, size)
+        if beyond is not None:
+            np.add.at(contact, assembly.bars.block_a, abs(beyond))
+            np.add.at(contact, assembly.bars.block_b, abs(beyond))
         total = own + contact
         loads, acting = total.copy(), total.copy()
         for part in components_of(assembly):
@@ -95,22 +101,28 @@ def magnitudes(assembly: Assembly, load: FloatArray) -> FloatArray:
     return np.asarray(np.hypot(load[:, 0], load[:, 1]) + abs(load[:, 2]) / assembly.radius)
 
 
-def between(assembly: Assembly, scale: FloatArray) -> FloatArray:
-    """The smaller (m,) of a measure (n,) of the two blocks of every interface, of the free one where one is fixed."""
+def between(assembly: Assembly, scale: FloatArray, joined: Assembly | Bars | None = None) -> FloatArray:
+    """The smaller (m,) of a measure (n,) of the two blocks of every interface, of the free one where one is fixed.
+
+    Or of every bar (k,), where `joined` is the bars.
+    """
+    joined = joined or assembly
     movable = np.where(assembly.fixed, np.inf, scale)
-    smaller = np.minimum(movable[assembly.block_a], movable[assembly.block_b])
-    both = np.minimum(scale[assembly.block_a], scale[assembly.block_b])
+    smaller = np.minimum(movable[joined.block_a], movable[joined.block_b])
+    both = np.minimum(scale[joined.block_a], scale[joined.block_b])
     return np.where(np.isfinite(smaller), smaller, both)
 
 
-def exact_sum(assembly: Assembly, forces: FloatArray, multiplier: float, block: int) -> FloatArray:
+def exact_sum(
+    assembly: Assembly, forces: FloatArray, multiplier: float, block: int, beyond: FloatArray | None = None
+) -> FloatArray:
     """Load and contact forces (fx, fy, moment about the centroid) on a block, summed in fractions and rounded once.
 
     The two normal forces act at the contact points; the shear acts half at each, along the line that joins them.
 
     Args:
         assembly: the wall; forces: (m, 3) contact forces (n1, n2, s) [force]; multiplier: of the live load; block: its
-            index.
+            index; beyond: (k,) tensions of bars beyond their prestress [force].
     """
     total = [
         Fraction(dead) + Fraction(multiplier) * Fraction(live)
@@ -125,6 +137,14 @@ def exact_sum(assembly: Assembly, forces: FloatArray, multiplier: float, block: 
             x, y = (sign * (compression * n + shear / 2 * t) for n, t in zip(normal, tangent, strict=True))
             arm = [a - c for a, c in zip(_fractions(point), centre, strict=True)]
             total = [total[0] + x, total[1] + y, total[2] + arm[0] * y - arm[1] * x]
+    bars = assembly.bars
+    tensions = np.zeros(len(bars)) if beyond is None else beyond
+    for k in np.flatnonzero((bars.block_a == block) | (bars.block_b == block)):
+        starts = bars.block_a[k] == block
+        pull = Fraction(float(tensions[k])) * (1 if starts else -1)
+        x, y = (pull * part for part in _fractions(bars.axis[k]))
+        arm = [a - c for a, c in zip(_fractions((bars.end1 if starts else bars.end2)[k]), centre, strict=True)]
+        total = [total[0] + x, total[1] + y, total[2] + arm[0] * y - arm[1] * x]
     return np.array([float(value) for value in total])
 
 

@@ -12,7 +12,7 @@ from harness.engine.run import Limits, Run
 from harness.model.case import Case, case_folders, case_of_wall, id_of, read_case, shipped_cases
 from harness.model.errors import InputError, did_you_mean
 from harness.model.library import library
-from harness.model.method import Method, method_names
+from harness.model.method import Method, listed_methods, method_names
 from harness.model.reading import DRAWINGS
 
 
@@ -65,7 +65,7 @@ def gated_runs(case: Case, limits: Limits, tier: str) -> list[Run]:
 
 
 def check_methods(names: Sequence[str], element: str = "--methods") -> None:
-    """Refuse a method that is not installed; `element` is what named it.
+    """Refuse a method that there is not; `element` is what named it.
 
     Raises:
         InputError: naming it and those there are.
@@ -73,8 +73,39 @@ def check_methods(names: Sequence[str], element: str = "--methods") -> None:
     known = method_names()
     for name in names:
         if name not in known:
-            there = f"There are: {', '.join(known)}"
-            raise InputError(f'no method is called "{name}"', f"{did_you_mean(name, known)} {there}".strip(), element)
+            raise InputError(f'no method is called "{name}"', _methods_meant(name), element)
+
+
+def check_order(method: str, case: str) -> None:
+    """Refuse a method and a case that are given in the wrong order.
+
+    Raises:
+        InputError: that is so.
+    """
+    known = method_names()
+    if method not in known and case in known:
+        remedy = f"The method comes first: {case} {method}"
+        raise InputError(f'"{case}" is a method and "{method}" is not: their order is swapped', remedy, "method")
+
+
+def check_no_methods(words: Sequence[str], methods: Sequence[str] | None) -> None:
+    """Refuse words in the place of cases that are names of methods, as of a list without commas.
+
+    Raises:
+        InputError: one is a method, and there is no such file.
+    """
+    found = [word for word in words if word in method_names() and not Path(word).exists()]
+    if found:
+        asked = ",".join(dict.fromkeys([*(methods or ()), *found]))
+        raise InputError(
+            f'"{found[0]}" is a method and no case', f"Separate methods by commas: --methods {asked}", "cases"
+        )
+
+
+def _methods_meant(name: str) -> str:
+    """What may have been meant by a name that no method has."""
+    known = listed_methods()
+    return f"{did_you_mean(name, known)} There are: {', '.join(known)}".strip()
 
 
 def check_shares(method: Method, processes: int) -> None:

@@ -7,6 +7,7 @@ import os
 from collections.abc import Iterable
 
 from harness.model.errors import InputError
+from harness.model.foreign.register import program_named
 from harness.model.method import load_method, method_points, prepared
 
 VARIABLE = "DRYSTONE_PRELOAD"
@@ -23,10 +24,14 @@ def shipped(names: Iterable[str]) -> list[str]:
 
 
 def load(names: Iterable[str]) -> None:
-    """Load methods; one that cannot be loaded is left to the run that needs it, which can say so."""
+    """Load methods; one that cannot be loaded is left to the run that needs it, which can say so.
+
+    A program is started by the process that runs it.
+    """
     for name in names:
         with contextlib.suppress(InputError, KeyError):
-            prepared(load_method(name))
+            if program_named(name) is None:
+                prepared(load_method(name))
 
 
 if os.environ.get(VARIABLE):

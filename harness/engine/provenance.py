@@ -13,6 +13,7 @@ from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
 from typing import Any
 
+from harness.model.foreign.register import program_named
 from harness.model.method import method_points
 
 PACKAGES = (
@@ -80,10 +81,15 @@ def machine() -> dict[str, Any]:
 def code_version(method: str) -> str:
     """Hash over the sources a method's answer depends on: its own package and the model, and the packages beneath.
 
+    Of a program they are the files that its command names.
+
     Raises:
-        KeyError: no installed method has this name.
+        KeyError: no method has this name.
     """
     point = next((point for point in method_points() if point.name == method), None)
+    program = program_named(method)
+    if program is not None:
+        return sources_version("harness.model", others=[program.version])
     if point is None:
         raise KeyError(method)
     packages = sorted({point.module.split(".")[0], "harness.model"})

@@ -10,13 +10,21 @@ from __future__ import annotations
 
 import numpy as np
 
+from harness.engine.bar_checks import dissipated_by_bars
 from harness.engine.residuals import block_sums, dissipated_by_strength, force_residuals, power
 from harness.model.assembly import Assembly, FloatArray
 from harness.model.result import Judgement, fastest_vertex, relative_velocities
 
 
 def judge_reaction(
-    assembly: Assembly, reaction: float, forces: FloatArray, mechanism: FloatArray, *, greatest: bool, tolerance: float
+    assembly: Assembly,
+    reaction: float,
+    forces: FloatArray,
+    mechanism: FloatArray,
+    *,
+    greatest: bool,
+    tolerance: float,
+    tensions: FloatArray | None = None,
 ) -> Judgement:
     """Whether a reaction is the least or the greatest that there is.
 
@@ -26,7 +34,11 @@ def judge_reaction(
         forces: (m, 3) contact forces [force]; mechanism: (n, 3) motion of all blocks.
         greatest: whether it is claimed to be the greatest; then the supports of the mechanism move backwards.
         tolerance: the largest residual that is acceptable.
+        tensions: (k,) of the ties and props, prestress included [force]; None: they bear their prestress alone.
     """
+    bars = assembly.bars
+    tensions = bars.prestress if tensions is None else tensions
+    beyond_prestress = tensions - bars.prestress if len(bars) else None
     sense = -1.0 if greatest else 1.0
     supports = np.where(assembly.fixed[:, None], mechanism - sense * assembly.support_motion, 0.0)
     speed = fastest_vertex(assembly, assembly.support_motion) or 1.0
@@ -34,9 +46,12 @@ def judge_reaction(
     work = assembly.force_scale * speed
     opening, slip = relative_velocities(assembly, mechanism)
     beyond = opening - (assembly.friction * abs(slip))[:, None]
-    shown = power(block_sums(assembly, forces), assembly.support_motion)
-    bound = sense * (power(assembly.dead, mechanism) - dissipated_by_strength(assembly, beyond, slip))
-    residuals = force_residuals(assembly, forces, 0.0) | {
+    on_blocks = block_sums(assembly, forces) + bars.generalised(tensions, assembly.centroid)
+    shown = power(on_blocks, assembly.support_motion)
+    taken = dissipated_by_strength(assembly, beyond, slip) + dissipated_by_bars(assembly, mechanism)
+    on_supports = np.where(assembly.fixed[:, None], bars.generalised(bars.prestress, assembly.centroid), 0.0)
+    bound = sense * (power(assembly.dead + on_supports, mechanism) - taken)
+    residuals = force_residuals(assembly, forces, 0.0, beyond=beyond_prestress) | {
         "supports": fastest_vertex(assembly, supports) / speed,
         "interpenetration": max(0.0, float((-beyond).max(initial=0.0))) / fastest,
         "reaction": abs(shown - reaction) / max(work, abs(reaction)),

@@ -16,6 +16,8 @@ interpenetration    closing velocity at a contact point (beyond what the flow ru
 dilatancy           opening of a contact point that is not at its tensile strength: min(slack / smaller F, velocity)
 sliding             slip against slack of the shear strength, the same way
 complementarity     work of these slacks where nothing should move, in live work at max(unit, |multiplier|)
+bars                tension beyond the range of a bar, as yield; elongation of one below its greatest tension, or
+                    shortening of one above its least, as sliding
 virtual_work        |multiplier - (dissipation - dead work)/live work|, relative to max(unit, |multiplier|)
 multiplier          |multiplier - that of the forces| / the larger of the two
 live_work           not a residual to be small: live work of the mechanism of a component, must be positive
@@ -30,9 +32,10 @@ from __future__ import annotations
 
 import numpy as np
 
+from harness.engine.bar_checks import bars_at_work, dissipated_by_bars, outside_range
 from harness.engine.measures import Measures, between, exact_sum, magnitudes
-from harness.model.assembly import Assembly, FloatArray, IntArray
-from harness.model.components import components_of
+from harness.model.assembly import Assembly, FloatArray
+from harness.model.components import Component, components_of
 from harness.model.displaced import DisplacedState
 from harness.model.result import fastest_vertex, relative_velocities
 
@@ -73,18 +76,25 @@ def block_sums(assembly: Assembly, forces: FloatArray) -> FloatArray:
 
 
 def force_residuals(
-    assembly: Assembly, forces: FloatArray, multiplier: float, measures: Measures | None = None
+    assembly: Assembly,
+    forces: FloatArray,
+    multiplier: float,
+    measures: Measures | None = None,
+    beyond: FloatArray | None = None,
 ) -> dict[str, float]:
     """Equilibrium and yield of contact forces (m, 3) with dead + multiplier x live.
 
     Args:
         assembly: the wall; forces: (m, 3) contact forces (n1, n2, s) [force]; multiplier: of the live load.
         measures: what acts on every block, where it is known already.
+        beyond: (k,) tensions of the bars beyond their prestress, which is in the dead load [force]; None: none.
     """
-    measures = Measures.of(assembly, forces, multiplier) if measures is None else measures
+    measures = Measures.of(assembly, forces, multiplier, beyond) if measures is None else measures
     balance = block_sums(assembly, forces) + assembly.dead + multiplier * assembly.live
+    if beyond is not None:
+        balance += assembly.bars.generalised(beyond, assembly.centroid)
     for block in measures.immense(assembly):
-        balance[block] = exact_sum(assembly, forces, multiplier, block)
+        balance[block] = exact_sum(assembly, forces, multiplier, block, beyond)
     balance[:, 2] /= assembly.radius
     unbalanced = measures.relative(abs(balance).max(axis=1), measures.acting, measures.own)
     normal, shear = forces[:, :2], forces[:, 2]
@@ -92,10 +102,16 @@ def force_residuals(
     excess = np.maximum(-shear - cohesion[:, 0], shear - cohesion[:, 1]) - assembly.friction * normal.sum(axis=1)
     broken = np.maximum(0.0, np.maximum((-normal - tension).max(axis=1), excess))
     violation = measures.relative(broken, between(assembly, measures.acting), between(assembly, measures.own))
-    return {
+    found = {
         "equilibrium": float(unbalanced[assembly.free].max(initial=0.0)),
         "yield": float(violation.max(initial=0.0)),
     }
+    if beyond is not None:
+        bars = assembly.bars
+        outside = outside_range(bars, beyond)
+        acting, own = (between(assembly, part, bars) for part in (measures.acting, measures.own))
+        found["bars"] = float(measures.relative(outside, acting, own).max(initial=0.0))
+    return found
 
 
 def own_strength(assembly: Assembly) -> tuple[FloatArray, FloatArray]:
@@ -210,10 +226,10 @@ def power(load: FloatArray, mechanism: FloatArray) -> float:
 
 def moving_parts(
     assembly: Assembly, mechanism: FloatArray, at_rest: float = AT_REST
-) -> tuple[float, list[tuple[Assembly, IntArray, FloatArray]]]:
+) -> tuple[float, list[tuple[Component, FloatArray]]]:
     """The speed of the supports beside the fastest vertex, and the components that move.
 
-    A component comes with the indices of its interfaces and its motion, whose fastest vertex has speed 1.
+    A component comes with its motion, whose fastest vertex has speed 1.
 
     Args:
         assembly: the wall; mechanism: (n, 3) block velocities at any scale.
@@ -230,14 +246,17 @@ def moving_parts(
     speeds = [fastest_vertex(part.assembly, own) for part, own in parts]
     fastest = max(speeds, default=0.0)
     return supports, [
-        (part.assembly, part.interfaces, own / speed)
-        for (part, own), speed in zip(parts, speeds, strict=True)
-        if speed > at_rest * fastest
+        (part, own / speed) for (part, own), speed in zip(parts, speeds, strict=True) if speed > at_rest * fastest
     ]
 
 
 def collapse_residuals(
-    assembly: Assembly, forces: FloatArray, multiplier: float, mechanism: FloatArray, flow: str
+    assembly: Assembly,
+    forces: FloatArray,
+    multiplier: float,
+    mechanism: FloatArray,
+    flow: str,
+    beyond: FloatArray | None = None,
 ) -> dict[str, float]:
     """The residuals of a collapse state, by the names of this module's docstring.
 
@@ -247,14 +266,20 @@ def collapse_residuals(
         multiplier: of the live load.
         mechanism: (n, 3) block velocities at any scale.
         flow: "non-associated" (of the dilatancy that the wall gives its joints) or "associated" (of their friction).
+        beyond: (k,) tensions of the bars beyond their prestress [force]; None: there are none.
     """
     supports, parts = moving_parts(assembly, mechanism)
-    measures = Measures.of(assembly, forces, multiplier)
+    measures = Measures.of(assembly, forces, multiplier, beyond)
     scale = between(assembly, measures.acting)
-    residuals = force_residuals(assembly, forces, multiplier, measures) | {"supports": supports}
+    residuals = force_residuals(assembly, forces, multiplier, measures, beyond) | {"supports": supports}
     works: list[float] = []
-    for part, interfaces, motion in parts:
-        own = _mechanism_residuals(part, forces[interfaces], scale[interfaces], multiplier, motion, flow)
+    for part, motion in parts:
+        joints = part.interfaces
+        tensions = np.zeros(len(part.bars)) if beyond is None else beyond[part.bars]
+        acting = between(assembly, measures.acting, assembly.bars)[part.bars]
+        own = _mechanism_residuals(
+            part.assembly, forces[joints], scale[joints], multiplier, motion, flow, (tensions, acting)
+        )
         works.append(own.pop("live_work"))
         for name, value in own.items():
             residuals[name] = max(residuals.get(name, 0.0), value)
@@ -270,9 +295,18 @@ def _largest_working(assembly: Assembly, mechanism: FloatArray) -> float:
 
 
 def _mechanism_residuals(
-    assembly: Assembly, forces: FloatArray, scale: FloatArray, multiplier: float, mechanism: FloatArray, flow: str
+    assembly: Assembly,
+    forces: FloatArray,
+    scale: FloatArray,
+    multiplier: float,
+    mechanism: FloatArray,
+    flow: str,
+    bars: tuple[FloatArray, FloatArray],
 ) -> dict[str, float]:
-    """Residuals of the mechanism of one component, of fastest vertex 1; `scale` (m,) is what acts at its interfaces."""
+    """Residuals of the mechanism of one component, of fastest vertex 1; `scale` (m,) is what acts at its interfaces.
+
+    `bars` are the tensions (k,) beyond their prestress, and what acts at them (k,).
+    """
     live_work = power(assembly.live, mechanism)
     largest = _largest_working(assembly, mechanism)
     if 0.0 < live_work < AT_REST * largest:
@@ -292,9 +326,11 @@ def _mechanism_residuals(
     idle_work = float(
         abs(slack_normal * opening).sum() + abs(slack_forward * forward).sum() + abs(slack_backward * backward).sum()
     )
+    bars_at_fault, idle_in_bars = bars_at_work(assembly, *bars, mechanism)
+    idle_work += idle_in_bars
     # Virtual work: contact forces do work r.q on the mechanism; friction dissipates what lifting does not give back.
     dissipation = float((strength * abs(slip) - normal.sum(axis=1) * lift).sum())
-    dissipation += dissipated_by_strength(assembly, opening, slip)
+    dissipation += dissipated_by_strength(assembly, opening, slip) + dissipated_by_bars(assembly, mechanism)
     residuals = {
         "interpenetration": max(0.0, float((-opening).max(initial=0.0))),
         "dilatancy": float(np.minimum(abs(slack_normal) / scale[:, None], np.maximum(opening, 0.0)).max(initial=0.0)),
@@ -306,6 +342,8 @@ def _mechanism_residuals(
         ),
         "live_work": live_work / (assembly.force_scale or 1.0),
     }
+    if len(assembly.bars):
+        residuals["bars"] = bars_at_fault
     if live_work > 0.0:
         by_virtual_work = (dissipation - power(assembly.dead, mechanism)) / live_work
         speed = np.hypot(*mechanism[:, :2].T) + abs(mechanism[:, 2]) * assembly.radius

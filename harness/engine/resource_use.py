@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import contextlib
+import resource
+from collections.abc import Iterable
 
 import psutil
 
@@ -18,3 +20,10 @@ def resource_use(pid: int, *, with_children: bool = False) -> tuple[int, float] 
                 times = member.cpu_times()
                 cpu += times.user + times.system
     return (memory, cpu) if memory else None
+
+
+def cpu_seconds(kept: Iterable[int] = ()) -> float:
+    """CPU time of this process, of those it started that have ended, and of some that it keeps [s]."""
+    own = (resource.getrusage(resource.RUSAGE_SELF), resource.getrusage(resource.RUSAGE_CHILDREN))
+    used = [resource_use(pid) for pid in kept]
+    return sum(usage.ru_utime + usage.ru_stime for usage in own) + sum(found[1] for found in used if found)

@@ -16,6 +16,7 @@ from harness.engine.provenance import code_version, machine, versions
 from harness.engine.worker import Task
 from harness.model.assembly import Assembly, FloatArray
 from harness.model.case import Reference
+from harness.model.foreign.register import program_named
 from harness.model.method import Traits
 from harness.model.result import Result, result_of
 
@@ -112,7 +113,8 @@ class Run:
         """What the process that makes it is given."""
         seconds, memory = (math.inf, 0) if self.limits is None else (self.limits.seconds, self.limits.memory_bytes)
         motions = tuple(motion.joints for motion in self.given)
-        return Task(self.method, assembly, dict(self.settings), seconds, memory, motions, self.processes)
+        program = program_named(self.method)
+        return Task(self.method, assembly, dict(self.settings), seconds, memory, motions, self.processes, program)
 
 
 @dataclass(frozen=True)
@@ -149,7 +151,7 @@ def measured_result(
         "peak_memory_bytes": record["peak_memory_bytes"],
         "settings": record.get("settings") or task.settings,
         "limits": dict(limits),
-        "versions": versions(),
+        "versions": versions() | ({task.method: version} if (version := record.get("version")) else {}),
         "machine": machine(),
         "started": begun,
     }

@@ -36,6 +36,7 @@ def _mapped(assembly: Assembly, matrix: FloatArray, shift: FloatArray, length: f
         dead=load(assembly.dead),
         live=load(assembly.live),
         support_motion=motion(assembly.support_motion),
+        bars=replace(assembly.bars, end1=place(assembly.bars.end1), end2=place(assembly.bars.end2)),
     )
 
 
@@ -68,7 +69,9 @@ def scaled(assembly: Assembly) -> Assembly:
 def heavier(assembly: Assembly) -> Assembly:
     """All loads and strengths 250 times as great."""
     forces = ("weight", "dead", "live", "constant")
-    return replace(assembly, **{name: 250.0 * getattr(assembly, name) for name in forces})
+    of_bars = ("prestress", "least", "greatest")
+    bars = replace(assembly.bars, **{name: 250.0 * getattr(assembly.bars, name) for name in of_bars})
+    return replace(assembly, bars=bars, **{name: 250.0 * getattr(assembly, name) for name in forces})
 
 
 def renumbered(assembly: Assembly, seed: int = 1) -> Assembly:
@@ -100,6 +103,7 @@ def renumbered(assembly: Assembly, seed: int = 1) -> Assembly:
         dilatancy=assembly.dilatancy[joints],
         constant=np.where(swap[:, None], assembly.constant[joints][:, [0, 1, 3, 2]], assembly.constant[joints]),
         joint=tuple(assembly.joint[k] for k in joints),
+        bars=assembly.bars.chosen(rng.permutation(len(assembly.bars)), place),
     )
 
 

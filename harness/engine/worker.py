@@ -19,7 +19,7 @@ import sys
 import threading
 import time
 import traceback
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from multiprocessing import connection
 from pathlib import Path
@@ -27,9 +27,12 @@ from typing import Any
 
 import numpy as np
 
+from harness.engine.resource_use import cpu_seconds
 from harness.model.answer_check import MISSING_PACKAGE, AnswerFault, checked, encodable
 from harness.model.assembly import Assembly, FloatArray
 from harness.model.errors import InputError, MissingPackage, visible
+from harness.model.foreign.program_method import method_of
+from harness.model.foreign.register import Program
 from harness.model.method import (
     Answer,
     Finding,
@@ -44,6 +47,7 @@ from harness.model.method import (
     prepared,
 )
 from harness.model.reading import validate
+from harness.model.run_context import running_in
 
 LAST_WORDS = (0.05, 5.0)
 """Share of the time limit, and at most so many seconds, that are left to a method to say how far it came."""
@@ -62,6 +66,7 @@ class Task:
         motions: (m, 3) motions of the joints in mechanisms that the method shall take up (`Method.solve_from`) in place
             of a search of its own; none: it answers by itself.
         processes: that the run may use side by side.
+        program: that the method is; None: it is installed.
     """
 
     method: str
@@ -71,6 +76,7 @@ class Task:
     memory_bytes: int
     motions: tuple[FloatArray, ...] = ()
     processes: int = 1
+    program: Program | None = None
 
 
 LOADED, REPLACE = b"loaded", b"replace"
@@ -102,7 +108,8 @@ def serve(engine: connection.Connection, folder: str) -> None:
                 _send(engine, REPLACE)
                 continue
             _send(engine, LOADED)
-            record = _record(task, method, failure)
+            with running_in(folder):
+                record = _record(task, method, failure)
             record["reusable"] = _cleared(Path(folder)) and record["reusable"]
             _send(engine, json.dumps(record, allow_nan=False, default=np.ndarray.tolist).encode())
             used = True
@@ -116,11 +123,20 @@ def serve(engine: connection.Connection, folder: str) -> None:
 def _load(task: Task) -> tuple[Method | None, Answer | None]:
     """The method of a task, or the answer that tells why there is none."""
     try:
-        return prepared(load_method(task.method)), None
+        return prepared(loaded(task)), None
     except (InputError, KeyError) as error:
         answer = _failure(Status.REFUSED, f"{error}.")
         answer.details = {MISSING_PACKAGE: True} if isinstance(error.__cause__, MissingPackage) else {}
         return None, answer
+
+
+def loaded(task: Task) -> Method:
+    """The method of a task, in whatever folder its process is.
+
+    Raises:
+        KeyError, InputError: as of `load_method`.
+    """
+    return load_method(task.method) if task.program is None else method_of(task.program)
 
 
 def _send(engine: connection.Connection, line: bytes) -> None:
@@ -134,11 +150,12 @@ def _record(task: Task, method: Method | None, failure: Answer | None) -> dict[s
     """Make one run under its limits: answer, settings in full, cost of this run alone."""
     _limit_address_space(task.memory_bytes)
     _limit(resource.RLIMIT_FSIZE, task.memory_bytes)  # what it writes is limited as what it holds
-    _forget_peak_memory()
+    kept = [] if method is None else method.processes_kept()
+    most_before = _forget_peak_memory(kept)
     settings: dict[str, Any] = {}
-    about = {"family": "", "traits": Traits().model_dump(), "tolerance": 0.0}
+    about = {"family": "", "traits": Traits().model_dump(), "tolerance": 0.0, "version": ""}
     threads, errors = threading.active_count(), np.geterr()
-    started, before = time.perf_counter(), _cpu_seconds()
+    started, before = time.perf_counter(), cpu_seconds(kept)
     try:
         if method is None:
             answer = failure or _failure(Status.CRASHED, "There is no method.")
@@ -147,7 +164,7 @@ def _record(task: Task, method: Method | None, failure: Answer | None) -> dict[s
             settings = chosen.model_dump(mode="json")
             about = _about(method)
             check_takes(method, task.assembly)
-            started, before = time.perf_counter(), _cpu_seconds()
+            started, before = time.perf_counter(), cpu_seconds(kept)
             with allowing(task.processes), _warned_of_the_limit(task.seconds, started):
                 answer = solved(method, task, chosen)
             answer = checked(answer, task.assembly)
@@ -166,7 +183,8 @@ def _record(task: Task, method: Method | None, failure: Answer | None) -> dict[s
         answer = _failure(
             Status.CRASHED, f"The method raised {type(error).__name__}: {visible(str(error))[:MOST_SAID]}"
         )
-    cpu, wall = _cpu_seconds() - before, time.perf_counter() - started
+    kept = [] if method is None else method.processes_kept()
+    cpu, wall = cpu_seconds(kept) - before, time.perf_counter() - started
     np.seterr(**errors)
     _limit_address_space(None)
     _limit(resource.RLIMIT_FSIZE, None)
@@ -176,8 +194,8 @@ def _record(task: Task, method: Method | None, failure: Answer | None) -> dict[s
         "settings": settings,
         "cpu_seconds": cpu,
         "wall_seconds": wall,
-        "peak_memory_bytes": _peak_memory(),
-        "reusable": not _has_children() and threading.active_count() <= threads,
+        "peak_memory_bytes": _peak_memory(kept, most_before),
+        "reusable": not _has_children(kept) and threading.active_count() <= threads,
     }
 
 
@@ -194,7 +212,8 @@ def _about(method: Method) -> dict[str, Any]:
         raise AnswerFault(f"The method's tolerance is {tolerance!r}, which is no finite positive number")
     if not isinstance(family, str):
         raise AnswerFault(f"The method's family is {type(family).__name__} instead of text")
-    return {"family": encodable(family, "family"), "traits": traits.model_dump(), "tolerance": float(tolerance)}
+    said = {"family": encodable(family, "family"), "version": encodable(method.version, "version")}
+    return said | {"traits": traits.model_dump(), "tolerance": float(tolerance)}
 
 
 def solved(method: Method, task: Task, settings: Settings) -> Answer:
@@ -228,30 +247,46 @@ def _cleared(folder: Path) -> bool:
     return True
 
 
-def _has_children() -> bool:
-    """Whether processes are left that a run has started; such a worker makes no further run."""
+def _has_children(kept: Sequence[int]) -> bool:
+    """Whether processes are left that a run has started, but those kept; such a worker makes no further run."""
     try:
         tasks = Path("/proc/self/task").iterdir()
-        return any((task / "children").read_text(encoding="ascii").strip() for task in tasks)
+        found = {int(pid) for task in tasks for pid in (task / "children").read_text(encoding="ascii").split()}
     except OSError:
         return False
+    return not found <= set(kept)
 
 
-def _forget_peak_memory() -> None:
-    """Let the system count the peak of resident memory anew (Linux; elsewhere it is that of the process so far)."""
-    with contextlib.suppress(OSError):
-        Path("/proc/self/clear_refs").write_text("5", encoding="ascii")
+def _forget_peak_memory(kept: Sequence[int]) -> int:
+    """Let the system count the peak of resident memory anew (Linux; elsewhere it is that of the process so far).
+
+    Returns:
+        the peak of processes that were started here and have ended [bytes].
+    """
+    for pid in ("self", *kept):
+        with contextlib.suppress(OSError):
+            Path(f"/proc/{pid}/clear_refs").write_text("5", encoding="ascii")
+    return _memory_of_ended()
 
 
-def _peak_memory() -> int:
-    """Peak of resident memory of this run [bytes]."""
+def _peak_memory(kept: Sequence[int], ended_before: int) -> int:
+    """Peak of resident memory of this run [bytes]: of this process, one that it keeps, or one that ended in the run."""
+    ended = _memory_of_ended()
+    return max(_peak_of("self"), *map(_peak_of, kept), ended if ended > ended_before else 0)
+
+
+def _peak_of(pid: int | str) -> int:
     try:
-        for line in Path("/proc/self/status").read_text(encoding="ascii", errors="replace").splitlines():
+        for line in Path(f"/proc/{pid}/status").read_text(encoding="ascii", errors="replace").splitlines():
             if line.startswith("VmHWM:"):
                 return int(line.split()[1]) * 1024
     except OSError:
         pass
-    return resource.getrusage(resource.RUSAGE_SELF).ru_maxrss * 1024
+    return resource.getrusage(resource.RUSAGE_SELF).ru_maxrss * 1024 if pid == "self" else 0
+
+
+def _memory_of_ended() -> int:
+    return resource.getrusage(resource.RUSAGE_CHILDREN).ru_maxrss * 1024
 
 
 @contextlib.contextmanager
@@ -269,13 +304,6 @@ def _warned_of_the_limit(seconds: float, begun: float) -> Iterator[None]:
         yield
     finally:
         signal.setitimer(signal.ITIMER_REAL, 0.0)
-
-
-def _cpu_seconds() -> float:
-    return sum(
-        usage.ru_utime + usage.ru_stime
-        for usage in (resource.getrusage(resource.RUSAGE_SELF), resource.getrusage(resource.RUSAGE_CHILDREN))
-    )
 
 
 def _die_with_engine() -> None:

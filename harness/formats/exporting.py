@@ -11,6 +11,7 @@ from typing import Any
 import numpy as np
 
 from harness.formats.paraview import moved
+from harness.model.bars import bar_tensions, with_bars_as_joints
 from harness.model.build import Built
 from harness.model.result import Result, vertex_velocities
 from harness.model.rings import rings_of
@@ -18,7 +19,7 @@ from harness.model.writing import cell, replacing, write_whole
 
 
 def write_dxf(built: Built, result: Result | None, path: Path) -> None:
-    """Layers BLOCKS, SUPPORTS, JOINTS and, with a mechanism, MECHANISM; the unit of length is declared."""
+    """Layers BLOCKS, SUPPORTS, JOINTS, TIES, PROPS and, with a mechanism, MECHANISM; the unit of length is declared."""
     import ezdxf
 
     assembly = built.assembly
@@ -26,7 +27,9 @@ def write_dxf(built: Built, result: Result | None, path: Path) -> None:
 
     document = ezdxf.new("R2010")  # type: ignore[attr-defined]
     document.header["$INSUNITS"] = UNITS.get(built.wall.units.length, 0)
-    for name, colour in (("BLOCKS", 7), ("SUPPORTS", 8), ("JOINTS", 5), ("MECHANISM", 1)):
+    layers = [("BLOCKS", 7), ("SUPPORTS", 8), ("JOINTS", 5), ("MECHANISM", 1)]
+    layers += [(name, 6) for name in sorted({_layer_of_bars(kind) for kind in assembly.bars.kinds})]
+    for name, colour in layers:
         document.layers.add(name, color=colour)
     space = document.modelspace()
     for polygon, fixed in zip(assembly.polygons, assembly.fixed, strict=True):
@@ -41,11 +44,17 @@ def write_dxf(built: Built, result: Result | None, path: Path) -> None:
             hatch.paths.add_polyline_path(hole, is_closed=True, flags=0)
     for start, end in zip(assembly.face1, assembly.face2, strict=True):
         space.add_line(start.tolist(), end.tolist(), dxfattribs={"layer": "JOINTS"})
+    for kind, start, end in zip(assembly.bars.kinds, assembly.bars.end1, assembly.bars.end2, strict=True):
+        space.add_line(start.tolist(), end.tolist(), dxfattribs={"layer": _layer_of_bars(kind)})
     if result is not None and result.mechanism is not None:
         for polygon in moved(assembly, result):
             space.add_lwpolyline(polygon.tolist(), close=True, dxfattribs={"layer": "MECHANISM"})
     with replacing(path) as draft:
         document.saveas(draft)
+
+
+def _layer_of_bars(kind: str) -> str:
+    return f"{kind.upper()}S"
 
 
 def write_svg(built: Built, result: Result | None, path: Path) -> None:
@@ -57,7 +66,8 @@ def write_svg(built: Built, result: Result | None, path: Path) -> None:
     }
     if result is not None and result.mechanism is not None:
         layers["mechanism"] = moved(assembly, result)
-    everything = np.concatenate([polygon for polygons in layers.values() for polygon in polygons])
+    outlines = [polygon for polygons in layers.values() for polygon in polygons]
+    everything = np.concatenate([*outlines, assembly.bars.end1, assembly.bars.end2])
     low, high = everything.min(axis=0), everything.max(axis=0)
     line = 0.02 * assembly.length_scale
     looks = {"blocks": ("#eae6df", "#14202b"), "supports": ("#8a96a1", "#14202b"), "mechanism": ("none", "#a63c06")}
@@ -80,13 +90,22 @@ def write_svg(built: Built, result: Result | None, path: Path) -> None:
             for p in polygons
         ]
         parts.append("</g>")
+    if len(assembly.bars):
+        lines = zip(assembly.bars.end1.tolist(), assembly.bars.end2.tolist(), strict=True)
+        parts.append(
+            f'<g inkscape:groupmode="layer" inkscape:label="ties and props" fill="none" stroke="#6d2077" '
+            f'stroke-width="{2.0 * line:.3g}">'
+        )
+        parts += [f'<path d="M{a:.17g},{0.0 - b:.17g} {c:.17g},{0.0 - d:.17g}"/>' for (a, b), (c, d) in lines]
+        parts.append("</g>")
     write_whole(path, "\n".join([*parts, "</svg>"]) + "\n")
 
 
 def write_geojson(built: Built, result: Result | None, path: Path) -> None:
     """A feature a block (id, material, fixed, weight, motion) and one a joint (blocks, friction, forces, state).
 
-    Joints with strength have the tension and the cohesion that they bear besides friction too [force].
+    Joints with strength have the tension and the cohesion that they bear besides friction too [force]. Ties and props
+    are features of their own, with the range of their tension and, of an answer, the tension.
     """
     assembly = built.assembly
     features: list[dict[str, Any]] = []
@@ -115,6 +134,19 @@ def write_geojson(built: Built, result: Result | None, path: Path) -> None:
         if result is not None and result.states is not None:
             joint["state"] = result.states[number]
         features.append(_feature({"type": "LineString", "coordinates": ends}, joint))
+    bars = assembly.bars
+    tension = bar_tensions(assembly, result)
+    for k, (name, kind) in enumerate(zip(bars.names, bars.kinds, strict=True)):
+        properties = {
+            kind: name,
+            "between": [assembly.block_ids[bars.block_a[k]], assembly.block_ids[bars.block_b[k]]],
+            "least": float(bars.prestress[k] + bars.least[k]),
+            "greatest": float(bars.prestress[k] + bars.greatest[k]),
+        }
+        if tension is not None:
+            properties["tension"] = float(tension[k])
+        ends = [bars.end1[k].tolist(), bars.end2[k].tolist()]
+        features.append(_feature({"type": "LineString", "coordinates": ends}, properties))
     data = {"type": "FeatureCollection", "features": features}
     write_whole(path, json.dumps(data, ensure_ascii=False, allow_nan=False) + "\n")
 
@@ -173,7 +205,9 @@ def matrices(built: Built, result: Result | None) -> dict[str, Any]:
 
     Rows of C are (opening 1, opening 2, slip) of every joint, columns (ux, uy, omega) of every free block, so that
     C^T (n1, n2, s) + dead + multiplier x live = 0, with compression positive and |s| <= friction (n1 + n2).
-    Where joints have strength, `constant` holds what is added to n1, n2 and to both limits of s.
+    Where joints have strength, `constant` holds what is added to n1, n2 and to both limits of s. Rows of `B` are the
+    elongations of ties and props: their tensions beyond the prestress, which is in `dead`, add -B^T T, and lie between
+    `bar_least` and `bar_greatest`.
     """
     assembly = built.assembly
     dead, live = assembly.free_loads()
@@ -194,6 +228,12 @@ def matrices(built: Built, result: Result | None) -> dict[str, Any]:
     }
     if assembly.strong:
         arrays["constant"] = assembly.constant
+    if len(assembly.bars):
+        arrays["B"] = with_bars_as_joints(assembly).kinematic_matrix[3 * assembly.n_interfaces + 2 :: 3].toarray()
+        arrays["bar_least"], arrays["bar_greatest"] = assembly.bars.least, assembly.bars.greatest
+        arrays["bar_prestress"] = assembly.bars.prestress
+        if (tension := bar_tensions(assembly, result)) is not None:
+            arrays["bar_tension"] = tension
     if result is not None and result.multiplier is not None:
         arrays["multiplier"] = np.array(result.multiplier)
     if result is not None and result.forces is not None:

@@ -11,6 +11,7 @@ from xml.sax.saxutils import quoteattr
 import numpy as np
 
 from harness.model.assembly import Assembly, FloatArray, IntArray
+from harness.model.bars import bar_tensions
 from harness.model.build import Built
 from harness.model.displaced import carried, released
 from harness.model.joint_margins import joint_margins
@@ -93,7 +94,9 @@ def _mesh(built: Built, result: Result | None, frame: Frame) -> Any:
     import meshio
 
     assembly = built.assembly
+    bars, m = assembly.bars, assembly.n_interfaces
     polygons, joints = assembly.polygons, np.stack([assembly.face1, assembly.face2], axis=1)
+    joints = np.concatenate([joints, np.stack([bars.end1, bars.end2], axis=1)])
     starts = np.cumsum([0, *(len(polygon) for polygon in polygons)])
     points = np.concatenate([*polygons, joints.reshape(-1, 2)])
     velocity = np.concatenate([*velocities(assembly, result), np.zeros((2 * len(joints), 2))])
@@ -118,9 +121,18 @@ def _mesh(built: Built, result: Result | None, frame: Frame) -> Any:
         "multiplier": (np.full(len(order), frame.multiplier), np.full(len(joints), frame.multiplier)),
         "friction": (np.zeros(len(order)), assembly.friction),
     }
+    for name, (of_blocks, of_joints) in fields.items():  # what joints alone have is zero at ties and props
+        missing = len(joints) - len(of_joints)
+        fields[name] = of_blocks, np.concatenate([of_joints, np.zeros(missing, np.asarray(of_joints).dtype)])
+    if len(bars):
+        tension = bar_tensions(assembly, result)
+        of_bars = np.full(len(bars), np.nan) if tension is None else tension
+        fields["is_joint"][1][m:] = 0
+        fields["tension"] = np.full(len(order), np.nan), np.concatenate([np.full(m, np.nan), of_bars])
     margins = joint_margins(assembly, built.joint_thickness, forces)
     for name in ("eccentricity", "shear_utilisation", "eccentricity_utilisation", "edge_stress"):
-        fields[name] = np.full(len(order), np.nan), getattr(margins, name)
+        of_joints = np.concatenate([getattr(margins, name), np.full(len(bars), np.nan)])
+        fields[name] = np.full(len(order), np.nan), of_joints
     if len(lines):
         cells.append(("line", lines))
     ends = np.cumsum(groups)[:-1]

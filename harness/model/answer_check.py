@@ -100,6 +100,8 @@ class _KnownDetails(BaseModel, defer_build=True):
     load_steps: _Steps | None = None
     release: _Release | None = None
     without_strength: _Residual | None = None
+    bar_forces: list[float] | None = None
+    dead_bar_forces: list[float] | None = None
 
 
 def checked(answer: Any, assembly: Assembly) -> Answer:

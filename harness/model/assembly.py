@@ -23,6 +23,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
+from harness.model.bars import Bars
 from harness.model.joint_law import JointLaw
 
 if TYPE_CHECKING:
@@ -58,6 +59,7 @@ class Assembly:
         constant: (m, 4) constant parts of the yield slacks [force], as `joint_law` has them; zero for dry joints.
         support_motion: (n, 3) prescribed motion (ux, uy, omega) of fixed blocks; zero where supports rest, and on free
             blocks.
+        bars: ties and props between blocks; their prestress is part of the dead load.
     """
 
     name: str
@@ -80,6 +82,7 @@ class Assembly:
     live: FloatArray
     constant: FloatArray = field(default_factory=partial(np.zeros, (0, 4)))
     support_motion: FloatArray = field(default_factory=partial(np.zeros, (0, 3)))
+    bars: Bars = field(default_factory=Bars)
 
     def __post_init__(self) -> None:
         """Every joint has one entry in each array of joints, every block in each of blocks; only fixed ones are moved.
@@ -113,7 +116,8 @@ class Assembly:
         """The same wall in arrays of its own: what a method does to them changes no other."""
         names = (*OF_BLOCKS, *OF_JOINTS)
         arrays = {name: getattr(self, name).copy() for name in names if name != "polygons"}
-        return replace(self, polygons=tuple(polygon.copy() for polygon in self.polygons), **arrays)
+        polygons = tuple(polygon.copy() for polygon in self.polygons)
+        return replace(self, polygons=polygons, bars=self.bars.copied(), **arrays)
 
     @property
     def dilates(self) -> bool:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections import Counter
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property, partial
@@ -10,8 +11,9 @@ from functools import cached_property, partial
 import numpy as np
 
 from harness.model import geometry
-from harness.model.assembly import Assembly, BoolArray, FloatArray, polygon_area
-from harness.model.errors import InputError, Spot, of_each, raise_faults
+from harness.model.assembly import Assembly, BoolArray, FloatArray, IntArray, polygon_area
+from harness.model.bars import Bars
+from harness.model.errors import MOST_NAMED, InputError, Spot, first_few, of_each, raise_faults
 from harness.model.fields import MOST_BLOCKS
 from harness.model.input_checks import input_warnings, thickness_of
 from harness.model.interfaces import check_held, faces_of, find_joints, normals_of
@@ -19,7 +21,7 @@ from harness.model.names import faults_of_wall
 from harness.model.pattern import blocks_of, count_of
 from harness.model.pattern_fields import PatternBase
 from harness.model.plausibility import contact_warnings, force_warnings, interface_warnings, near_misses
-from harness.model.pressure import pressure_forces
+from harness.model.pressure import outlines_of, pressure_forces
 from harness.model.rings import hole_faults, ringed
 from harness.model.wall import (
     Block,
@@ -35,6 +37,8 @@ from harness.model.wall import (
     stresses_of,
 )
 
+MOST_PAIRS = 20_000_000
+"""Pairs of a load and a block, or a face, that it may act on."""
 SMALLEST = float(np.finfo(float).tiny / np.finfo(float).eps)
 """Least sum of loads, whatever its unit: a share of it as small as rounding still has all its digits."""
 
@@ -73,15 +77,17 @@ def build(wall: Wall, name: str = "wall") -> Built:
     Raises:
         InputError: naming the block, interface or load that is wrong; or it has load cases, each a wall of its own.
     """
-    if wall.load_cases:
+    if named := wall.load_case_fields:
         raise InputError(
-            f"it has {len(wall.load_cases)} load case(s), and one is built at a time: {', '.join(wall.load_cases)}",
+            f"it has {len(named)} load case(s), and one is built at a time: {first_few(named, MOST_NAMED)}",
             "Choose one with --load-case of run, compare or expand; compare answers all of them without",
             "load_cases",
         )
     blocks = blocks_of_wall(wall)
     names = tuple(block.id for block in blocks)
     index = {block_id: k for k, block_id in enumerate(names)}
+    for load in (wall.loads.dead, wall.loads.live or Load()):
+        _check_pairs(load, blocks)
     polygons = tuple(polygons_of(blocks))
     fixed = np.array([block.fixed for block in blocks], dtype=bool)
     raise_faults(support_faults(fixed))
@@ -92,7 +98,7 @@ def build(wall: Wall, name: str = "wall") -> Built:
     size = geometry.typical_size(shapes[~fixed])
     joints_found = find_joints(wall.interfaces, polygons, names, fixed, shapes, size)
     interfaces = joints_found.interfaces
-    block_a, block_b, face1, face2 = faces_of(interfaces, index, fixed)
+    block_a, block_b, face1, face2 = faces_of(joints_found, index, fixed)
     check_held(names, fixed, block_a, block_b, joints_found)
     trusted = joints_found.trusted
     normal = normals_of(polygons, centroids, block_a, block_b, face1, face2, interfaces, trusted=trusted, size=size)
@@ -125,6 +131,10 @@ def build(wall: Wall, name: str = "wall") -> Built:
         assembly = _with_pressures(wall, blocks, assembly, size)
     if wall.settlements:
         assembly = replace(assembly, support_motion=_support_motion(wall, blocks, assembly))
+    if wall.ties or wall.props:
+        bars = _bars(wall, index)
+        prestress = np.where(fixed[:, None], 0.0, bars.generalised(bars.prestress, centroids))
+        assembly = replace(assembly, bars=bars, dead=assembly.dead + prestress)
     if laws.strong:
         faces = np.linalg.norm(assembly.face2 - assembly.face1, axis=1)
         area = np.asarray(faces * _joint_thickness(wall, blocks, assembly))
@@ -187,9 +197,11 @@ def typical_block_size(wall: Wall) -> float:
     """The length that tolerances are measured by: the median over the free blocks of the square root of the area.
 
     Raises:
-        InputError: a block is no polygon.
+        InputError: a block is no polygon, or none is free.
     """
-    free = polygons_of([block for block in blocks_of_wall(wall) if not block.fixed])
+    blocks = blocks_of_wall(wall)
+    raise_faults(support_faults(np.array([block.fixed for block in blocks], dtype=bool)))
+    free = polygons_of([block for block in blocks if not block.fixed])
     return geometry.typical_size(geometry.shapes_of(free))
 
 
@@ -305,12 +317,33 @@ def _laws(
     wall: Wall, interfaces: list[Interface], joints: tuple[str, ...], blocks: list[Block], index: dict[str, int]
 ) -> _Laws:
     """Friction, dilatancy and strength of the interfaces."""
-    given = [_law(wall, interface, joint, blocks, index) for interface, joint in zip(interfaces, joints, strict=True)]
+    rules = _rules_by_selector(wall.friction.rules) if isinstance(wall.friction, Friction) else {}
+    given = [
+        _law(wall, interface, joint, blocks, index, rules) for interface, joint in zip(interfaces, joints, strict=True)
+    ]
     return _Laws(np.array(given, dtype=float).reshape(-1, 4))
 
 
+def _rules_by_selector(rules: Sequence[FrictionRule]) -> dict[tuple[str, ...], FrictionRule]:
+    """Rules by what they hold for: of several for the same, the last."""
+    found: dict[tuple[str, ...], FrictionRule] = {}
+    for rule in rules:
+        if rule.between is not None:
+            found["between", *sorted(rule.between)] = rule
+        elif rule.joint is not None:
+            found["joint", rule.joint] = rule
+        elif rule.materials is not None:
+            found["materials", *sorted(rule.materials)] = rule
+    return found
+
+
 def _law(
-    wall: Wall, interface: Interface, joint: str, blocks: list[Block], index: dict[str, int]
+    wall: Wall,
+    interface: Interface,
+    joint: str,
+    blocks: list[Block],
+    index: dict[str, int],
+    rules: dict[tuple[str, ...], FrictionRule],
 ) -> tuple[float, float, float, float]:
     """Friction, dilatancy, cohesion and tensile strength, all from the most particular that holds for an interface."""
     if interface.friction is not None or interface.friction_angle is not None:
@@ -318,19 +351,10 @@ def _law(
         return friction, interface.dilatancy or 0.0, *stresses_of(interface)
     if not isinstance(wall.friction, Friction):
         return float(coefficient_of(wall.friction, wall.friction_angle)), 0.0, *stresses_of(wall)
-    pair = set(interface.between)
     materials = sorted(blocks[index[block_id]].material for block_id in interface.between)
-    by_kind: dict[str, FrictionRule] = {}
-    for rule in wall.friction.rules:
-        if rule.between is not None and set(rule.between) == pair:
-            by_kind["between"] = rule
-        elif rule.joint is not None and rule.joint == joint:
-            by_kind["joint"] = rule
-        elif rule.materials is not None and sorted(rule.materials) == materials:
-            by_kind["materials"] = rule
-    for kind in ("between", "joint", "materials"):
-        if kind in by_kind:
-            rule = by_kind[kind]
+    for selector in (("between", *sorted(interface.between)), ("joint", joint), ("materials", *materials)):
+        if selector in rules:
+            rule = rules[selector]
             return rule.coefficient, rule.dilatancy or 0.0, *stresses_of(rule)
     return float(wall.friction.coefficient), wall.friction.dilatancy or 0.0, *stresses_of(wall.friction)
 
@@ -342,10 +366,12 @@ def _support_motion(wall: Wall, blocks: list[Block], assembly: Assembly) -> Floa
         InputError: a settlement names a block that is not fixed, or a group that there is not.
     """
     motion = np.zeros((len(blocks), 3))
+    index = {block.id: k for k, block in enumerate(blocks)}
+    groups = _groups(blocks)
     for number, settlement in enumerate(wall.settlements):
         place = f"settlements[{number}]"
-        named = set(settlement.blocks or ())
-        chosen = [k for k, block in enumerate(blocks) if block.id in named or settlement.group in block.groups]
+        named = {index[name] for name in settlement.blocks or ()}
+        chosen = sorted(named.union(groups.get(settlement.group or "", ())))
         if not chosen:
             raise InputError(f'no block is in a group "{settlement.group}"', "Name a group of fixed blocks", place)
         for k in chosen:
@@ -357,6 +383,27 @@ def _support_motion(wall: Wall, blocks: list[Block], assembly: Assembly) -> Floa
             turn = settlement.rotation
             motion[k] += [settlement.translation[0] - turn * y, settlement.translation[1] + turn * x, turn]
     return motion
+
+
+def _bars(wall: Wall, index: dict[str, int]) -> Bars:
+    """Ties and then props as arrays; tension is positive."""
+    given = [("tie", 1.0, tie) for tie in wall.ties] + [("prop", -1.0, prop) for prop in wall.props]
+    kinds = tuple(kind for kind, _, _ in given)
+    numbers = [*range(1, len(wall.ties) + 1), *range(1, len(wall.props) + 1)]
+    names = zip(kinds, numbers, given, strict=True)
+    prestress = np.array([sign * bar.prestress for _, sign, bar in given])
+    further = np.array([sign * bar.yield_force for _, sign, bar in given]) - prestress
+    return Bars(
+        names=tuple(bar.id or f"{kind} {number}" for kind, number, (_, _, bar) in names),
+        kinds=kinds,
+        block_a=np.array([index[bar.start.block] for _, _, bar in given]),
+        block_b=np.array([index[bar.end.block] for _, _, bar in given]),
+        end1=np.array([bar.start.at for _, _, bar in given], dtype=float),
+        end2=np.array([bar.end.at for _, _, bar in given], dtype=float),
+        prestress=prestress,
+        least=np.minimum(further, 0.0),
+        greatest=np.maximum(further, 0.0),
+    )
 
 
 def _joint_thickness(wall: Wall, blocks: list[Block], assembly: Assembly) -> FloatArray:
@@ -426,25 +473,52 @@ def _load(
 ) -> FloatArray:
     """Generalised forces (n, 3) of a load whose names are known to be of the wall."""
     generalised = np.zeros((len(blocks), 3))
-    groups: dict[str, list[int]] = {}
-    for k, block in enumerate(blocks):
-        for group in block.groups:
-            groups.setdefault(group, []).append(k)
+    groups, everything = _groups(blocks), np.arange(len(blocks))
     for body in load.body:
         if body.group is not None:
             chosen = groups[body.group]
         elif body.blocks is not None:
-            chosen = sorted({index[block_id] for block_id in body.blocks})
+            chosen = np.array(sorted({index[block_id] for block_id in body.blocks}), dtype=np.int64)
         else:
-            chosen = list(range(len(blocks)))
+            chosen = everything
         generalised[chosen, :2] += weight[chosen, None] * np.array(body.per_weight)
-    for point in load.points:
-        k = index[point.block]
-        arm = np.array(point.at) - centroids[k]
-        force = np.array(point.force)
-        generalised[k] += [force[0], force[1], arm[0] * force[1] - arm[1] * force[0]]
+    if load.points:
+        k = np.array([index[point.block] for point in load.points])
+        arm = np.array([point.at for point in load.points]) - centroids[k]
+        force = np.array([point.force for point in load.points])
+        moment = arm[:, 0] * force[:, 1] - arm[:, 1] * force[:, 0]
+        np.add.at(generalised, k, np.column_stack([force, moment]))
     generalised[fixed] = 0.0
     return generalised
+
+
+def _check_pairs(load: Load, blocks: Sequence[Block]) -> None:
+    """Refuse loads that act on so many blocks each, or are sought among so many faces, that their sum takes minutes.
+
+    Raises:
+        InputError: how many there are.
+    """
+    members = Counter(group for block in blocks for group in block.groups)
+    pairs = sum(
+        members[body.group] if body.group is not None else len(blocks if body.blocks is None else body.blocks)
+        for body in load.body
+    )
+    faces = len(load.pressures) * sum(len(block.polygon) for block in blocks)
+    for count, what, remedy in (
+        (pairs, f"{len(load.body):,} body forces act on {pairs:,} blocks in all", "Add up those on the same blocks"),
+        (faces, f"{len(load.pressures):,} pressures are sought among {faces:,} faces in all", "Give longer segments"),
+    ):
+        if count > MOST_PAIRS:
+            raise InputError(f"{what}, and at most {MOST_PAIRS:,} are summed up", remedy, "loads")
+
+
+def _groups(blocks: Sequence[Block]) -> dict[str, IntArray]:
+    """Numbers of the blocks of every group."""
+    groups: dict[str, list[int]] = {}
+    for k, block in enumerate(blocks):
+        for group in block.groups:
+            groups.setdefault(group, []).append(k)
+    return {group: np.array(members) for group, members in groups.items()}
 
 
 def _has_pressures(loads: Loads) -> bool:
@@ -458,22 +532,25 @@ def _with_pressures(wall: Wall, blocks: list[Block], assembly: Assembly, size: f
         InputError: part of a pressure lies on no face, or on faces of two blocks.
     """
     thickness = [thickness_of(block, wall) for block in blocks]
+    outlines, index, groups = (
+        outlines_of(assembly.polygons),
+        {block.id: k for k, block in enumerate(blocks)},
+        _groups(blocks),
+    )
     sums = {}
     for kind, load in (("dead", wall.loads.dead), ("live", wall.loads.live or Load())):
         total = getattr(assembly, kind).copy()
         for number, pressure in enumerate(load.pressures):
-            named = None if pressure.blocks is None else set(pressure.blocks)
-            chosen = [
-                k
-                for k, block in enumerate(blocks)
-                if not block.fixed
-                and (named is None or block.id in named)
-                and (pressure.group is None or pressure.group in block.groups)
-            ]
+            chosen = ~assembly.fixed
+            if pressure.blocks is not None or pressure.group is not None:
+                named = np.zeros(len(blocks), dtype=bool)
+                named[[index[name] for name in pressure.blocks or ()]] = True
+                named[groups.get(pressure.group or "", [])] = True
+                chosen &= named
             total += pressure_forces(
                 pressure,
                 chosen,
-                assembly.polygons,
+                outlines,
                 assembly.centroid,
                 thickness,
                 wall.units.unit_weight_factor,

@@ -173,7 +173,7 @@ def read_case(folder: Path) -> Case:
         raise InputError(f'id is "{file.id}" in a folder called "{folder.name}"', "Give both one name", "id", str(path))
     wall_path = folder / file.wall
     wall = parse_wall(read_json(wall_path), str(wall_path))
-    if file.kind == "multiplier" and wall.loads.live is None and not wall.load_cases:
+    if file.kind == "multiplier" and wall.loads.live is None and not wall.load_case_fields:
         raise InputError(
             "a multiplier is asked for and there is no live load",
             'Give loads.live, or set kind = "stability" in case.toml',

@@ -10,7 +10,7 @@ from typing import Any
 
 from harness.model.case import Reference
 from harness.model.proof import Proof
-from harness.model.result import Comparison, Result, exceeds_accuracy, residual_of
+from harness.model.result import Comparison, Result, residual_of
 from harness.model.result_texts import VERDICT_TEXTS, multiplier_text, references_text, residual_text, settings_text
 from harness.model.table import TableColumn
 
@@ -67,11 +67,6 @@ def _worst(number: int) -> Callable[[ResultRow], Any]:
     return worst
 
 
-def _exceeds(row: ResultRow) -> bool | None:
-    bracket = row.result.bracket if row.result.flow == "approximate" else None
-    return None if bracket is None else exceeds_accuracy(bracket, row.result.traits)
-
-
 RESULTS: tuple[ResultColumn, ...] = (
     _text("case", "id of the wall"),
     _text("method", "name of the method"),
@@ -91,7 +86,12 @@ RESULTS: tuple[ResultColumn, ...] = (
     ResultColumn("bracket_high", "Float64", "1", "upper end of the bracket", _end(1)),
     _text("bracket_meaning", "what the ends of the bracket are"),
     _field("bracket_width", "Float64", "1", "of a measured bracket, as a share of its upper end"),
-    _field("bracket_wide", "boolean", "", "whether a measured bracket is so wide that its middle says little"),
+    _field(
+        "bracket_wide",
+        "boolean",
+        "",
+        "whether a measured bracket is wider than the stated accuracy of its method: it is no value",
+    ),
     ResultColumn(
         "residual_multiplier",
         "Float64",
@@ -179,14 +179,6 @@ IN_TABLES: tuple[ResultColumn, ...] = (
         "reference",
         "the most relevant value of another source; comparisons.csv has all",
         lambda row: references_text(row.result),
-    ),
-    ResultColumn(
-        "exceeds_accuracy",
-        "boolean",
-        "",
-        "whether the multiplier is only known to lie in the bracket, which is wider than the method's stated accuracy; "
-        "missing: it is not measured between two loads",
-        _exceeds,
     ),
 )
 """What tables for people and tables of studies show of several columns, or of other tables, in one."""

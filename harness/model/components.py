@@ -1,4 +1,4 @@
-"""Independent components of a wall: free blocks that touch each other; fixed blocks do not connect.
+"""Independent components of a wall: free blocks that touch or are tied; fixed blocks do not connect.
 
 No force of one component reaches another, so each is analysed alone, in its own units of weight and length. The wall
 collapses at the least multiplier of its components, by the mechanism of that one, while the others bear the load.
@@ -38,11 +38,13 @@ class Component:
         assembly: the component as a wall of its own.
         blocks: indices (k,) of its blocks in the whole wall.
         interfaces: indices (j,) of its interfaces in the whole wall.
+        bars: indices (i,) of its ties and props in the whole wall.
     """
 
     assembly: Assembly
     blocks: IntArray
     interfaces: IntArray
+    bars: IntArray
 
     @property
     def named(self) -> str:
@@ -55,22 +57,26 @@ def components_of(assembly: Assembly) -> list[Component]:
 
     A wall with one component, or without a block that can move, is returned as it is, to the bit.
     """
-    a, b = assembly.block_a, assembly.block_b
+    bars = assembly.bars
+    a = np.concatenate([assembly.block_a, bars.block_a])
+    b = np.concatenate([assembly.block_b, bars.block_b])
     free = ~assembly.fixed
     joined = free[a] & free[b]
     n = assembly.n_blocks
     label = groups_of(n, a[joined], b[joined])
     _, first = np.unique(label[assembly.free], return_index=True)
     if len(first) <= 1:
-        return [Component(assembly, np.arange(n), np.arange(assembly.n_interfaces))]
+        return [Component(assembly, np.arange(n), np.arange(assembly.n_interfaces), np.arange(len(bars)))]
     return [_component(assembly, free & (label == label[assembly.free[k]])) for k in np.sort(first)]
 
 
 def _component(assembly: Assembly, moving: BoolArray) -> Component:
     """The wall of the moving blocks (n,) alone, with the interfaces and the fixed blocks that they touch."""
     interfaces = np.flatnonzero(moving[assembly.block_a] | moving[assembly.block_b])
+    bars = np.flatnonzero(moving[assembly.bars.block_a] | moving[assembly.bars.block_b])
     kept = moving.copy()
     kept[assembly.block_a[interfaces]] = kept[assembly.block_b[interfaces]] = True
+    kept[assembly.bars.block_a[bars]] = kept[assembly.bars.block_b[bars]] = True
     blocks = np.flatnonzero(kept)
     place = np.full(assembly.n_blocks, -1, dtype=np.int64)
     place[blocks] = np.arange(len(blocks))
@@ -80,9 +86,10 @@ def _component(assembly: Assembly, moving: BoolArray) -> Component:
         polygons=tuple(assembly.polygons[i] for i in blocks),
         block_a=place[assembly.block_a[interfaces]],
         block_b=place[assembly.block_b[interfaces]],
+        bars=assembly.bars.chosen(bars, place),
         **{name: getattr(assembly, name)[blocks] for name in OF_BLOCKS if name != "polygons"},
     )
-    return Component(part, blocks, interfaces)
+    return Component(part, blocks, interfaces, bars)
 
 
 def joints_of(part: Assembly, whole: Assembly) -> IntArray:

@@ -23,6 +23,11 @@ from harness.model.rings import rings_of
 
 TIMES = 10.0
 """The same in greatest gaps: a drawing with joints of 2 mm and one of 15 has lost that one."""
+MOST_NEAR = 10_000_000
+"""Pairs of a vertex and a face within sight of it, those of its own block too: each takes some 50 bytes, and a wall of
+100,000 blocks has about 3 million."""
+SAMPLE = 500
+"""Vertices by which the number of pairs is estimated before they are sought."""
 
 
 @dataclass(frozen=True)
@@ -94,9 +99,13 @@ class Edges:
         """Vertices, by the edge that begins there, and the edges of other blocks within a distance of them [length].
 
         The widest look so far is kept, for a closer one sees a part of it.
+
+        Raises:
+            InputError: they are more than can be looked at.
         """
         reach, vertex, edge = self._seen[-1] if self._seen else (-1.0, np.empty(0, np.int64), np.empty(0, np.int64))
         if distance > reach:
+            self._check_number_within(distance)
             vertex, edge = self._tree.query(self._points, predicate="dwithin", distance=distance)
             others = self.owner[vertex] != self.owner[edge]
             vertex, edge = vertex[others], edge[others]
@@ -105,6 +114,25 @@ class Edges:
             close = shapely.dwithin(self._points[vertex], self._lines[edge], distance)
             vertex, edge = vertex[close], edge[close]
         return vertex, edge
+
+    def _check_number_within(self, distance: float) -> None:
+        """Refuse to look so far that every vertex has hundreds of faces around it, by a sample of the vertices.
+
+        Raises:
+            InputError: how many there are.
+        """
+        count, found = len(self._points), 0
+        sample = self._points[:: -(-count // SAMPLE)]
+        for number, point in enumerate(sample, start=1):
+            found += len(self._tree.query(point, predicate="dwithin", distance=distance))
+            if found * count > MOST_NEAR * len(sample):
+                raise InputError(
+                    f"its outlines have {count:,} vertices, with about {found / number:.0f} faces within "
+                    f"{distance:.3g} of each, too many to find the joints among them",
+                    "Simplify the outlines, let faces of a joint lie less apart (greatest_gap, greatest_overlap, "
+                    "sight), or give the interfaces as a list",
+                    "interfaces",
+                )
 
     def side_by_side(self, distance: float) -> tuple[IntArray, IntArray]:
         """Pairs of edges, each way round, of which one ends at a vertex within a distance of the other [length].

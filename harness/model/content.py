@@ -10,12 +10,14 @@ import numpy as np
 from harness.model.assembly import Assembly
 from harness.model.wall import Wall
 
+REMARKS = ("$schema", "comment", "title", "metadata", "doubts")
+"""Fields of a wall that decide no answer."""
 STEP = 1.37e-6
 """Values are rounded to this part of their size. No round number of a drawing lies on the edge between two steps."""
 
 
 def content_of(assembly: Assembly) -> str:
-    """A hash of free blocks, interfaces, what joints bear, loads and settlements; names, place, units apart.
+    """A hash of free blocks, interfaces, what joints bear, loads, settlements, bars; names, place, units apart.
 
     The order of blocks and interfaces does: walls that differ in it have different keys.
     Walls of one key are equal to a few millionths, and nearly all equal walls have one: it is a way to find a wall,
@@ -34,6 +36,12 @@ def content_of(assembly: Assembly) -> str:
     besides = [(assembly.constant, load)] if assembly.strong else []
     if np.any(assembly.support_motion):
         besides.append((assembly.support_motion, float(abs(assembly.support_motion).max())))
+    bars = assembly.bars
+    if len(bars):
+        for joined in (number[bars.block_a], number[bars.block_b]):
+            digest.update(np.asarray(joined, dtype="<i8").tobytes() + b";")
+        besides.append((np.hstack([bars.end1 - origin, bars.end2 - origin]), assembly.length_scale))
+        besides.append((np.column_stack([bars.prestress, bars.least, bars.greatest]), load))
     for values, size in (
         (points - origin, assembly.length_scale),
         (assembly.normal, 1.0),
@@ -47,6 +55,6 @@ def content_of(assembly: Assembly) -> str:
 
 
 def hash_of(wall: Wall) -> str:
-    """A hash of all that is written of a wall and decides an answer: title, metadata and doubts do not enter."""
-    written = {name: value for name, value in wall.document().items() if name not in ("title", "metadata", "doubts")}
+    """A hash of all that is written of a wall and decides an answer: titles, remarks and doubts do not enter."""
+    written = {name: value for name, value in wall.document().items() if name not in REMARKS}
     return hashlib.sha256(json.dumps(written, sort_keys=True, allow_nan=False).encode()).hexdigest()

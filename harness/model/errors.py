@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 from difflib import get_close_matches
+from functools import lru_cache
 from typing import TypeVar
 
 Item = TypeVar("Item")
@@ -16,6 +17,10 @@ LIKE_MEANING = {"polygon": ("vertices", "corners", "points", "coordinates", "coo
 """Words of other formats for fields of a wall."""
 MOST_ALIKE = 3
 """Elements with the same fault that are told one by one."""
+MOST_NAMED = 20
+"""Names that a sentence lists."""
+MOST_WORDED = 500
+"""Faults of one input that are put into words; the rest are counted."""
 
 
 def visible(text: str) -> str:
@@ -59,6 +64,9 @@ class InputError(Exception):
         self.problem, self.remedy, self.element, self.source, self.spot = problem, remedy, element, source, spot
         super().__init__(problem)
 
+    more = 0
+    """Faults besides, which are not put into words."""
+
     @property
     def faults(self) -> tuple[InputError, ...]:
         """The faults one by one; a plain error is one fault."""
@@ -81,10 +89,12 @@ class InputFaults(InputError):
     Args:
         faults: at least one; those without a source take that of the whole.
         source: the file concerned; may be empty and filled in later.
+        more: faults that there are besides.
     """
 
-    def __init__(self, faults: Iterable[InputError], source: str = "") -> None:
+    def __init__(self, faults: Iterable[InputError], source: str = "", more: int = 0) -> None:
         self._faults = tuple(part for fault in faults for part in fault.faults)
+        self.more = more
         first = self._faults[0]
         super().__init__(first.problem, first.remedy, first.element, source or first.source)
 
@@ -96,7 +106,7 @@ class InputFaults(InputError):
         return self._faults
 
     def __str__(self) -> str:
-        count = len(self.faults)
+        count = len(self.faults) + self.more
         if count == 1:
             return str(self.faults[0])
         head = f"{visible(self.source)}: {count} faults" if self.source else f"{count} faults"
@@ -106,6 +116,7 @@ class InputFaults(InputError):
             alike.setdefault(same, []).append(fault)
         lines = [line for faults in alike.values() for line in self._lines(faults)]
         more = [f"and {len(lines) - MOST_FAULTS} lines more"] if len(lines) > MOST_FAULTS else []
+        more += [f"and {self.more} faults more"] * (self.more > 0)
         return "\n  ".join([head, *lines[:MOST_FAULTS], *more])
 
     def _lines(self, alike: Sequence[InputError]) -> list[str]:
@@ -117,7 +128,7 @@ class InputFaults(InputError):
         return [visible(_sentence(InputError(alike[0].problem, alike[0].remedy, places), source))]
 
     def __reduce__(self) -> tuple[type[InputError], tuple[object, ...]]:
-        return InputFaults, (self._faults, self.source)
+        return InputFaults, (self._faults, self.source, self.more)
 
 
 def _sentence(error: InputError, source: str) -> str:
@@ -127,17 +138,21 @@ def _sentence(error: InputError, source: str) -> str:
     return f"{text}. {error.remedy}" if error.remedy else text
 
 
-def raise_faults(faults: Sequence[InputError], source: str = "") -> None:
+def raise_faults(faults: Sequence[InputError], source: str = "", more: int = 0) -> None:
     """Raise what was found, one error as itself and several together; nothing if there are none.
+
+    Args:
+        faults: that were put into words; more: how many there are besides.
+        source: the file concerned.
 
     Raises:
         InputError: the one fault, or `InputFaults` of all.
     """
-    if len(faults) == 1:
+    if len(faults) == 1 and not more:
         faults[0].source = faults[0].source or source
         raise faults[0]
     if faults:
-        raise InputFaults(faults, source)
+        raise InputFaults(faults, source, more)
 
 
 def of_each(make: Callable[[Item], Made], items: Iterable[Item]) -> list[Made]:
@@ -165,6 +180,11 @@ def sorted_out(make: Callable[[Item], Made], items: Iterable[Item]) -> tuple[lis
 
 def did_you_mean(word: str, known: Iterable[str]) -> str:
     """The question whether a known word that is near, or of like meaning, was meant; empty where none is."""
+    return _did_you_mean(word, tuple(known))
+
+
+@lru_cache(maxsize=128)  # a field that is misspelled is so in all blocks
+def _did_you_mean(word: str, known: tuple[str, ...]) -> str:
     names = {name.lower(): name for name in known}
     names |= {other: names[name] for name, others in LIKE_MEANING.items() if name in names for other in others}
     near = get_close_matches(word.lower(), names, n=1, cutoff=0.6)

@@ -20,7 +20,7 @@ from harness.model.contacts import check_gap
 from harness.model.errors import InputError, Spot, sorted_out
 from harness.model.input_checks import unknown_in_rules
 from harness.model.interfaces import Joints, faults_of_given, floating, floating_groups, joints_of, limits_of
-from harness.model.load_cases import build_load_case
+from harness.model.load_cases import build_load_case, named_loads
 from harness.model.names import faults_of_wall
 from harness.model.plausibility import NEAR_MISS, allowing, saying, span
 from harness.model.wall import Block, Detection, Interface, Wall
@@ -116,7 +116,7 @@ def inspect(wall: Wall, name: str = "wall", before: Sequence[InputError] = ()) -
     blocks = written_out(wall)
     apart = _told_apart(blocks)
     fixed = np.array([block.fixed for block in blocks], dtype=bool)
-    bad, polygons = sorted_out(_outline, blocks)
+    bad, polygons = _outlines(blocks)
     faults = [*faults_of_wall(wall, blocks), *bad, *sorted_out(lambda block: weight_of(block, wall), blocks)[0]]
     faults += support_faults(fixed)
     doubts: list[Mark] = []
@@ -127,7 +127,7 @@ def inspect(wall: Wall, name: str = "wall", before: Sequence[InputError] = ()) -
     built = None
     if not faults and not before:
         try:
-            made = [build_load_case(wall, each, name) for each in wall.load_cases] or [build(wall, name)]
+            made = [build_load_case(wall, each, name) for each in named_loads(wall)] or [build(wall, name)]
             built = made[0]
         except InputError as error:
             faults += error.faults
@@ -139,6 +139,14 @@ def inspect(wall: Wall, name: str = "wall", before: Sequence[InputError] = ()) -
     names = tuple(block.id for block in apart)
     outlines = tuple(polygons.get(k, np.array(block.polygon, dtype=float)) for k, block in enumerate(blocks))
     return Inspection(wall, names, outlines, fixed, tuple(_placed(mark, middle) for mark in _once(marks)), built)
+
+
+def _outlines(blocks: Sequence[Block]) -> tuple[list[InputError], dict[int, FloatArray]]:
+    """The faults of outlines that are no polygons, and the others by their numbers: all at once where all are sound."""
+    try:
+        return [], dict(enumerate(polygons_of(blocks)))
+    except InputError:
+        return sorted_out(_outline, blocks)
 
 
 def _outline(block: Block) -> FloatArray:
@@ -186,7 +194,7 @@ def _lying(
             faults.append(error)
     index = {name: k for k, name in enumerate(names)}
     known = [item for item in joints.interfaces if set(item.between) <= index.keys()]
-    faults += faults_of_given(known, index, fixed)
+    faults += faults_of_given(joints, index, fixed)
     pairs = _joined(known, faults, index)
     held = fixed | _beside(polygons, hulls, limits.sight)
     faults += [floating(names, group, joints) for group in floating_groups(held, pairs)]

@@ -105,14 +105,15 @@ def joints_of(
 
 
 def faces_of(
-    interfaces: list[Interface], index: dict[str, int], fixed: np.ndarray
+    joints: Joints, index: dict[str, int], fixed: np.ndarray
 ) -> tuple[IntArray, IntArray, FloatArray, FloatArray]:
     """Blocks (m,) and (m,), and ends of the faces (m, 2) and (m, 2), of interfaces.
 
     Raises:
-        InputError: one joins a block to itself or two fixed ones, or has no length.
+        InputError: one of those given joins a block to itself or two fixed ones, or has no length.
     """
-    raise_faults(faults_of_given(interfaces, index, fixed))
+    interfaces = joints.interfaces
+    raise_faults(faults_of_given(joints, index, fixed))
     pairs = np.array([[index[block_id] for block_id in interface.between] for interface in interfaces], dtype=np.int64)
     pairs = pairs.reshape(-1, 2)
     starts = np.array([interface.start for interface in interfaces], dtype=float).reshape(-1, 2)
@@ -120,10 +121,15 @@ def faces_of(
     return pairs[:, 0], pairs[:, 1], starts, ends
 
 
-def faults_of_given(interfaces: Sequence[Interface], index: dict[str, int], fixed: np.ndarray) -> list[InputError]:
-    """Interfaces that join a block to itself or two fixed ones, or have no length."""
+def faults_of_given(joints: Joints, index: dict[str, int], fixed: np.ndarray) -> list[InputError]:
+    """Given interfaces that join a block to itself or two fixed ones, or have no length, by their number in the file.
+
+    Those of blocks without an index are left out.
+    """
     faults = []
-    for number, interface in enumerate(interfaces):
+    for number, interface in enumerate(joints.interfaces[joints.trusted :]):
+        if not set(interface.between) <= index.keys():
+            continue
         a, b = (index[block_id] for block_id in interface.between)
         if a == b:
             wrong = ("a block cannot touch itself", "Name two blocks")

@@ -81,6 +81,13 @@ class JointLaw:
         borne = self.by_friction(forces[:, 0] + forces[:, 1])
         return -(borne + self.constant[:, 2]), borne + self.constant[:, 3]
 
+    @property
+    def greatest_compression(self) -> FloatArray:
+        """(m,) compression that leaves no shear within yield: infinite but in rows of bars (`with_bars_as_joints`)."""
+        cohesion = 0.5 * (self.constant[:, 2] + self.constant[:, 3])
+        falls = self.friction < 0.0
+        return np.where(falls, cohesion / np.where(falls, -self.friction, 1.0), np.inf)
+
     def strength(self, forces: FloatArray) -> FloatArray:
         """(m,) shear strength mu (n1 + n2) + c A that forces (m, 3) leave each interface: half its `shear_range`."""
         cohesion = 0.5 * (self.constant[:, 2] + self.constant[:, 3])

@@ -7,37 +7,27 @@ larger than this cannot be told from zero: whether such a wall just stands or ju
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
 
 from harness.model.assembly import Assembly, FloatArray
 
+WRITTEN = 1e-8
+"""Share of the size of a block to which coordinates are meant, and absolute accuracy of friction. Eight digits are more
+than drawings and measurements keep; it is ten times what linear programmes round off, so that what one of them decides
+by rounding is within it."""
 
-@dataclass(frozen=True)
-class Digits:
-    """How exactly a wall is described.
-
-    Attributes:
-        written: share of the size of a block to which coordinates are meant, and absolute accuracy of friction. Eight
-            digits are more than drawings and measurements keep; it is ten times what linear programmes round off, so
-            that what one of them decides by rounding is within it.
-        rounded: units in the last place by which coordinates computed in double precision are off. In a national grid
-            they are the larger part.
-    """
-
-    written: float = 1e-8
-    rounded: float = 16.0
-
-
-DIGITS = Digits()
+ROUNDED = 16.0
+"""Units in the last place by which coordinates computed in double precision are off. In a national grid they are the
+larger part."""
 
 
 def accuracy(assembly: Assembly) -> float:
     """Accuracy of the coordinates of a wall as a share of the size of a block, and of its friction."""
     points, _ = assembly.corners
     last_place = float(np.finfo(float).eps * abs(points).max(initial=0.0))
-    return DIGITS.written + DIGITS.rounded * last_place / assembly.length_scale
+    return WRITTEN + ROUNDED * last_place / assembly.length_scale
 
 
 def gross_power(assembly: Assembly, mechanism: FloatArray) -> float:

@@ -10,6 +10,7 @@ import numpy as np
 from harness.model.assembly import FloatArray
 from harness.model.case import Case
 from harness.model.errors import InputError
+from harness.model.load_sums import times
 from harness.model.wall import BodyForce, Load
 
 LEVEL = 1e-9
@@ -52,13 +53,7 @@ def reversed_live(case: Case) -> Case:
     """The case with the opposite live load: another wall, of which no reference is known."""
     live = case.wall.loads.live
     assert live is not None
-    turned = live.model_copy(
-        update={
-            "body": [each.model_copy(update={"per_weight": _minus(each.per_weight)}) for each in live.body],
-            "points": [each.model_copy(update={"force": _minus(each.force)}) for each in live.points],
-            "pressures": [each.model_copy(update={"factor": -each.factor}) for each in live.pressures],
-        }
-    )
+    turned = times(live, -1.0)
     loads = case.wall.loads.model_copy(update={"live": turned})
     file = case.file.model_copy(update={"references": []})
     wall = case.wall.model_copy(update={"loads": loads})
@@ -109,7 +104,3 @@ def both_signs(case: Case) -> list[Case]:
         replace(case, wall_id=wall, load_case=ways[0]),
         replace(opposite.called(f"{case.id}-reversed"), wall_id=wall, load_case=ways[1]),
     ]
-
-
-def _minus(vector: tuple[float, float]) -> tuple[float, float]:
-    return -vector[0], -vector[1]

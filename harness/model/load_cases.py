@@ -3,57 +3,149 @@
 from __future__ import annotations
 
 import re
-from dataclasses import replace
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
+from itertools import product
 from pathlib import Path
 from typing import Any
 
-from harness.model.build import Built, build
+from harness.model.build import Built, blocks_of_wall, build, polygons_of
 from harness.model.case import Case
-from harness.model.errors import InputError, did_you_mean, raise_faults
-from harness.model.wall import Load, Wall
+from harness.model.errors import MOST_NAMED, InputError, did_you_mean, first_few, raise_faults
+from harness.model.load_case_fields import DEAD
+from harness.model.load_sums import times, together
+from harness.model.travelling import travelling_loads
+from harness.model.wall import Loads, Wall
 
 
-def under_load_case(wall: Wall, name: str) -> Wall:
+@dataclass(frozen=True)
+class NamedLoads:
+    """A load case of a wall.
+
+    Attributes:
+        own: what it adds to the gravity and the dead load of `loads`.
+        common: factor of these.
+        place: where the file says it.
+    """
+
+    own: Loads
+    place: str
+    common: float = 1.0
+
+
+def named_loads(wall: Wall) -> dict[str, NamedLoads]:
+    """All load cases of a wall by name: those written out, one for each place of loads that travel, combinations.
+
+    A combination of a load that travels is one of its load cases for each place.
+
+    Raises:
+        InputError: a load travels over no face, or a combination names what there is not, or cannot be added up.
+    """
+    found = {name: NamedLoads(own, f"load_cases.{name}") for name, own in wall.load_cases.items()}
+    members = {name: [name] for name in found}
+    if wall.travelling:
+        blocks = blocks_of_wall(wall)
+        polygons = polygons_of(blocks)
+    for name, travelling in wall.travelling.items():
+        place, gravity = f"travelling.{name}", wall.loads.gravity_per_weight
+        loads = travelling_loads(travelling, blocks, polygons, gravity, place)
+        members[name] = [f"{name}-{number}" for number in range(1, len(loads) + 1)]
+        for each, own in zip(members[name], loads, strict=True):
+            _add(found, each, NamedLoads(own, place))
+    alone = dict(found)
+    for name, factors in wall.combinations.items():
+        for suffix, chosen in _chosen(name, factors, members, list(alone)):
+            combined = _combined(name, {each: alone[each] for each in chosen}, chosen, factors)
+            _add(found, f"{name}{suffix}", combined)
+    return found
+
+
+def _add(found: dict[str, NamedLoads], name: str, loads: NamedLoads) -> None:
+    """Another load case, whose name no other has."""
+    if name in found:
+        problem = f'its load case "{name}" has the name of another'
+        raise InputError(problem, "Give one of them another name", loads.place)
+    found[name] = loads
+
+
+def _chosen(
+    name: str, factors: dict[str, float], members: dict[str, list[str]], known: list[str]
+) -> Iterator[tuple[str, dict[str, float]]]:
+    """The load cases of a combination with their factors, for each place of loads that travel, and what names it."""
+    options = []
+    for each, factor in factors.items():
+        if each == DEAD:
+            continue
+        cases = members.get(each, [each] if each in known else [])
+        if not cases:
+            remedy = f"{did_you_mean(each, [*members, *known])} There are: {', '.join([DEAD, *members])}".strip()
+            raise InputError(f'no load case is called "{each}"', remedy, f"combinations.{name}")
+        options.append([(case, factor, "" if case == each else case.removeprefix(each)) for case in cases])
+    for chosen in product(*options):
+        yield "".join(suffix for _, _, suffix in chosen), {case: factor for case, factor, _ in chosen}
+
+
+def _combined(
+    name: str, cases: dict[str, NamedLoads], chosen: dict[str, float], factors: dict[str, float]
+) -> NamedLoads:
+    """The sum of load cases with factors."""
+    place = f"combinations.{name}"
+    for each, case in cases.items():
+        if case.own.gravity is not None:
+            remedy = "Leave gravity out of load cases that are combined, or write the combination out as a load case"
+            raise InputError(f'the load case "{each}" has a gravity of its own', remedy, place)
+    live = [times(case.own.live, chosen[each]) for each, case in cases.items() if case.own.live is not None]
+    dead = together(*(times(case.own.dead, chosen[each]) for each, case in cases.items()))
+    return NamedLoads(Loads(dead=dead, live=together(*live) if live else None), place, factors.get(DEAD, 1.0))
+
+
+def under_load_case(wall: Wall, name: str, known: dict[str, NamedLoads] | None = None) -> Wall:
     """The wall under one of its load cases, whose dead load is added to that of `loads`.
+
+    Args:
+        wall: with load cases; name: of one; known: all of them, where they have been made.
 
     Raises:
         InputError: there is no such load case.
     """
-    if name not in wall.load_cases:
-        there = f"There are: {', '.join(wall.load_cases)}" if wall.load_cases else 'A wall gives them in "load_cases"'
-        remedy = f"{did_you_mean(name, wall.load_cases)} {there}".strip()
+    known = named_loads(wall) if known is None else known
+    if name not in known:
+        there = f"There are: {first_few(list(known), MOST_NAMED)}" if known else 'A wall gives them in "load_cases"'
+        remedy = f"{did_you_mean(name, known)} {there}".strip()
         raise InputError(f'no load case is called "{name}"', remedy, "load_cases")
-    common, own = wall.loads, wall.load_cases[name]
-    dead = Load(
-        body=[*common.dead.body, *own.dead.body],
-        points=[*common.dead.points, *own.dead.points],
-        pressures=[*common.dead.pressures, *own.dead.pressures],
-    )
-    gravity = common.gravity if own.gravity is None else own.gravity
-    loads = own.model_copy(update={"gravity": gravity, "dead": dead})
-    return wall.model_copy(update={"loads": loads, "load_cases": {}})
+    own, factor = known[name].own, known[name].common
+    gravity = wall.loads.gravity if own.gravity is None else own.gravity
+    if factor != 1.0:
+        x, y = wall.loads.gravity_per_weight
+        gravity = (factor * x, factor * y)
+    loads = own.model_copy(update={"gravity": gravity, "dead": together(times(wall.loads.dead, factor), own.dead)})
+    return wall.model_copy(update={"loads": loads, "load_cases": {}, "travelling": {}, "combinations": {}})
 
 
-def build_load_case(wall: Wall, load_case: str, name: str = "wall") -> Built:
+def build_load_case(
+    wall: Wall, load_case: str, name: str = "wall", known: dict[str, NamedLoads] | None = None
+) -> Built:
     """The assembly of a wall under one of its load cases.
 
     Raises:
         InputError: as `build`, with the place where the file says it.
     """
     try:
-        return build(under_load_case(wall, load_case), name)
+        return build(under_load_case(wall, load_case, known), name)
     except InputError as error:
         for fault in error.faults:
-            fault.element = _in_the_file(fault.element, wall, load_case)
+            fault.element = _in_the_file(fault.element, wall, load_case, known)
         raise_faults(error.faults)
         raise
 
 
-def _in_the_file(element: str, wall: Wall, load_case: str) -> str:
+def _in_the_file(element: str, wall: Wall, load_case: str, known: dict[str, NamedLoads] | None) -> str:
     """The place of a load in the file, where `element` is that of the wall under one load case."""
     found = re.fullmatch(r"loads\.(dead|live)(?:\.(\w+)(?:\[(\d+)\])?)?", element)
     if found is None:
         return element
+    if load_case not in wall.load_cases:
+        return known[load_case].place if known and load_case in known else element
     kind, group, number = found.groups()
     if kind == "dead" and number is not None:
         common = len(getattr(wall.loads.dead, group))
@@ -75,17 +167,18 @@ def load_cases_of(case: Case, name: str | None = None) -> list[Case]:
     Raises:
         InputError: there is no such load case, or one of them cannot be built.
     """
-    if name is None and not case.wall.load_cases:
+    if name is None and not case.wall.load_case_fields:
         return [case]
     try:
-        return [_one(case, each) for each in (list(case.wall.load_cases) if name is None else [name])]
+        known = named_loads(case.wall)
+        return [_one(case, each, known) for each in (list(known) if name is None else [name])]
     except InputError as error:
         error.source = error.source or case.origin
         raise
 
 
-def _one(case: Case, name: str) -> Case:
-    wall = under_load_case(case.wall, name)
+def _one(case: Case, name: str, known: dict[str, NamedLoads]) -> Case:
+    wall = under_load_case(case.wall, name, known)
     update: dict[str, Any] = {
         "id": f"{case.id}-{name}",
         "title": f"{case.file.title}, load case {name}",
@@ -101,5 +194,5 @@ def _one(case: Case, name: str) -> Case:
         load_case=name,
     )
     # Built here once, where the places of its faults in the file are known: `Case.built` keeps it.
-    found.__dict__["built"] = build_load_case(case.wall, name, found.id)
+    found.__dict__["built"] = build_load_case(case.wall, name, found.id, known)
     return found

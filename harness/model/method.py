@@ -2,12 +2,9 @@
 
 from __future__ import annotations
 
-import math
-import signal
 from abc import ABC, abstractmethod
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager, suppress
-from contextvars import ContextVar
 from dataclasses import dataclass, field
 from enum import StrEnum
 from functools import cache
@@ -19,41 +16,11 @@ import numpy as np
 from pydantic import BaseModel, ConfigDict, Field
 
 from harness.model.assembly import Assembly, FloatArray
-from harness.model.errors import InputError
-
-
-class OutOfTime(Exception):
-    """Raised inside `solve` shortly before the time limit of a run.
-
-    A method that catches it can still say how far it came, with status `not_converged`; the engine waits for that
-    answer until the limit. A method that lets it pass is listed as `timeout`.
-    """
-
-
-def seconds_left() -> float:
-    """Seconds until `OutOfTime` is raised in this process, for libraries that hear of it only when they return [s].
-
-    Infinite where no limit was set.
-    """
-    return signal.getitimer(signal.ITIMER_REAL)[0] or math.inf
-
-
-_processes: ContextVar[int] = ContextVar("processes", default=1)
-
-
-def processes_allowed() -> int:
-    """Processes that a run may use side by side, one unless the user allows more; its answer is the same with any."""
-    return _processes.get()
-
-
-@contextmanager
-def allowing(processes: int) -> Iterator[None]:
-    """Allow the runs made inside so many processes each."""
-    token = _processes.set(processes)
-    try:
-        yield
-    finally:
-        _processes.reset(token)
+from harness.model.errors import InputError, first_few
+from harness.model.run_context import OutOfTime as OutOfTime
+from harness.model.run_context import allowing as allowing
+from harness.model.run_context import processes_allowed as processes_allowed
+from harness.model.run_context import seconds_left as seconds_left
 
 
 class Status(StrEnum):
@@ -156,6 +123,7 @@ class Traits(BaseModel):
         any_self_stress: it lets joints carry any self-stress that statics and friction allow; others start without.
         any_dilatancy: it follows the dilatancy that a wall gives its joints; other methods refuse such a wall.
         any_strength: it takes joints with cohesion and tensile strength; other methods refuse such a wall.
+        any_bars: it takes ties and props; other methods refuse such a wall.
         moves_no_lower: it measures when rigid blocks on even faces move (`details["lowest_moving"]`): where theory
             knows the least multiplier, moving below it is an error.
         colour: of its curves, as "#rrggbb"; empty: the drawing chooses.
@@ -175,6 +143,7 @@ class Traits(BaseModel):
     any_self_stress: bool = False
     any_dilatancy: bool = False
     any_strength: bool = False
+    any_bars: bool = False
     moves_no_lower: bool = False
     colour: str = Field(default="", pattern="^(#[0-9a-f]{6})?$")
     marker: str = ""
@@ -228,17 +197,23 @@ class Method(Solver):
         shares_work: it makes parts of a run side by side where `processes_allowed()` is more than one; its answer must
             be the same to the bit.
         follows_motions: it takes up mechanisms that were found on other walls (`solve_from`).
+        version: of what solves, where that is no installed package; it stands among the versions of its results.
     """
 
     name: str
     family: str
     title: str
     tolerance: float
+    version: str = ""
     Settings: type[Settings] = Settings
     traits: Traits = Traits()
     fresh_process: bool = False
     shares_work: bool = False
     follows_motions: bool = False
+
+    def processes_kept(self) -> list[int]:
+        """Numbers of processes that it keeps from run to run: their time and memory are those of its runs too."""
+        return []
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -279,8 +254,8 @@ class Listed(Method):
 def check_takes(method: Method, assembly: Assembly) -> None:
     """Refuse a wall with joints or supports that a method does not take.
 
-    Dilatancy and strength of joints are taken by methods whose traits say so; supports that move are taken by none yet,
-    only by the programmes of `methods.la`.
+    Dilatancy and strength of joints, ties and props are taken by methods whose traits say so; supports that move are
+    taken by none yet, only by the programmes of `methods.la`.
 
     Raises:
         InputError: the wall has such joints or supports.
@@ -304,6 +279,11 @@ def check_takes(method: Method, assembly: Assembly) -> None:
             f"Take a method that knows the strength of joints ({', '.join(methods_with('any_strength'))}), or leave "
             "cohesion and tensile strength out",
         )
+    if len(assembly.bars) and not method.traits.any_bars:
+        raise InputError(
+            f"{method.name} takes no ties and props; the wall has {first_few(assembly.bars.names, 4)}",
+            f"Take a method that knows them ({', '.join(methods_with('any_bars'))}), or leave them out",
+        )
     if np.any(assembly.support_motion):
         block = int(np.argmax(np.any(assembly.support_motion, axis=1)))
         raise InputError(
@@ -313,17 +293,27 @@ def check_takes(method: Method, assembly: Assembly) -> None:
 
 
 GROUP = "drystone.methods"
+UNLISTED = "drystone.unlisted_methods"
+"""Group of entry points of methods that run by name and stand in no list."""
 
 
 @cache
 def method_points() -> tuple[EntryPoint, ...]:
     """The entry points of all installed methods; looked for once in a process."""
-    return tuple(entry_points(group=GROUP))
+    return (*entry_points(group=GROUP), *entry_points(group=UNLISTED))
 
 
 def method_names() -> list[str]:
-    """Names of all installed methods, sorted."""
-    return sorted({point.name for point in method_points()})
+    """Names of all methods, sorted: the installed ones and the programs of `methods.toml`."""
+    from harness.model.foreign.register import programs
+
+    return sorted({point.name for point in method_points()} | set(programs()))
+
+
+def listed_methods() -> list[str]:
+    """Names of the methods that users choose from, sorted."""
+    unlisted = {point.name for point in method_points() if point.group == UNLISTED}
+    return [name for name in method_names() if name not in unlisted]
 
 
 def methods_with(trait: str) -> list[str]:
@@ -340,16 +330,21 @@ def load_method(name: str) -> Method:
     """The method of this name.
 
     Raises:
-        KeyError: no installed method has this name; the message lists those there are.
-        InputError: its package is there but cannot be loaded, or brings no method.
+        KeyError: no method has this name; the message lists those there are.
+        InputError: its package or program is there but cannot be loaded, or brings no method.
     """
     for point in method_points():
         if point.name == name:
             with _loading(name):
-                found = point.load()
-                made = found() if callable(found) else found
+                brought = point.load()
+                made = brought() if callable(brought) else brought
             return checked_method(made, f"method {name}")
-    raise KeyError(f"no method is called {name!r}; there are: {', '.join(method_names())}")
+    from harness.model.foreign.program_method import method_named
+
+    found = method_named(name)
+    if found is None:
+        raise KeyError(f"no method is called {name!r}; there are: {', '.join(listed_methods())}")
+    return found
 
 
 def checked_method(found: object, element: str = "method") -> Method:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator
 from typing import Any
 
-from harness.model.errors import InputError, Spot, did_you_mean
+from harness.model.errors import MOST_NAMED, InputError, Spot, did_you_mean, first_few
 from harness.model.wall import Block, Detection, Friction, Load, Wall
 
 MOST_COMPARED = 2000
@@ -42,7 +42,7 @@ def faults_of_wall(wall: Wall, blocks: list[Block]) -> list[InputError]:
 
 def _groups_and_supports(wall: Wall, blocks: list[Block]) -> list[InputError]:
     """Loads of groups that no block is in, and of blocks that cannot move."""
-    groups = sorted({group for block in blocks for group in block.groups})
+    groups = {group for block in blocks for group in block.groups}
     fixed = {block.id for block in blocks if block.fixed}
     faults = []
     for where, load in (("loads.dead", wall.loads.dead), ("loads.live", wall.loads.live or Load())):
@@ -50,7 +50,9 @@ def _groups_and_supports(wall: Wall, blocks: list[Block]) -> list[InputError]:
         grouped += [(f"{where}.pressures[{number}]", pressure.group) for number, pressure in enumerate(load.pressures)]
         for place, group in grouped:
             if group is not None and group not in groups:
-                remedy = f"{did_you_mean(group, groups)} Groups of this wall: {', '.join(groups) or 'none'}"
+                known = sorted(groups)[:MOST_COMPARED]
+                there = first_few(known, MOST_NAMED) or "none"
+                remedy = f"{did_you_mean(group, known)} Groups of this wall: {there}"
                 faults.append(InputError(f'no block is in a group "{group}"', remedy.strip(), place))
         for number, pressure in enumerate(load.pressures):
             for name in sorted(fixed.intersection(pressure.blocks or ())):
@@ -61,6 +63,12 @@ def _groups_and_supports(wall: Wall, blocks: list[Block]) -> list[InputError]:
                 problem, place = f'block "{point.block}" is fixed', f"{where}.points[{number}]"
                 spot = Spot((point.block,), point.at)
                 faults.append(InputError(problem, "Load a block that is free to move", place, spot=spot))
+    for kind, bars in (("ties", wall.ties), ("props", wall.props)):
+        for number, bar in enumerate(bars):
+            ends = (bar.start.block, bar.end.block)
+            if fixed.issuperset(ends):
+                remedy = "Join a block that is free to move to another or to a fixed one"
+                faults.append(InputError("both of its blocks are fixed", remedy, f"{kind}[{number}]", spot=Spot(ends)))
     return faults
 
 
@@ -86,6 +94,12 @@ def _named(wall: Wall) -> Iterator[tuple[str, str]]:
         for number, pressure in enumerate(load.pressures):
             for name in pressure.blocks or ():
                 yield f"{where}.pressures[{number}]", name
+    for kind, bars in (("ties", wall.ties), ("props", wall.props)):
+        for number, bar in enumerate(bars):
+            yield from ((f"{kind}[{number}].{end}", at.block) for end, at in (("from", bar.start), ("to", bar.end)))
+    for title, travelling in wall.travelling.items():
+        for name in travelling.blocks or ():
+            yield f"travelling.{title}", name
     for number, settlement in enumerate(wall.settlements):
         for name in settlement.blocks or ():
             yield f"settlements[{number}]", name

@@ -9,10 +9,11 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
+from dataclasses import dataclass
 
 import numpy as np
 
-from harness.model.assembly import FloatArray
+from harness.model.assembly import BoolArray, FloatArray, IntArray
 from harness.model.errors import InputError
 from harness.model.geometry import following
 from harness.model.pressure_fields import Earth, Pressure, Water
@@ -29,10 +30,25 @@ def earth_coefficient(earth: Earth) -> float:
     return (1.0 - sine) / (1.0 + sine) if earth.state == "active" else 1.0 - sine
 
 
+@dataclass(frozen=True, eq=False)
+class Outlines:
+    """The edges of all blocks: ends (e, 2) and (e, 2) [length], counter-clockwise, and the block (e,) of each."""
+
+    first: FloatArray
+    last: FloatArray
+    block: IntArray
+
+
+def outlines_of(polygons: Sequence[FloatArray]) -> Outlines:
+    """The edges of counter-clockwise polygons (k, 2)."""
+    block = np.repeat(np.arange(len(polygons)), [len(polygon) for polygon in polygons])
+    return Outlines(np.concatenate(polygons), np.concatenate([following(polygon) for polygon in polygons]), block)
+
+
 def pressure_forces(
     pressure: Pressure,
-    chosen: Sequence[int],
-    polygons: Sequence[FloatArray],
+    chosen: BoolArray,
+    outlines: Outlines,
     centroids: FloatArray,
     thickness: Sequence[float],
     unit_weight_factor: float,
@@ -43,8 +59,8 @@ def pressure_forces(
 
     Args:
         pressure: along its segment.
-        chosen: numbers of the blocks it may act on.
-        polygons: counter-clockwise outlines (k, 2) of all n blocks [length].
+        chosen: (n,) whether it may act on a block.
+        outlines: of all blocks.
         centroids: (n, 2) of the blocks [length].
         thickness: (n,) out of plane [length].
         unit_weight_factor: what a unit weight of the file is multiplied with to be in force/length^3.
@@ -57,7 +73,7 @@ def pressure_forces(
     start, end = np.array(pressure.start), np.array(pressure.end)
     length = float(np.hypot(*(end - start)))
     along = (end - start) / length
-    faces = _faces_along(start, along, length, chosen, polygons, ON_FACE * size)
+    faces = _faces_along(start, along, length, chosen, outlines, ON_FACE * size)
     _check_cover(faces, start, along, length, ON_FACE * size, place)
     forces = np.zeros((len(centroids), 3))
     for first, last, block, side in faces:
@@ -65,7 +81,8 @@ def pressure_forces(
         for begins, ends in _cut_at_level(pressure, start, along, first, last):
             points = start + np.outer([begins, ends], along)
             traction = _traction(pressure, points, [begins / length, ends / length], inward, unit_weight_factor)
-            extent = pressure.factor * thickness[block] * (ends - begins)
+            deep = thickness[block] if pressure.line_load is None else 1.0
+            extent = pressure.factor * deep * (ends - begins)
             weighted = np.array([[2.0, 1.0], [1.0, 2.0]]) @ traction
             arm = points - centroids[block]
             moment = float((arm[:, 0] * weighted[:, 1] - arm[:, 1] * weighted[:, 0]).sum())
@@ -74,24 +91,17 @@ def pressure_forces(
 
 
 def _faces_along(
-    start: FloatArray,
-    along: FloatArray,
-    length: float,
-    chosen: Sequence[int],
-    polygons: Sequence[FloatArray],
-    tolerance: float,
+    start: FloatArray, along: FloatArray, length: float, chosen: BoolArray, outlines: Outlines, tolerance: float
 ) -> list[tuple[float, float, int, float]]:
     """Parts of the segment on edges: from and to along it, the block, and 1 where its inside is to the left, or -1."""
     found = []
-    for block in chosen:
-        ends = np.stack([polygons[block], following(polygons[block])]) - start
-        off = abs(along[0] * ends[..., 1] - along[1] * ends[..., 0]).max(axis=0)
-        places = ends @ along
-        for edge in np.flatnonzero(off <= tolerance).tolist():
-            a, b = places[:, edge].tolist()
-            first, last = max(0.0, min(a, b)), min(length, max(a, b))
-            if last - first > tolerance:
-                found.append((first, last, block, 1.0 if b > a else -1.0))
+    ends = np.stack([outlines.first, outlines.last]) - start
+    off = abs(along[0] * ends[..., 1] - along[1] * ends[..., 0]).max(axis=0)
+    for edge in np.flatnonzero((off <= tolerance) & chosen[outlines.block]).tolist():
+        a, b = (ends[:, edge] @ along).tolist()
+        first, last = max(0.0, min(a, b)), min(length, max(a, b))
+        if last - first > tolerance:
+            found.append((first, last, int(outlines.block[edge]), 1.0 if b > a else -1.0))
     return sorted(found)
 
 
@@ -145,7 +155,12 @@ def _cut_at_level(
 def _traction(
     pressure: Pressure, points: FloatArray, shares: Sequence[float], inward: FloatArray, unit_weight_factor: float
 ) -> FloatArray:
-    """Forces (2, 2) per area at two points (2, 2) of a face, where `shares` (2,) of the segment lie behind them."""
+    """Forces (2, 2) per area, of a line load per length, at two points (2, 2) of a face.
+
+    `shares` (2,) of the segment lie behind them.
+    """
+    if pressure.line_load is not None:
+        return np.tile(pressure.line_load, (2, 1))
     if pressure.water is not None:
         depth = np.maximum(0.0, pressure.water.level - points[:, 1])
         return np.outer(unit_weight_factor * pressure.water.unit_weight * depth, inward)

@@ -1,4 +1,4 @@
-"""Pressure on faces of blocks as a wall file gives it: uniform, linear, of water or of earth."""
+"""Pressure on faces of blocks as a wall file gives it: uniform, linear, of water or of earth; and line loads."""
 
 from __future__ import annotations
 
@@ -39,7 +39,7 @@ class Earth(Strict):
 
 
 class Pressure(Strict):
-    """Pressure on the faces of blocks along a segment, pushing into the blocks."""
+    """Pressure on the faces of blocks along a segment, pushing into the blocks; or a line load on them."""
 
     start: Point = Field(alias="from", description="one end of the loaded segment, on a face")
     end: Point = Field(alias="to", description="its other end")
@@ -49,12 +49,16 @@ class Pressure(Strict):
     linear: Annotated[tuple[Number, Number] | None, Field(description="pressure at `from` and `to`")] = None
     water: Water | None = None
     earth: Earth | None = None
+    line_load: Point | None = Field(
+        None, description="(x, y) [force/length], in this direction whatever the face and the thickness"
+    )
     factor: Number = Field(1.0, description="multiple of it that acts; negative: the other way")
 
     @model_validator(mode="after")
     def _one_kind(self) -> Pressure:
-        if sum(kind is not None for kind in (self.uniform, self.linear, self.water, self.earth)) != 1:
-            raise ValueError("a pressure gives exactly one of uniform, linear, water, earth")
+        kinds = (self.uniform, self.linear, self.water, self.earth, self.line_load)
+        if sum(kind is not None for kind in kinds) != 1:
+            raise ValueError("a pressure gives exactly one of uniform, linear, water, earth, line_load")
         if self.blocks is not None and self.group is not None:
             raise ValueError("a pressure names either blocks or group, not both")
         if self.start == self.end:

@@ -10,13 +10,13 @@ import stat
 from collections import Counter
 from collections.abc import Callable
 from pathlib import Path
-from typing import Any, TypeVar
+from typing import IO, Any, TypeVar
 
 from pydantic import BaseModel, ValidationError
 
 from harness.model.broken_json import MOST_SHOWN, broken
 from harness.model.build import Built, build
-from harness.model.errors import InputError, did_you_mean, raise_faults
+from harness.model.errors import MOST_WORDED, InputError, did_you_mean, raise_faults
 from harness.model.fields import MOST_BLOCKS
 from harness.model.names import faults_of_data
 from harness.model.scope import SCOPE, outside_the_model
@@ -84,7 +84,7 @@ def read_bytes(path: Path, limit: int = LARGEST_FILE) -> bytes:
             status = os.fstat(file.fileno())
             if not stat.S_ISREG(status.st_mode):
                 raise InputError("it is not a regular file", "Write its content to a file first", source=source)
-            content = file.read(limit + 1) if status.st_size <= limit else b""
+            content = _up_to(limit + 1, file) if status.st_size <= limit else b""
     except FileNotFoundError:
         raise InputError("there is no such file", "Check the path", source=source) from None
     except (OSError, ValueError) as error:
@@ -98,6 +98,14 @@ def read_bytes(path: Path, limit: int = LARGEST_FILE) -> bytes:
             source=source,
         )
     return content
+
+
+def _up_to(most: int, file: IO[bytes]) -> bytes:
+    """So many bytes of a file at most; `read` of so many would reserve memory for all of them."""
+    content = bytearray()
+    while len(content) < most and (part := file.read(min(most - len(content), 2**20))):
+        content += part
+    return bytes(content)
 
 
 def _without_waiting(path: str, flags: int) -> int:
@@ -238,11 +246,15 @@ def validate(
     try:
         return model.model_validate(data)
     except ValidationError as error:
-        found = error.errors()
-        faults = [_fault(model, data, fault, source) for fault in found if fault["loc"]] + more(data)
+        found = error.errors(include_url=False)
+        beyond = max(0, len(found) - MOST_WORDED)
+        found = found[:MOST_WORDED]
+        faults = [_fault(model, data, fault, source) for fault in found if fault["loc"]]
+        if not beyond:
+            faults += more(data)
         faults = faults or [_fault(model, data, fault, source) for fault in found]
         first_of_place = {fault.element: fault for fault in reversed(faults)}.values()
-        raise_faults(sorted(first_of_place, key=lambda fault: _order(fault.element, data)), source)
+        raise_faults(sorted(first_of_place, key=lambda fault: _order(fault.element, data)), source, beyond)
         raise AssertionError("a validation error has faults") from None
 
 

@@ -156,27 +156,28 @@ def residual_of(result: Result) -> Result | None:
         return None
 
 
-def measured_width(answer: Answer) -> float | None:
-    """Width of the bracket of a measured multiplier as a share of its upper end; None without one, or at zero."""
-    if answer.flow != "approximate" or answer.bracket is None or not answer.multiplier:
-        return None
-    low, high = answer.bracket
-    return abs(high - low) / max(abs(low), abs(high))
+def measured_bracket(answer: Answer | Result) -> tuple[float, float] | None:
+    """The bracket between whose ends a multiplier was measured; None without one.
+
+    The zero of a wall at its limit is no measurement: statics shows it (`harness.model.limit`).
+    """
+    return answer.bracket if answer.flow == "approximate" and answer.finding is not Finding.AT_LIMIT else None
 
 
-def _is_wide(answer: Answer, traits: Traits) -> bool:
-    return (
-        answer.bracket is not None and measured_width(answer) is not None and exceeds_accuracy(answer.bracket, traits)
-    )
+def measured_width(answer: Answer | Result) -> float | None:
+    """Width of the bracket of a measured multiplier as a share of its larger end; None without one, or at zero."""
+    low, high = measured_bracket(answer) or (0.0, 0.0)
+    larger = max(abs(low), abs(high))
+    return abs(high - low) / larger if larger > 0.0 else None
 
 
-def exceeds_accuracy(bracket: tuple[float, float], traits: Traits) -> bool:
+def bracket_is_wide(answer: Answer | Result, traits: Traits) -> bool:
     """Whether a measured bracket is wide: its middle is no value of the multiplier within what its method states.
 
     Within the stated accuracy the middle lies at most that far from either end. There is no other notion of "wide":
     every output marks such a bracket, and studies leave it out of means.
     """
-    low, high = bracket
+    low, high = measured_bracket(answer) or (0.0, 0.0)
     return high - low > max(traits.accuracy * abs(low + high), traits.resolution) * (1.0 + 1e-9)
 
 
@@ -255,7 +256,7 @@ def result_of(
         bracket=answer.bracket,
         bracket_meaning=answer.bracket_meaning,
         bracket_width=width,
-        bracket_wide=_is_wide(answer, traits or Traits()),
+        bracket_wide=bracket_is_wide(answer, traits or Traits()),
         blocks=assembly.n_free,
         interfaces=assembly.n_interfaces,
         iterations=int(answer.iterations),

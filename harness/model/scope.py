@@ -20,9 +20,9 @@ _OUTSIDE = {
         "displacement", "displacements", "prescribed_displacement", "support_movement",
         "spread", "spreading", "rotation",
     ),
-    "ties, reinforcement and props": (
-        "tie", "ties", "tie_rod", "anchor", "anchors", "reinforcement", "rebar", "prop", "props", "spring", "springs",
-        "cable", "cables", "frp", "prestress", "post_tension",
+    "reinforcement and springs (ties and props are fields, of bars that yield)": (
+        "tie_rod", "anchor", "anchors", "reinforcement", "rebar", "spring", "springs", "cable", "cables", "frp",
+        "post_tension",
     ),
     "soil and water (their pressure on faces is a field, pressures of a load)": (
         "backfill", "fill", "soil", "earth", "earth_pressure", "foundation", "water", "pore_pressure", "uplift",

@@ -9,6 +9,7 @@ from operator import attrgetter
 import numpy as np
 
 from harness.model.assembly import Assembly, FloatArray
+from harness.model.bars import bar_tensions
 from harness.model.case import Case
 from harness.model.result import Result
 from harness.model.table import TableColumn
@@ -53,14 +54,19 @@ REACTIONS: tuple[ReactionColumn, ...] = (
 """Columns of reactions; their units are kinds, which `harness.model.table.in_units` replaces by the units of a wall."""
 
 
-def support_reactions(assembly: Assembly, forces: FloatArray, flat: float = 1e-9) -> list[SupportReaction]:
-    """The reaction of each support that has a joint.
+def support_reactions(
+    assembly: Assembly, forces: FloatArray, flat: float = 1e-9, tension: FloatArray | None = None
+) -> list[SupportReaction]:
+    """The reaction of each support that has a joint, a tie or a prop.
 
     Args:
         assembly: the wall.
         forces: contact forces (m, 3) [force], tension included.
         flat: share of the vertical part in a force below which its line of action counts as level.
+        tension: (k,) of the ties and props, prestress included [force]; None: they bear none.
     """
+    bars = assembly.bars
+    pull = np.zeros((len(bars), 2)) if tension is None else np.asarray(tension)[:, None] * bars.axis
     forces = np.asarray(forces, dtype=float).reshape(-1, 3)
     # The forces of a on b at end 1 and at end 2 (m, 2, 2); shear acts along the line through both.
     at_ends = forces[:, :2, None] * assembly.normal[:, None]
@@ -70,12 +76,16 @@ def support_reactions(assembly: Assembly, forces: FloatArray, flat: float = 1e-9
     for block in np.flatnonzero(assembly.fixed):
         is_a, is_b = assembly.block_a == block, assembly.block_b == block
         chosen = np.flatnonzero(is_a | is_b)
-        if not len(chosen):
+        starts, stops = bars.block_a == block, bars.block_b == block
+        if not len(chosen) and not (starts | stops).any():
             continue
-        vectors = np.where(is_a[chosen], 1.0, -1.0)[:, None, None] * at_ends[chosen]
+        # Of joints two vectors each at their ends; of bars one each, which pulls at the wall away from their other end.
+        vectors = (np.where(is_a[chosen], 1.0, -1.0)[:, None, None] * at_ends[chosen]).reshape(-1, 2)
+        vectors = np.concatenate([vectors, -pull[starts], pull[stops]])
         centroid = assembly.centroid[block]
-        arms = ends[chosen] - centroid
-        fx, fy = (float(part) for part in vectors.sum(axis=(0, 1)))
+        points = [ends[chosen].reshape(-1, 2), bars.end1[starts], bars.end2[stops]]
+        arms = np.concatenate(points) - centroid
+        fx, fy = (float(part) for part in vectors.sum(axis=0))
         moment = float((arms[..., 0] * vectors[..., 1] - arms[..., 1] * vectors[..., 0]).sum())
         x = y = None
         if abs(fy) > flat * float(np.hypot(fx, fy)):
@@ -89,12 +99,15 @@ def reactions_of(case: Case, result: Result) -> list[SupportReaction]:
     """The reactions of an answer, at its `forces_multiplier`; none where it has no contact forces of this wall."""
     if result.forces is None or len(result.forces) != case.assembly.n_interfaces:
         return []
-    return support_reactions(case.assembly, np.asarray(result.forces, dtype=float))
+    tension = bar_tensions(case.assembly, result)
+    return support_reactions(case.assembly, np.asarray(result.forces, dtype=float), tension=tension)
 
 
 def out_of_balance(assembly: Assembly, listed: Sequence[SupportReaction], multiplier: float) -> float:
     """Largest part of the loads on free blocks that the reactions do not balance, relative to the loads."""
-    loads = (assembly.dead + multiplier * assembly.live)[assembly.free]
+    bars = assembly.bars
+    prestress = bars.generalised(bars.prestress, assembly.centroid) if len(bars) else 0.0  # of dead load, not outside
+    loads = (assembly.dead - prestress + multiplier * assembly.live)[assembly.free]
     taken = np.array([(reaction.fx, reaction.fy) for reaction in listed]).reshape(-1, 2).sum(axis=0)
     left = loads[:, :2].sum(axis=0) + taken
     return float(np.linalg.norm(left) / max(float(np.linalg.norm(loads[:, :2], axis=1).sum()), 1e-300))

@@ -12,13 +12,17 @@ from typing import Annotated, Any, Literal, Protocol
 
 from pydantic import BaseModel, Discriminator, Field, StrictBool, Tag, model_validator
 
+from harness.model.bar_fields import Prop, Tie
 from harness.model.fields import Angle, Coefficient, Name, NonNegative, Number, Point, Positive, Strict
+from harness.model.load_case_fields import DEAD, Combination, Travelling
 from harness.model.pattern_fields import Pattern
 from harness.model.pressure_fields import Pressure
 from harness.model.units import DIMENSIONLESS, KILONEWTONS, METRES, ForceUnit, LengthUnit, unit_weight_in_kn_m3
 
 MOST_VERTICES = 5_000
 """Of one outline: joints of two faces are found in time that grows with the square of their vertices."""
+MOST_LOAD_CASES = 500
+"""Each is built, and answered, as a wall of its own."""
 LOAD_CASE_NAME = r"[a-z0-9][a-z0-9-]{0,59}"
 """A load case is part of the id of a case, which users type."""
 TAGS = ONE, MANY, OBJECT, OTHER = "(one)", "(many)", "(object)", "(other)"
@@ -361,6 +365,8 @@ class Wall(Strict):
     title: str = ""
     units: Units = Field(default_factory=Units)
     metadata: dict[str, Any] = Field(default_factory=dict, description="free: source, author, remarks")
+    schema_address: str = Field("", alias="$schema", description="for editors that check and complete a file")
+    comment: str | list[str] = Field("", description="free: remarks of the author")
     doubts: list[str] = Field(
         default_factory=list,
         description="what was ignored or assumed when the drawing was imported; a warning with every answer",
@@ -377,11 +383,21 @@ class Wall(Strict):
     contact_inset: Inset | None = None
     loads: Loads = Field(default_factory=Loads)
     load_cases: dict[str, Loads] = Field(
-        default_factory=dict, description="by name, each on top of the gravity and the dead load of `loads`"
+        default_factory=dict,
+        max_length=MOST_LOAD_CASES,
+        description="by name, each on top of the gravity and the dead load of `loads`",
+    )
+    travelling: dict[str, Travelling] = Field(
+        default_factory=dict, description="by name, each a load case for every place of the force: NAME-1, NAME-2, ..."
+    )
+    combinations: dict[str, Combination] = Field(
+        default_factory=dict, description="by name, each a load case that adds others with factors"
     )
     settlements: list[Settlement] = Field(
         default_factory=list, description="supports that move; asked about by `drystone reaction` alone"
     )
+    ties: list[Tie] = Field(default_factory=list, description="bars that bear tension alone")
+    props: list[Prop] = Field(default_factory=list, description="bars that bear compression alone")
 
     @model_validator(mode="after")
     def _one_friction(self) -> Wall:
@@ -401,16 +417,27 @@ class Wall(Strict):
 
     @model_validator(mode="after")
     def _load_cases_named(self) -> Wall:
-        if self.load_cases and self.loads.live is not None:
+        named = [*self.load_cases, *self.travelling, *self.combinations]
+        if named and self.loads.live is not None:
             raise ValueError(
                 "loads.live beside load_cases: a load case has a live load of its own, so name this one there too"
             )
-        for name in self.load_cases:
+        twice = next((name for name in named if named.count(name) > 1), None)
+        if twice is not None:
+            raise ValueError(f'"{twice}" names two of load_cases, travelling and combinations: give each its own name')
+        if self.combinations and DEAD in named:
+            raise ValueError(f'"{DEAD}" is gravity and the dead load in combinations: give the load case another name')
+        for name in named:
             if re.fullmatch(LOAD_CASE_NAME, name) is None:
                 raise ValueError(
                     f'"{name}" is no name of a load case: give small letters, digits and hyphens, as "snow-left"'
                 )
         return self
+
+    @property
+    def load_case_fields(self) -> list[str]:
+        """Names of what makes load cases: those written out, loads that travel, combinations; empty without any."""
+        return [*self.load_cases, *self.travelling, *self.combinations]
 
     @property
     def units_declared(self) -> bool:

@@ -14,7 +14,7 @@ from methods.de.engines.engine import Engine
 from methods.de.engines.mass_scaling import MassScaling, courses, insertion_orders, tunings
 from methods.de.holds.bracket_state import BracketState, stopped_answer
 from methods.de.holds.motion import StaticLimit
-from methods.de.holds.order_bracket import BRACKET, BracketSearch, OrderBracket, held_forces, mechanism_at
+from methods.de.holds.order_bracket import LOOSE, BracketSearch, OrderBracket, held_forces, mechanism_at
 from methods.de.settings import HoldSettings
 
 BRACKET_MEANING = (
@@ -223,7 +223,7 @@ def _collapse(brackets: list[OrderBracket]) -> Answer:
     status = Status.OK
     # Beside a range that the orders leave open, what one of them leaves open is as small as it is to that range.
     widest = max(0.0 if b.nothing else ((b.moving or 0.0) - (b.held or 0.0)) / high for b in complete)
-    if len(complete) < len(brackets) or widest > BRACKET.loose:
+    if len(complete) < len(brackets) or widest > LOOSE:
         status = Status.NOT_CONVERGED
         sentence += f"; not converged: {len(brackets) - len(complete)} orders without a moving state, widest bracket "
         sentence += f"{100 * widest:.2g} %"

@@ -13,7 +13,7 @@ from typing import Any
 
 from harness.model.assembly import Assembly
 from harness.model.method import Answer, Finding, Solver, Status, load_method
-from methods.de.settings import FALL, ClosedSettings
+from methods.de.settings import REACH, ClosedSettings
 from methods.de.uneven.gapped import GappedWall, load_gapped
 from methods.de.uneven.settled_contacts import load_uneven, settle_uneven
 from methods.de.uneven_blocks import BRACKET_MEANING
@@ -38,7 +38,7 @@ class ClosedContacts(Solver):
             sentence = f"{wall} did not come to rest under its dead load, so its contacts are not determined."
             return Answer(Status.NOT_CONVERGED, Finding.NONE, sentence, details=details)
         try:
-            gapped = GappedWall(assembly, settled.outlines, settled.settlement, FALL.reach)
+            gapped = GappedWall(assembly, settled.outlines, settled.settlement, REACH)
         except ValueError as error:
             return Answer(Status.REFUSED, Finding.NONE, f"Its gaps cannot be measured: {error}.")
         began = time.process_time()

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import Literal
 
 from pydantic import Field
@@ -12,20 +11,14 @@ from harness.model.method import Settings
 Faces = Literal["beds", "heads", "both"]
 
 
-@dataclass(frozen=True)
-class FallTests:
-    """When a wall that keeps its displacements falls.
+REACH = 0.25
+"""Length scales by which a block moves under one load where a wall that keeps its displacements falls."""
 
-    Attributes:
-        reach: length scales by which a block moves under one load.
-        rise: factor on the rise of the multiplier from one that shows no motion to the next.
-    """
+RISE = 2.0
+"""Factor on the rise of the multiplier from one that shows no motion to the next."""
 
-    reach: float = 0.25
-    rise: float = 2.0
-
-
-FALL = FallTests()
+LOOK = 500
+"""Time steps from one look to the next at a hold of a wall with deformable joints."""
 
 
 class HoldSettings(Settings):
@@ -159,44 +152,6 @@ class ClosedSettings(UnevenSettings):
     compare: bool = True
 
 
-@dataclass(frozen=True)
-class JointDefaults:
-    """Joints where none are given: as good as rigid on low walls.
-
-    Attributes:
-        stiffness: in mean dead loads of a block over the square of the length scale.
-        rounding: radius of corners, in length scales.
-    """
-
-    stiffness: float = 1e6
-    rounding: float = 2e-4
-
-
-@dataclass(frozen=True)
-class SoftHoldTuning:
-    """Holds of a wall with deformable joints.
-
-    Attributes:
-        look: time steps from one look at a hold to the next.
-        low: courses up to which a hold is no longer than `hold_steps`; above, with the square of the courses.
-        patience: multiple of the length of a hold that the dead load has.
-        away: multiple of what the blocks had moved at the last rest from which it is asked whether the wall falls.
-        share: of a small multiplier to which its bracket is narrowed.
-        beyond: first relative rise above a multiplier that could not be told; it doubles until the wall falls.
-    """
-
-    look: int = 500
-    low: int = 7
-    patience: int = 10
-    away: float = 300.0
-    share: float = 2e-3
-    beyond: float = 2e-3
-
-
-JOINTS = JointDefaults()
-SOFT_HOLDS = SoftHoldTuning()
-
-
 class SoftSettings(Settings):
     """The joints, the corners, and how the load is raised.
 
@@ -232,8 +187,8 @@ class SoftSettings(Settings):
     load_cap: float = Field(default=100.0, gt=0.0)
     accuracy: float = Field(default=5e-4, gt=0.0, le=0.1)
     held_residual: float = Field(default=1e-6, gt=0.0, lt=1.0)
-    reach: float = Field(default=FALL.reach, gt=0.0)
-    hold_steps: int = Field(default=100_000, ge=SOFT_HOLDS.look)
+    reach: float = Field(default=REACH, gt=0.0)
+    hold_steps: int = Field(default=100_000, ge=LOOK)
     relaxations: int = Field(default=20, ge=1)
     lean: float = Field(default=2.5e-3, gt=0.0)
     stiffest: float = Field(default=30.0, ge=1.0)

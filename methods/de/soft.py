@@ -21,11 +21,37 @@ from methods.de.holds.bracket_state import STOPPED, undecided, unmoved
 from methods.de.holds.load_step import ConvergenceMonitor, LoadStep, State
 from methods.de.holds.loading import raise_until_it_falls
 from methods.de.holds.motion import MotionProof, StaticLimit, by_travel
-from methods.de.holds.order_bracket import BRACKET
-from methods.de.settings import FALL, JOINTS, SOFT_HOLDS, SoftSettings
+from methods.de.holds.order_bracket import LOOSE
+from methods.de.settings import LOOK, RISE, SoftSettings
 from methods.numerics.claims import at_limit, with_proof
 
 BRACKET_MEANING = "[highest multiplier at which it came to rest, lowest at which it fell]"
+
+STIFFNESS = 1e6
+"""Of joints where none is given, in mean dead loads of a block over the square of the length scale: as good as rigid on
+low walls."""
+
+ROUNDING = 2e-4
+"""Radius of corners where none is given, in length scales."""
+
+
+@dataclass(frozen=True)
+class SoftHoldTuning:
+    """Holds of a wall with deformable joints.
+
+    Attributes:
+        low: courses up to which a hold is no longer than `hold_steps`; above, with the square of the courses.
+        patience: multiple of the length of a hold that the dead load has.
+        away: multiple of what the blocks had moved at the last rest from which it is asked whether the wall falls.
+        share: of a small multiplier to which its bracket is narrowed.
+        beyond: first relative rise above a multiplier that could not be told; it doubles until the wall falls.
+    """
+
+    low: int = 7
+    patience: int = 10
+    away: float = 300.0
+    share: float = 2e-3
+    beyond: float = 2e-3
 
 
 @dataclass(eq=False)
@@ -39,6 +65,7 @@ class Holds:
         fell: multiplier of that fall.
         undecided: multipliers at which the wall neither rested nor fell.
         path: multiplier and displacement of the live load at every rest.
+        options: of the holds.
     """
 
     wall: SoftWall
@@ -49,13 +76,14 @@ class Holds:
     fell: float | None = None
     undecided: list[float] = field(default_factory=list)
     path: dict[str, list[float]] = field(default_factory=lambda: {"multiplier": [], "live_displacement": []})
+    options: SoftHoldTuning = SoftHoldTuning()
 
     def __post_init__(self) -> None:
         """The wall as it is."""
         self.rest = self.wall.save()
         self._statics = StaticLimit(self.wall.assembly)
-        high = number_of_courses(courses(self.wall.assembly)) / SOFT_HOLDS.low
-        self._looks = int(self.settings.hold_steps * max(1.0, high**2)) // SOFT_HOLDS.look
+        high = number_of_courses(courses(self.wall.assembly)) / self.options.low
+        self._looks = int(self.settings.hold_steps * max(1.0, high**2)) // LOOK
 
     def rests(self, multiplier: float) -> bool:
         """Whether the wall comes to rest at a multiplier; if not it is put back where it rested last."""
@@ -65,7 +93,7 @@ class Holds:
         """Hold the wall at a multiplier from its last rest, and note what came of it."""
         wall = self.wall
         wall.load(multiplier)
-        end = self._settled(self._looks * (1 if multiplier else SOFT_HOLDS.patience))
+        end = self._settled(self._looks * (1 if multiplier else self.options.patience))
         state = end.state
         if state is State.HELD:
             self.rest = wall.save()
@@ -88,12 +116,12 @@ class Holds:
         wall, settings = self.wall, self.settings
         before = self.rest[0]
         load = wall.assembly.dead + wall.multiplier * wall.assembly.live
-        away = SOFT_HOLDS.away * float(np.abs(before[:, :2]).max()) if np.any(before[:, :2]) else np.inf
+        away = self.options.away * float(np.abs(before[:, :2]).max()) if np.any(before[:, :2]) else np.inf
         watch = ConvergenceMonitor(settings.held_residual, settings.held_residual, motion_units(wall.assembly))
         places, start = before, wall.steps
         affordable = settings.relaxations * looks
         while True:
-            residual = wall.advance(SOFT_HOLDS.look)
+            residual = wall.advance(LOOK)
             moved, places = wall.places - places, wall.places.copy()
             watch.note(moved, residual)
             if residual < settings.held_residual or not np.all(np.isfinite(places)):
@@ -119,11 +147,11 @@ class DeformableJoints(Solver):
         if assembly.n_free == 0:
             return Answer(Status.OK, Finding.STANDS, "every block is fixed: nothing can move")
         mean = assembly.force_scale / assembly.n_free
-        stiffness = settings.stiffness or JOINTS.stiffness * mean / assembly.length_scale**2
-        answer = self._with_joints(assembly, settings, stiffness, JOINTS.rounding * assembly.length_scale)
+        stiffness = settings.stiffness or STIFFNESS * mean / assembly.length_scale**2
+        answer = self._with_joints(assembly, settings, stiffness, ROUNDING * assembly.length_scale)
         factor = _too_soft(answer, settings)
         if settings.stiffness is None and factor > 1.0 and not answer.details.get("stopped_by_limit"):
-            rounding = JOINTS.rounding / factor * assembly.length_scale
+            rounding = ROUNDING / factor * assembly.length_scale
             again = self._with_joints(assembly, settings, factor * stiffness, rounding)
             again.iterations += answer.iterations
             answer = _better(answer, again)
@@ -153,10 +181,10 @@ class DeformableJoints(Solver):
         """The answer for a wall that stands its dead load, in multiples of the multiplier that equals it."""
         settings = holds.settings
         cap = settings.load_cap * unit
-        step, accuracy = settings.load_step * unit, settings.accuracy * unit
-        stood, fell = raise_until_it_falls(holds.rests, cap, step, accuracy, settings.load_growth, SOFT_HOLDS.share)
+        step, accuracy, share = settings.load_step * unit, settings.accuracy * unit, holds.options.share
+        stood, fell = raise_until_it_falls(holds.rests, cap, step, accuracy, settings.load_growth, share)
         if fell is not None:
-            stood, fell = _in_small_steps(holds, stood, min(accuracy, SOFT_HOLDS.share * fell))
+            stood, fell = _in_small_steps(holds, stood, min(accuracy, share * fell))
         return _concluded(holds, joints, stood, fell, cap)
 
     def _at_zero(self, assembly: Assembly, holds: Holds, joints: str) -> Answer | None:
@@ -196,7 +224,7 @@ def _concluded(holds: Holds, joints: str, stood: float, fell: float | None, cap:
         f"came to rest at {stood:.6g} and fell at {fell:.6g}, with {joints}; the live load had moved by {moved:.3g} "
         "at the last state of rest"
     )
-    loose = fell - stood > BRACKET.loose * fell
+    loose = fell - stood > LOOSE * fell
     if loose:
         sentence += "; not converged: between them it neither came to rest nor fell"
     return Answer(
@@ -240,11 +268,11 @@ def _better(answer: Answer, again: Answer) -> Answer:
 
 def _fall_above(holds: Holds, multiplier: float, cap: float) -> float | None:
     """The lowest multiplier tried above one that could not be told at which the wall falls; None up to the cap."""
-    rise = SOFT_HOLDS.beyond * multiplier
+    rise = holds.options.beyond * multiplier
     while multiplier + rise <= cap:
         if holds.hold(multiplier + rise) is State.MOVING:
             return multiplier + rise
-        rise *= FALL.rise
+        rise *= RISE
     return None
 
 

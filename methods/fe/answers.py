@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -10,29 +9,19 @@ import numpy as np
 from harness.model.assembly import FloatArray
 from harness.model.errors import first_few
 from harness.model.method import Answer, Finding, Status
-from methods.fe.convex_steps import TRESCA, ConvexResult
+from methods.fe.convex_steps import ConvexResult
 from methods.fe.histories import HistoryResult
 from methods.fe.load_steps import load_steps
 from methods.springs.model.wall_model import WallModel
 from methods.springs.path.path_record import PathEnd, PathRecord
 from methods.springs.path.plateau import PlateauState
-from methods.springs.rest.newton import NEWTON, Equilibrium
+from methods.springs.rest.newton import Equilibrium
 
+PATH_POINTS = 300
+"""Points of a path that an answer keeps, at most."""
 
-@dataclass(frozen=True)
-class ToldOfPaths:
-    """What of a path an answer tells.
-
-    Attributes:
-        path_points: that it keeps, at most.
-        spread: of the histories, as a share of the multiplier, above which its sentence speaks of it.
-    """
-
-    path_points: int = 300
-    spread: float = 0.025
-
-
-TOLD = ToldOfPaths()
+SPREAD = 0.025
+"""Spread of the histories, as a share of the multiplier, above which the sentence of an answer reports it."""
 
 
 def gravity_failure(model: WallModel, gravity: Equilibrium) -> Answer:
@@ -53,7 +42,7 @@ def falling(model: WallModel, rate: FloatArray, why: str, iterations: int) -> An
     `methods.numerics.claims.with_proof` adds the dilatant mechanism that proves the fall.
     """
     motion = model.block_displacements(rate)
-    blocks = model.moving_blocks(motion, NEWTON.falling)
+    blocks = model.moving_blocks(motion, model.options.newton.falling)
     return Answer(
         Status.OK,
         Finding.FALLS,
@@ -162,7 +151,7 @@ def collapse_answer(model: WallModel, results: list[HistoryResult], factorisatio
     )
     if best.raised is not None:
         sentence += f"; up to {best.raised.multiplier:.4g} the load was raised in finite steps between states of rest"
-    if spread > TOLD.spread:
+    if spread > SPREAD:
         sentence += (
             f"; the friction history is unknown; histories differ by {100.0 * spread:.1f} %, "
             f"from {min(plateaus):.6g} to {max(plateaus):.6g}"
@@ -188,9 +177,7 @@ def collapse_answer(model: WallModel, results: list[HistoryResult], factorisatio
 def compact(model: WallModel, record: PathRecord) -> dict[str, list[float]]:
     """Some of the points of a path, evenly picked, the last one kept."""
     count = len(record.multiplier)
-    pick = (
-        np.unique(np.linspace(0, count - 1, min(count, TOLD.path_points)).astype(int)) if count else np.array([], int)
-    )
+    pick = np.unique(np.linspace(0, count - 1, min(count, PATH_POINTS)).astype(int)) if count else np.array([], int)
     scale = model.displacement / (float(np.abs(model.live.reshape(-1, 3)[:, :2]).sum()) or 1.0)
     return {
         "multiplier": [record.multiplier[i] for i in pick],
@@ -220,7 +207,7 @@ def bracket_answer(result: ConvexResult, forces: FloatArray, details: dict[str, 
             details=details | {"path_status": "unbounded"},
         )
     if not (result.settles and result.fine):
-        share = f"{TRESCA.repeated:g}"
+        share = f"{result.repeated:g}"
         doubt = (
             f"friction limits that converge to {share} of the loads are not accurate enough for so small a multiplier"
             if result.settles

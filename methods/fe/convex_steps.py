@@ -53,9 +53,6 @@ class TrescaTuning:
     fine: float = 1000.0
 
 
-TRESCA = TrescaTuning()
-
-
 @dataclass(frozen=True)
 class ConvexResult:
     """The bracket of the multiplier: the last step with equilibrium and the first without; and the work done.
@@ -68,6 +65,7 @@ class ConvexResult:
         at: the multiplier of `forces`; settles: whether a step little above `upper` has an energy without minimum, and
             not only friction limits that do not settle; fine: whether the limits are exact enough for so small a
             multiplier.
+        repeated: change of friction limits, in largest loads of a block, at which they counted as repeated.
     """
 
     lower: float
@@ -80,6 +78,7 @@ class ConvexResult:
     settles: bool = True
     fine: bool = True
     fall: FloatArray | None = None
+    repeated: float = 0.0
 
 
 class TrescaProgramme:
@@ -171,20 +170,26 @@ class TrescaProgramme:
 
 
 def bracket_collapse(
-    model: WallModel, first_step: float, resolution: float, fixed_points: int, accuracy: float = 1e-6
+    model: WallModel,
+    first_step: float,
+    resolution: float,
+    fixed_points: int,
+    accuracy: float = 1e-6,
+    options: TrescaTuning = TrescaTuning(),
 ) -> ConvexResult:
     """March the multiplier up and bisect the step at which the fixed point is lost.
 
     Args:
         first_step: first step of the multiplier; resolution: width of the bracket at which to stop, relative.
         fixed_points: Tresca iterations in a row that may bring a step no nearer; accuracy: of OSQP.
+        options: of the march and of the iteration.
     """
     programme = TrescaProgramme(model, accuracy)
     record = PathRecord()
-    limit = _settle(programme, 0.0, np.zeros(model.n_points), fixed_points)
+    limit = _settle(programme, 0.0, np.zeros(model.n_points), fixed_points, options)
     if limit is None:
         rough = model.law.by_friction(np.full(model.n_points, np.abs(model.dead).sum()))
-        limit = _settle(programme, 0.0, rough, 2 * fixed_points, TRESCA.damped)
+        limit = _settle(programme, 0.0, rough, 2 * fixed_points, options, options.damped)
     if limit is None:
         programme.solve(0.0, rough)
         return ConvexResult(0.0, None, record, programme.programmes, False, fall=programme.ray)
@@ -196,27 +201,36 @@ def bracket_collapse(
     while upper is None or upper - lower > resolution * max(abs(upper), 1e-6):
         goal = lower + step if upper is None else 0.5 * (lower + upper)
         ahead = np.maximum(limit + (goal - lower) * growth, 0.0)
-        settled = _settle(programme, goal, ahead, fixed_points)
+        settled = _settle(programme, goal, ahead, fixed_points, options)
         if settled is None:
-            settled = _settle(programme, goal, 2.0 * np.maximum(ahead, limit), 2 * fixed_points, TRESCA.damped)
+            settled = _settle(
+                programme, goal, 2.0 * np.maximum(ahead, limit), 2 * fixed_points, options, options.damped
+            )
         if settled is None:
             upper, falls = goal, goal if programme.without_minimum else falls
         else:
             growth = (settled - limit) / (goal - lower)
             lower, limit = goal, settled
-            if goal <= TRESCA.kept * first_step or upper is not None:
+            if goal <= options.kept * first_step or upper is not None:
                 forces, at = (programme.normal, np.clip(programme.shear, -limit, limit)), goal
             record.add(goal, 0.0, 0, 0)
-            step *= TRESCA.longer
-        if upper is None and lower > TRESCA.furthest * first_step:
+            step *= options.longer
+        if upper is None and lower > options.furthest * first_step:
             break
-    settles = upper is None or falls <= upper * (1.0 + TRESCA.lost)
-    fine = upper is None or upper * largest(model.live) >= TRESCA.fine * TRESCA.repeated * largest(model.dead)
-    return ConvexResult(lower, upper, record, programme.programmes, True, forces, at, settles, fine)
+    settles = upper is None or falls <= upper * (1.0 + options.lost)
+    fine = upper is None or upper * largest(model.live) >= options.fine * options.repeated * largest(model.dead)
+    return ConvexResult(
+        lower, upper, record, programme.programmes, True, forces, at, settles, fine, repeated=options.repeated
+    )
 
 
 def _settle(
-    programme: TrescaProgramme, multiplier: float, limit: FloatArray, count: int, share: float = 1.0
+    programme: TrescaProgramme,
+    multiplier: float,
+    limit: FloatArray,
+    count: int,
+    options: TrescaTuning,
+    share: float = 1.0,
 ) -> FloatArray | None:
     """Friction limits (P,) that repeat at this multiplier, or None; `share` of each change of the limits is taken.
 
@@ -227,14 +241,14 @@ def _settle(
     least, left = np.inf, count
     while left:
         answer = programme.solve(multiplier, limit)
-        if answer is None or np.abs(answer[0]).max() > TRESCA.runaway * scale:
+        if answer is None or np.abs(answer[0]).max() > options.runaway * scale:
             programme.without_minimum |= answer is not None
             programme.restart()
             return None
         new = model.law.by_friction(answer[1])
         change = float(np.abs(new - limit).max())
-        if change < TRESCA.repeated * share * scale:
+        if change < options.repeated * share * scale:
             return new
-        least, left = (change, count) if change < TRESCA.nearer * least else (least, left - 1)
+        least, left = (change, count) if change < options.nearer * least else (least, left - 1)
         limit = limit + share * (new - limit)
     return None

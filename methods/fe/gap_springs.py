@@ -23,7 +23,7 @@ from methods.fe.answers import (
     stands,
 )
 from methods.fe.convex_steps import bracket_collapse
-from methods.fe.histories import HISTORIES, HistoryResult, Plan, trace_history, with_initial_shear
+from methods.fe.histories import HistoryResult, HistoryTuning, Plan, trace_history, with_initial_shear
 from methods.fe.incremental import IncrementalResult, march
 from methods.fe.settings import GapSpringsSettings, NewtonSettings
 from methods.numerics.claims import analysed
@@ -62,11 +62,17 @@ class BreakpointLimits:
     agreeing: float = 1e-3
 
 
-EVENTS = BreakpointLimits()
-
-
 class GapSprings(Solver):
-    """Gap-spring finite elements with the path traced exactly, breakpoint by breakpoint (`fe`)."""
+    """Gap-spring finite elements with the path traced exactly, breakpoint by breakpoint (`fe`).
+
+    Args:
+        limits: on breakpoints and histories; histories: what is tried where one is lost.
+    """
+
+    def __init__(
+        self, limits: BreakpointLimits = BreakpointLimits(), histories: HistoryTuning = HistoryTuning()
+    ) -> None:
+        self._limits, self._histories = limits, histories
 
     def solve(self, assembly: Assembly, settings: Any) -> Answer:
         """Gravity first, then the live load to the plateau under every history asked for."""
@@ -92,14 +98,16 @@ class GapSprings(Solver):
                 return gravity_failure(model, gravity)
         results, start = list[HistoryResult](), gravity
         scale = _unit(model.assembly)
+        events, histories = self._limits, self._histories
         limits = [
-            settings.max_events or EVENTS.fewest + count * model.n_points for count in (EVENTS.first, EVENTS.further)
+            settings.max_events or events.fewest + count * model.n_points for count in (events.first, events.further)
         ]
-        limit = limits[model.assembly.n_free > HISTORIES.large]
-        for step in chosen_histories(model, settings):
-            if settings.histories is None and _agree(results):
+        limit = limits[model.assembly.n_free > histories.large]
+        for step in chosen_histories(model, settings, events):
+            if settings.histories is None and _agree(results, events.agreeing):
                 break
-            result = trace_history(model, factor, start, Plan(step, scale, limit, load_steps=settings.load_steps))
+            plan = Plan(step, scale, limit, load_steps=settings.load_steps, options=histories)
+            result = trace_history(model, factor, start, plan)
             results.append(result)
             start = result.raised or start
             if result.end in (PathEnd.UNBOUNDED, PathEnd.TIME):
@@ -109,10 +117,10 @@ class GapSprings(Solver):
                 scale = result.record.peak
             elif result.state is not None:
                 scale = abs(result.state.multiplier) or 1.0
-                limit = min(limit, EVENTS.fewest_beside + EVENTS.multiple * result.record.events)
+                limit = min(limit, events.fewest_beside + events.multiple * result.record.events)
         answer = collapse_answer(model, results, factor.factorisations, settings.load_steps)
         lost = results and all(r.state is None and r.end is PathEnd.BREAKDOWN for r in results)
-        if lost and model.assembly.n_free <= HISTORIES.large:
+        if lost and model.assembly.n_free <= histories.large:
             return _by_displacement_control(model, factor, gravity, answer)
         return answer
 
@@ -135,19 +143,19 @@ def _by_displacement_control(model: WallModel, factor: Factor, gravity: Equilibr
     return single_state_answer(model, result.state, sentence, result.record, details, result.iterations)
 
 
-def chosen_histories(model: WallModel, settings: GapSpringsSettings) -> tuple[float, ...]:
+def chosen_histories(model: WallModel, settings: GapSpringsSettings, limits: BreakpointLimits) -> tuple[float, ...]:
     """The commit intervals to run: as set, or by the size of the wall."""
     if settings.histories is not None:
         return settings.histories
-    return EVENTS.intervals if model.assembly.n_free <= EVENTS.three else EVENTS.intervals[:1]
+    return limits.intervals if model.assembly.n_free <= limits.three else limits.intervals[:1]
 
 
-def _agree(results: list[HistoryResult]) -> bool:
-    """Whether a history without and one with updates of the plastic slip came to one plateau."""
+def _agree(results: list[HistoryResult], within: float) -> bool:
+    """Whether histories without and with updates of the plastic slip came to one plateau, within a relative width."""
     plateaus = [result.state.multiplier for result in results if result.state is not None]
     if len(plateaus) < 2 or len(plateaus) < len(results):
         return False
-    return max(plateaus) - min(plateaus) <= EVENTS.agreeing * abs(min(plateaus))
+    return max(plateaus) - min(plateaus) <= within * abs(min(plateaus))
 
 
 def _unit(assembly: Assembly) -> float:

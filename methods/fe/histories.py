@@ -51,7 +51,6 @@ class HistoryTuning:
     seed: int = 1995
 
 
-HISTORIES = HistoryTuning()
 SENTENCES = {
     PathEnd.PLATEAU: "the path ends on a plateau",
     PathEnd.UNBOUNDED: "the path continues to any multiplier",
@@ -75,6 +74,7 @@ class Plan:
         committed_up_to: multiplier above which it is no longer committed.
         disturbance: random initial shear that the start has, in weights of a block.
         load_steps: points of the path that are kept whole.
+        options: what is tried where it is lost.
     """
 
     step: float
@@ -83,6 +83,7 @@ class Plan:
     committed_up_to: float = np.inf
     disturbance: float = 0.0
     load_steps: int = 0
+    options: HistoryTuning = HistoryTuning()
 
 
 @dataclass(frozen=True)
@@ -124,11 +125,11 @@ def trace_history(model: WallModel, factor: Factor, start: Equilibrium, plan: Pl
     result = _trace(model, factor, start, plan)
     if result.raised is not None:
         return result
-    large = model.assembly.n_free > HISTORIES.large
-    for disturbance in HISTORIES.disturbances:
+    large = model.assembly.n_free > plan.options.large
+    for disturbance in plan.options.disturbances:
         if not _lost(result) or (large and result.end == PathEnd.EVENTS):
             break
-        noise = np.random.default_rng(HISTORIES.seed).uniform(-disturbance, disturbance, model.n_points)
+        noise = np.random.default_rng(plan.options.seed).uniform(-disturbance, disturbance, model.n_points)
         disturbed = equilibrium(model, factor, start.u, 0.0, start.history + noise)
         if disturbed.found:
             result = _trace(model, factor, disturbed, replace(plan, disturbance=disturbance))
@@ -140,7 +141,7 @@ def trace_history(model: WallModel, factor: Factor, start: Equilibrium, plan: Pl
 
 def _committed(model: WallModel, factor: Factor, start: Equilibrium, plan: Plan) -> HistoryResult:
     """A history with commits, up to the end or as far as it is not lost."""
-    for share in HISTORIES.committed_up_to:
+    for share in plan.options.committed_up_to:
         result = _trace(model, factor, start, replace(plan, committed_up_to=share * plan.scale))
         if not _lost(result):
             break
@@ -211,7 +212,7 @@ def _trace_in_time(
         least = f"{first.multiplier:.2g} times the live load, the least step tried"
         sentence = f"the dead load is in equilibrium, but {least}, is not"
         return HistoryResult(plan, PathEnd.BREAKDOWN, sentence, record, None, 0, 0.0)
-    if plan.step == 0.0 and model.assembly.n_free > HISTORIES.doubled:
+    if plan.step == 0.0 and model.assembly.n_free > plan.options.doubled:
         for further in doubled(model, factor, first):
             first = further
             _note(record, model, first)
@@ -223,7 +224,7 @@ def _followed(follower: PathFollower, plan: Plan, record: PathRecord) -> History
     model, scale = follower.model, plan.scale
     interval = plan.step * scale or np.inf
     way = follow(
-        follower, record, plan.max_events, interval, HISTORIES.astray * scale, committed_up_to=plan.committed_up_to
+        follower, record, plan.max_events, interval, plan.options.astray * scale, committed_up_to=plan.committed_up_to
     )
     follower, end = way.follower, way.end
     record.keep(follower.load_step, always=True)

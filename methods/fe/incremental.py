@@ -20,7 +20,7 @@ from methods.springs.model.factor import Factor, SingularTangent
 from methods.springs.model.wall_model import WallModel, load_scale
 from methods.springs.path.path_record import PathRecord, PathSnapshot
 from methods.springs.path.plateau import PlateauState, finish
-from methods.springs.rest.newton import NEWTON, Equilibrium, newton, settled
+from methods.springs.rest.newton import Equilibrium, newton, settled
 
 
 @dataclass(frozen=True)
@@ -64,10 +64,6 @@ class DisplacementControl:
     flat: float = 1e-8
 
 
-LOAD_CONTROL = LoadControl()
-DISPLACEMENT_CONTROL = DisplacementControl()
-
-
 @dataclass(frozen=True)
 class IncrementalResult:
     """Where ordinary Newton got to.
@@ -96,27 +92,35 @@ class StepPoint:
 
 
 def march(
-    model: WallModel, factor: Factor, gravity: Equilibrium, first_step: float, cuts: int, displacement_steps: int
+    model: WallModel,
+    factor: Factor,
+    gravity: Equilibrium,
+    first_step: float,
+    cuts: int,
+    displacement_steps: int,
+    loads: LoadControl = LoadControl(),
+    displacements: DisplacementControl = DisplacementControl(),
 ) -> IncrementalResult:
     """Load control from gravity, then displacement control.
 
     Args:
         first_step: first step of the multiplier; cuts: how many times a step is halved before load control stops;
         displacement_steps: steps of displacement control, each 1.5 times the last that converged.
+        loads, displacements: how the steps are taken.
     """
     record = PathRecord()
     point, step, iterations, cut = StepPoint(gravity.u, 0.0, gravity.state), first_step, 0, 0
-    while cut <= cuts and point.multiplier < LOAD_CONTROL.furthest * first_step:
-        answer = newton(model, factor, point.u, point.multiplier + step, model.history, LOAD_CONTROL.iterations)
+    while cut <= cuts and point.multiplier < loads.furthest * first_step:
+        answer = newton(model, factor, point.u, point.multiplier + step, model.history, loads.iterations)
         iterations += answer.iterations
         if not answer.found:
-            step *= LOAD_CONTROL.shorter
+            step *= loads.shorter
             cut += 1
             continue
         point = StepPoint(answer.u, point.multiplier + step, answer.state)
         record.add(point.multiplier, float(model.live @ point.u), 0, 0)
         if cut == 0:
-            step *= LOAD_CONTROL.longer
+            step *= loads.longer
     reached = point.multiplier
     record.peak = reached
     if cut <= cuts:
@@ -126,7 +130,7 @@ def march(
         with suppress(SingularTangent):
             factor.refactor(point.state, regularised=True)
             travel = step * factor.solve(model.live)
-    state, end, spent = _displacement_control(model, factor, point, travel, displacement_steps, record)
+    state, end, spent = _displacement_control(model, factor, point, travel, displacement_steps, record, displacements)
     sentence = f"displacement control reached a plateau, where load control stopped at {reached:.6g}"
     if state is None:
         sentence = (
@@ -137,7 +141,13 @@ def march(
 
 
 def _displacement_control(
-    model: WallModel, factor: Factor, point: StepPoint, travel: FloatArray, steps: int, record: PathRecord
+    model: WallModel,
+    factor: Factor,
+    point: StepPoint,
+    travel: FloatArray,
+    steps: int,
+    record: PathRecord,
+    options: DisplacementControl,
 ) -> tuple[PlateauState | None, float, int]:
     """The collapse state that displacement control leads to, or None; the last multiplier; Newton iterations.
 
@@ -145,28 +155,28 @@ def _displacement_control(
         point: where load control stopped; travel: (N,) how far the wall has moved under the live load.
         steps: at most; record: gets the points that converge.
     """
-    origin, iterations, controls = point.u - travel, 0, DISPLACEMENT_CONTROL.blocks
+    origin, iterations, controls = point.u - travel, 0, options.blocks
     direction = travel
     control = _farthest(direction)
-    push = first = DISPLACEMENT_CONTROL.first * float(control @ direction)
+    push = first = options.first * float(control @ direction)
     for _ in range(steps if first > 0.0 else 0):
-        moved, spent = _controlled(model, factor, point, control, float(control @ point.u) + push)
+        moved, spent = _controlled(model, factor, point, control, float(control @ point.u) + push, options)
         iterations += spent
         if moved is None:
-            push *= DISPLACEMENT_CONTROL.shorter
-            if push < DISPLACEMENT_CONTROL.least * first:
+            push *= options.shorter
+            if push < options.least * first:
                 other = _farthest(direction)
                 controls -= 1
                 if controls == 0 or np.array_equal(other, control):
                     break
                 control = other
-                push = first = DISPLACEMENT_CONTROL.first * abs(float(control @ (point.u - origin)))
+                push = first = options.first * abs(float(control @ (point.u - origin)))
             continue
-        flat = abs(moved.multiplier - point.multiplier) <= DISPLACEMENT_CONTROL.flat * max(1.0, abs(point.multiplier))
+        flat = abs(moved.multiplier - point.multiplier) <= options.flat * max(1.0, abs(point.multiplier))
         direction, point = moved.u - point.u, moved
         record.add(point.multiplier, float(model.live @ point.u), 0, 0)
         record.peak = max(record.peak, point.multiplier)
-        push *= DISPLACEMENT_CONTROL.longer
+        push *= options.longer
         collapse = _collapse(model, point, direction) if flat else None
         if collapse is not None:
             return collapse, point.multiplier, iterations
@@ -183,15 +193,15 @@ def _farthest(motion: FloatArray) -> FloatArray:
 
 
 def _controlled(
-    model: WallModel, factor: Factor, point: StepPoint, control: FloatArray, goal: float
+    model: WallModel, factor: Factor, point: StepPoint, control: FloatArray, goal: float, options: DisplacementControl
 ) -> tuple[StepPoint | None, int]:
     """Equilibrium at a prescribed displacement control'u = goal, None where Newton finds none; and its iterations."""
     u, multiplier, state = point.u, point.multiplier, point.state
     scale, share = load_scale(model, multiplier), 1.0
     seen: set[bytes] = set()
-    for count in range(DISPLACEMENT_CONTROL.iterations):
+    for count in range(options.iterations):
         if state.tobytes() in seen:
-            share = max(0.5 * share, DISPLACEMENT_CONTROL.damped)
+            share = max(0.5 * share, options.damped)
         seen.add(state.tobytes())
         try:
             factor.refactor(state, regularised=True)
@@ -206,12 +216,15 @@ def _controlled(
         landed = model.states(u + step, model.history)
         if settled(model, u + step, model.history, state, landed, scale):
             u, multiplier = u + step, multiplier + rise
-            if np.abs(model.residual(u, multiplier, model.history, state)).max() < NEWTON.balanced * scale:
+            if (
+                np.abs(model.residual(u, multiplier, model.history, state)).max()
+                < model.options.newton.balanced * scale
+            ):
                 return StepPoint(u, multiplier, state), count + 1
             continue
         u, multiplier = u + share * step, multiplier + share * rise
         state = landed if share == 1.0 else model.states(u, model.history)
-    return None, DISPLACEMENT_CONTROL.iterations
+    return None, options.iterations
 
 
 def _collapse(model: WallModel, point: StepPoint, direction: FloatArray) -> PlateauState | None:

@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 
 from harness.model.assembly import Assembly, FloatArray
+from harness.model.bars import BAR_FORCES, DEAD_BAR_FORCES
 from harness.model.errors import first_few
 from harness.model.method import Answer, Finding, Status
 from methods.la.core.newton_matrix import NewtonMatrix
@@ -107,7 +108,7 @@ def with_residual(plastic: Answer, residual: Answer) -> Answer:
         "flow": residual.flow,
         "details": {
             name: residual.details[name]
-            for name in ("live_forces", "dilatant_mechanism", "dead_forces")
+            for name in ("live_forces", "dilatant_mechanism", "dead_forces", BAR_FORCES, DEAD_BAR_FORCES)
             if name in residual.details
         },
     }
@@ -133,8 +134,8 @@ def dead_load_answer(problem: Problem, newton: NewtonMatrix, has_live_load: bool
         return None
     found = standing(problem)
     if isinstance(found, str):
-        # Near the limit forces have no vertex to rounding, and a mechanism has: programmes to 1e-9 show so much work.
-        shown = None if has_live_load else dilatant_mechanism(problem.assembly, problem.assembly.dead, least_work=1e-5)
+        # Near the limit forces have no vertex to rounding, and a mechanism has.
+        shown = None if has_live_load else dilatant_mechanism(problem.assembly, problem.assembly.dead, exact=True)
         if shown is not None:
             return falls_answer(problem.assembly, shown)
         return not_converged(f"Whether the wall stands under its dead load was not decided: the programme was {found}.")

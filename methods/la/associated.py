@@ -13,15 +13,28 @@ from methods.la.answers import collapse_answer, not_converged, unbounded_answer
 from methods.la.core.newton_matrix import NewtonMatrix
 from methods.la.core.problem import Problem
 from methods.la.family import LimitAnalysisFamily
-from methods.la.interior.associated import AssociatedResult, solve_associated, solve_with_cvxpy, with_mechanism
+from methods.la.interior.associated import (
+    AssociatedResult,
+    EndOfPath,
+    solve_associated,
+    solve_with_cvxpy,
+    with_mechanism,
+)
 
 
 class AssociatedLimitAnalysis(LimitAnalysisFamily):
-    """Greatest multiplier of statics, the linear programme of associated limit analysis (`la-associated`)."""
+    """Greatest multiplier of statics, the linear programme of associated limit analysis (`la-associated`).
+
+    Args:
+        end: of its own interior point.
+    """
+
+    def __init__(self, end: EndOfPath = EndOfPath()) -> None:
+        self._end = end
 
     def answer(self, assembly: Assembly, problem: Problem, newton: NewtonMatrix, settings: Any) -> Answer:
         """The linear programme by simplex or interior point."""
-        return associated_answer(problem, solve_associated(problem, newton, settings.solver), 1e-9)
+        return associated_answer(problem, solve_associated(problem, newton, settings.solver, self._end), 1e-9)
 
 
 class AssociatedLimitAnalysisCvxpy(LimitAnalysisFamily):

@@ -8,6 +8,8 @@ from dataclasses import replace
 from fractions import Fraction
 from typing import Any
 
+import numpy as np
+
 from harness.model.answer_check import DEEPEST
 from harness.model.assembly import Assembly
 from harness.model.method import Answer, Finding, Status
@@ -18,7 +20,7 @@ from methods.la.core.problem import Problem
 from methods.la.find_certificate import account, beyond
 from methods.la.least import SAME_MULTIPLIER
 from methods.la.settings import BoundSettings
-from methods.proof.search.tuning import WINDOWS
+from methods.proof.search.options import PROVED
 from methods.proof.search.window_search import Bracket
 from methods.proof.verify.checker import verify
 from methods.proof.words import in_words
@@ -40,14 +42,19 @@ def with_bound(assembly: Assembly, problem: Problem, known: Answer, settings: Bo
     if known.details.get("stopped_by_limit"):
         return known
     if assembly.dilates or assembly.strong:
-        own, why = known.sentence.rstrip("."), "have dilatancy" if assembly.dilates else "have strength"
-        return replace(known, sentence=f"{own}. No bound below it is sought: some joints {why}.")
+        own, why = (
+            known.sentence.rstrip("."),
+            "some joints have dilatancy" if assembly.dilates else "joints have strength",
+        )
+        if np.any(assembly.friction < 0.0):  # as `harness.model.bars.with_bars_as_joints` writes them
+            why = "the wall has ties or props"
+        return replace(known, sentence=f"{own}. No bound below it is sought: {why}.")
     began = time.process_time()
     document = None
     if known.details["proved_least"]:
         document = certificate(assembly, seconds=settings.bound_seconds, mechanism=known.mechanism)
     if document is not None or multiplier <= 0.0:
-        return certified(known, document)
+        return _kept(certified(known, document), settings)
     too_large = beyond(problem, settings.most_interfaces)
     if too_large:
         return replace(known, sentence=f"{known.sentence} {too_large}")
@@ -58,15 +65,17 @@ def with_bound(assembly: Assembly, problem: Problem, known: Answer, settings: Bo
     if said and known.details["proved_least"]:
         return known
     answer = certified(bounded(problem, known, found), document)
-    answer = replace(answer, sentence=f"{answer.sentence} {said}".rstrip())
-    if document is not None and _too_much(document, settings):
-        return replace(answer, details={k: v for k, v in answer.details.items() if k != "certificate"})
-    return answer
+    return _kept(replace(answer, sentence=f"{answer.sentence} {said}".rstrip()), settings)
 
 
-def _too_much(document: dict[str, Any], settings: BoundSettings) -> bool:
-    """Whether a certificate is too long, or nested too deeply, for an answer to hold it."""
-    return len(json.dumps(document)) > settings.largest_certificate or nested_deeper(document, DEEPEST - 1)
+def _kept(answer: Answer, settings: BoundSettings) -> Answer:
+    """The answer, without its certificate where that is too long, or nested too deeply, for an answer to hold it."""
+    document = answer.details.get("certificate")
+    if document is None:
+        return answer
+    if len(json.dumps(document)) <= settings.largest_certificate and not nested_deeper(document, DEEPEST - 1):
+        return answer
+    return replace(answer, details={k: v for k, v in answer.details.items() if k != "certificate"})
 
 
 def certified(known: Answer, document: dict[str, Any] | None) -> Answer:
@@ -83,7 +92,7 @@ def certified(known: Answer, document: dict[str, Any] | None) -> Answer:
         return known
     lower, shown = verify(document)
     upper = Fraction(known.multiplier) if shown is None else shown
-    if lower < upper * (1 - Fraction(WINDOWS.proved)):
+    if lower < upper * (1 - Fraction(PROVED)):
         return replace(
             known,
             sentence=f"The least collapse multiplier known is {known.multiplier:.7g}; there is none from zero to below "

@@ -18,9 +18,12 @@ from methods.la.core.problem import Problem, make_problem
 from methods.la.least import least_known
 from methods.la.methods import LA_BOUND
 from methods.la.settings import BoundSettings, SearchSettings
-from methods.la.sources.budget import SIZES
-from methods.proof.search.tuning import WINDOWS
+from methods.la.sources.budget import Sizes
+from methods.proof.search.options import PROVED
 from methods.proof.search.window_search import Bracket
+
+LOOSE = 140
+"""Interfaces above which the bound after some minutes is far below the state."""
 
 
 @dataclass(frozen=True)
@@ -42,6 +45,7 @@ def find_certificate(
     search: SearchSettings,
     nodes: int | None = None,
     say_before: Callable[[str], None] = lambda sentence: None,
+    sizes: Sizes = Sizes(),
 ) -> Attempt:
     """The certificate of the tree where that ends, else of windows.
 
@@ -50,10 +54,11 @@ def find_certificate(
         seconds: of CPU time for the windows.
         search: of the state below which the windows lie.
         nodes: of the tree at most; None as many as `la` takes, which are none on walls where hardly any ends.
+        sizes: of walls on which the tree has nodes.
         say_before: called with what is known of the bound of such walls, before time is spent on it.
     """
     problem = make_problem(assembly)
-    most = SIZES.limits(search.effort, problem).nodes if nodes is None else nodes
+    most = sizes.limits(search.effort, problem).nodes if nodes is None else nodes
     document = certificate(assembly, most) if most else None
     if document is not None:
         return Attempt(document)
@@ -64,9 +69,9 @@ def find_certificate(
     too_large = beyond(problem, BoundSettings().most_interfaces)
     if too_large:
         return Attempt(None, too_large)
-    if problem.n_interfaces > WINDOWS.loose:
+    if problem.n_interfaces > LOOSE:
         say_before(
-            f"The wall has {problem.n_interfaces} interfaces: above {WINDOWS.loose} the bound after some minutes "
+            f"The wall has {problem.n_interfaces} interfaces: above {LOOSE} the bound after some minutes "
             f"lies well below the least state known. The search for that state comes first, then {seconds:g} s of CPU "
             "time for the bound."
         )
@@ -104,7 +109,7 @@ def account(
         seconds: of CPU time that were spent.
     """
     proved = float(Fraction(document["bound"])) if document is not None else 0.0
-    if proved >= multiplier * (1.0 - WINDOWS.proved):
+    if proved >= multiplier * (1.0 - PROVED):
         return ""
     bound = found.in_floats * problem.unit_multiplier
     in_floats = f"at {bound:.7g} in floating point" if bound > 0.0 else "still at zero"

@@ -35,7 +35,7 @@ from methods.la.core.vertex_programmes import ForceProgramme, RowScaling, row_sc
 from methods.la.settings import SearchSettings
 from methods.la.sources import SOURCES, Source, explore
 from methods.la.sources.budget import Budget, rounds_of
-from methods.la.sources.search import CHOICES, Search
+from methods.la.sources.search import Choices, Search
 from methods.numerics.failures import NumericalFailure
 
 NOT_EXACT = "No state is in equilibrium at the lightest blocks too: weights differ too much within the wall"
@@ -49,6 +49,7 @@ def least_known(
     settings: SearchSettings,
     tolerance: float,
     sources: Sequence[Source] = SOURCES,
+    choices: Choices = Choices(),
 ) -> Answer:
     """The answer with the least collapse state that the search finds, in the time there is.
 
@@ -58,9 +59,10 @@ def least_known(
         settings: effort and seed.
         tolerance: largest residual of a state that is returned.
         sources: of states, in the order in which they are tried.
+        choices: how the search solves its programmes.
     """
     rounds = rounds_of(settings, problem)
-    search = Search(problem, newton, settings.seed, Budget(rounds[0]))
+    search = Search(problem, newton, settings.seed, Budget(rounds[0]), choices=choices)
     try:
         for limits in rounds:
             search.begin_round(limits)
@@ -77,7 +79,7 @@ def least_known(
 def _found(search: Search, settings: SearchSettings, tolerance: float) -> Answer:
     """The answer of the whole search."""
     problem = search.problem
-    asked = problem.n_interfaces <= CHOICES.gravity_up_to and problem.law.is_cone  # springs bear no tension
+    asked = problem.n_interfaces <= search.choices.gravity_up_to and problem.law.is_cone  # springs bear no tension
     falling = search.gravity.falling if asked else []
     if not search.record.known:
         return _with_falling_blocks(_nothing_found(search), falling)

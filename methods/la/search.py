@@ -14,17 +14,25 @@ from methods.la.family import LimitAnalysisFamily
 from methods.la.least import least_known
 from methods.la.methods import LA
 from methods.la.sources import from_motions
+from methods.la.sources.search import Choices
 from methods.springs.warm_up import load_kernels
 
 load_kernels()
 
 
 class LimitAnalysis(LimitAnalysisFamily):
-    """Least collapse state known, under zero dilatancy (`la`): the method to use."""
+    """Least collapse state known, under zero dilatancy (`la`): the method to use.
+
+    Args:
+        choices: how its search solves its programmes.
+    """
+
+    def __init__(self, choices: Choices = Choices()) -> None:
+        self._choices = choices
 
     def answer(self, assembly: Assembly, problem: Problem, newton: NewtonMatrix, settings: Any) -> Answer:
         """The search that the settings ask for, and a lower bound where they ask for one."""
-        known = least_known(problem, newton, settings, LA.tolerance)
+        known = least_known(problem, newton, settings, LA.tolerance, choices=self._choices)
         if settings.bound is None:
             return known
         from methods.la.bounds import with_bound  # the relaxation, which most searches do without
@@ -34,11 +42,14 @@ class LimitAnalysis(LimitAnalysisFamily):
     def solve_from(self, assembly: Assembly, settings: Any, motions: Sequence[FloatArray]) -> Answer:
         """The least of the states that given motions of the joints (m, 3) lead to, without a search of its own.
 
-        A component in which they move nothing is searched as always.
+        A component in which they move nothing is searched as always, and so is a wall with ties or props: what those
+        do in a mechanism is not given.
         """
+        if len(assembly.bars):
+            return self.solve(assembly, settings)
 
         def answered(part: Assembly, problem: Problem, newton: NewtonMatrix, settings: Any) -> Answer:
             sources = from_motions([motion[joints_of(part, assembly)] for motion in motions])
-            return least_known(problem, newton, settings, LA.tolerance, sources)
+            return least_known(problem, newton, settings, LA.tolerance, sources, self._choices)
 
         return self._of_wall(assembly, settings, answered)

@@ -32,9 +32,6 @@ class Supernodes:
     padding: float = 0.3
 
 
-SUPERNODES = Supernodes()
-
-
 class BlockPattern:
     """Where the supernodes lie; each has w blocks of unknowns, three unknowns a block, and r blocks below them.
 
@@ -48,10 +45,10 @@ class BlockPattern:
         offset: (k + 1,) where its values start; diagonal: (3 n,) where the entries of the diagonal are.
     """
 
-    def __init__(self, first: IntArray, second: IntArray, n: int) -> None:
+    def __init__(self, first: IntArray, second: IntArray, n: int, supernodes: Supernodes = Supernodes()) -> None:
         """Find the fill of n blocks of unknowns in contact in the pairs (first, second), each (m,), in postorder."""
         below, _ = _fill(first, second, n)
-        start, rows = _supernodes(below)
+        start, rows = _supernodes(below, supernodes)
         self.n = n
         self.start = np.array(start)
         width = np.diff(self.start)
@@ -167,7 +164,7 @@ def _fill(first: IntArray, second: IntArray, n: int) -> tuple[list[set[int]], li
     return below, parent
 
 
-def _supernodes(below: list[set[int]]) -> tuple[list[int], list[list[int]]]:
+def _supernodes(below: list[set[int]], options: Supernodes) -> tuple[list[int], list[list[int]]]:
     """Gather columns (whose rows are given) into supernodes: the first column of each and its end, and its rows."""
     start, rows, true = [0], [below[0]], [len(below[0])]
     for j in range(1, len(below)):
@@ -175,7 +172,7 @@ def _supernodes(below: list[set[int]]) -> tuple[list[int], list[list[int]]]:
         merged = (rows[-1] | below[j]) - {j}
         entries = true[-1] + len(below[j]) + width
         size = (width + 1) * len(merged) + width * (width + 1) // 2
-        if j in rows[-1] and width < SUPERNODES.widest and size <= (1.0 + SUPERNODES.padding) * entries:
+        if j in rows[-1] and width < options.widest and size <= (1.0 + options.padding) * entries:
             rows[-1] = merged
             true[-1] = entries
         else:

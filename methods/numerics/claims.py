@@ -109,13 +109,27 @@ def _at_limit(assembly: Assembly, answer: Answer) -> Answer:
             return answer  # the live load holds it up
         if (assembly.dilatancy >= assembly.friction).all():
             return _stands_though_joints_give(answer, bears)
-        reason = "it falls because its joints have no self-stress, or because they deform"
+        return _falls_by_its_joints(answer, bears)
     elif answer.multiplier == 0.0 and answer.bracket is None and bears > 0.0:
         reason = "the multiplier depends on the self-stress in its joints; fe and de start without any"
     else:
         return answer
     own = answer.sentence.rstrip(".")
     return replace(answer, sentence=f"{own}. Statics alone would bear up to {bears:.7g}: {reason}.")
+
+
+def _falls_by_its_joints(answer: Answer, bears: float) -> Answer:
+    """The answer where a fall was computed of a wall that has an equilibrium within yield: it is not proved.
+
+    Joints without self-stress share the load as their stiffness says, and with friction that is not associated several
+    shares can be in equilibrium, others not.
+    """
+    own = answer.sentence.rstrip(".")
+    sentence = (
+        f"Not proved: {own}. Statics alone would bear up to {bears:.7g}, so the wall may also stand: that depends on "
+        "the self-stress in its joints and on their stiffness."
+    )
+    return replace(answer, sentence=sentence)
 
 
 def _stands_though_joints_give(answer: Answer, bears: float) -> Answer:

@@ -18,6 +18,8 @@ if TYPE_CHECKING:
 
 LEAST_WORK = 1e-7
 """Work of the dead load that shows a fall, as total weight times speed: a programme to 1e-9 makes up less."""
+LEAST_EXACT_WORK = 1e-8
+"""The same of a mechanism to rounding: on its closings, some 1e-16 a contact, forces of 1e7 dead loads do no more."""
 COST = 1e4
 """Of the multiplier in a programme for the greatest one, a block."""
 
@@ -161,11 +163,11 @@ def dilatant_mechanism(
     load: FloatArray,
     about: FloatArray | None = None,
     within: float = 1.0,
-    least_work: float = LEAST_WORK,
+    exact: bool = False,
 ) -> FloatArray | None:
     """A mechanism (n, 3) of dilatant flow on which a load does positive work, so that no equilibrium exists under it.
 
-    It is that of the greatest work near `about`; None where that is `least_work` or less, or where the programme
+    It is that of the greatest work near `about`; None where that is `LEAST_WORK` or less, or where the programme
     fails: exactly no work would mean an equilibrium (Farkas' lemma), but the programme holds to its tolerances only.
     None too where joints have cohesion or tensile strength, whose work is not in the programme.
 
@@ -174,7 +176,7 @@ def dilatant_mechanism(
         load: (n, 3) generalised loads on the blocks [force, force, moment].
         about: (n, 3) velocities [length, length, radian], or None for rest.
         within: largest difference from `about` of a speed, or of a rotation times the length scale.
-        least_work: as total weight times speed.
+        exact: ask for a vertex to rounding, whose work may be as small as `LEAST_EXACT_WORK`.
     """
     from methods.numerics.linear_programme import INFINITY, Programme  # HiGHS, which few answers need
 
@@ -188,8 +190,16 @@ def dilatant_mechanism(
     slip = sp.diags(assembly.friction) @ rates[2::3]
     rows = sp.vstack([rates[end::3] + sign * slip for end in (0, 1) for sign in (1.0, -1.0)])
     bounds = (np.zeros(rows.shape[0]), np.full(rows.shape[0], INFINITY))
-    status, motion, _ = Programme(sp.csc_matrix(rows), -pull, (centre - within, centre + within), bounds).run()
-    if status != "optimal" or not pull @ motion > least_work:
+    programme = Programme(sp.csc_matrix(rows), -pull, (centre - within, centre + within), bounds)
+    status, motion, _ = programme.run()
+    if status != "optimal":
+        return None
+    if exact:
+        vertex = programme.vertex()
+        if vertex is None or not vertex.feasible:
+            return None
+        motion = vertex.value
+    if not pull @ motion > (LEAST_EXACT_WORK if exact else LEAST_WORK):
         return None
     mechanism = np.zeros((assembly.n_blocks, 3))
     mechanism[assembly.free] = (motion * column).reshape(-1, 3)

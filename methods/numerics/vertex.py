@@ -43,7 +43,6 @@ class VertexTolerances:
     cut_off: float = 1e7
 
 
-VERTEX = VertexTolerances()
 LOWER, BASIC, UPPER, ZERO = (
     int(status)
     for status in (
@@ -64,6 +63,7 @@ class Vertex:
         basic: (c,) columns that the basis leaves between their bounds.
         primal: largest violation of a bound; dual_violation: of the sign of a multiplier or reduced cost; both
             relative to the terms beside it.
+        feasible: whether it keeps all bounds to rounding; optimal: whether it is optimal too.
     """
 
     value: FloatArray
@@ -72,11 +72,8 @@ class Vertex:
     basic: BoolArray
     primal: float
     dual_violation: float
-
-    @property
-    def optimal(self) -> bool:
-        """Whether the vertex is feasible and optimal to rounding."""
-        return max(self.primal, self.dual_violation) <= VERTEX.accurate
+    feasible: bool
+    optimal: bool
 
 
 @dataclass(frozen=True, eq=False)
@@ -100,6 +97,7 @@ class StandardForm:
         matrix: (r, c) A.
         cost: (c,); column: lower and upper bounds (c,); row: lower and upper bounds (r,).
         groups: (r,) rows of the same number measure violations by the largest terms of any of them.
+        tolerances: of its vertices.
     """
 
     def __init__(
@@ -109,7 +107,9 @@ class StandardForm:
         column: tuple[FloatArray, FloatArray],
         row: tuple[FloatArray, FloatArray],
         groups: IntArray | None = None,
+        tolerances: VertexTolerances = VertexTolerances(),
     ) -> None:
+        self._tolerances = tolerances
         self._rows, self._columns = matrix.shape
         own = np.arange(self._rows, dtype=matrix.indices.dtype)
         parts = (
@@ -130,8 +130,8 @@ class StandardForm:
     def vertex(self, status: IntArray) -> Vertex | None:
         """The optimal vertex that a basis (c + r,) leads to; None if it is singular or leads nowhere."""
         best = solution = self._solution(status)
-        for _ in range(VERTEX.rounds):
-            if solution is None or max(solution.primal, solution.dual_violation) <= VERTEX.accurate:
+        for _ in range(self._tolerances.rounds):
+            if solution is None or _worst(solution) <= self._tolerances.accurate:
                 break
             solution = self._magnified(solution)
             if solution is not None and best is not None and _worst(solution) < _worst(best):
@@ -146,6 +146,8 @@ class StandardForm:
             best.status[own] == BASIC,
             best.primal,
             best.dual_violation,
+            best.primal <= self._tolerances.accurate,
+            _worst(best) <= self._tolerances.accurate,
         )
 
     def _solution(self, status: IntArray) -> _Solution | None:
@@ -156,7 +158,7 @@ class StandardForm:
         if int(basic.sum()) != self._rows:
             return None
         try:
-            basis = Basis(self._matrix[:, basic])
+            basis = Basis(self._matrix[:, basic], self._tolerances.rounds)
             value[basic] = basis.solved(-extended_product(self._by_row, value))
             dual = basis.multipliers(self._cost[basic])
         except NumericalFailure:
@@ -175,8 +177,8 @@ class StandardForm:
             reduced,
             outside,
             wrong,
-            _relative(outside, self._terms_beside(value), VERTEX.least_term * self._largest_bound),
-            _relative(wrong, speeds, VERTEX.least_speed * float(speeds.max(initial=0.0))),
+            _relative(outside, self._terms_beside(value), self._tolerances.least_term * self._largest_bound),
+            _relative(wrong, speeds, self._tolerances.least_speed * float(speeds.max(initial=0.0))),
         )
 
     def _terms_beside(self, value: FloatArray) -> FloatArray:
@@ -199,8 +201,9 @@ class StandardForm:
 
     def _magnified(self, at: _Solution) -> _Solution | None:
         """Where the programme leads once it is shifted to a solution and its violations are magnified to one."""
-        primal = _factor(at.outside) if at.primal > VERTEX.accurate else 1.0
-        dual = _factor(at.wrong) if at.dual_violation > VERTEX.accurate else 1.0
+        tolerances = self._tolerances
+        primal = _factor(at.outside, tolerances.magnified) if at.primal > tolerances.accurate else 1.0
+        dual = _factor(at.wrong, tolerances.magnified) if at.dual_violation > tolerances.accurate else 1.0
         basic = at.status == BASIC
         highs: Any = highspy.Highs()
         for option, setting in (
@@ -215,7 +218,7 @@ class StandardForm:
             highs.setOptionValue(option, setting)
         shifted = highspy.HighsLp()
         shifted.num_row_, shifted.num_col_ = self._matrix.shape
-        shifted.col_cost_ = np.where(basic, 0.0, np.clip(dual * at.reduced, -VERTEX.cut_off, VERTEX.cut_off))
+        shifted.col_cost_ = np.where(basic, 0.0, np.clip(dual * at.reduced, -tolerances.cut_off, tolerances.cut_off))
         shifted.col_lower_ = primal * (self._lower - at.value)
         shifted.col_upper_ = primal * (self._upper - at.value)
         shifted.row_lower_ = shifted.row_upper_ = np.zeros(self._rows)
@@ -242,12 +245,15 @@ class Basis:
 
     Rows and columns are scaled by powers of two, which rounds nothing.
 
+    Args:
+        matrix: (k, k) B; rounds: refinements of a solution at most.
+
     Raises:
         SingularMatrix: the matrix is singular.
     """
 
-    def __init__(self, matrix: sp.csc_matrix) -> None:
-        size = matrix.shape[0]
+    def __init__(self, matrix: sp.csc_matrix, rounds: int) -> None:
+        size, self._rounds = matrix.shape[0], rounds
         column_of = np.repeat(np.arange(size), np.diff(matrix.indptr))
         self._by_column: sp.csr_matrix = matrix.T
         self._by_row = matrix.tocsr()
@@ -263,27 +269,28 @@ class Basis:
         Raises:
             SingularMatrix: the matrix is singular to rounding.
         """
-        return _refined(self._by_row, right, lambda left: self._columns * self._factor.solve(self._rows * left))
+        return self._refined(self._by_row, right, lambda left: self._columns * self._factor.solve(self._rows * left))
 
     def multipliers(self, right: Any) -> FloatArray:
         """y (k,) with B' y = right; raises as `solved`."""
-        return _refined(
+        return self._refined(
             self._by_column, right, lambda left: self._rows * self._factor.solve(self._columns * left, trans="T")
         )
 
-
-def _refined(by_row: sp.csr_matrix, right: Any, approximate: Callable[[FloatArray], FloatArray]) -> FloatArray:
-    right = np.asarray(right, dtype=np.longdouble)
-    solution = np.zeros(len(right), dtype=np.longdouble)
-    for _ in range(VERTEX.rounds):
-        residual = right - extended_product(by_row, solution)
-        change = approximate(residual.astype(float))
-        if not np.isfinite(change).all():
-            raise SingularMatrix("the basis is singular to rounding")
-        solution = solution + change
-        if np.all(abs(change) <= 1e-17 * abs(solution)):
-            break
-    return solution.astype(float)
+    def _refined(
+        self, by_row: sp.csr_matrix, right: Any, approximate: Callable[[FloatArray], FloatArray]
+    ) -> FloatArray:
+        right = np.asarray(right, dtype=np.longdouble)
+        solution = np.zeros(len(right), dtype=np.longdouble)
+        for _ in range(self._rounds):
+            residual = right - extended_product(by_row, solution)
+            change = approximate(residual.astype(float))
+            if not np.isfinite(change).all():
+                raise SingularMatrix("the basis is singular to rounding")
+            solution = solution + change
+            if np.all(abs(change) <= 1e-17 * abs(solution)):
+                break
+        return solution.astype(float)
 
 
 def _largest(place: Any, values: FloatArray, count: int) -> FloatArray:
@@ -312,10 +319,10 @@ def _relative(violation: FloatArray, beside: FloatArray, least: float) -> float:
     return float((violation / np.maximum(beside, least or 1.0)).max(initial=0.0))
 
 
-def _factor(violation: FloatArray) -> float:
-    """A power of two that brings the largest violation near one."""
+def _factor(violation: FloatArray, most: float) -> float:
+    """A power of two up to `most` that brings the largest violation near one."""
     worst = float(violation.max(initial=0.0))
-    return 1.0 if worst == 0.0 else float(np.clip(2.0 ** np.round(-np.log2(worst)), 1.0, VERTEX.magnified))
+    return 1.0 if worst == 0.0 else float(np.clip(2.0 ** np.round(-np.log2(worst)), 1.0, most))
 
 
 def _powers(size: FloatArray) -> FloatArray:

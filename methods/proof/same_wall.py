@@ -14,8 +14,11 @@ from typing import Any
 import numpy as np
 
 from harness.model.assembly import Assembly, FloatArray
-from methods.proof.search.tuning import ROUNDING
 from methods.proof.verify.exact_wall import CertificateError, fractions_of, number, refusal_of
+
+SAME_NUMBER = 1e-11
+"""Difference of a number in a certificate from that of the wall, relative to what it belongs to: short fractions lie
+within 1e-13 of the float they were read from, and loads are once divided by a unit besides."""
 
 
 def require_same_wall(document: Any, assembly: Assembly) -> None:
@@ -47,10 +50,12 @@ def _require_dry(assembly: Assembly) -> None:
         raise CertificateError("it is of a wall without dilatancy, and joints of this one have dilatancy")
     if not assembly.law.dry.all():
         raise CertificateError("it is of a wall with dry joints, and joints of this one have strength of their own")
+    if len(assembly.bars):
+        raise CertificateError("it is of a wall without ties and props, and this one has some")
     if np.any(assembly.support_motion):
         raise CertificateError("it is of a wall whose supports rest, and supports of this one move")
     across = np.abs((assembly.tangent * assembly.normal).sum(axis=1))
-    if not np.all(across <= ROUNDING.wall):
+    if not np.all(across <= SAME_NUMBER):
         raise CertificateError("it is of another wall: the normals of the interfaces are not the same")
 
 
@@ -117,5 +122,5 @@ def same_number(given: Fraction, wanted: float, size: float, part: float) -> boo
 
 def _require(name: str, given: list[Fraction], wanted: FloatArray, sizes: FloatArray | float) -> None:
     numbers = zip(given, wanted.tolist(), np.broadcast_to(sizes, wanted.shape).tolist(), strict=True)
-    if not all(same_number(value, float_value, size, ROUNDING.wall) for value, float_value, size in numbers):
+    if not all(same_number(value, float_value, size, SAME_NUMBER) for value, float_value, size in numbers):
         raise CertificateError(f"it is of another wall: the {name} are not the same")

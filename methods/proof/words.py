@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from fractions import Fraction
 
-from methods.proof.search.tuning import PRECISION
+SHORT, SHOWN = 9, 40
+"""Characters of a fraction up to which a sentence shows it alone, and beside its value."""
 
 
 def in_words(value: Fraction) -> str:
@@ -15,10 +16,10 @@ def in_words(value: Fraction) -> str:
     >>> in_words(Fraction(1567589759, 2809311829))
     '0.557997778 (1567589759/2809311829)'
     """
-    if len(str(value)) <= PRECISION.short:
+    if len(str(value)) <= SHORT:
         return str(value)
     exact = next((places for places in (9, 12) if 10**places % value.denominator == 0), None)
     places = 9 if exact is None else exact
     whole, part = divmod(value.numerator * 10**places // value.denominator, 10**places)
     decimal = f"{whole}.{part:0{places}d}".rstrip("0")
-    return f"{decimal} ({value})" if exact is None and len(str(value)) <= PRECISION.shown else decimal
+    return f"{decimal} ({value})" if exact is None and len(str(value)) <= SHOWN else decimal

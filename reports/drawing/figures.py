@@ -227,6 +227,6 @@ def _panels(case: Case, results: list[Result], rows: list[str]) -> Figure:
 def _panel_title(case: Case, result: Result, what: str) -> str:
     """The method, its value, and what is drawn."""
     if what == "thrust":
-        found = shapes.thrusts(case.assembly, np.asarray(result.forces, dtype=float), thrust_lines.STYLE.smallest)
+        found = shapes.thrusts(case.assembly, np.asarray(result.forces, dtype=float), thrust_lines.SMALLEST)
         what = "line of thrust" if thrust_lines.has_line_of_thrust(case.assembly, found) else "flow of forces"
     return f"{result.method}, {value_in_words(result)}: {what}"

@@ -7,8 +7,10 @@ from collections.abc import Collection
 import numpy as np
 
 from harness.model.assembly import Assembly, FloatArray
+from harness.model.bar_forces import bar_forces_of
 from harness.model.case import Case
 from harness.model.result import Result
+from reports.drawing.bars import bar_forces
 from reports.drawing.display_list import BELOW, Circles, DisplayList, Frame, Group, Lines, Polygons, Shape, Text, chosen
 from reports.drawing.wall_drawing import length_scale
 from reports.geometry import shapes, thrust_lines
@@ -36,7 +38,10 @@ def force_drawing(case: Case, result: Result, layers: Collection[str] = LAYERS) 
     drawn.parts.append(Polygons("outline", chosen(placed, ~assembly.fixed)))
     drawn.parts.extend(length_scale(frame, case.wall.units.length))
     forces = np.asarray(result.forces, dtype=float)
-    found = shapes.thrusts(assembly, forces, smallest=thrust_lines.STYLE.smallest)
+    found = shapes.thrusts(assembly, forces, smallest=thrust_lines.SMALLEST)
+    listed = bar_forces_of(case, result)
+    if listed:
+        drawn.parts.extend(bar_forces(frame, assembly, listed))
     if len(found.size):
         drawn.parts.extend(_groups(frame, assembly, found, forces, layers))
         drawn.parts.extend(_force_scale(frame, float(found.size.max()), case.wall.units.force))
@@ -56,7 +61,7 @@ def _groups(
     points, width = frame.place(found.point), [_width(frame, share) for share in (found.size / found.size.max())]
     arrows = _arrows(frame, frame.place(thrust_lines.drawn_ends(assembly, found)), np.array(width))
     lines = _through_blocks(frame, assembly, found)
-    labelled = len(found.size) <= thrust_lines.STYLE.labelled
+    labelled = len(found.size) <= thrust_lines.LABELLED
     drawn = []
     for k, p in enumerate(found.interface.tolist()):
         parts: list[Shape] = []

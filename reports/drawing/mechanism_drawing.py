@@ -7,8 +7,9 @@ import numpy as np
 from harness.model.assembly import Assembly, FloatArray
 from harness.model.case import Case
 from harness.model.result import Result, relative_velocities
+from reports.drawing.bars import bar_lines
 from reports.drawing.display_list import Circles, DisplayList, Frame, Group, Lines, Polygons, Shape, chosen
-from reports.drawing.wall_drawing import DRAWN_INTERFACES, length_scale
+from reports.drawing.wall_drawing import DRAWN_INTERFACES, length_scale, load_arrows
 from reports.findings import joints
 from reports.findings.agreement import measure_of
 from reports.geometry import shapes
@@ -53,8 +54,26 @@ def moved_wall(assembly: Assembly, result: Result, scale: float | None = None) -
         for k in np.flatnonzero(members).tolist():
             motion, values = (motions[k], tuple(mechanism[k].tolist())) if moves[k] else (None, ())
             drawn.parts.append(Group((Polygons(role, (placed[k],)),), motion, block=k, values=values))
+    drawn.parts.extend(bar_lines(drawn.frame, assembly, scale * mechanism))
     if scale > 0.0 and assembly.n_interfaces <= DRAWN_INTERFACES:
         drawn.parts.extend(_marks(drawn.frame, assembly, result, moves, motions))
+    return drawn
+
+
+def loaded_mechanism(case: Case, result: Result) -> DisplayList:
+    """The mechanism of a result (n, 3) as displaced blocks that stand still on a page, with the loads before it."""
+    assembly, frame = case.assembly, Frame.of(case.assembly)
+    mechanism = np.asarray(result.mechanism, dtype=float)
+    scale = shapes.amplitude(assembly, mechanism)
+    drawn = DisplayList(frame, f"Mechanism of {result.case} by {result.method}, with its loads")
+    moves = shapes.moving(assembly, mechanism) & ~assembly.fixed
+    drawn.parts.append(Polygons("ghost", chosen(frame.place_all(assembly.polygons), moves)))
+    placed = frame.place_all(shapes.displaced(assembly, mechanism, scale))
+    for role, members in (("held", assembly.fixed), ("still", ~assembly.fixed & ~moves), ("moves", moves)):
+        drawn.parts.append(Polygons(role, chosen(placed, members)))
+    drawn.parts.extend(bar_lines(frame, assembly, scale * mechanism))
+    drawn.parts.extend(load_arrows(frame, assembly))
+    drawn.parts.extend(length_scale(frame, case.wall.units.length))
     return drawn
 
 

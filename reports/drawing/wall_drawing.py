@@ -9,6 +9,7 @@ import numpy as np
 from harness.model.assembly import Assembly, FloatArray, polygon_area
 from harness.model.case import Case
 from harness.model.wall import Units
+from reports.drawing.bars import bar_lines
 from reports.drawing.display_list import BELOW, Arrows, DisplayList, Frame, Lines, Polygons, Shape, Text, chosen
 from reports.geometry import shapes, thrust_lines
 from reports.labels import numbers
@@ -38,6 +39,7 @@ def plain_wall(assembly: Assembly, units: Units, name: str) -> DisplayList:
     drawn = DisplayList(Frame.of(assembly), label)
     drawn.parts.extend(_stones(drawn.frame, assembly, list(assembly.polygons), "stone"))
     drawn.parts.extend(joint_lines(drawn.frame, assembly))
+    drawn.parts.extend(bar_lines(drawn.frame, assembly))
     drawn.parts.extend(_labels(drawn.frame, assembly))
     drawn.parts.extend(load_arrows(drawn.frame, assembly))
     drawn.parts.extend(length_scale(drawn.frame, units.length))

@@ -48,8 +48,8 @@ class Extent:
 
 
 def extent(assembly: Assembly) -> Extent:
-    """The rectangle round all blocks."""
-    return _round(assembly.corners[0])
+    """The rectangle round all blocks, ties and props."""
+    return _round(np.concatenate([assembly.corners[0], assembly.bars.end1, assembly.bars.end2]))
 
 
 def extent_of(polygons: Sequence[FloatArray]) -> Extent:

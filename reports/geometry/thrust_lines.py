@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
 
 import numpy as np
 
@@ -19,22 +18,15 @@ AT_LIMIT = 0.999
 """Share of the limit of friction from which a force is drawn as at it: forces of any method are known better."""
 
 
-@dataclass(frozen=True)
-class ForceStyle:
-    """How forces are drawn.
+SMALLEST = 2e-3
+"""Share of the largest force below which one is not drawn."""
 
-    Attributes:
-        smallest: share of the largest force below which one is not drawn.
-        reach: half of a resultant's length, in block sizes: two in neighbouring joints do not run into each other.
-        labelled: up to so many forces carry their size; more would cover each other.
-    """
+REACH = 0.36
+"""Half of the length of a resultant that is drawn, in block sizes: two in neighbouring joints do not run into each
+other."""
 
-    smallest: float = 2e-3
-    reach: float = 0.36
-    labelled: int = 45
-
-
-STYLE = ForceStyle()
+LABELLED = 45
+"""Up to so many forces carry their size; more would cover each other."""
 
 
 def has_line_of_thrust(assembly: Assembly, found: Thrusts) -> bool:
@@ -62,7 +54,7 @@ def drawn_ends(assembly: Assembly, found: Thrusts) -> FloatArray:
     One that a support takes stands on the free block alone and ends at the joint, so that nothing leaves the support.
     """
     way = towards_ground(found)
-    length = STYLE.reach * assembly.length_scale
+    length = REACH * assembly.length_scale
     a, b = assembly.block_a[found.interface], assembly.block_b[found.interface]
     normal = assembly.normal[found.interface]  # from a to b
     held = assembly.fixed[a] | assembly.fixed[b]

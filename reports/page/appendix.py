@@ -14,6 +14,7 @@ from markupsafe import Markup
 from matplotlib.figure import Figure
 
 from harness.model.assembly import FloatArray
+from harness.model.bar_forces import bar_forces_of
 from harness.model.case import Case
 from harness.model.comparison import CaseResults, ComparisonRun
 from harness.model.joint_margins import JOINTS, joint_rows
@@ -32,23 +33,14 @@ from reports.labels import labels, numbers
 from reports.labels.wall_summary import value_in_words, wall_summary
 from reports.page.summary import wall_findings, which_number
 
+BLOCK_ROWS = 36
+"""Largest number of blocks with a row each; of more only sums are given: the appendix stays within four sheets."""
 
-@dataclass(frozen=True)
-class SheetLimits:
-    """How much of a wall is written out, so that the appendix stays within four sheets.
+JOINT_ROWS = 8
+"""Number of most critical joints with a row each."""
 
-    Attributes:
-        blocks: largest number of blocks with a row each; more are told by their sums.
-        joints: number of most critical joints with a row each.
-        figures: largest number of blocks whose drawings stand in the page; a drawing takes some 5 kB a block.
-    """
-
-    blocks: int = 36
-    joints: int = 8
-    figures: int = 2000
-
-
-LIMITS = SheetLimits()
+DRAWN_BLOCKS = 2000
+"""Largest number of blocks whose drawings stand in the page; a drawing takes some 5 kB a block."""
 
 
 def assumptions(case: Case) -> tuple[str, ...]:
@@ -141,9 +133,10 @@ def render(run: ComparisonRun) -> str:
             else [],
             shown=shown,
             value=value_in_words(shown) if shown else "",
+            bars=bar_forces_of(case, shown) if shown else [],
             reactions=listed,
             balance=balance,
-            joints=joint_rows(case, shown)[: LIMITS.joints] if shown else [],
+            joints=joint_rows(case, shown)[:JOINT_ROWS] if shown else [],
             joint_columns=in_units(_CRITICAL, case.wall.units.force, case.wall.units.length),
             warnings=(*case.warnings, *item.refusals),
             units=case.wall.units,
@@ -175,7 +168,7 @@ def _ways(items: list[CaseResults], governing: CaseResults) -> list[tuple[str, s
 
 
 def _drawn(item: CaseResults) -> bool:
-    return item.case.assembly.n_blocks <= LIMITS.figures
+    return item.case.assembly.n_blocks <= DRAWN_BLOCKS
 
 
 def _shown(item: CaseResults) -> Result | None:
@@ -208,7 +201,7 @@ def _loads(item: CaseResults) -> list[tuple[str, str, str]]:
 
 def _blocks(item: CaseResults) -> list[BlockRow]:
     assembly = item.case.assembly
-    if assembly.n_free > LIMITS.blocks:
+    if assembly.n_free > BLOCK_ROWS:
         return []
     return [
         BlockRow(

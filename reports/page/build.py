@@ -33,6 +33,7 @@ from reports.labels import labels, numbers
 from reports.memo import each_once
 from reports.page import paper, tables
 from reports.page.export import export
+from reports.page.governing import governing_case
 from reports.page.page_drawings import PageDrawings, fields_drawn
 from reports.page.sections import CaseSection, case_section
 from reports.page.summary import run_in_order, summary
@@ -90,7 +91,8 @@ def render(run: ComparisonRun, *, data_folder: str, listed: Sequence[ResultColum
         references=tables.reference_rows(run),
         compared=COMPARED,
         purposes=labels.PURPOSE,
-        load_cases=by_wall(envelopes(run.cases)),
+        load_cases=(load_cases := by_wall(envelopes(run.cases))),
+        governing={wall: governing_case(run, found) for wall, found in load_cases.items()},
         answer_text=answer_text,
         gates=[(number, item.case.id, gate) for number, item in enumerate(run.cases) for gate in item.gates],
         paper=paper.paper_comparison(run),

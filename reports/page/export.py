@@ -12,6 +12,7 @@ from importlib.util import find_spec
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from harness.model.bar_forces import BARS, bar_forces_of
 from harness.model.case import Case
 from harness.model.columns import COMPARISONS, RESULTS, ResultColumn, ResultRow
 from harness.model.comparison import CaseResults, ComparisonRun
@@ -50,6 +51,8 @@ def export(run: ComparisonRun, folder: Path, *, drawn: bool = False, columns: Se
     results = result_frame(((r, proof_of(item, r)) for item in run.cases for r in item.results), columns)
     contents: dict[str, bytes] = {"results.csv": _csv(results), "comparisons.csv": _csv(comparison_frame(run))}
     contents["joints.csv"] = _joints_csv(run)
+    if any(len(item.case.assembly.bars) for item in run.cases if not shapes.problem(item.case)):
+        contents["bars.csv"] = _bars_csv(run)
     if find_spec("pyarrow") is not None:
         contents["results.parquet"] = results.to_parquet(index=False)
     for item in run.cases:
@@ -60,6 +63,7 @@ def export(run: ComparisonRun, folder: Path, *, drawn: bool = False, columns: Se
                 | {
                     "proof": proof_of(item, result).as_json(),
                     "block_ids": [] if shapes.problem(item.case) else list(item.case.assembly.block_ids),
+                    "bars": [values(BARS, bar) for bar in bar_forces_of(item.case, result)],
                     "reactions": [values(REACTIONS, reaction) for reaction in reactions_of(item.case, result)],
                     "units": item.case.wall.units.model_dump(mode="json", exclude_none=True),
                 }
@@ -158,6 +162,19 @@ def _joints_csv(run: ComparisonRun) -> bytes:
     return stream.getvalue().encode()
 
 
+def _bars_csv(run: ComparisonRun) -> bytes:
+    """The forces of ties and props in all answers, in the columns of `BARS` after case and method."""
+    stream = io.StringIO()
+    writer = csv.writer(stream, quoting=csv.QUOTE_NONNUMERIC, lineterminator="\n")
+    writer.writerow(["case", "method", *(column.name for column in BARS)])
+    for item in run.cases:
+        for result in item.results:
+            for bar in bar_forces_of(item.case, result):
+                row = [item.case.id, result.method, *(column.value(bar) for column in BARS)]
+                writer.writerow([_field(value) for value in row])
+    return stream.getvalue().encode()
+
+
 def _field(value: Any) -> Any:
     if isinstance(value, list | dict):
         return json.dumps(value)
@@ -187,6 +204,12 @@ def reaction_frame(case: Case, result: Result) -> pd.DataFrame:
     """Reactions of the supports in an answer; units in `attrs["units"]`."""
     wall = case.wall.units
     return _frame(in_units(REACTIONS, wall.force, wall.length), reactions_of(case, result))
+
+
+def bar_frame(case: Case, result: Result) -> pd.DataFrame:
+    """Forces of the ties and props in an answer; units in `attrs["units"]`."""
+    wall = case.wall.units
+    return _frame(in_units(BARS, wall.force, wall.length), bar_forces_of(case, result))
 
 
 def _frame(columns: Sequence[TableColumn[Row]], rows: Iterable[Row]) -> pd.DataFrame:

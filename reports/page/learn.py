@@ -87,9 +87,6 @@ class Demonstration:
     stiffness: float = 10.0
 
 
-START = Demonstration()
-
-
 def write_learn(run: ComparisonRun, path: Path) -> None:
     """Write the page as one HTML file that works offline.
 
@@ -100,8 +97,8 @@ def write_learn(run: ComparisonRun, path: Path) -> None:
     write_whole(path, render(run))
 
 
-def render(run: ComparisonRun) -> str:
-    """The page as text."""
+def render(run: ComparisonRun, start: Demonstration = Demonstration()) -> str:
+    """The page as text, with its sliders at the start."""
     name = printed().block.case
     block = next(item for item in run.cases if item.case.id == name)
     walls = sorted(
@@ -113,8 +110,8 @@ def render(run: ComparisonRun) -> str:
         .get_template("learn.html.j2")
         .render(
             run=run,
-            start=START,
-            answers=block_answers(START.rear, START.front),
+            start=start,
+            answers=block_answers(start.rear, start.front),
             measured=[
                 (r.method, r.traits.caption, value_in_words(r)) for r in labels.in_order(block) if r.status is Status.OK
             ],

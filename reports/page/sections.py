@@ -16,6 +16,7 @@ from reports.drawing.force_drawing import force_drawing
 from reports.drawing.mechanism_drawing import mechanism_drawing
 from reports.drawing.svg import inline
 from reports.findings.agreement import Agreement
+from reports.findings.bars import BarRow, bar_rows, bars_text
 from reports.findings.joints import joints_in_words, motion, open_with_force
 from reports.findings.reasons import reasons
 from reports.findings.strength import StrengthRow, strength_rows, strength_text
@@ -76,6 +77,7 @@ class CaseSection:
     overlay: Markup = field(default_factory=Markup)
     overlay_caption: str = ""
     strength: list[StrengthRow] = field(default_factory=list)
+    bars: list[BarRow] = field(default_factory=list)
 
     @property
     def packed(self) -> bool:
@@ -149,6 +151,7 @@ def case_section(
         through=_through(item),
         facts=_facts(item.case),
         strength=strength_rows(item),
+        bars=bar_rows(item),
         warnings=(*item.case.warnings, *item.refusals, *filter(None, [item.split_on_dead_load])),
         rows=rows,
         panels=panels,
@@ -164,26 +167,30 @@ def case_section(
 
 
 def _facts(case: Case) -> list[tuple[str, str]]:
-    """The facts of a case, with the strength of its joints where they have any."""
-    strength = strength_text(case.assembly, case.wall.units.force)
-    return wall_summary(case) + ([("Strength of joints", strength)] if strength else [])
+    """The facts of a case, with the strength of its joints where they have any, and with its ties and props."""
+    more = {
+        "Strength of joints": strength_text(case.assembly, case.wall.units.force),
+        "Ties and props": bars_text(case),
+    }
+    return wall_summary(case) + [(name, text) for name, text in more.items() if text]
 
 
 def _loads_drawn(case: Case) -> str:
     """The caption of a wall: what of its loads is drawn."""
     assembly = case.assembly
+    bars = "; violet lines are ties, wider ones props" if len(assembly.bars) else ""
     if not assembly.has_live_load:
-        return "The wall with its supports; dots are contact points."
+        return f"The wall with its supports; dots are contact points{bars}."
     step = shapes.drawn_every(len(shapes.load_arrows(assembly, assembly.live)))
     every = f", drawn on one block in {step}" if step > 1 else ""
-    return f"The wall with its loads{every}; dots are contact points."
+    return f"The wall with its loads{every}; dots are contact points{bars}."
 
 
 def _through(item: CaseResults) -> str:
     """What lines through the blocks are: the line of thrust where each result has one, else how forces flow."""
     drawn = [np.asarray(result.forces, dtype=float) for result in item.results if result.forces is not None]
     assembly = item.case.assembly
-    found = [shapes.thrusts(assembly, forces, thrust_lines.STYLE.smallest) for forces in drawn if len(forces)]
+    found = [shapes.thrusts(assembly, forces, thrust_lines.SMALLEST) for forces in drawn if len(forces)]
     return "line of thrust" if all(thrust_lines.has_line_of_thrust(assembly, f) for f in found) else "flow of forces"
 
 

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import re
 from collections.abc import Sequence
-from dataclasses import dataclass
 from functools import cache
 from importlib.resources import files
 
@@ -20,21 +19,11 @@ from reports.geometry import shapes
 from reports.labels.wall_summary import friction_text, value_in_words
 from reports.page.summary import figure_of
 
+LETTERS = 120
+"""Size of the letters of the text above a drawing, in drawing units."""
 
-@dataclass(frozen=True)
-class Heading:
-    """The lines of text above a drawing, in drawing units.
-
-    Attributes:
-        size: of the letters.
-        line: from one line to the next.
-    """
-
-    size: int = 120
-    line: int = 170
-
-
-HEADING = Heading()
+LINE = 170
+"""From one line of that text to the next."""
 MOST_BLOCKS = 2000
 """Walls with more blocks are drawn on demand only (`drystone figure`): a drawing takes some 100 bytes a block."""
 
@@ -78,10 +67,9 @@ def headed(case: Case, drawing: DisplayList, said: str) -> str:
     """
     left, top, width, _ = drawing.frame.box
     lines = [case.file.title, f"tan φ = {friction_text(case.assembly)}", *_broken(said, width)]
-    above = HEADING.line * len(lines)
+    above = LINE * len(lines)
     heading = [
-        Text("", (left + 60, top - above + HEADING.line * (k + 1)), line, HEADING.size, "start")
-        for k, line in enumerate(lines)
+        Text("", (left + 60, top - above + LINE * (k + 1)), line, LETTERS, "start") for k, line in enumerate(lines)
     ]
     return standalone(drawing, heading, above)
 
@@ -98,7 +86,7 @@ def _rooted(opened: str) -> str:
 
 def _broken(text: str, width: float) -> list[str]:
     """A text in lines that fit; a letter is about 0.55 of its size wide."""
-    most, lines = int(width / (0.55 * HEADING.size)), [""]
+    most, lines = int(width / (0.55 * LETTERS)), [""]
     for word in text.split():
         if len(lines[-1]) + 1 + len(word) > most:
             lines.append("")

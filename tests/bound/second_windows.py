@@ -151,7 +151,7 @@ class Motion:
 
     def per_size(self, document: Any) -> dict[Hashable, Fraction]:
         """{unknown: its greatest value in mechanisms of size one}."""
-        wall, states = self.states.wall, self.states
+        wall = self.states.wall
         known: dict[int, Fraction] = {}
         for p in range(wall.m):
             for k in range(3):
@@ -176,24 +176,9 @@ class Motion:
         loose = NIL
         for joints, course in courses:
             need(len(set(joints)) == len(joints) and set(joints) <= set(self.signed), "joints of no course")
-            least, mu = states.least_normal(joints, course["velocities"]), min(wall.friction[p] for p in joints)
-            need(least > 0 and mu > 0, "a course without friction")
-            base, part = 1 / (mu * self.lift_weight), NIL
-            for p in joints:
-                form: dict[int, Fraction] = {}
-                error = NIL
-                for d, v in wall.strains[p][2].items():
-                    assert isinstance(d, int)
-                    error += abs(v) * errors[d]
-                    for k, a in inverse[d].items():
-                        form[k] = form.get(k, NIL) + v * a
-                error += abs(abs(form.pop(3 * joints[0] + 2, NIL)) - 1)
-                need(all(k in known or k in leaders for k in form), "a slip that nothing bounds")
-                error += sum((abs(v) for k, v in form.items() if k not in known), NIL)
-                base += states.normal[p] * sum((abs(v) * known[k] for k, v in form.items() if k in known), NIL)
-                part += states.normal[p] * error
-            slips[3 * joints[0] + 2] = base / least, part / least
-            loose = max(loose, part / least)
+            base, part = self._slip_of_course(joints, course["velocities"], inverse, errors, known, leaders)
+            slips[3 * joints[0] + 2] = base, part
+            loose = max(loose, part)
         sizes = known | {k: base for k, (base, _) in slips.items()}
         need(all(k in sizes for row in inverse for k in row), "a velocity that nothing bounds")
         bases = [sum((abs(v) * sizes[k] for k, v in row.items()), NIL) for row in inverse]
@@ -208,6 +193,41 @@ class Motion:
             d: base + part * most for d, (base, part) in enumerate(zip(bases, parts, strict=True))
         }
         return found | {("back", p): 1 / self.weights[4 * p + 3] for p in self.back}
+
+    def _slip_of_course(
+        self,
+        joints: list[int],
+        velocities: Any,
+        inverse: list[dict[int, Fraction]],
+        errors: list[Fraction],
+        known: dict[int, Fraction],
+        leaders: set[int],
+    ) -> tuple[Fraction, Fraction]:
+        """(a, b): the slip s of the first joint is at most a, plus b times what nothing bounds yet.
+
+        Slips a_p s + b_p lose mu_p N_p |a_p s + b_p| by friction, which is at most the lift, so that |s| times the
+        least sum of mu_p N_p |a_p| is at most the lift and the sum of mu_p N_p |b_p|, all by mu of the first joint.
+        """
+        states, friction, strains = self.states, self.states.wall.friction, self.states.wall.strains
+        mu, leader = friction[joints[0]], 3 * joints[0] + 2
+        need(mu > 0, "a course without friction")
+        base, part, lost = 1 / (mu * self.lift_weight), NIL, {}
+        for p in joints:
+            form: dict[int, Fraction] = {}
+            rest, share = NIL, friction[p] / mu
+            for d, v in strains[p][2].items():
+                assert isinstance(d, int)
+                rest += abs(v) * errors[d]
+                for k, a in inverse[d].items():
+                    form[k] = form.get(k, NIL) + v * a
+            lost[p] = share * abs(form.pop(leader, NIL))
+            need(all(k in known or k in leaders for k in form), "a slip that nothing bounds")
+            rest += sum((abs(v) for k, v in form.items() if k not in known), NIL)
+            base += share * states.normal[p] * sum((abs(v) * known[k] for k, v in form.items() if k in known), NIL)
+            part += share * states.normal[p] * rest
+        least = -states.greatest({3 * p + end: -loss for p, loss in lost.items() for end in (0, 1)}, velocities)
+        need(least > 0, "a course without friction")
+        return base / least, part / least
 
 
 def gain(motion: Motion, document: Any, of_size: bool, reach: dict[Hashable, Fraction], per_size: bool) -> Gain:

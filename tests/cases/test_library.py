@@ -68,7 +68,7 @@ def test_published_suite_is_complete() -> None:
 
 
 @pytest.mark.parametrize(
-    "suite", ["paper", "small", "closed-form", "friction-family", "matera", "walls", "stability", "strength"]
+    "suite", ["paper", "small", "closed-form", "friction-family", "matera", "walls", "stability", "strength", "ties"]
 )
 def test_suite_has_members(suite: str) -> None:
     assert any(suite in read_case(folder).file.suites for folder in FOLDERS.values())

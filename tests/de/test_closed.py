@@ -69,6 +69,7 @@ def test_even_stack_has_the_exact_multiplier():
     answer = closed(assembly(stack(3, 0.4, 0.2), 0.9), size=0.0, alone=("la",), compare=False)
     # The bracket is 0.005 wide, and the springs give by a thousandth of a block.
     assert answer.bracket[0] - 5e-3 <= 2 / 3 <= answer.bracket[1] + 5e-3
+    assert answer.multiplier == pytest.approx(sum(answer.bracket) / 2.0)
     # The settled contacts overlap by up to the slop of the engine and lie back by the radius of its corners.
     assert answer.details["analyses"]["la"]["multiplier"] == pytest.approx(2 / 3, rel=5e-3)
 

@@ -12,7 +12,7 @@ from harness.engine.residuals import force_residuals
 from harness.model.errors import InputError
 from harness.model.method import Finding, Status
 from methods.de.damped_holds import MujocoHolds
-from methods.de.engines.mujoco_wall import SOFT_CONTACTS, UNIFORM, MujocoWall, SolverFailed
+from methods.de.engines.mujoco_wall import MujocoTuning, MujocoWall, SoftContacts, SolverFailed
 from methods.de.methods import DE_MUJOCO
 from methods.de.settings import MujocoSettings
 from tests.de.answers import run
@@ -104,7 +104,9 @@ def test_a_contact_solver_cut_short_is_undecided_and_never_a_number(iterations):
 @needs_mujoco
 def test_mujoco_starting_again_by_itself_is_not_taken_for_rest():
     wall = assembly(stack(1, 0.2, 0.4), 0.7)
-    engine = MujocoWall(wall, wall.free, np.arange(wall.n_interfaces), 100, UNIFORM, SOFT_CONTACTS.wall_impedance, 1e3)
+    engine = MujocoWall(
+        wall, wall.free, np.arange(wall.n_interfaces), 100, MujocoTuning().uniform, SoftContacts().wall_impedance, 1e3
+    )
     engine.restore(np.concatenate([np.full(3, 1e12), np.zeros(6)]))
     with pytest.raises(SolverFailed):
         engine.advance(100)

@@ -58,3 +58,18 @@ def test_a_block_that_is_not_convex_is_decomposed_without_loss():
     areas = [np.sum(p[:, 0] * np.roll(p[:, 1], -1) - np.roll(p[:, 0], -1) * p[:, 1]) / 2 for p in parts]
     assert len(parts) >= 2
     assert sum(areas) == pytest.approx(3.0)
+
+
+@pytest.mark.parametrize(("courses", "bricks", "steps"), [(13, 15, 1200), (30, 31, 240)])
+def test_frames_of_a_large_wall_are_so_few_that_they_hold_twenty_thousand_numbers(
+    courses: int, bricks: int, steps: int
+):
+    """Every twentieth step is looked at; eight frames at least, and forty at most, evenly over the way travelled."""
+    wall = assembly(running_bond(courses, bricks))
+    followed = release(wall, 3.0, ReleaseSettings(release_steps=steps, reach=100.0))
+    looked = 1 + steps // 20
+    most = min(40, looked, max(8, 20_000 // (3 * wall.n_blocks)))
+    # Where two of the even distances fall between the same looks a frame is missing: here one or two.
+    assert most - 2 <= len(followed.places) <= most
+    assert followed.time[[0, -1]] == pytest.approx([0.0, 0.002 * steps])
+    assert (followed.places.shape[1:], len(followed.time)) == ((wall.n_blocks, 3), len(followed.places))

@@ -17,7 +17,7 @@ from methods.de.engines.sequential_impulses import SequentialImpulses
 from methods.de.engines.soft_wall import SoftWall
 from methods.de.holds.load_step import ConvergenceMonitor, hold_limit, least_motion, reported_residuals
 from methods.de.holds.motion import MotionProof, Trend, by_power, by_travel
-from methods.de.holds.order_bracket import BRACKET, OrderBracket
+from methods.de.holds.order_bracket import LOOSE, OrderBracket
 from methods.de.holds.release import even_frames, separated
 from methods.de.settings import HoldSettings
 from tests.walls import assembly, running_bond, stack
@@ -269,7 +269,7 @@ def test_middle_and_width_of_what_an_order_found(fields: Any, middle: float | No
     ],
 )
 def test_a_search_says_something_where_its_bracket_is_narrow_or_the_wall_falls(fields: Any, asked: bool, told: bool):
-    assert BRACKET.loose == 0.01
+    assert LOOSE == 0.01
     assert bracket(**fields).told(asked) is told
 
 

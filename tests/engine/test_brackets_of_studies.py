@@ -20,7 +20,7 @@ def table(values: list[float | tuple[float, float]], method: str = "de", **colum
     for number, value in enumerate(values):
         low, high = value if isinstance(value, tuple) else (value, value)
         answer = {"case": "a", "method": method, "family": method, "status": "ok", "finding": "collapses"}
-        bracket = {"bracket_low": low, "bracket_high": high, "exceeds_accuracy": low < high}
+        bracket = {"bracket_low": low, "bracket_high": high, "bracket_wide": low < high}
         rows.append(answer | bracket | {"number": number, "multiplier": 0.5 * (low + high), "judge_accepted": True})
     return tidy(rows, []).assign(**columns)
 
@@ -104,7 +104,7 @@ def curve_rows(found: dict[float, list[float | tuple[float, float]]]) -> list[di
         for value in values:
             low, high = value if isinstance(value, tuple) else (value, value)
             answer = {"size": size, "multiplier": 0.5 * (low + high), "method": "x"}
-            rows.append(answer | {"bracket_low": low, "bracket_high": high, "exceeds_accuracy": low < high})
+            rows.append(answer | {"bracket_low": low, "bracket_high": high, "bracket_wide": low < high})
     return rows
 
 

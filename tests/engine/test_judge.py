@@ -156,10 +156,20 @@ def test_kinematic_matrix_of_the_methods_agrees_with_the_judge_by_virtual_work()
     assert by_matrix == pytest.approx(by_blocks, rel=1e-12)
 
 
-def test_missing_forces_are_not_accepted_and_failures_are_not_judged():
+def test_a_multiplier_without_forces_or_mechanism_is_not_judged_and_wrong_forces_are_rejected():
     wall = one_block(0.5)
-    bare = result_of(Answer(Status.OK, Finding.COLLAPSES, "", 0.5), wall, case="x", method="hand", family="hand")
-    assert judge(wall, bare, 1e-9).accepted is False
+
+    def accepted(forces: np.ndarray | None) -> bool | None:
+        answer = Answer(Status.OK, Finding.COLLAPSES, "", 0.5, forces=forces)
+        return judge(wall, result_of(answer, wall, case="x", method="hand", family="hand"), 1e-9).accepted
+
+    assert accepted(None) is None
+    assert accepted(by_hand(wall, 0.5)) is None
+    assert accepted(by_hand(wall, 0.6)) is False
+
+
+def test_failures_are_not_judged():
+    wall = one_block(0.5)
     failed = result_of(Answer(Status.NOT_CONVERGED, Finding.NONE, ""), wall, case="x", method="hand", family="hand")
     assert judge(wall, failed, 1e-9).accepted is None
 

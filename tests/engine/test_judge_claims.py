@@ -10,16 +10,18 @@ from typing import Any
 import numpy as np
 import pytest
 
-from drystone.cli.terminal import foreign_answer, print_result
+from drystone.cli.terminal import print_result
 from harness.engine.judge import judge
 from harness.model.assembly import Assembly
 from harness.model.build import build
 from harness.model.errors import InputError
+from harness.model.foreign.result_document import answer_from_file
 from harness.model.method import Answer, Finding, Status, load_method
 from harness.model.proof import Proof
 from harness.model.reading import read_json, read_wall
 from harness.model.result import Result, result_of
 from harness.model.wall import Wall
+from methods.numerics.statics import admissible_forces
 from reports.labels import numbers
 from tests.walls import PUSH, assembly, case, running_bond, stack
 
@@ -64,14 +66,14 @@ def bonded() -> tuple[Assembly, Answer]:
 )
 def test_wrong_answer_is_not_accepted(name: str, outcome: str):
     wall = read_wall(DATA / f"{name}.wall.json").assembly
-    answer = foreign_answer(read_json(DATA / f"{name}.result.json"), wall, name)
+    answer = answer_from_file(read_json(DATA / f"{name}.result.json"), wall, name)
     assert said(wall, answer).outcome == outcome
 
 
 def test_text_is_no_number():
     wall = read_wall(DATA / "nan-mech.wall.json").assembly
     with pytest.raises(InputError, match="mechanism"):
-        foreign_answer(read_json(DATA / "nan-mech.result.json"), wall, "nan-mech")
+        answer_from_file(read_json(DATA / "nan-mech.result.json"), wall, "nan-mech")
 
 
 @pytest.mark.parametrize("bad", [np.nan, np.inf])
@@ -119,6 +121,38 @@ def test_lower_end_of_a_bracket_is_what_forces_show(bonded: tuple[Assembly, Answ
     assert said(wall, replace(measured, bracket=(low, high))).outcome == "accepted"
     assert said(wall, replace(measured, bracket=(high, high + 0.1))).outcome == "rejected"
     assert said(wall, replace(measured, forces=None, bracket=(low, high))).outcome == "not_judged"
+
+
+@pytest.mark.parametrize(
+    ("bracket", "outcome"),
+    [
+        ((0.0, 1e-3), "not_judged"),  # it stands under its dead load, which is no multiplier
+        ((0.0, 1e50), "not_judged"),
+        ((0.2, 1e50), "not_judged"),
+        ((0.2, 3.0), "accepted"),  # wide, and its lower end is a proof of a good part of it
+        ((0.0, np.inf), "rejected"),
+    ],
+)
+def test_a_bracket_whose_lower_end_is_zero_beside_its_upper_end_states_nothing(
+    bonded: tuple[Assembly, Answer], bracket: tuple[float, float], outcome: str
+):
+    """The forces bear the lower end, on the way from the dead load to the collapse state: yield is convex."""
+    wall, state = bonded
+    assert state.multiplier is not None
+    dead = admissible_forces(wall, wall.dead)
+    assert dead is not None
+    share = bracket[0] / state.multiplier
+    assert share < 1.0
+    measured = Answer(
+        Status.OK,
+        Finding.COLLAPSES,
+        "",
+        bracket[0],
+        bracket,
+        forces=(1.0 - share) * dead + share * np.asarray(state.forces),
+        flow="approximate",
+    )
+    assert said(wall, measured).outcome == outcome
 
 
 def two_blocks(weight: float, friction: float = 0.5) -> Assembly:
@@ -208,7 +242,7 @@ def test_answer_of_a_run_is_judged_from_its_file_as_in_the_run(loads: dict[str, 
     offsets = {"offsets": [0.0, 0.2, 0.3]} if loads is PUSH else {}
     wall = assembly(stack(3) | offsets, 0.5, loads=loads)
     result = as_result(wall, state_of(wall, "fe"))
-    again = foreign_answer(result.model_dump(mode="json"), wall, "a file")
+    again = answer_from_file(result.model_dump(mode="json"), wall, "a file")
     assert result.finding in (Finding.FALLS, Finding.UNBOUNDED)
     assert said(wall, again, 1e-8).outcome == "accepted"
 

@@ -8,10 +8,10 @@ import numpy as np
 import pytest
 
 from benchmarks.knife_edge import KINDS
-from drystone.cli.terminal import foreign_answer
 from harness.engine.judge import judge
 from harness.model.assembly import Assembly
 from harness.model.build import build
+from harness.model.foreign.result_document import answer_from_file
 from harness.model.method import Answer, Finding, Status, load_method
 from harness.model.result import result_of
 from harness.model.wall import Wall
@@ -104,6 +104,6 @@ def test_a_file_may_hold_forces_and_mechanism_of_statics(edge):
     data = {"finding": "at its limit", "multiplier": 0.0, "flow": "approximate"} | {
         name: answer.details[name] for name in ("dead_forces", "dilatant_mechanism")
     }
-    read = foreign_answer(data, wall, "x")
+    read = answer_from_file(data, wall, "x")
     assert read.status is Status.OK
     assert outcome(wall, read) == "accepted"

@@ -9,7 +9,7 @@ import pytest
 
 from harness.engine.judge import IMMENSE, apart, judge
 from harness.engine.measured_motion import TOLERANCE, TOLERANCE_ALONE, motion_faults, motion_residuals
-from harness.engine.measures import UNLOADED, Measures, between
+from harness.engine.measures import UNLOADED, Measures, between, magnitudes
 from harness.engine.residuals import (
     GAP,
     MOVED,
@@ -19,6 +19,7 @@ from harness.engine.residuals import (
     displaced_residuals,
     force_residuals,
     moved_far,
+    moving_parts,
 )
 from harness.model.assembly import Assembly
 from harness.model.displaced import DisplacedState
@@ -231,7 +232,7 @@ def test_difference_of_multipliers_is_relative_to_the_larger():
 def test_standing_is_shown_by_forces_unless_nothing_can_move():
     wall = of_blocks([box("a", 0.0, 0.0)], 0.5, {})
     stands = Answer(Status.OK, Finding.STANDS, "")
-    assert said(wall, stands).accepted is False
+    assert said(wall, stands).accepted is None
     held = replace(wall, fixed=np.ones(wall.n_blocks, dtype=bool))
     assert said(held, stands).accepted is True
 
@@ -249,12 +250,16 @@ def test_what_an_answer_without_end_lacks_is_named():
 def test_collapse_without_forces_or_without_a_multiplier_names_what_lacks():
     wall = block()
     forces = bed(wall, "a", 10.0, 10.0, 0.0)
-    for answer, words in (
-        (Answer(Status.OK, Finding.COLLAPSES, "", 0.5), "no contact forces"),
-        (Answer(Status.OK, Finding.COLLAPSES, "", None, forces=forces), "no multiplier"),
-        (Answer(Status.OK, Finding.COLLAPSES, "", 0.5, forces=forces), "no mechanism"),
+    for answer, words, accepted in (
+        (Answer(Status.OK, Finding.COLLAPSES, "", 0.5), "no contact forces", None),
+        (Answer(Status.OK, Finding.COLLAPSES, "", None, forces=forces), "no multiplier", False),
+        (
+            Answer(Status.OK, Finding.COLLAPSES, "", 0.5, forces=forces),
+            "no mechanism",
+            False,
+        ),  # and they do not balance
     ):
-        assert said(wall, answer).accepted is False
+        assert said(wall, answer).accepted is accepted
         assert words in said(wall, answer).sentence
 
 
@@ -310,6 +315,28 @@ def test_what_forces_without_end_violate_is_held_to_rounding_whatever_the_tolera
     judgement = said(wall, answer, 1e-3)
     assert judgement.accepted is accepted
     assert ("live_equilibrium" in judgement.sentence) is not accepted
+
+
+def test_magnitude_of_a_load_counts_its_moment_at_the_farthest_vertex():
+    wall = block()
+    load = np.zeros((wall.n_blocks, 3))
+    load[wall.block_ids.index("a")] = [3.0, -4.0, -2.0 * RADIUS]
+    assert magnitudes(wall, load).sum() == pytest.approx(5.0 + 2.0)
+
+
+def test_components_at_rest_are_none_that_move():
+    wall = of_blocks([box("a", 0.0, 0.0), box("b", 4.0, 0.0)])
+    slides = moving(wall, a=[2.0, 0.0, 0.0])
+    supports, parts = moving_parts(wall, slides, 0.0)
+    assert supports == 0.0
+    assert [abs(motion).max() for _, motion in parts] == [1.0]
+    assert moving_parts(wall, moving(wall, g=[1.0, 0.0, 0.0]), 0.0) == (1.0, [])
+
+
+def test_loads_lose_nothing_on_a_block_without_load():
+    bare = of_blocks([box("a", 0.0, 0.0, weight=0.0), box("b", 4.0, 0.0)])
+    residuals = motion_residuals(bare, moving(bare, a=[1.0, 0.0, 0.0]), 0.4, None)
+    assert residuals == {"motion_supports": 0.0, "motion_interpenetration": 0.0, "motion_against_loads": 0.0}
 
 
 def test_measured_motion_by_hand():

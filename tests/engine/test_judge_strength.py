@@ -132,3 +132,19 @@ def test_a_dry_wall_is_judged_to_the_bit_as_without_the_field():
     dry, result = state_of_dry("la")
     bare = replace(dry, constant=np.zeros((0, 4)))
     assert judge(dry, result, 1e-9).residuals == judge(bare, result, 1e-9).residuals
+
+
+def test_a_wrong_answer_without_strength_rejects_the_whole_and_one_that_was_not_found_does_not():
+    wall, result = state("slides", "la")
+    residual = result.details["without_strength"]
+
+    def with_residual(**change: object) -> Judgement:
+        details = result.details | {"without_strength": residual | change}
+        return judge(wall, result.model_copy(update={"details": details}), 1e-9)
+
+    assert residual["multiplier"] == pytest.approx(0.5)  # the friction of its joints
+    assert with_residual().accepted is True
+    assert with_residual(multiplier=0.51).accepted is False
+    lost = with_residual(status="not_converged", multiplier=None, forces=None, mechanism=None)
+    assert lost.accepted is True
+    assert "Without cohesion" not in lost.sentence

@@ -108,6 +108,20 @@ def test_every_fault_is_listed_at_once_with_place_and_size(tmp_path: Path):
     )
 
 
+def test_a_wrong_joint_is_named_by_its_number_in_the_file(tmp_path: Path):
+    """One joint is found; of those given the first is of an unknown block and the second has no length."""
+    given = [
+        {"between": ["none", "ground"], "from": [0, 0], "to": [1, 0]},
+        {"between": ["a", "ground"], "from": [0, 0], "to": [0, 0]},
+    ]
+    blocks = [{"id": "ground", "polygon": [[-1, -1], [5, -1], [5, 0], [-1, 0]], "fixed": True}, square("a", 0.0, 0.0)]
+    wall = wall_data({}) | {"pattern": None, "blocks": [*blocks, square("b", 3.0, 0.0)], "loads": PUSH}
+    code, told = validated(tmp_path, wall | {"interfaces": {"given": given}})
+    assert code == 2
+    (coincide,) = [fault for fault in told["faults"] if "its two ends coincide" in fault["text"]]
+    assert coincide["element"] == "interfaces[1]"
+
+
 def test_material_that_no_block_is_of_is_doubted_with_the_one_that_was_meant(tmp_path: Path):
     wall = off(0.0) | {"friction": {"default": 0.6, "rules": [{"materials": ["stone", "stome"], "value": 0.3}]}}
     _, told = validated(tmp_path, wall)

@@ -6,16 +6,20 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from pydantic import ValidationError
 
-from methods.fe.settings import GapSpringsSettings
+from harness.model.load_steps import STATES
+from methods.fe.load_steps import joint_states
+from methods.fe.settings import ConvexSettings, GapSpringsSettings, NewtonSettings
 from methods.springs.model.factor import DenseFactor, Factor, SingularTangent, make_factor, refactor_any
-from methods.springs.model.gap_law import OPEN, SLIP_PLUS, STICK
+from methods.springs.model.gap_law import OPEN, SLIP_MINUS, SLIP_PLUS, STICK
+from methods.springs.model.options import SoftMotions
+from methods.springs.model.settings import GapSettings
 from methods.springs.model.wall_model import WallModel, build_model
 from methods.springs.path.continuation import PathFollower
 from methods.springs.path.direction import PathDirection
 from methods.springs.path.path_record import PathEnd, PathRecord
 from methods.springs.path.plateau import check
-from methods.springs.path.tolerances import SOFT_MOTIONS
 from methods.springs.patterns import block_on_halves, running_bond
 from methods.springs.rest.equilibrium import gravity_state
 
@@ -77,7 +81,7 @@ def test_each_further_pin_has_the_response_to_a_unit_force_at_it() -> None:
     way.solve_anew(state, 100.0)
     way.elastic *= 1e-14  # beside so small a first response every motion counts as soft
     way.solve_anew(state, 100.0)
-    assert len(way.bordered) == SOFT_MOTIONS.most
+    assert len(way.bordered) == SoftMotions().most
     assert [response.border for response in way.unit_responses] == way.bordered[1:]
     pinned = model.tangent(state).toarray()
     pinned[way.bordered, way.bordered] += 1.0
@@ -96,3 +100,46 @@ def test_a_wall_that_does_not_move_is_no_collapse_state() -> None:
     assert state.residuals["work"] == 1.0
     assert state.residuals["complementarity"] == np.inf
     assert state.work_multiplier == np.inf
+
+
+@pytest.mark.parametrize(
+    ("settings", "least", "refused"),
+    [
+        (GapSpringsSettings, {"max_events": 1, "load_steps": 0}, {"max_events": 0, "load_steps": -1}),
+        (GapSpringsSettings, {"load_steps": 1000, "friction_cap": 1e-9}, {"load_steps": 1001, "friction_cap": 0.0}),
+        (NewtonSettings, {"cuts": 0, "displacement_steps": 0}, {"cuts": -1, "displacement_steps": -1}),
+        (ConvexSettings, {"fixed_points": 1, "max_blocks": 1}, {"fixed_points": 0, "max_blocks": 0}),
+    ],
+)
+def test_settings_reach_to_their_ends_and_no_further(
+    settings: type[GapSettings], least: dict[str, float], refused: dict[str, float]
+) -> None:
+    assert settings(**least).model_dump(include=set(least)) == least
+    for name, value in refused.items():
+        with pytest.raises(ValidationError, match=name):
+            settings(**{name: value})
+
+
+def test_states_of_a_joint_are_those_of_its_points() -> None:
+    """It rocks where an end is open, opens where all points are, and slips where all that touch do."""
+    model = build_model(block_on_halves((0.6, 0.4)), GapSettings(points=4))
+    first = np.flatnonzero(model.interface == 0)
+    ends = [int(first[model.position[first] == place][0]) for place in (0.0, 1.0)]
+    inner = first[(model.position[first] > 0.0) & (model.position[first] < 1.0)]
+    assert len(inner) > 0
+
+    def named(others: int, at: object = (), there: int = STICK) -> str:
+        state = np.full(model.n_points, STICK)
+        state[first] = others
+        state[np.array(at, dtype=int)] = there
+        names = joint_states(model, state)
+        assert STATES[names[1]] == "stick"  # the other joint
+        return STATES[names[0]]
+
+    assert [named(state) for state in (STICK, SLIP_PLUS, SLIP_MINUS, OPEN)] == ["stick", "slip", "slip", "open"]
+    for end in ends:
+        assert named(STICK, end, OPEN) == named(SLIP_PLUS, end, OPEN) == "rock"
+        assert named(STICK, end, SLIP_PLUS) == "stick"
+    assert named(STICK, inner, OPEN) == "stick"
+    assert named(SLIP_PLUS, inner, OPEN) == "slip"
+    assert named(OPEN, inner, STICK) == "rock"

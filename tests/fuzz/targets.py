@@ -12,7 +12,6 @@ from functools import cache
 from pathlib import Path
 from typing import Any
 
-from drystone.cli.terminal import foreign_answer
 from harness.engine.compare import comparison_run, recall, remember
 from harness.engine.judge import answered, judge
 from harness.engine.run import Limits, Run
@@ -20,6 +19,7 @@ from harness.engine.store import open_store
 from harness.model.build import Built, build
 from harness.model.case import Case, CaseFile, read_case
 from harness.model.errors import InputError
+from harness.model.foreign.result_document import answer_from_file
 from harness.model.method import Finding, Status, load_method
 from harness.model.reading import parse_wall, read_json, read_wall, wall_json
 from harness.model.result import Result, result_of
@@ -125,7 +125,7 @@ def _result(source: Source, folder: Path) -> str:
     data = documents.result(source, built.assembly.n_blocks, built.assembly.n_interfaces)
     path = folder / "result.json"
     path.write_bytes(documents.spoiled_text(source, documents.spoiled(source, data)))
-    answer = foreign_answer(read_json(path), built.assembly, str(path))
+    answer = answer_from_file(read_json(path), built.assembly, str(path))
     judged = result_of(answer, built.assembly, case="fuzzed", method="foreign", family="foreign")
     judgement = judge(built.assembly, judged, 1e-9)
     json.dumps(judgement.model_dump(mode="json"), allow_nan=False)

@@ -15,19 +15,19 @@ from methods.la.core.exact import close_tight
 from methods.la.core.newton_matrix import NewtonMatrix
 from methods.la.core.problem import make_problem
 from methods.la.core.state import residuals
-from methods.la.interior.arc import STEPPING, ArcPath, Stepping
-from methods.la.interior.associated import END
+from methods.la.interior.arc import ArcPath, Stepping
+from methods.la.interior.associated import EndOfPath
 from methods.la.interior.interior_point import PathSettings, follow_path, start_point
-from methods.la.interior.interior_starting_point import PAIR, interior_starting_point
+from methods.la.interior.interior_starting_point import StartingPair, interior_starting_point
 from methods.la.interior.newton_step import NewtonStep, Point
-from methods.la.interior.region import with_all_above
+from methods.la.interior.region import Part, with_all_above
 from methods.la.least import least_of
 from methods.la.search import LimitAnalysis
 from methods.la.settings import AssociatedSettings, SearchSettings
 from methods.la.sources import explore
 from methods.la.sources.arcs import ArcPaths
 from methods.la.sources.budget import Budget, Limits
-from methods.la.sources.search import CHOICES, Search
+from methods.la.sources.search import Choices, Search
 from tests.la.bodies import running_bond
 
 
@@ -43,7 +43,7 @@ def test_path_by_arc_length_leads_from_its_beginning_to_complementarity() -> Non
     assert end.converged
     assert end.gap <= 1e-6 < middle.gap <= 1e-2
     # What the search asks of a path before it reads a mechanism from it; the state itself is made exact afterwards.
-    assert max(end.statics, end.kinematics) <= STEPPING.residual
+    assert max(end.statics, end.kinematics) <= Stepping().residual
 
 
 def test_path_that_stays_beside_its_beginning_is_given_up() -> None:
@@ -66,8 +66,13 @@ def test_path_begins_with_forces_and_mechanism_of_the_true_wall() -> None:
     assert np.all(pair.rates > 0.0)
     assert problem.live @ pair.velocities == pytest.approx(problem.live_work, rel=1e-9)
     # In mean weights of a block, and for velocities of order one.
-    assert abs(problem.imbalance(problem.forces_of_slacks(pair.slack), pair.multiplier)).max() <= PAIR.feasible
-    assert abs(problem.strains(pair.velocities) - problem.strains_of_rates(pair.rates, 0.0)).max() <= PAIR.feasible
+    assert (
+        abs(problem.imbalance(problem.forces_of_slacks(pair.slack), pair.multiplier)).max() <= StartingPair().feasible
+    )
+    assert (
+        abs(problem.strains(pair.velocities) - problem.strains_of_rates(pair.rates, 0.0)).max()
+        <= StartingPair().feasible
+    )
 
 
 @pytest.mark.parametrize(("courses", "bricks"), [(6, 3), (14, 16)])
@@ -99,16 +104,16 @@ def test_path_to_a_tiny_gap_stays_in_equilibrium() -> None:
     assert end.statics <= 1e-9
 
 
-def test_vertical_force_on_one_block_of_a_large_wall_is_unbounded(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_vertical_force_on_one_block_of_a_large_wall_is_unbounded() -> None:
     """The interior point meets no end there; forces that bear the live load alone tell."""
-    monkeypatch.setattr("methods.la.interior.associated.END", replace(END, above=100))
-    monkeypatch.setattr("methods.la.sources.search.CHOICES", replace(CHOICES, vertices_up_to=100))
+    end = EndOfPath(above=100)
+    search = LimitAnalysis(Choices(vertices_up_to=100, associated=end))
     wall = running_bond(10, 8, 0.2, 0.65)
     live = np.zeros_like(wall.live)
     live[wall.centroid[:, 1].argmax(), 1] = -1.0
     wall = replace(wall, live=live)
     assert make_problem(wall).n_interfaces > 200
-    for method, settings in ((AssociatedLimitAnalysis(), AssociatedSettings()), (LimitAnalysis(), SearchSettings())):
+    for method, settings in ((AssociatedLimitAnalysis(end), AssociatedSettings()), (search, SearchSettings())):
         answer = method.solve(wall, settings)
         assert answer.finding == Finding.UNBOUNDED, answer.sentence
 
@@ -116,7 +121,7 @@ def test_vertical_force_on_one_block_of_a_large_wall_is_unbounded(monkeypatch: p
 def test_what_rests_on_a_moving_block_moves() -> None:
     wall = running_bond(3, 2, 0.2, 0.65)
     lowest = int(np.flatnonzero(~wall.fixed)[np.argmin(wall.centroid[~wall.fixed, 1])])
-    moves = with_all_above(wall, np.arange(wall.n_blocks) == lowest)
+    moves = with_all_above(wall, np.arange(wall.n_blocks) == lowest, Part().bed)
     above = wall.centroid[moves, 1] > wall.centroid[lowest, 1]
     assert above.sum() == moves.sum() - 1 > 0
     assert not moves[wall.fixed].any()
@@ -134,12 +139,9 @@ def test_search_of_the_part_that_collapses_gives_states_of_the_whole_wall() -> N
 
 
 @pytest.mark.parametrize("starts", [0, 2])
-def test_settings_mean_the_same_where_the_interior_point_solves_the_programmes(
-    starts: int, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_settings_mean_the_same_where_the_interior_point_solves_the_programmes(starts: int) -> None:
     """Above so many interfaces; `starts` and `failures` were read on smaller walls only."""
-    monkeypatch.setattr("methods.la.sources.search.CHOICES", replace(CHOICES, vertices_up_to=50))
-    answer = LimitAnalysis().solve(
+    answer = LimitAnalysis(Choices(vertices_up_to=50)).solve(
         running_bond(10, 5, 0.175, 0.65), SearchSettings(effort="quick", starts=starts, failures=3)
     )
     assert answer.finding == Finding.COLLAPSES

@@ -14,7 +14,7 @@ from methods.la.core.programmes import KinematicProgramme, StaticProgramme
 from methods.la.interior.interior_point import start_point
 from methods.la.interior.newton_step import NewtonStep, Point
 from methods.la.settings import SearchSettings
-from methods.la.sources.budget import SIZES, Budget, Limits, Work, rounds_of
+from methods.la.sources.budget import Budget, Limits, Sizes, Work, rounds_of
 from tests.la.bodies import block_on_halves, column, running_bond
 
 
@@ -203,11 +203,11 @@ class _Sized:
 
 def limits(blocks: int, interfaces: int, effort: str = "normal") -> Limits:
     sized: Any = _Sized(blocks, interfaces)
-    return SIZES.limits(effort, sized)
+    return Sizes().limits(effort, sized)
 
 
 def test_larger_walls_are_searched_with_fewer_rungs_and_longer_descents() -> None:
-    whole, half = SIZES.ladder, SIZES.ladder[::2]
+    whole, half = Sizes().ladder, Sizes().ladder[::2]
     assert [limits(blocks, 3 * blocks).ladder for blocks in (30, 31, 60, 61)] == [whole, half, half, ()]
     assert [limits(blocks, 3 * blocks).descents for blocks in (30, 60, 61)] == [3, 3, 1]
     assert [limits(400, joints).descents for joints in (1000, 1001)] == [1, 0]

@@ -78,6 +78,15 @@ def test_a_wall_just_below_its_limit_is_shown_to_fall_by_a_mechanism():
     assert not found.reason
 
 
+def test_just_above_the_limit_a_mechanism_to_rounding_shows_the_fall():
+    """Where forces have no vertex to rounding: in a band of 2e-6 of the factor before, now of less than 1e-7."""
+    for wall in (drystone.read_wall(EDGE / "gb16-8500-l.json"), drystone.library_wall("heyman-arch-20-stands")):
+        found = factor(wall, "la", accuracy=1e-7)
+        assert found.upper <= found.lower * (1.0 + 1e-7)
+        assert found.fall_proved
+        assert not found.reason
+
+
 def test_both_ends_are_judged_on_the_wall_of_their_factor():
     found = factor(sloped(20.0, 0.6), "fe")
     for end, at, finding in ((found.stands, found.lower, Finding.STANDS), (found.falls, found.upper, Finding.FALLS)):

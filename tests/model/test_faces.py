@@ -94,6 +94,11 @@ def test_parts_of_a_face_in_a_line_are_one_joint_and_round_a_bend_two():
     apart = np.array([[0.0, 0.0], [5.0, 0.0], [5.0, 1.0], [3.0, 1.0], [3.0, 0.5], [2.0, 0.5], [2.0, 1.0], [0.0, 1.0]])
     two = found([apart, outline(0.0, 1.0, 5.0, 1.0)])
     assert sorted(sorted([s[0], e[0]]) for s, e in zip(two.start, two.end, strict=True)) == [[0.0, 2.0], [3.0, 5.0]]
+    notched = np.array(
+        [[0.0, 0.0], [4.0, 0.0], [4.0, 1.0], [2.25, 1.0], [2.25, 0.5], [2.0, 0.5], [2.0, 1.0], [0.0, 1.0]]
+    )
+    for gap, count in ((0.25, 1), (0.125, 2)):  # joints that lie no farther apart than faces of one joint may
+        assert len(found([notched, outline(0.0, 1.0, 4.0, 1.0)], gap=gap).block_a) == count
     bent = np.array([[0.0, 0.0], [4.0, 0.0], [4.0, 1.0], [2.0, 2.0], [0.0, 1.0]])
     above = np.array([[4.0, 1.0], [4.0, 3.0], [0.0, 3.0], [0.0, 1.0], [2.0, 2.0]])
     assert len(found([bent, above]).block_a) == 2
@@ -162,6 +167,20 @@ def test_given_joints_that_are_none_are_refused_by_their_number(joint: dict[str,
     with pytest.raises(InputError, match=words) as told:
         built(blocks, interfaces=[*sound, joint])
     assert "interfaces[3]" in str(told.value)
+    with pytest.raises(InputError, match=words) as beside:  # three are found, and this is the first of those given
+        built(blocks, interfaces={"given": [joint]})
+    assert "interfaces[0]" in str(beside.value)
+
+
+@pytest.mark.parametrize("size", [1e-3, 1.0, 1e6])
+def test_sides_of_a_given_joint_are_relative_to_the_blocks(size: float):
+    """A joint below two blocks in a row, of which one is higher by 1e-10 of a block: it has no side."""
+    base = box("base", -size, -size, 10.0 * size, size, fixed=True)
+    row = [box("a", 0.0, 0.0, size, size), box("b", size, 1e-10 * size, size, size)]
+    joint = {"between": ["a", "b"], "from": [0.5 * size, -0.5 * size], "to": [1.5 * size, -0.5 * size]}
+    wall = {"format": "wall/1", "unit_weight": 20.0, "friction": 0.5, "blocks": [base, *row]}
+    with pytest.raises(InputError, match="do not lie on opposite sides"):
+        build(Wall.model_validate(wall | {"interfaces": {"given": [joint]}}))
 
 
 @pytest.mark.parametrize("turned", [False, True])
@@ -250,6 +269,8 @@ def test_overlaps_are_told_the_worst_first_with_area_depth_place_and_the_remedy(
     assert (spot.blocks, spot.at, spot.size) == (("a", "b"), pytest.approx((0.95, 0.5)), pytest.approx(0.1))
     with pytest.raises(InputError, match=r"2 more pair\(s\) overlap"):
         geometry.check_overlaps(shapes, names, free, 1e-6)
+    with pytest.raises(InputError, match=r"1 more pair\(s\) overlap"):
+        geometry.check_overlaps(shapes, names, np.array([False, True, True]), 1e-6)
     with pytest.raises(InputError) as alone:
         geometry.check_overlaps(shapes[:2], names[:2], free[:2], 1e-6)
     assert "more pair" not in str(alone.value)

@@ -113,7 +113,9 @@ def test_without_a_mechanism_no_joint_has_a_state():
         ({}, 0.25),
         ({"bracket": (-0.4, -0.3), "multiplier": -0.35}, 0.25),
         ({"bracket": None}, None),
-        ({"multiplier": 0.0}, None),
+        ({"multiplier": 0.0}, 0.25),  # what its ends are shares of is not the multiplier
+        ({"bracket": (0.0, 0.0), "multiplier": 0.0}, None),
+        ({"finding": Finding.AT_LIMIT, "bracket": (0.0, 0.4), "multiplier": 0.0}, None),
         ({"flow": "non-associated"}, None),
     ],
 )

@@ -6,9 +6,9 @@ import math
 
 import pytest
 
-from harness.model.method import Traits
+from harness.model.method import Answer, Finding, Status, Traits
 from harness.model.ranges import differences, percent_text
-from harness.model.result import exceeds_accuracy
+from harness.model.result import bracket_is_wide
 
 
 @pytest.mark.parametrize(
@@ -47,4 +47,5 @@ def test_a_difference_in_words():
 def test_a_bracket_is_wide_beyond_the_accuracy_that_its_method_states(
     bracket: tuple[float, float], traits: Traits, wide: bool
 ):
-    assert exceeds_accuracy(bracket, traits) is wide
+    answer = Answer(Status.OK, Finding.COLLAPSES, "", sum(bracket) / 2.0, bracket, flow="approximate")
+    assert bracket_is_wide(answer, traits) is wide

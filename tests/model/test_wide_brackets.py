@@ -4,10 +4,14 @@ from __future__ import annotations
 
 import pytest
 
+from harness.engine.run import Limits
+from harness.engine.sweep.expand import expand, sources_of
+from harness.engine.sweep.quick import quick_study
+from harness.engine.sweep.running import row_of
 from harness.model import columns
 from harness.model.comparison import CaseResults
 from harness.model.method import Answer, Finding, Status
-from harness.model.result import exceeds_accuracy, result_of
+from harness.model.result import bracket_is_wide, result_of
 from harness.model.result_texts import answer_text
 from harness.model.table import types, values
 from reports.labels.wall_summary import value_in_words
@@ -15,11 +19,13 @@ from reports.page.tables import run_row
 from tests.reports import samples
 from tests.walls import assembly, stack
 
+STUDIED = sources_of(quick_study("slide", ["la"], {}, Limits(), []))
 
-def result(low, high, flow="approximate", multiplier=None):
+
+def result(low, high, flow="approximate", multiplier=None, finding=Finding.COLLAPSES):
     wall = assembly(stack(1))
     middle = 0.5 * (low + high) if multiplier is None else multiplier
-    answer = Answer(Status.OK, Finding.COLLAPSES, "", middle, (low, high), flow=flow)
+    answer = Answer(Status.OK, finding, "", middle, (low, high), flow=flow)
     return result_of(answer, wall, case="made-up", method="de", family="de")
 
 
@@ -29,7 +35,8 @@ def result(low, high, flow="approximate", multiplier=None):
         (result(0.445, 0.5), 0.11, True),
         (result(0.4949, 0.5), 0.0102, True),  # .5 %, as stated, of either end of the sum .9949 is .00497
         (result(0.4951, 0.5), 0.0098, False),
-        (result(0.0, 1e-5, multiplier=0.0), None, False),  # at zero there is nothing to be a share of
+        (result(0.0, 0.5, multiplier=0.0), 1.0, True),
+        (result(0.0, 1e-5, multiplier=0.0, finding=Finding.AT_LIMIT), None, False),  # statics shows that it is zero
         (result(0.1, 0.5, flow="non-associated"), None, False),  # a proved bound below a state that is exact
     ],
 )
@@ -37,7 +44,9 @@ def test_a_measured_bracket_is_wide_beyond_the_stated_accuracy_in_results_as_in_
     assert found.bracket_width == (None if width is None else pytest.approx(width))
     assert found.bracket_wide is wide
     assert (found.width_in_words != "") is wide
-    assert wide is (found.bracket is not None and width is not None and exceeds_accuracy(found.bracket, found.traits))
+    assert bracket_is_wide(found, found.traits) is wide
+    (run,) = expand(quick_study("slide", ["la"], {}, Limits(), []), STUDIED)
+    assert row_of(run, found)["bracket_wide"] is wide
 
 
 def test_every_output_says_that_a_bracket_is_wide():

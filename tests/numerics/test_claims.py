@@ -63,3 +63,12 @@ def test_falls_of_springs_near_their_limit_depend_on_the_springs_and_are_not_jud
     soft, stiff = (fe.solve(at, fe.Settings(stiffness_ratio=ratio)) for ratio in (0.05, 10.0))
     assert soft.finding is Finding.FALLS
     assert stiff.multiplier == pytest.approx(0.0040, rel=0.02)
+
+
+@pytest.mark.parametrize(("friction", "finding"), [(0.7850, Finding.FALLS), (0.7860, Finding.COLLAPSES)])
+def test_springs_that_are_stiff_in_shear_have_the_limit_of_goodman_and_bray(friction: float, finding: Finding):
+    """.7854 by the recursion, where each column slips at full friction under the force at the top of the next."""
+    wall = read_wall(EDGE / "gb16-7855-l.json").assembly
+    fe = load_method("fe")
+    at = replace(wall, friction=np.full_like(wall.friction, friction))
+    assert fe.solve(at, fe.Settings(stiffness_ratio=10.0)).finding is finding

@@ -93,7 +93,8 @@ def test_a_state_of_self_stress_at_zero_says_what_statics_bears(name):
 def test_springs_that_fall_where_statics_stands_say_so():
     result, judged = answered(prepared(load_method("fe")), wall("gb16-7855-l"))
     assert (result.finding, judged.accepted) == (Finding.FALLS, None)
-    assert "Statics alone would bear up to 0.09676127" in result.sentence
+    assert result.sentence.startswith("Not proved: the wall falls")
+    assert "Statics alone would bear up to 0.09676127, so the wall may also stand" in result.sentence
 
 
 def few(kind: str) -> list[Edge]:

@@ -116,7 +116,7 @@ def width_at(arrow: shapely.Polygon, tail: np.ndarray, tip: np.ndarray, share: f
 def test_arrows_of_forces_end_in_their_heads_and_are_as_wide_as_the_forces_are_large():
     case = samples.bond(courses=4, bricks=3)
     result = samples.solved(case, "la", 0.5)
-    found = shapes.thrusts(case.assembly, np.asarray(result.forces), smallest=thrust_lines.STYLE.smallest)
+    found = shapes.thrusts(case.assembly, np.asarray(result.forces), smallest=thrust_lines.SMALLEST)
     parts, frame = forces_of(case, result), Frame.of(case.assembly)
     arrows = [outline for part in parts if part.role in ("force", "full") for outline in part.lines()]
     lines = [(float(part.element.get("stroke-width", "")), part.points) for part in parts if part.role == "thrust"]

@@ -113,7 +113,7 @@ def test_equal_multipliers_over_a_grid_have_no_ends_and_a_bracket_about_all_othe
     rows = walls([0.5, 0.5], friction=[0.3, 0.9])
     assert findings(tables_of(rows, "friction"), ["friction"]) == ["fe: multipliers 0.50000 at all points of the grid."]
     rows = walls([0.5, 0.55], friction=[0.3, 0.9])
-    rows = rows.assign(bracket_low=[0.5, 0.3], bracket_high=[0.5, 0.8], exceeds_accuracy=[False, True])
+    rows = rows.assign(bracket_low=[0.5, 0.3], bracket_high=[0.5, 0.8], bracket_wide=[False, True])
     assert findings(tables_of(rows, "friction"), ["friction"]) == [
         "fe: multipliers within [0.30000, 0.80000] at all points of the grid; 1 of 2 answers are wide brackets."
     ]

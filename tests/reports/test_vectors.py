@@ -53,7 +53,7 @@ def test_forces_are_drawn_where_they_act_with_their_size_and_a_scale():
     case = samples.bond()
     result = samples.solved(case, "la", 0.5)
     drawn = inline(force_drawing(case, result))
-    found = shapes.thrusts(case.assembly, np.asarray(result.forces), smallest=thrust_lines.STYLE.smallest)
+    found = shapes.thrusts(case.assembly, np.asarray(result.forces), smallest=thrust_lines.SMALLEST)
     arrows = re.findall(r'class="(?:force|full)" d="M(-?\d+) (-?\d+)', drawn)
     tips = np.rint(Frame.of(case.assembly).place(thrust_lines.drawn_ends(case.assembly, found)[:, 1]))
     assert np.array(arrows, dtype=int).tolist() == tips.tolist()
@@ -77,7 +77,7 @@ def test_long_words_are_broken_into_lines_of_the_drawing():
     box = [float(x) for x in root.attrib["viewBox"].split()]
     lines = [e for e in root.iter(f"{SVG}text") if (e.text or "").startswith(("one", "word", "after", "another"))]
     assert len(lines) > 3
-    assert all(0.55 * vectors.HEADING.size * len(line.text or "") <= box[2] for line in lines)
+    assert all(0.55 * vectors.LETTERS * len(line.text or "") <= box[2] for line in lines)
     assert all(float(line.attrib["y"]) > box[1] for line in lines)
 
 

@@ -8,9 +8,9 @@ import numpy as np
 import pytest
 
 from methods.fe.settings import GapSpringsSettings
-from methods.springs.model import factor as factor_module
 from methods.springs.model.factor import DenseFactor, Factor, SingularTangent, SparseFactor, refactor_any
 from methods.springs.model.gap_law import OPEN, STICK, neighbour_states
+from methods.springs.model.options import FactorTuning, SpringOptions
 from methods.springs.model.wall_model import WallModel, build_model
 from methods.springs.patterns import running_bond
 
@@ -70,11 +70,9 @@ def test_changes_of_state_follow_by_updates(model: WallModel, factor: Factor) ->
     assert np.abs(model.tangent(state) @ x - model.live).max() < 1e-9 * max(1.0, np.abs(x).max())
 
 
-def test_rows_are_exchanged_where_block_pivots_are_not_trusted(
-    model: WallModel, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_rows_are_exchanged_where_block_pivots_are_not_trusted(model: WallModel) -> None:
+    model = replace(model, options=SpringOptions(factors=FactorTuning(growth=0.0)))
     factor, state = SparseFactor(model), sliding_states(model, 3)
-    monkeypatch.setattr(factor_module, "FACTORS", replace(factor_module.FACTORS, growth=0.0))
     factor.refactor(state, 0.1)
     assert factor._exchanged is not None
     tangent = model.tangent(state, 0.1)

@@ -119,6 +119,7 @@ def test_the_first_breakpoint_is_taken_whatever_the_order_of_points() -> None:
         ((SLIP_MINUS, -1.0, -1.5, 0.0, 0.25), 2.0, STICK),
         ((OPEN, 0.5, -1.0, -0.25, 0.75), 2.0, SLIP_PLUS),  # by its shear when it closes, 1/2
         ((OPEN, 0.0, 1.0, -0.25, 0.0), 0.0, SLIP_PLUS),
+        ((SLIP_PLUS, -1.0, 1.0, 0.0, -0.25), 0.0, STICK),
     ],
 )
 def test_step_to_the_breakpoint_of_one_point(point: Any, step: float, behind: int) -> None:
@@ -142,6 +143,13 @@ def test_of_breakpoints_within_the_tolerance_the_one_crossed_fastest_is_taken() 
         assert (step, points[number]) == (2.25, fast)
     step, number, _ = following([slow, (OPEN, 2.75, -1.0, -1.0, 0.0)], tolerance=0.25)
     assert (step, number) == (2.0, 0)
+
+
+def test_of_breakpoints_met_together_and_equally_fast_the_first_point_changes() -> None:
+    """Symmetric walls meet such ties, and their path must not depend on rounding."""
+    assert following([SLIPPING, CLOSING, CLOSING]) == (2.0, 1, SLIP_MINUS)
+    sticking = (SLIP_PLUS, -1.0, 1.5, 0.0, -0.25)
+    assert following([sticking, sticking]) == (2.0, 0, STICK)
 
 
 def test_a_change_just_made_is_not_taken_back_and_any_other_is() -> None:
@@ -178,6 +186,12 @@ def test_of_both_breakpoints_of_a_point_the_nearer_is_coming() -> None:
     points, targets = np.full(2, -1), np.full(2, -1)
     assert coming_breakpoints(*arrays([point]), points, targets) == 1
     assert (points[0], targets[0]) == (0, SLIP_MINUS)
+    sooner = (OPEN, 0.25, 1.0, -0.25, 0.0)  # closes after one step, before the other slips
+    assert coming_breakpoints(*arrays([point, sooner]), points, targets) == 2
+    assert points.tolist() == [1, 0]
+    slower = (STICK, -1.0, 0.0, 0.0, -0.25)  # slips after four
+    assert coming_breakpoints(*arrays([slower, point]), points, targets) == 2
+    assert points.tolist() == [1, 0]
     both = (SLIP_PLUS, -1.0, 1.5, 0.25, -0.125)  # opens after 4; shear 1.5 - t/8 meets 1 - t/4 nowhere
     assert coming_breakpoints(*arrays([both]), points, targets) == 1
     assert targets[0] == OPEN

@@ -42,7 +42,10 @@ def test_at_rest_the_law_of_the_gap_points_and_equilibrium_hold(
     limit = model.mu * normal
     assert normal == pytest.approx(np.maximum(-model.kn * opening, 0.0), abs=1e-8)
     assert shear == pytest.approx(np.clip(model.kt * slip + rest.history, -limit, limit), abs=1e-8)
-    assert np.abs(model.residual(rest.u, multiplier, rest.history, rest.state)).max() < 1e-8
+    left = np.abs(model.residual(rest.u, multiplier, rest.history, rest.state)).max()
+    assert left < 1e-8
+    loads = np.abs(model.dead).max() + multiplier * np.abs(model.live).max()
+    assert rest.residual == pytest.approx(left / loads, rel=1e-9, abs=0.0)
 
 
 def test_a_step_to_a_multiplier_that_no_forces_bear_leaves_the_wall_where_it_was() -> None:

@@ -58,7 +58,7 @@ def curve_of(study: Study, rows: Iterable[Row]) -> dict[str, Any]:
             line.fallen += 1
         elif row.get("multiplier") is None or row.get("judge_accepted") is False:
             line.lost += 1
-        elif row.get("exceeds_accuracy"):
+        elif row.get("bracket_wide"):
             line.brackets[float(row[asked.across])].append((float(row["bracket_low"]), float(row["bracket_high"])))
         else:
             line.found[float(row[asked.across])].append(float(row["multiplier"]))

@@ -17,6 +17,8 @@ from harness.model.errors import InputError
 from harness.model.library import library
 from harness.model.reading import validate
 
+LIKE_A_RANGE = re.compile(r"\s*(\d*\.?\d+)\s*(?:-|\.\.\.?|–|to)\s*(\d*\.?\d+)\s*")
+"""Two numbers with a sign between them that people write for a range."""
 SIZES = 6
 """Sizes of defects in a range that does not say how many."""
 
@@ -103,6 +105,10 @@ def axis_of(words: str, element: str, count: int | None) -> Any:
     with contextlib.suppress(json.JSONDecodeError):
         return json.loads(f"[{words}]")
     parts = words.split(":")
+    if ends := LIKE_A_RANGE.fullmatch(words):
+        low, high = ends.groups()
+        problem = f'"{words}" is no value'
+        raise InputError(problem, f"Write a range as FROM:TO:COUNT, for example {low}:{high}:7", element)
     if len(parts) == 1:
         return [_value(word) for word in words.split(",")]
     try:

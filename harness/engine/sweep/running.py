@@ -97,7 +97,7 @@ STUDY: tuple[StudyColumn, ...] = (
     StudyColumn(
         "multiplier_alone", "Float64", "1", "what the run had found by itself, where a neighbour led lower", _later
     ),
-    *_from_result("bracket_low", "bracket_high", "exceeds_accuracy", "judge_accepted", "judge_worst_residual"),
+    *_from_result("bracket_low", "bracket_high", "bracket_wide", "judge_accepted", "judge_worst_residual"),
     *_from_result("cpu_seconds", "wall_seconds", "peak_memory_bytes", "blocks", "interfaces", "iterations", "started"),
     StudyColumn("key", "string", "", "under which the result is stored", attrgetter("run.key"), "key in the store"),
     *_from_result("sentence"),

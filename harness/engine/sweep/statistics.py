@@ -38,7 +38,7 @@ def answered(table: pd.DataFrame) -> pd.DataFrame:
     falls = table["finding"] == str(Finding.FALLS)
     kept = table[good & (falls | table["multiplier"].notna())].copy()
     kept.loc[kept["finding"] == str(Finding.FALLS), "multiplier"] = 0.0
-    wide = kept["exceeds_accuracy"].eq(True).fillna(False).astype(bool)
+    wide = kept["bracket_wide"].eq(True).fillna(False).astype(bool)
     kept["earliest"] = kept["multiplier"].mask(wide, kept["bracket_low"])
     kept["latest"] = kept["multiplier"].mask(wide, kept["bracket_high"])
     kept["multiplier"] = kept["multiplier"].mask(wide)

@@ -8,26 +8,16 @@ import numpy as np
 
 from harness.model.assembly import Assembly, FloatArray, IntArray
 
+SAME = 1e-6
+"""Distance, in length scales, at which points count as the same."""
 
-@dataclass(frozen=True)
-class EdgeTolerances:
-    """In length scales.
-
-    Attributes:
-        same: distance at which points count as the same.
-        shortest: length that two edges must share to touch at all.
-    """
-
-    same: float = 1e-6
-    shortest: float = 1e-3
-
-
-EDGES = EdgeTolerances()
+SHORTEST = 1e-3
+"""Length, in length scales, that two edges must share to touch at all."""
 
 
 def edge_of(assembly: Assembly, block: int, p: int) -> tuple[int, int] | None:
     """The two vertices of a block's edge on which interface p lies, along its tangent; None where it lies on none."""
-    polygon, small = assembly.polygons[block], EDGES.same * assembly.length_scale
+    polygon, small = assembly.polygons[block], SAME * assembly.length_scale
     middle, along = 0.5 * (assembly.face1[p] + assembly.face2[p]), assembly.tangent[p]
     across = np.array([-along[1], along[0]])
     for one in range(len(polygon)):
@@ -90,8 +80,8 @@ class FacingEdges:
         starts = np.stack([np.zeros(len(a)), _dot(b[:, 0] - a[:, 0], along)])
         ends = np.stack([_dot(a[:, 1] - a[:, 0], along), _dot(b[:, 1] - a[:, 0], along)])
         low, high = starts.max(axis=0), ends.min(axis=0)
-        apart = high - low < EDGES.shortest * wall.length_scale
-        high = np.where(apart, low + EDGES.shortest * wall.length_scale, high)
+        apart = high - low < SHORTEST * wall.length_scale
+        high = np.where(apart, low + SHORTEST * wall.length_scale, high)
         points, openings = [], []
         for s in (low, high):
             on_a, on_b = (

@@ -47,10 +47,7 @@ class SettlingRules:
     chain_loss: float = 0.5
 
 
-RULES = SettlingRules()
-
-
-def tunings(course: IntArray, mass_decay: float | None) -> list[MassScaling]:
+def tunings(course: IntArray, mass_decay: float | None, rules: SettlingRules = SettlingRules()) -> list[MassScaling]:
     """Tunings to choose from at multiplier zero: for walls, and for chains of blocks as arches are.
 
     Walls: masses fall by exp(-0.4) a course, over at most exp(-14); damping 1 - 0.2 / courses between 0.95 and 0.9975.
@@ -58,12 +55,12 @@ def tunings(course: IntArray, mass_decay: float | None) -> list[MassScaling]:
     rest in fewer time steps. A chain is offered this tuning first. A mass decay that is given leaves one tuning.
     """
     tallest = number_of_courses(course)
-    keep = float(np.clip(1.0 - RULES.loss / tallest, RULES.strongest, RULES.weakest))
+    keep = float(np.clip(1.0 - rules.loss / tallest, rules.strongest, rules.weakest))
     if mass_decay is not None:
         return [MassScaling(mass_decay, keep)]
-    wall, chain = MassScaling(min(RULES.decay, RULES.span / tallest), keep), lighter_upwards(course)
-    chain = replace(chain, damping=float(np.clip(1.0 - RULES.chain_loss / tallest, chain.damping, RULES.weakest)))
-    return [chain, wall] if is_chain(course) else [wall, chain]
+    wall, chain = MassScaling(min(rules.decay, rules.span / tallest), keep), lighter_upwards(course, rules)
+    chain = replace(chain, damping=float(np.clip(1.0 - rules.chain_loss / tallest, chain.damping, rules.weakest)))
+    return [chain, wall] if is_chain(course, rules) else [wall, chain]
 
 
 def number_of_courses(course: IntArray) -> int:
@@ -71,14 +68,14 @@ def number_of_courses(course: IntArray) -> int:
     return int(course.max(initial=1))
 
 
-def lighter_upwards(course: IntArray) -> MassScaling:
+def lighter_upwards(course: IntArray, rules: SettlingRules = SettlingRules()) -> MassScaling:
     """Masses that fall by exp(-0.4) a course, over at most exp(-4) in all; damping 0.98."""
-    return MassScaling(min(RULES.decay, RULES.light_span / number_of_courses(course)), RULES.kept)
+    return MassScaling(min(rules.decay, rules.light_span / number_of_courses(course)), rules.kept)
 
 
-def is_chain(course: IntArray) -> bool:
+def is_chain(course: IntArray, rules: SettlingRules = SettlingRules()) -> bool:
     """Whether there are few blocks a course, as in stacks and arches."""
-    return bool(np.count_nonzero(course) <= RULES.chain * number_of_courses(course))
+    return bool(np.count_nonzero(course) <= rules.chain * number_of_courses(course))
 
 
 def courses(assembly: Assembly) -> IntArray:

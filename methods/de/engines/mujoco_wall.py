@@ -20,7 +20,7 @@ from harness.model.assembly import Assembly, FloatArray, IntArray
 from methods.de.engines.engine import motion_units
 from methods.de.engines.mass_scaling import MassScaling, courses, is_chain, lighter_upwards, masses, number_of_courses
 from methods.de.engines.pymunk_joints import polygon_gyration
-from methods.de.engines.strips import STRIP, require_lengths
+from methods.de.engines.strips import StripShape, require_lengths
 from methods.de.settings import MujocoSettings
 from methods.numerics.optional import optional
 
@@ -53,9 +53,11 @@ class SoftContacts:
 
 @dataclass(frozen=True)
 class MujocoTuning:
-    """The contact solver of MuJoCo, and what is read from it.
+    """The contacts and the contact solver of MuJoCo, and what is read from it.
 
     Attributes:
+        contacts: how they are pulled back; shape: of the strips that they lie on.
+        uniform: masses in proportion to areas, for what does not settle with light tops.
         tolerance, search_tolerance: of the solver and its line search.
         low: courses above which friction stiffens with them.
         force_steps: time steps over which contact forces are averaged.
@@ -63,17 +65,14 @@ class MujocoTuning:
             collapse.
     """
 
+    contacts: SoftContacts = SoftContacts()
+    shape: StripShape = StripShape()
+    uniform: MassScaling = MassScaling(0.0, 0.99)
     tolerance: float = 1e-14
     search_tolerance: float = 1e-6
     low: float = 6.0
     force_steps: int = 200
     exploded: float = 1e4
-
-
-SOFT_CONTACTS = SoftContacts()
-MUJOCO = MujocoTuning()
-UNIFORM = MassScaling(0.0, 0.99)
-"""Masses in proportion to areas, for what does not settle with light tops."""
 
 
 class SolverFailed(ArithmeticError):
@@ -89,15 +88,17 @@ def load_mujoco() -> Any:
     return optional("mujoco", "mujoco", "de-mujoco")
 
 
-def mujoco_tunings(assembly: Assembly, settings: MujocoSettings) -> list[tuple[MassScaling, float]]:
+def mujoco_tunings(
+    assembly: Assembly, settings: MujocoSettings, options: MujocoTuning = MujocoTuning()
+) -> list[tuple[MassScaling, float]]:
     """Tunings with their impedances, in the order in which they are tried: light tops first."""
-    course = courses(assembly)
+    course, contacts = courses(assembly), options.contacts
     tuning = lighter_upwards(course)
-    usual = SOFT_CONTACTS.chain_impedance if is_chain(course) else SOFT_CONTACTS.wall_impedance
+    usual = contacts.chain_impedance if is_chain(course) else contacts.wall_impedance
     impedance = settings.impedance or usual
     if settings.mass_decay is not None:
         return [(replace(tuning, mass_decay=settings.mass_decay), impedance)]
-    return [(tuning, impedance), (UNIFORM, settings.impedance or SOFT_CONTACTS.wall_impedance)]
+    return [(tuning, impedance), (options.uniform, settings.impedance or contacts.wall_impedance)]
 
 
 class MujocoWall:
@@ -111,6 +112,7 @@ class MujocoWall:
         tuning: masses and damping.
         impedance: MuJoCo's constraint impedance, below 1; the nearer to 1, the stiffer are the contacts.
         friction_ratio: MuJoCo's impratio: how much stiffer friction is than the normal direction.
+        options: of its contacts and their solver.
 
     Raises:
         CannotModel: an interface has no length.
@@ -126,7 +128,9 @@ class MujocoWall:
         tuning: MassScaling,
         impedance: float,
         friction_ratio: float,
+        options: MujocoTuning = MujocoTuning(),
     ) -> None:
+        self._options, self._contacts = options, options.contacts
         require_lengths(assembly)
         self._mujoco = load_mujoco()
         self.assembly = assembly
@@ -139,7 +143,7 @@ class MujocoWall:
         self.relaxation = 1.0 / (1.0 - tuning.damping)
         self.courses = number_of_courses(course)
         self._blocks = blocks
-        self._drag = (1.0 / tuning.damping - 1.0) / SOFT_CONTACTS.time_step
+        self._drag = (1.0 / tuning.damping - 1.0) / self._contacts.time_step
         corners = [(assembly.polygons[i] - assembly.centroid[i]) / self._unit for i in blocks]
         mass = masses(assembly, course, tuning.mass_decay)[blocks]
         gyration = np.array([polygon_gyration(polygon) for polygon in corners])
@@ -159,15 +163,15 @@ class MujocoWall:
     def _specification(self, iterations: int, friction_ratio: float) -> Any:
         spec = self._mujoco.MjSpec()
         option = spec.option
-        option.timestep = SOFT_CONTACTS.time_step
+        option.timestep = self._contacts.time_step
         option.gravity = [0.0, 0.0, 0.0]
         option.integrator = self._mujoco.mjtIntegrator.mjINT_EULER
         option.cone = self._mujoco.mjtCone.mjCONE_ELLIPTIC
         option.solver = self._mujoco.mjtSolver.mjSOL_NEWTON
-        option.impratio = friction_ratio * max(1.0, self.courses / MUJOCO.low)
+        option.impratio = friction_ratio * max(1.0, self.courses / self._options.low)
         option.iterations = iterations
-        option.tolerance = MUJOCO.tolerance
-        option.ls_tolerance = MUJOCO.search_tolerance
+        option.tolerance = self._options.tolerance
+        option.ls_tolerance = self._options.search_tolerance
         return spec
 
     def _add_blocks(self, spec: Any) -> None:
@@ -186,12 +190,13 @@ class MujocoWall:
 
     def _add_contacts(self, spec: Any, joints: IntArray, impedance: float) -> None:
         wall, free = self.assembly, set(self._blocks.tolist())
+        contacts, shape = self._contacts, self._options.shape
         sphere, box = self._mujoco.mjtGeom.mjGEOM_SPHERE, self._mujoco.mjtGeom.mjGEOM_BOX
 
-        def add(name: str, block: int, place: FloatArray, **shape: Any) -> None:
+        def add(name: str, block: int, place: FloatArray, **geom: Any) -> None:
             body = spec.body(f"block {block}") if block in free else spec.worldbody
             x, y = (place - (wall.centroid[block] if block in free else wall.middle)) / self._unit
-            body.add_geom(name=name, pos=[x, 0.0, y], contype=0, conaffinity=0, **shape)
+            body.add_geom(name=name, pos=[x, 0.0, y], contype=0, conaffinity=0, **geom)
 
         for p in joints.tolist():
             a, b = int(wall.block_a[p]), int(wall.block_b[p])
@@ -199,18 +204,18 @@ class MujocoWall:
                 continue
             normal, tangent, length = wall.normal[p], wall.tangent[p], float(wall.length[p])
             half = np.arctan2(tangent[1], tangent[0]) / 2.0
-            depth = STRIP.depth * length
+            depth = shape.depth * length
             middle = (wall.end1[p] + wall.end2[p]) / 2.0 + depth * normal
-            size = [(0.5 + STRIP.overhang) * length / self._unit, depth / self._unit, depth / self._unit]
+            size = [(0.5 + shape.overhang) * length / self._unit, depth / self._unit, depth / self._unit]
             add(f"face {p}", b, middle, type=box, size=size, quat=[np.cos(half), 0.0, -np.sin(half), 0.0])
-            friction = max(float(wall.friction[p]), SOFT_CONTACTS.least_friction)
+            friction = max(float(wall.friction[p]), contacts.least_friction)
             for k, end in enumerate((wall.end1[p], wall.end2[p])):
                 add(
                     f"end {p} {k}",
                     a,
-                    end - SOFT_CONTACTS.radius * self._unit * normal,
+                    end - contacts.radius * self._unit * normal,
                     type=sphere,
-                    size=[SOFT_CONTACTS.radius + SOFT_CONTACTS.overlap, 0.0, 0.0],
+                    size=[contacts.radius + contacts.overlap, 0.0, 0.0],
                 )
                 spec.add_pair(
                     name=f"contact {p} {k}",
@@ -220,8 +225,8 @@ class MujocoWall:
                     friction=[friction, friction, 0.0, 0.0, 0.0],
                     # The direct form, which MuJoCo divides by powers of the impedance.
                     solref=[
-                        -SOFT_CONTACTS.stiffness * impedance**2 / SOFT_CONTACTS.time_step**2,
-                        -SOFT_CONTACTS.damping * impedance / SOFT_CONTACTS.time_step,
+                        -contacts.stiffness * impedance**2 / contacts.time_step**2,
+                        -contacts.damping * impedance / contacts.time_step,
                     ],
                     solimp=[impedance, impedance, 1.0, 0.5, 2.0],
                 )
@@ -251,7 +256,10 @@ class MujocoWall:
         for _ in range(steps):
             self._mujoco.mj_step(self._model, self._data)
         self.steps += steps
-        if self._was_reset() or not float(np.abs(self._data.qvel).max(initial=0.0)) * self._drag < MUJOCO.exploded:
+        if (
+            self._was_reset()
+            or not float(np.abs(self._data.qvel).max(initial=0.0)) * self._drag < self._options.exploded
+        ):
             raise SolverFailed("MuJoCo's contact solver did not converge: the blocks separated")
 
     def _was_reset(self) -> bool:
@@ -266,7 +274,7 @@ class MujocoWall:
         The mean since the last reading, so that contacts that chatter while a wall slides do not hide its motion.
         """
         if self.steps > self._read_at:
-            passed = SOFT_CONTACTS.time_step * (self.steps - self._read_at)
+            passed = self._contacts.time_step * (self.steps - self._read_at)
             moved = (self._data.qpos - self._place).reshape(-1, 3) / passed
             self._mean = np.zeros((self.assembly.n_blocks, 3))
             self._mean[self._blocks] = moved * self._drag * motion_units(self.assembly)
@@ -296,10 +304,10 @@ class MujocoWall:
         What chattering remains in a held state cancels in the mean, which obeys friction as every step does.
         """
         total = np.zeros((self.interfaces, 3))
-        for _ in range(MUJOCO.force_steps):
+        for _ in range(self._options.force_steps):
             self.advance(1)
             self._add_forces(total)
-        return total * (self._force / MUJOCO.force_steps)
+        return total * (self._force / self._options.force_steps)
 
     def _add_forces(self, total: FloatArray) -> None:
         """Add the contact forces of the last time step.

@@ -37,7 +37,6 @@ class BodyTuning:
     slop: float = 5e-4
 
 
-BODIES = BodyTuning()
 _FORCE = batch.BodyFields.FORCE | batch.BodyFields.TORQUE
 _PLACE = batch.BodyFields.POSITION | batch.BodyFields.ANGLE
 _VELOCITY = batch.BodyFields.VELOCITY | batch.BodyFields.ANGULAR_VELOCITY
@@ -51,6 +50,7 @@ class PymunkBlocks:
         polygons: (n,) outlines to use instead of the wall's, or None.
         damping: part of the velocity kept by a unit of time sqrt(length_scale / gravity); 1 is none.
         iterations: sweeps of the contact solver in a time step.
+        options: of the blocks in pymunk.
     """
 
     def __init__(
@@ -59,13 +59,15 @@ class PymunkBlocks:
         polygons: tuple[FloatArray, ...] | None = None,
         damping: float = 1.0,
         iterations: int = 30,
+        options: BodyTuning = BodyTuning(),
     ) -> None:
+        self.options = options
         self.assembly = assembly
         self.unit = assembly.length_scale
         self._force = assembly.force_scale / max(assembly.n_free, 1)
         self._space = pymunk.Space()
         self._space.iterations = iterations
-        self._space.collision_slop = BODIES.slop
+        self._space.collision_slop = self.options.slop
         self._space.damping = damping
         self._block_of: dict[pymunk.Shape, int] = {}
         self._bodies: list[pymunk.Body] = []
@@ -92,7 +94,7 @@ class PymunkBlocks:
 
     def _add_parts(self, body: pymunk.Body, i: int, corners: FloatArray) -> None:
         for part in convex_parts(corners):
-            shape = pymunk.Poly(body, part, radius=BODIES.radius)
+            shape = pymunk.Poly(body, part, radius=self.options.radius)
             shape.elasticity = 0.0
             self._space.add(shape)
             self._block_of[shape] = i
@@ -124,7 +126,7 @@ class PymunkBlocks:
         """Make time steps of 0.002 sqrt(length_scale / gravity)."""
         for _ in range(steps):
             batch.set_space_bodies(self._space, _FORCE, self._loads)
-            self._space.step(BODIES.time_step)
+            self._space.step(self.options.time_step)
 
     def places(self) -> FloatArray:
         """(n, 3) displacement (x, y) of the centroids [length] and rotation [radians] of all blocks."""

@@ -19,7 +19,7 @@ from pymunk import batch
 from harness.model.assembly import Assembly, FloatArray, IntArray
 from methods.de.engines.engine import motion_units
 from methods.de.engines.mass_scaling import MassScaling, courses, masses, number_of_courses
-from methods.de.engines.strips import STRIP, build_strips
+from methods.de.engines.strips import StripShape, build_strips
 
 
 @dataclass(frozen=True)
@@ -36,7 +36,6 @@ class StripTuning:
     slop: float = 10.0
 
 
-STRIPS = StripTuning()
 _REST = (
     batch.BodyFields.POSITION | batch.BodyFields.ANGLE | batch.BodyFields.VELOCITY | batch.BodyFields.ANGULAR_VELOCITY
 )
@@ -53,14 +52,23 @@ class PymunkJoints:
         joints: (m,) interfaces in the order in which their strips are added.
         iterations: sweeps of the contact solver in a time step.
         tuning: masses and damping.
+        options: of the strips in pymunk; shape: how they are drawn.
 
     Raises:
         CannotModel: see `methods.de.engines.strips.build_strips`.
     """
 
     def __init__(
-        self, assembly: Assembly, blocks: IntArray, joints: IntArray, iterations: int, tuning: MassScaling
+        self,
+        assembly: Assembly,
+        blocks: IntArray,
+        joints: IntArray,
+        iterations: int,
+        tuning: MassScaling,
+        options: StripTuning = StripTuning(),
+        shape: StripShape = StripShape(),
     ) -> None:
+        self._options, self._shape = options, shape
         self.assembly = assembly
         self.interfaces = assembly.n_interfaces
         self.steps = 0
@@ -73,16 +81,16 @@ class PymunkJoints:
         self._space = pymunk.Space()
         self._space.iterations = iterations
         self._space.gravity = (0.0, 0.0)
-        self._space.damping = tuning.damping ** (1.0 / STRIPS.time_step)
+        self._space.damping = tuning.damping ** (1.0 / self._options.time_step)
         if not self._space.damping > 0.0:
             raise ArithmeticError("the damping of the pymunk space underflows to zero")
-        self._space.collision_slop = STRIPS.slop * STRIP.rounding
+        self._space.collision_slop = self._options.slop * self._shape.rounding
         self._ground = self._space.static_body
         self._mass = np.zeros((assembly.n_blocks, 3))
         self._bodies = self._add_bodies(masses(assembly, course, tuning.mass_decay))
         self._joint_of: dict[pymunk.Shape, int] = {}
         self._add_strips(joints)
-        scale = STRIPS.gravity / np.array([self._force, self._force, self._force * self._unit])
+        scale = self._options.gravity / np.array([self._force, self._force, self._force * self._unit])
         # One row more than there are bodies: pymunk's batches end with the static body.
         self._dead, self._live = np.zeros((2, len(blocks) + 1, 3))
         self._dead[:-1] = assembly.dead[blocks] * scale
@@ -91,8 +99,8 @@ class PymunkJoints:
         self._rest[:-1, :2] = (assembly.centroid[blocks] - assembly.middle) / self._unit
         self._out, self._in, self._loads = batch.Buffer(), batch.Buffer(), batch.Buffer()
         self.load(0.0)
-        self._space.step(STRIPS.time_step)
-        self._space.step(STRIPS.time_step)
+        self._space.step(self._options.time_step)
+        self._space.step(self._options.time_step)
         self._records = self._find_records()
         self._at_rest()
 
@@ -109,7 +117,7 @@ class PymunkJoints:
         return bodies
 
     def _add_strips(self, joints: IntArray) -> None:
-        strips = build_strips(self.assembly, self._unit)
+        strips = build_strips(self.assembly, self._unit, self._shape)
         for p in joints:
             category = 1 << int(strips.colour[p])
             for block, vertices in (
@@ -118,7 +126,7 @@ class PymunkJoints:
             ):
                 body = self._bodies.get(block, self._ground)
                 origin = np.array(body.position)
-                shape = pymunk.Poly(body, [tuple(v) for v in vertices - origin], radius=STRIP.rounding)
+                shape = pymunk.Poly(body, [tuple(v) for v in vertices - origin], radius=self._shape.rounding)
                 shape.friction = float(np.sqrt(self.assembly.friction[p]))
                 shape.elasticity = 0.0
                 shape.filter = pymunk.ShapeFilter(categories=category, mask=category)
@@ -135,7 +143,7 @@ class PymunkJoints:
         """Make time steps."""
         for _ in range(steps):
             batch.set_space_bodies(self._space, _FORCE, self._loads)
-            self._space.step(STRIPS.time_step)
+            self._space.step(self._options.time_step)
         self.steps += steps
 
     def velocity(self) -> FloatArray:
@@ -144,7 +152,7 @@ class PymunkJoints:
         batch.get_space_bodies(self._space, _VELOCITY, self._out)
         result = np.zeros((self.assembly.n_blocks, 3))
         read = np.frombuffer(self._out.float_buf()).reshape(-1, 3)
-        own = read[: len(self._blocks)] / (self.relaxation * STRIPS.gravity * STRIPS.time_step)
+        own = read[: len(self._blocks)] / (self.relaxation * self._options.gravity * self._options.time_step)
         result[self._blocks] = own * motion_units(self.assembly)
         return result
 
@@ -170,7 +178,7 @@ class PymunkJoints:
 
         Chipmunk's tangent is the normal turned by +90 degrees, whichever of the two shapes comes first.
         """
-        force = self.save() * (self._force / (STRIPS.gravity * STRIPS.time_step))
+        force = self.save() * (self._force / (self._options.gravity * self._options.time_step))
         normal, tangent = self.assembly.normal, self.assembly.tangent
         sign = normal[:, 0] * tangent[:, 1] - normal[:, 1] * tangent[:, 0]
         return np.column_stack([force[:, 0, 0], force[:, 1, 0], sign * force[:, :, 1].sum(axis=1)])

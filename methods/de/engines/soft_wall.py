@@ -23,7 +23,7 @@ import numpy as np
 
 from harness.model.assembly import Assembly, FloatArray, IntArray
 from harness.model.displaced import DisplacedState
-from methods.de.engines.edges import EDGES, edge_of
+from methods.de.engines.edges import SAME, edge_of
 from methods.numerics.compiled import compiled
 
 
@@ -42,9 +42,6 @@ class ExplicitTuning:
     time_step: float = 0.5
     damping: float = 0.8
     steps_at_once: int = 20
-
-
-EXPLICIT = ExplicitTuning()
 
 
 class Contacts(NamedTuple):
@@ -91,7 +88,7 @@ def contacts_of(assembly: Assembly, stiffness: float, shear_ratio: float, least_
         least_radius: of a corner [length].
     """
     rows: list[Contacts] = []
-    small = EDGES.same * assembly.length_scale
+    small = SAME * assembly.length_scale
     for p in range(assembly.n_interfaces):
         faces = np.array([assembly.face1[p], assembly.face2[p]])
         length = float(np.linalg.norm(faces[1] - faces[0]))
@@ -143,12 +140,21 @@ class SoftWall:
         steps: time steps made.
     """
 
-    def __init__(self, assembly: Assembly, stiffness: float, shear_ratio: float, least_radius: float) -> None:
+    def __init__(
+        self,
+        assembly: Assembly,
+        stiffness: float,
+        shear_ratio: float,
+        least_radius: float,
+        options: ExplicitTuning = ExplicitTuning(),
+    ) -> None:
         """The wall before anything has moved.
 
         Args:
             assembly: the wall; stiffness, shear_ratio, least_radius: as for `contacts_of`.
+            options: of its motion.
         """
+        self._options = options
         self.assembly = assembly
         self.contacts = contacts_of(assembly, stiffness, shear_ratio, least_radius)
         self.places = np.zeros((assembly.n_blocks, 3))
@@ -169,14 +175,14 @@ class SoftWall:
 
         Moments count divided by the length scale.
         """
-        wall = self.assembly
+        wall, options = self.assembly, self._options
         self.steps += steps
         arrays = self.places, self._velocity, self.shear, self.contacts, wall.centroid, self._loads, self._mass
         worst = 0.0
         # One call a few steps, so that the alarm of a time limit is heard between them.
-        for done in range(0, steps, EXPLICIT.steps_at_once):
-            some = min(EXPLICIT.steps_at_once, steps - done)
-            worst = _advance(*arrays, wall.length_scale, some, EXPLICIT.time_step, EXPLICIT.damping)
+        for done in range(0, steps, options.steps_at_once):
+            some = min(options.steps_at_once, steps - done)
+            worst = _advance(*arrays, wall.length_scale, some, options.time_step, options.damping)
         return float(worst) / self._unit
 
     def state(self) -> DisplacedState:
@@ -239,7 +245,7 @@ class SoftWall:
         """(n, 3) masses and moments of inertia: a share of the stiffness around a block; infinite if it is fixed."""
         contacts, count = self.contacts, self.assembly.n_blocks
         mass = np.zeros((count, 3))
-        stiffness = EXPLICIT.inertia * (contacts.kn + contacts.kt)
+        stiffness = self._options.inertia * (contacts.kn + contacts.kt)
         for block, arm, reach in (
             (contacts.corner, contacts.centre, np.maximum(contacts.own_reach, 0.0)),
             (contacts.face, contacts.start, contacts.reach),

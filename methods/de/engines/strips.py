@@ -43,9 +43,6 @@ class StripShape:
     margin: float = 3.0
 
 
-STRIP = StripShape()
-
-
 class CannotModel(ValueError):
     """The wall has something that contact strips cannot model; the message names it."""
 
@@ -79,19 +76,20 @@ def require_lengths(assembly: Assembly) -> None:
         )
 
 
-def build_strips(assembly: Assembly, unit: float) -> Strips:
+def build_strips(assembly: Assembly, unit: float, shape: StripShape = StripShape()) -> Strips:
     """The pair of strips of every interface, about the middle of the wall.
 
     Args:
         assembly: the wall.
         unit: the length that becomes 1 [length].
+        shape: how they are drawn.
 
     Raises:
         CannotModel: an interface has no length, or more than 32 interfaces crowd one place.
     """
     require_lengths(assembly)
     length = assembly.length / unit
-    back = STRIP.rounding - STRIP.overlap / 2.0
+    back = shape.rounding - shape.overlap / 2.0
     end1, end2 = (assembly.end1 - assembly.middle) / unit, (assembly.end2 - assembly.middle) / unit
     along = assembly.tangent * length[:, None]
     inward = assembly.normal * length[:, None]
@@ -99,11 +97,11 @@ def build_strips(assembly: Assembly, unit: float) -> Strips:
     def strip(side: float, overhang: float) -> FloatArray:
         face1 = end1 - overhang * along + side * back * assembly.normal
         face2 = end2 + overhang * along + side * back * assembly.normal
-        tail, taper = side * STRIP.depth * inward, 2 * STRIP.depth * along
+        tail, taper = side * shape.depth * inward, 2 * shape.depth * along
         return np.stack([face1, face2, face2 + tail - taper, face1 + tail + taper], axis=1)
 
-    on_a, on_b = strip(-1.0, 0.0), strip(1.0, STRIP.overhang)
-    return Strips(on_a, on_b, colour_strips(np.concatenate([on_a, on_b], axis=1), margin=STRIP.margin * STRIP.rounding))
+    on_a, on_b = strip(-1.0, 0.0), strip(1.0, shape.overhang)
+    return Strips(on_a, on_b, colour_strips(np.concatenate([on_a, on_b], axis=1), margin=shape.margin * shape.rounding))
 
 
 def colour_strips(vertices: FloatArray, margin: float) -> IntArray:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 
-from methods.de.settings import FALL
+from methods.de.settings import RISE
 
 Rests = Callable[[float], bool]
 """Whether the wall comes to rest at a multiplier, from where it rested last. If not, it is put back there."""
@@ -49,7 +49,7 @@ def shown_to_fall(
     stood, trial = ends
     while trial is not None and trial + rise <= greatest and not any(multiplier > stood for multiplier in moved):
         trial += rise
-        rise *= FALL.rise
+        rise *= RISE
         if rests(trial):
             stood = trial
     return stood, min((multiplier for multiplier in moved if multiplier > stood), default=None)

@@ -16,8 +16,6 @@ class BracketTuning:
     """The search of one insertion order.
 
     Attributes:
-        loose: widest bracket, as a part of the multiplier, that still counts as converged: twice the accuracy that is
-            stated, so that its middle keeps it.
         wide: relative width of [held, moving] above which undecided holds make the search look for a lower moving
             state.
         rounds: bisections at most, each above the highest multiplier held so far.
@@ -28,10 +26,8 @@ class BracketTuning:
         patience: multiple of the length of a hold that the dead load has.
         halved: residual of a motion, or live load as a part of the dead load, in residuals that show a motion, up to
             which half of the multiplier would show none.
-        excess: multiple of the middle of the bracket at which the mechanism is read.
     """
 
-    loose: float = 0.01
     wide: float = 5e-3
     rounds: int = 4
     creeping: float = 2e-3
@@ -39,10 +35,11 @@ class BracketTuning:
     growth: float = 2.0
     patience: int = 4
     halved: float = 2.0
-    excess: float = 1.02
 
 
-BRACKET = BracketTuning()
+LOOSE = 0.01
+"""Widest bracket, as a part of the multiplier, that still counts as converged: twice the accuracy that is stated, so
+that its middle keeps it."""
 
 
 @dataclass(eq=False)
@@ -112,7 +109,7 @@ class OrderBracket:
             return self.moving is not None
         if not ask_multiplier or self.capped:
             return True
-        return self.width is not None and self.width <= BRACKET.loose
+        return self.width is not None and self.width <= LOOSE
 
 
 class BracketSearch:
@@ -124,12 +121,22 @@ class BracketSearch:
         statics: the multipliers that statics bears on the wall.
         unit: multiplier at which the live load equals the dead load.
         order: name of the order.
+        options: of the search.
 
     Attributes:
         states: multiplier and contact state of the engine of everything that was held, the highest last.
     """
 
-    def __init__(self, engine: Engine, settings: HoldSettings, statics: StaticLimit, unit: float, order: str) -> None:
+    def __init__(
+        self,
+        engine: Engine,
+        settings: HoldSettings,
+        statics: StaticLimit,
+        unit: float,
+        order: str,
+        options: BracketTuning = BracketTuning(),
+    ) -> None:
+        self._options = options
         self.engine = engine
         self.settings = settings
         self.statics = statics
@@ -155,7 +162,7 @@ class BracketSearch:
         if found.state is not None:
             self.engine.restore(found.state)
         self.engine.load(multiplier)
-        patience = BRACKET.patience if multiplier == 0.0 else 1
+        patience = self._options.patience if multiplier == 0.0 else 1
         end = hold(self.engine, self.settings, self.statics, patience)
         found.steps = self.engine.steps
         found.holds += 1
@@ -186,12 +193,12 @@ class BracketSearch:
             if state is State.MOVING:
                 return
             if state is State.UNDECIDED:
-                growth *= BRACKET.growth
+                growth *= self._options.growth
             self.found.capped = state is State.HELD and multiplier >= cap
 
     def _narrow(self) -> None:
         """Bisect until the bracket is not loose: again above what turned out to be held beyond an undecided hold."""
-        for _ in range(BRACKET.rounds):
+        for _ in range(self._options.rounds):
             held = self.found.held
             self._bisect()
             if self._spent() or self.found.told(True) or self.found.held == held:
@@ -208,10 +215,10 @@ class BracketSearch:
         high = min(top)
         told = found.moving == high
         while not self._spent():
-            cheap = self.engine.steps * self.engine.interfaces < BRACKET.cheap
-            accuracy = self.settings.accuracy if told or cheap else max(self.settings.accuracy, BRACKET.creeping)
+            cheap = self.engine.steps * self.engine.interfaces < self._options.cheap
+            accuracy = self.settings.accuracy if told or cheap else max(self.settings.accuracy, self._options.creeping)
             left = min(found.moving_residual, high / self.unit)
-            vanishing = left <= BRACKET.halved * least_motion(self.settings)
+            vanishing = left <= self._options.halved * least_motion(self.settings)
             found.nothing = found.held == 0.0 and told and vanishing
             if found.nothing:
                 return
@@ -221,20 +228,20 @@ class BracketSearch:
             state = self._try(middle).state
             if state is not State.HELD:
                 high, told = middle, state is State.MOVING
-        if found.moving is None or found.moving - found.held > BRACKET.wide * found.moving:
+        if found.moving is None or found.moving - found.held > self._options.wide * found.moving:
             self._raise_upper_end(high)
 
     def _raise_upper_end(self, high: float) -> None:
         """The lowest state not held was undecided: find the lowest state above it that moves, by growing steps."""
         found = self.found
-        step = BRACKET.creeping * high
+        step = self._options.creeping * high
         multiplier = high + step
         while not self._spent() and multiplier <= self.settings.load_cap * self.unit:
             if found.moving is not None and multiplier >= found.moving:
                 return
             if self._try(multiplier).state is State.MOVING:
                 return
-            step *= BRACKET.growth
+            step *= self._options.growth
             multiplier += step
 
 
@@ -250,7 +257,7 @@ def held_forces(engine: Engine, settings: HoldSettings, found: OrderBracket) -> 
 
 
 def mechanism_at(
-    engine: Engine, settings: HoldSettings, statics: StaticLimit, found: OrderBracket, excess: float = BRACKET.excess
+    engine: Engine, settings: HoldSettings, statics: StaticLimit, found: OrderBracket, excess: float = 1.02
 ) -> tuple[FloatArray, FloatArray]:
     """Velocity field (n, 3) from the highest held state and the contact forces (m, 3) that were measured with it.
 

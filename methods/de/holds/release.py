@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from harness.model.assembly import Assembly, FloatArray
-from methods.de.engines.pymunk_blocks import BODIES, PymunkBlocks
+from methods.de.engines.pymunk_blocks import PymunkBlocks
 from methods.de.settings import ReleaseSettings
 
 
@@ -45,7 +45,7 @@ def release(assembly: Assembly, multiplier: float, settings: ReleaseSettings) ->
     while made < settings.release_steps:
         space.advance(stride)
         made += stride
-        times.append(made * BODIES.time_step)
+        times.append(made * space.options.time_step)
         places.append(space.places())
         if np.abs(places[-1][:, :2]).max() >= settings.reach * assembly.length_scale:
             break

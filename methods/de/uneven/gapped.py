@@ -16,7 +16,7 @@ from harness.model.assembly import Assembly, FloatArray
 from harness.model.displaced import DisplacedState
 from methods.de.engines.edges import FacingEdges
 from methods.de.engines.engine import motion_units
-from methods.de.engines.pymunk_blocks import BODIES
+from methods.de.engines.pymunk_blocks import BodyTuning
 from methods.de.holds.loading import raise_until_it_falls, shown_to_fall
 from methods.de.holds.motion import by_travel
 from methods.springs.model.factor import make_factor
@@ -33,7 +33,8 @@ class GappedTuning:
     Attributes:
         stiffness: kn of a gap point in mean dead loads of a block over the length scale: springs give far less than
             gaps are wide.
-        closed: opening, in radii of the blocks in the engine, up to which a gap counts as closed at first: the engine
+        radius: of the blocks in the engine, in length scales.
+        closed: opening, in such radii, up to which a gap counts as closed at first: the engine
             keeps blocks so far apart.
         still: displacement, in length scales, below which the blocks are not moved again.
         stride: displacement, in length scales, by which a wall without rest is moved on at a time.
@@ -42,14 +43,12 @@ class GappedTuning:
     """
 
     stiffness: float = 1e4
+    radius: float = BodyTuning().radius
     closed: float = 3.0
     still: float = 2e-4
     stride: float = 0.02
     moves: int = 30
     newton_steps: int = 600
-
-
-GAPPED = GappedTuning()
 
 
 @dataclass(frozen=True, eq=False)
@@ -79,7 +78,14 @@ class GappedWall:
         moved: multipliers at which it is shown to move.
     """
 
-    def __init__(self, assembly: Assembly, outlines: tuple[FloatArray, ...], places: FloatArray, reach: float) -> None:
+    def __init__(
+        self,
+        assembly: Assembly,
+        outlines: tuple[FloatArray, ...],
+        places: FloatArray,
+        reach: float,
+        options: GappedTuning = GappedTuning(),
+    ) -> None:
         """The wall where an engine left it.
 
         Args:
@@ -87,12 +93,14 @@ class GappedWall:
             outlines: (n,) outlines of the uneven ones.
             places: (n, 3) where they are at rest under the dead load.
             reach: a wall whose blocks move by so many length scales under one load falls.
+            options: of its springs, and how its blocks are moved on.
         """
+        self._options = options
         self.assembly, self._edges, self._reach = assembly, FacingEdges.of(assembly, outlines), reach
         self._first = places
         self.moved: list[float] = []
         structure, openings = self._edges.at(places)
-        self._shift = np.where(openings < GAPPED.closed * BODIES.radius * assembly.length_scale, -openings, 0.0)
+        self._shift = np.where(openings < options.closed * options.radius * assembly.length_scale, -openings, 0.0)
         none = np.zeros(2 * assembly.n_interfaces)
         self.rest = GappedRest(places, places, structure, none, none)
 
@@ -103,26 +111,27 @@ class GappedWall:
 
     def rests(self, multiplier: float) -> bool:
         """Whether the wall comes to rest at a multiplier; if not it stays where it rested last."""
+        options = self._options
         unit, units, before = self.assembly.length_scale, motion_units(self.assembly), self.rest.moved
         places, shear, rest = before, self.rest.shear, None
-        for _ in range(GAPPED.moves):
+        for _ in range(options.moves):
             structure, openings = self._edges.at(places)
             model = self._model(structure, openings, shear)
-            found = _at_rest(model, multiplier)
+            found = _at_rest(model, multiplier, options.newton_steps)
             step = model.block_displacements(found.u)
             size = float(np.abs(step / units).max(initial=0.0))
             if found.found:
                 pressed, shear = model.forces(found.u, found.history, found.state)
                 rest = GappedRest(places, places + step, structure, pressed, shear)
             elif np.isfinite(size):
-                rest, step = None, step * min(1.0, GAPPED.stride / max(size, GAPPED.still))
+                rest, step = None, step * min(1.0, options.stride / max(size, options.still))
             places = places + step
             if not np.abs(places - before)[:, :2].max(initial=0.0) < self._reach * unit:
                 load = self.assembly.dead + multiplier * self.assembly.live
                 if by_travel(self.assembly, load, places - before, self._reach) is not None:
                     self.moved.append(multiplier)
                 return False
-            if rest is not None and size < GAPPED.still:
+            if rest is not None and size < options.still:
                 break
         if rest is not None:
             self.rest = rest
@@ -146,7 +155,7 @@ class GappedWall:
         """The springs with these openings (m, 2) and shears (2m,)."""
         mean = self.assembly.force_scale / self.assembly.n_free
         model = build_model(
-            structure, GapSettings(normal_stiffness=GAPPED.stiffness * mean / self.assembly.length_scale)
+            structure, GapSettings(normal_stiffness=self._options.stiffness * mean / self.assembly.length_scale)
         )
         opening = (openings + self._shift).ravel() / model.displacement
         return replace(model, initial_opening=opening, history=shear)
@@ -168,10 +177,10 @@ def load_gapped(wall: GappedWall, greatest: float, step: float, accuracy: float)
     return shown_to_fall(wall.rests, wall.moved, ends, greatest, accuracy)
 
 
-def _at_rest(model: WallModel, multiplier: float) -> Equilibrium:
+def _at_rest(model: WallModel, multiplier: float, steps: int) -> Equilibrium:
     """The equilibrium near no displacement, by Newton, or else by slow motion that freezes its shears in."""
     factor, still = make_factor(model), np.zeros(model.n_unknowns)
     found = newton(model, factor, still, multiplier, model.history)
     if found.found:
         return found
-    return PseudoTransient(model, factor, replace(found, u=still), True).move(multiplier, GAPPED.newton_steps)
+    return PseudoTransient(model, factor, replace(found, u=still), True).move(multiplier, steps)

@@ -16,7 +16,7 @@ from methods.de.engines.engine import motion_units
 from methods.de.engines.pymunk_blocks import PymunkBlocks
 from methods.de.holds.loading import raise_until_it_falls, shown_to_fall
 from methods.de.holds.motion import by_travel
-from methods.de.settings import FALL, Faces
+from methods.de.settings import REACH, Faces
 from methods.de.uneven.defects import block_height
 
 
@@ -40,9 +40,6 @@ class SettlingTuning:
     slow: float = 1e-4
     point: float = 1e-3
     segment: float = 1e-6
-
-
-SETTLING = SettlingTuning()
 
 
 @dataclass(frozen=True, eq=False)
@@ -82,7 +79,12 @@ def uneven_blocks(assembly: Assembly, size: float, faces: Faces = "both", seed: 
 
 
 def settle_uneven(
-    assembly: Assembly, size: float, faces: Faces = "both", seed: int = 0, most_steps: int = 20_000
+    assembly: Assembly,
+    size: float,
+    faces: Faces = "both",
+    seed: int = 0,
+    most_steps: int = 20_000,
+    options: SettlingTuning = SettlingTuning(),
 ) -> Settled:
     """Let the wall of uneven blocks come to rest under its dead load and take its contacts.
 
@@ -92,15 +94,18 @@ def settle_uneven(
         faces: which faces are uneven.
         seed: seed of the cuts.
         most_steps: most time steps of the settling.
+        options: how it comes to rest.
     """
     outlines = uneven_blocks(assembly, size, faces, seed)
-    space = PymunkBlocks(assembly, outlines, SETTLING.damping)
-    before, at_rest = come_to_rest(space, most_steps, np.inf)
-    settled, single = with_contacts(assembly, space, before)
+    space = PymunkBlocks(assembly, outlines, options.damping)
+    before, at_rest = come_to_rest(space, most_steps, np.inf, options)
+    settled, single = with_contacts(assembly, space, before, options)
     return Settled(settled, at_rest, outlines, before, single)
 
 
-def come_to_rest(space: PymunkBlocks, most_steps: int, reach: float) -> tuple[FloatArray, bool]:
+def come_to_rest(
+    space: PymunkBlocks, most_steps: int, reach: float, options: SettlingTuning
+) -> tuple[FloatArray, bool]:
     """Advance until nothing moves, a block has moved by `reach` length scales, or the steps are over.
 
     Returns:
@@ -108,10 +113,10 @@ def come_to_rest(space: PymunkBlocks, most_steps: int, reach: float) -> tuple[Fl
     """
     unit, units = space.assembly.length_scale, motion_units(space.assembly)
     start = before = space.places()
-    for _ in range(max(1, most_steps // SETTLING.look)):
-        space.advance(SETTLING.look)
+    for _ in range(max(1, most_steps // options.look)):
+        space.advance(options.look)
         now = space.places()
-        if float(np.abs((now - before) / units).max()) < SETTLING.still and space.speed() < SETTLING.slow:
+        if float(np.abs((now - before) / units).max()) < options.still and space.speed() < options.slow:
             return now, True
         before = now
         if float(np.abs(now - start)[:, :2].max()) >= reach * unit:
@@ -144,8 +149,9 @@ def load_uneven(
     greatest: float = 2.0,
     step: float = 0.02,
     accuracy: float = 0.005,
-    reach: float = FALL.reach,
+    reach: float = REACH,
     most_steps: int = 20_000,
+    options: SettlingTuning = SettlingTuning(),
 ) -> Loading:
     """Raise the live load on a wall of uneven blocks, at large displacements, until it no longer comes to rest.
 
@@ -160,11 +166,12 @@ def load_uneven(
         reach: a block that has moved this many length scales in one load step has fallen; and one that moved so far
             while the wall settled, if it did not come to rest.
         most_steps: most time steps of a load step.
+        options: how it comes to rest.
     """
     outlines = uneven_blocks(assembly, size, faces, seed)
-    space = PymunkBlocks(assembly, outlines, SETTLING.damping)
+    space = PymunkBlocks(assembly, outlines, options.damping)
     # Gaps that close add up over the courses to more than `reach`, so the settling has none.
-    rest, at_rest = come_to_rest(space, most_steps, np.inf)
+    rest, at_rest = come_to_rest(space, most_steps, np.inf, options)
     if not at_rest:
         falls = by_travel(assembly, assembly.dead, rest, reach) is not None
         return Loading(None, 0.0 if falls else None, 0.0, not falls)
@@ -174,10 +181,10 @@ def load_uneven(
     def rests(trial: float) -> bool:
         nonlocal space, rest, fallen
         if fallen:
-            space = PymunkBlocks(assembly, outlines, SETTLING.damping)
+            space = PymunkBlocks(assembly, outlines, options.damping)
             space.put(rest)
         space.load(trial)
-        places, at_rest = come_to_rest(space, most_steps, reach)
+        places, at_rest = come_to_rest(space, most_steps, reach, options)
         load = assembly.dead + trial * assembly.live
         if at_rest:
             rest = places
@@ -192,7 +199,9 @@ def load_uneven(
     return Loading(stood, fell, drift, fell != ends[1])
 
 
-def with_contacts(assembly: Assembly, space: PymunkBlocks, places: FloatArray) -> tuple[Assembly, int]:
+def with_contacts(
+    assembly: Assembly, space: PymunkBlocks, places: FloatArray, options: SettlingTuning = SettlingTuning()
+) -> tuple[Assembly, int]:
     """The wall at these places (n, 3) with the contacts of the space, and how many of them are single points."""
     unit = assembly.length_scale
     friction = {
@@ -206,7 +215,7 @@ def with_contacts(assembly: Assembly, space: PymunkBlocks, places: FloatArray) -
         if assembly.fixed[a] and assembly.fixed[b]:
             continue
         tangent = np.array([-normal[1], normal[0]])
-        if len(points) == 2 and np.linalg.norm(points[1] - points[0]) > SETTLING.segment * unit:
+        if len(points) == 2 and np.linalg.norm(points[1] - points[0]) > options.segment * unit:
             one, two = points
             along = (two - one) / np.linalg.norm(two - one)
             across = np.array([along[1], -along[0]])
@@ -214,8 +223,8 @@ def with_contacts(assembly: Assembly, space: PymunkBlocks, places: FloatArray) -
         else:
             single += 1
             one, two = (
-                points[0] - tangent * SETTLING.point * unit / 2.0,
-                points[0] + tangent * SETTLING.point * unit / 2.0,
+                points[0] - tangent * options.point * unit / 2.0,
+                points[0] + tangent * options.point * unit / 2.0,
             )
         rows.append((a, b, one, two, normal, friction.get((a, b), least)))
     one, two = np.array([row[2] for row in rows]), np.array([row[3] for row in rows])

@@ -23,10 +23,7 @@ from methods.la.core.state import CollapseState
 from methods.la.core.vertex_programmes import ForceProgramme, rates_against_any_load, row_scaling
 from methods.la.sources.search import Search
 from methods.numerics.linear_programme import INFINITY
-from methods.proof.search.tuning import WINDOWS
-
-CLOSE = WINDOWS.closed
-"""Relative distance below the least multiplier known within which no other is sought."""
+from methods.proof.search.options import CLOSED
 
 
 @dataclass(frozen=True)
@@ -42,9 +39,6 @@ class Tree:
     complementary: float = 1e-9
     agrees: float = 1e-7
     per_leaf: int = 3
-
-
-TREE = Tree()
 
 
 @dataclass(frozen=True)
@@ -69,7 +63,7 @@ class Proof:
         return self.lower_bound >= _below(self.state.multiplier)
 
 
-def prove(search: Search, known: CollapseState, most: int, leaves: int | None = None) -> Proof:
+def prove(search: Search, known: CollapseState, most: int, leaves: int | None = None, options: Tree = Tree()) -> Proof:
     """The least collapse state and the bound that a tree of `most` nodes proves, as far as the budget goes.
 
     A tree that does not come to an end is cut back to its first divisions where the whole takes too many programmes to
@@ -79,18 +73,19 @@ def prove(search: Search, known: CollapseState, most: int, leaves: int | None = 
         search: of the wall, which stands under its dead load; known: its least collapse state so far.
         most: with none, all that is said is that no multiplier is negative.
         leaves: of a tree that does not come to an end, which are bounded to rounding at most; None as the budget says.
+        options: of the tree.
     """
     if most == 0:
         return Proof(known, 0.0, 0)
-    tree = _Tree(search, known)
+    tree = _Tree(search, known, options)
     nothing = np.zeros((search.problem.n_interfaces, 4), dtype=bool)
     tree.add(nothing, nothing, 0.0)
     while tree.open and len(tree.parts) < most and search.budget.programmes and tree.open[0][0] < tree.limit:
         tree.divide()
     limits = search.budget.limits
-    ended = tree.bound() >= tree.limit and search.budget.programmes >= TREE.per_leaf * len(tree.leaves())
-    allowed = min(limits.leaves if leaves is None else leaves, search.budget.programmes // TREE.per_leaf)
-    first = (min(tree.divisions, max(allowed - 1, 0)), TREE.per_leaf * allowed)
+    ended = tree.bound() >= tree.limit and search.budget.programmes >= options.per_leaf * len(tree.leaves())
+    allowed = min(limits.leaves if leaves is None else leaves, search.budget.programmes // options.per_leaf)
+    first = (min(tree.divisions, max(allowed - 1, 0)), options.per_leaf * allowed)
     whole = (tree.divisions, search.budget.programmes if ended else min(limits.certificates, search.budget.programmes))
     for divisions, programmes in (whole,) if ended else (whole, first) if leaves is None else (first,):
         bound = min(tree.bound(divisions), tree.limit)
@@ -105,7 +100,8 @@ def prove(search: Search, known: CollapseState, most: int, leaves: int | None = 
 
 
 def _below(multiplier: float) -> float:
-    return multiplier - CLOSE * abs(multiplier) - 1e-12
+    """From where on no other multiplier is sought."""
+    return multiplier - CLOSED * abs(multiplier) - 1e-12
 
 
 @dataclass
@@ -130,8 +126,8 @@ class _Part:
 class _Tree:
     """Parts of all states there are; the open ones with the least bound first."""
 
-    def __init__(self, search: Search, known: CollapseState) -> None:
-        self._search = search
+    def __init__(self, search: Search, known: CollapseState, options: Tree) -> None:
+        self._search, self._options = search, options
         self._work = _DeadWork(search.problem)
         self.known = known
         self.parts: list[_Part] = []
@@ -196,12 +192,12 @@ class _Tree:
         if mechanism is None:
             return False
         work = np.where(part.tight | part.still, 0.0, slack * mechanism.rates)
-        if work.sum() > TREE.complementary:
+        if work.sum() > self._options.complementary:
             row, column = np.unravel_index(int(work.argmax()), work.shape)
             part.contact = (int(row), int(column))
             return True
         state = search.state_of(mechanism.velocities, mechanism.rates)
-        if state is not None and state.multiplier <= statics.multiplier + TREE.agrees:
+        if state is not None and state.multiplier <= statics.multiplier + self._options.agrees:
             part.bound = np.inf
         if state is not None and state.multiplier < self.known.multiplier:
             self.known = state

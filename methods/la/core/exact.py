@@ -7,8 +7,6 @@ Both are one factorisation of the matrix of the interior point with repeated ref
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 import numpy as np
 
 from harness.model.assembly import BoolArray, FloatArray
@@ -17,26 +15,14 @@ from methods.la.core.newton_matrix import NewtonMatrix
 from methods.la.core.problem import Problem
 from methods.numerics.failures import NoMechanism, SingularMatrix
 
+RIGID = 1e40
+"""Weight of a slack that may not change."""
 
-@dataclass(frozen=True)
-class Weights:
-    """Weights by which the factorisations hold what may not change.
+PENALTY = 1e13
+"""Stiffness of contacts that may not move, against a unit stiffness of the velocities; near-singular sets need it."""
 
-    Attributes:
-        rigid: weight of a slack that may not change.
-        penalty: stiffness of contacts that may not move, against a unit stiffness of the velocities; near-singular sets
-            need it.
-        softest: least weight g/y in the matrix of a path, far below what any reaches, so that no stiffness overflows.
-        diverged: velocities above this come from a matrix singular to rounding; their products would overflow.
-    """
-
-    rigid: float = 1e40
-    penalty: float = 1e13
-    softest: float = 1e-25
-    diverged: float = 1e100
-
-
-WEIGHTS = Weights()
+DIVERGED = 1e100
+"""Velocities above this come from a matrix singular to rounding; their products would overflow."""
 
 
 def close_tight(problem: Problem, tight: BoolArray | None = None) -> BoolArray:
@@ -92,7 +78,7 @@ def exact_forces(
         current = snap(problem, forces, tight)
         slack = problem.slacks(current)
         least = floor * max(float(slack.max(initial=0.0)), 1e-9)
-        weight = np.where(tight, WEIGHTS.rigid, 1.0 / np.maximum(slack, least) ** 2)
+        weight = np.where(tight, RIGID, 1.0 / np.maximum(slack, least) ** 2)
         compliance = Compliance(problem.law, weight, problem.friction)
         factor = newton.factorise(compliance.matrices, 1e-13)
         by_live = factor.solve(problem.live)
@@ -105,7 +91,7 @@ def exact_forces(
             velocity = factor.solve(residual)
             change = -float(problem.live @ velocity) / stiffness if stiffness > 0.0 else 0.0
             velocity = velocity + change * by_live
-            if not float(abs(velocity).max(initial=0.0)) < WEIGHTS.diverged:
+            if not float(abs(velocity).max(initial=0.0)) < DIVERGED:
                 break
             shift = -compliance.forces(problem.strains(velocity))
             current, multiplier = snap(problem, current + shift, tight), multiplier + change
@@ -128,18 +114,18 @@ def exact_mechanism(
     sense = np.where(moving[:, 2], 1.0, np.where(moving[:, 3], -1.0, 0.0)) * problem.flow_law(associated).dilatancy
     transform[:, 0, 2] = transform[:, 1, 2] = -sense
     stiff = np.einsum("pki,pk,pkj->pij", transform, still, transform)
-    factor = newton.factorise(stiff * WEIGHTS.penalty, 0.0, shift=1.0)
+    factor = newton.factorise(stiff * PENALTY, 0.0, shift=1.0)
     least = np.inf
     for _ in range(30):
-        if not float(abs(velocities).max(initial=0.0)) < WEIGHTS.diverged:
+        if not float(abs(velocities).max(initial=0.0)) < DIVERGED:
             raise SingularMatrix("the kinematic matrix is singular to rounding")
         strain = np.einsum("pij,pj->pi", stiff, problem.strains(velocities))
         size = float(abs(strain).max(initial=0.0))
         if size > 0.5 * least and size < 1e-14 * float(abs(velocities).max(initial=0.0)):
             break
         least = min(least, size)
-        velocities = velocities - factor.solve(WEIGHTS.penalty * np.asarray(problem.statics @ strain.ravel()))
-    if not float(abs(velocities).max(initial=0.0)) < WEIGHTS.diverged:
+        velocities = velocities - factor.solve(PENALTY * np.asarray(problem.statics @ strain.ravel()))
+    if not float(abs(velocities).max(initial=0.0)) < DIVERGED:
         raise SingularMatrix("the kinematic matrix is singular to rounding")
     work = float(problem.live @ velocities)
     if work <= 1e-6 * problem.live_work:

@@ -8,7 +8,6 @@ compiled code.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import TYPE_CHECKING, cast
 
 import numpy as np
@@ -25,20 +24,11 @@ if TYPE_CHECKING:
     from methods.numerics.block_lu import BlockFactor
 
 
-@dataclass(frozen=True)
-class MatrixSizes:
-    """Sizes in blocks.
+FEW = 200
+"""Blocks up to which SuperLU factorises."""
 
-    Attributes:
-        few: up to which SuperLU factorises.
-        leaf: below which a part is not divided further.
-    """
-
-    few: int = 200
-    leaf: int = 24
-
-
-MATRIX = MatrixSizes()
+LEAF = 24
+"""Blocks up to which a part is not divided further by nested dissection."""
 
 
 def dissection_order(centroid: FloatArray, first: IntArray, second: IntArray) -> IntArray:
@@ -58,7 +48,7 @@ def dissection_order(centroid: FloatArray, first: IntArray, second: IntArray) ->
 
 
 def _dissect(part: IntArray, centroid: FloatArray, graph: sp.csr_matrix, pieces: list[IntArray]) -> None:
-    if len(part) <= MATRIX.leaf:
+    if len(part) <= LEAF:
         pieces.append(part)
         return
     place = centroid[part]
@@ -84,7 +74,7 @@ class NewtonMatrix:
         column[assembly.free] = np.arange(n)
         block_a, block_b = column[assembly.block_a], column[assembly.block_b]
         both = (block_a >= 0) & (block_b >= 0)
-        self.large = n > MATRIX.few
+        self.large = n > FEW
         if self.large:
             from methods.numerics.block_lu import elimination_order
 

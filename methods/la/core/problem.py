@@ -17,23 +17,14 @@ from scipy.sparse.linalg import spsolve
 from harness.model.assembly import Assembly, BoolArray, FloatArray
 from harness.model.joint_law import JointLaw
 
+NO_FRICTION = 1e-12
+"""Friction coefficients below this are zero to rounding."""
 
-@dataclass(frozen=True)
-class ProblemTolerances:
-    """What is nothing in a scaled problem.
+NO_MULTIPLIER = 1e-15
+"""Scaled multipliers up to this are zero to rounding, as of a wall without friction."""
 
-    Attributes:
-        friction: coefficients below this are zero to rounding.
-        multiplier: scaled ones up to this are zero to rounding, as of a wall without friction.
-        unloaded: share of the largest normal force on both its blocks below which a joint counts as unloaded.
-    """
-
-    friction: float = 1e-12
-    multiplier: float = 1e-15
-    unloaded: float = 0.05
-
-
-PROBLEM = ProblemTolerances()
+UNLOADED = 0.05
+"""Share of the largest normal force on both its blocks below which a joint counts as unloaded."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -97,7 +88,7 @@ class Problem:
         for blocks in (assembly.block_a, assembly.block_b):
             np.maximum.at(largest, blocks, normal)
         largest[assembly.fixed] = np.inf
-        return np.asarray(normal < PROBLEM.unloaded * np.minimum(largest[assembly.block_a], largest[assembly.block_b]))
+        return np.asarray(normal < UNLOADED * np.minimum(largest[assembly.block_a], largest[assembly.block_b]))
 
     @cached_property
     def live_work(self) -> float:
@@ -149,7 +140,7 @@ class Problem:
 
     def to_multiplier(self, multiplier: float) -> float:
         """The multiplier of a scaled one; zero where the live load is rounding beside the dead load."""
-        return 0.0 if abs(multiplier) <= PROBLEM.multiplier else multiplier * self.unit_multiplier
+        return 0.0 if abs(multiplier) <= NO_MULTIPLIER else multiplier * self.unit_multiplier
 
     def to_forces(self, forces: FloatArray) -> FloatArray:
         """(m, 3) contact forces [force] of scaled ones."""
@@ -177,7 +168,13 @@ class Problem:
 
 
 def make_problem(assembly: Assembly) -> Problem:
-    """The scaled limit-analysis problem of an assembly."""
+    """The scaled limit-analysis problem of an assembly, whose ties and props are rows of the law of joints.
+
+    Raises:
+        ValueError: it has bars that are not (`harness.model.bars.with_bars_as_joints`).
+    """
+    if len(assembly.bars):
+        raise ValueError(f"{assembly.name} has ties or props that are no rows of the law of its joints")
     unit_force = assembly.force_scale / max(assembly.n_free, 1)
     unit_length = assembly.length_scale or 1.0
     column = np.tile([1.0, 1.0, 1.0 / unit_length], assembly.n_free)
@@ -185,7 +182,7 @@ def make_problem(assembly: Assembly) -> Problem:
     dead = dead * column / unit_force
     live = live * column / unit_force
     size = float(abs(live.reshape(-1, 3)).sum())
-    friction = np.where(assembly.friction < PROBLEM.friction, 0.0, assembly.friction)
+    friction = np.where(abs(assembly.friction) < NO_FRICTION, 0.0, assembly.friction)
     unit_multiplier = assembly.n_free / size if size > 0.0 else 1.0
     return Problem(
         assembly=assembly,

@@ -35,9 +35,6 @@ class StaticSolver:
     devex_above: int = 200
 
 
-STATIC = StaticSolver()
-
-
 @dataclass(frozen=True)
 class StaticSolution:
     """Forces (m, 3) and multiplier, both scaled, and the simplex or interior iterations spent."""
@@ -61,7 +58,7 @@ class StaticProgramme:
     Columns are the slacks (y1, y2, y3) of an interface, from which r and y4 follow, and lambda.
     """
 
-    def __init__(self, problem: Problem) -> None:
+    def __init__(self, problem: Problem, solver: StaticSolver = StaticSolver()) -> None:
         self.problem = problem
         m, rows, constant = problem.n_interfaces, problem.law.rows, problem.law.constant
         inverse = 2.0 * np.eye(3) - rows[:, :3]  # of a matrix whose diagonal is one, with entries in the last row only
@@ -81,8 +78,8 @@ class StaticProgramme:
             (np.append(self._free[0], -INFINITY), np.append(self._free[1], INFINITY)),
             (np.append(-dead, self._least_last), np.append(-dead, np.full(m, INFINITY))),
         )
-        self._programme.highs.setOptionValue("solver", "simplex" if m <= STATIC.simplex_up_to else "ipm")
-        if m > STATIC.devex_above:
+        self._programme.highs.setOptionValue("solver", "simplex" if m <= solver.simplex_up_to else "ipm")
+        if m > solver.devex_above:
             self._programme.highs.setOptionValue("simplex_dual_edge_weight_strategy", 1)
 
     def solve(self, tight: BoolArray | None = None, greatest: bool = False) -> StaticSolution | str:

@@ -13,25 +13,14 @@ from methods.la.core.newton_matrix import NewtonMatrix
 from methods.la.core.problem import Problem
 from methods.numerics.failures import NumericalFailure
 
+MOVING = 1e-11
+"""Rates below this, relative to the largest, are rounding."""
 
-@dataclass(frozen=True)
-class Negligible:
-    """What counts as zero in states, and from what size on a block counts.
+TIGHT = 1e-8
+"""Slacks below this, in mean block weights, are rounding."""
 
-    Attributes:
-        moving: rates below this, relative to the largest, are rounding.
-        tight: slacks below this, in mean block weights, are rounding.
-        lightest: share of the largest force from which forces of a block count.
-        slowest: share of the fastest speed from which those of a block count.
-    """
-
-    moving: float = 1e-11
-    tight: float = 1e-8
-    lightest: float = 1e-13
-    slowest: float = 1e-2
-
-
-NEGLIGIBLE = Negligible()
+LIGHTEST, SLOWEST = 1e-13, 1e-2
+"""Shares of the largest force, and of the fastest speed, from which those of a block count."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -94,9 +83,9 @@ def local_residuals(problem: Problem, state: CollapseState) -> tuple[FloatArray,
     tension = np.maximum(-problem.slacks(state.forces).min(axis=1), 0.0)
     closing = np.maximum(-rates[:, :2].min(axis=1), 0.0)
     return (
-        _share(abs(balance).max(axis=1), size, NEGLIGIBLE.lightest),
-        _share(tension, np.where(np.isfinite(lesser), lesser, 0.0), NEGLIGIBLE.lightest),
-        _share(closing, faster, NEGLIGIBLE.slowest),
+        _share(abs(balance).max(axis=1), size, LIGHTEST),
+        _share(tension, np.where(np.isfinite(lesser), lesser, 0.0), LIGHTEST),
+        _share(closing, faster, SLOWEST),
     )
 
 
@@ -108,12 +97,12 @@ def _share(value: FloatArray, of: FloatArray, least: float) -> FloatArray:
 
 def moving_contacts(rates: FloatArray) -> BoolArray:
     """(m, 4) rates that are more than rounding."""
-    return rates > NEGLIGIBLE.moving * float(rates.max(initial=0.0))
+    return rates > MOVING * float(rates.max(initial=0.0))
 
 
 def tight_contacts(problem: Problem, forces: FloatArray) -> BoolArray:
     """(m, 4) slacks that are no more than rounding."""
-    return problem.slacks(forces) <= NEGLIGIBLE.tight
+    return problem.slacks(forces) <= TIGHT
 
 
 def polished(

@@ -19,23 +19,14 @@ from methods.numerics.linear_programme import INFINITY, Programme
 from methods.numerics.statics import Entries, entries_of_shear_limits, least_shear_slacks, rows_of_blocks, shear_unit
 from methods.numerics.vertex import Vertex
 
+SIMPLEX_UP_TO = 400
+"""Interfaces above which the interior point with crossover of HiGHS is quicker than its simplex method."""
 
-@dataclass(frozen=True)
-class ExactVertices:
-    """How programmes over forces are put to HiGHS.
+COST = 1e4
+"""Of the multiplier: speeds of the dual mechanism are of this order, far above what HiGHS rounds off."""
 
-    Attributes:
-        simplex_up_to: interfaces above which the interior point with crossover is quicker than the simplex method.
-        cost: of the multiplier: speeds of the dual mechanism are of this order, far above what HiGHS rounds off.
-        uneven: ratio of loads of two blocks from which forces and equilibrium are measured in units of their own.
-    """
-
-    simplex_up_to: int = 400
-    cost: float = 1e4
-    badly_scaled: float = 1e3
-
-
-VERTICES = ExactVertices()
+BADLY_SCALED = 1e3
+"""Ratio of loads of two blocks from which forces and equilibrium are measured in units of their own."""
 
 
 @dataclass(frozen=True)
@@ -136,7 +127,7 @@ class ForceProgramme:
         its velocities; for the greatest work, the opposite strains.
         """
         sense = -1.0 if greatest else 1.0
-        scale = VERTICES.cost / float(abs(strains).max())
+        scale = COST / float(abs(strains).max())
         cost = np.append(sense * scale * strains.ravel() * self._columns, np.zeros(self._loads))
         column, limits = self._within_yield(np.zeros((self.problem.n_interfaces, 4), dtype=bool))
         solved = self._solved(column, limits, cost, (0.0, 0.0), "auto")
@@ -147,7 +138,7 @@ class ForceProgramme:
     def _of_multiplier(self, sense: float) -> FloatArray:
         """Cost of the columns: of the multiplier alone."""
         cost = np.zeros(3 * self.problem.n_interfaces + self._loads)
-        cost[-1] = VERTICES.cost * self.problem.live_work * sense
+        cost[-1] = COST * self.problem.live_work * sense
         return cost
 
     def _within_yield(self, tight: BoolArray) -> tuple[tuple[FloatArray, FloatArray], tuple[FloatArray, FloatArray]]:
@@ -232,7 +223,7 @@ class ForceProgramme:
         )
         programme.highs.setOptionValue("small_matrix_value", 1e-12)
         if solver == "auto":
-            solver = "simplex" if m <= VERTICES.simplex_up_to else "ipm"
+            solver = "simplex" if m <= SIMPLEX_UP_TO else "ipm"
         programme.highs.setOptionValue("solver", solver)
         # It costs the dual simplex method more than it saves for greatest multipliers; the primal one takes .9 of the
         # time, and ends at vertices with self-stress of thousands of weights where joints are rough.
@@ -279,7 +270,7 @@ def rates_against_any_load(problem: Problem, units: RowScaling | None, tight: Bo
 def badly_scaled(problem: Problem) -> bool:
     """Whether loads of blocks differ so much that forces and equilibrium are measured in units of their own."""
     size = _loads(problem)
-    return bool(size.max(initial=0.0) >= VERTICES.badly_scaled * size.min(initial=np.inf) > 0.0)
+    return bool(size.max(initial=0.0) >= BADLY_SCALED * size.min(initial=np.inf) > 0.0)
 
 
 def _loads(problem: Problem) -> FloatArray:

@@ -51,9 +51,6 @@ class Stepping:
     residual: float = 1e-3
 
 
-STEPPING = Stepping()
-
-
 @dataclass(frozen=True)
 class _Place:
     """A point with its tau."""
@@ -90,7 +87,7 @@ class ArcPath:
         newton: NewtonMatrix,
         start: Point,
         spread: float = np.inf,
-        stepping: Stepping = STEPPING,
+        stepping: Stepping = Stepping(),
     ) -> None:
         self._problem, self._newton, self._stepping = problem, newton, stepping
         self._tight = close_tight(problem)

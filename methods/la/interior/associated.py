@@ -47,9 +47,6 @@ class EndOfPath:
     held: tuple[float, ...] = (1e-4, 1e-5, 1e-6, 1e-7)
 
 
-END = EndOfPath()
-
-
 @dataclass(frozen=True)
 class AssociatedResult:
     """The outcome: "optimal" with a state, or "infeasible" (no equilibrium at any multiplier), "unbounded", "unknown".
@@ -72,7 +69,9 @@ class AssociatedResult:
         return float("inf") if self.state is None else self.state.multiplier
 
 
-def solve_associated(problem: Problem, newton: NewtonMatrix, solver: str = "auto") -> AssociatedResult:
+def solve_associated(
+    problem: Problem, newton: NewtonMatrix, solver: str = "auto", end: EndOfPath = EndOfPath()
+) -> AssociatedResult:
     """The greatest statically admissible multiplier.
 
     There is none where forces within yield bear the live load alone: any multiple of them may be added.
@@ -82,9 +81,10 @@ def solve_associated(problem: Problem, newton: NewtonMatrix, solver: str = "auto
         newton: its Newton matrix, for the interior point.
         solver: "highs" (simplex), "interior" (own interior point, and a vertex where its end is not clear) or "auto"
             (by size).
+        end: of its own interior point.
     """
-    if solver == "interior" or (solver == "auto" and problem.n_interfaces > END.above):
-        result = _by_interior_point(problem, newton)
+    if solver == "interior" or (solver == "auto" and problem.n_interfaces > end.above):
+        result = _by_interior_point(problem, newton, end)
         if result is not None:
             return result
     found = force_programme(problem).extreme(greatest=True, solver="simplex" if solver == "highs" else "auto")
@@ -128,26 +128,26 @@ def duality_gap(problem: Problem, state: CollapseState) -> float:
     return abs(state.multiplier - kinematic) / max(1.0, abs(state.multiplier))
 
 
-def _by_interior_point(problem: Problem, newton: NewtonMatrix) -> AssociatedResult | None:
+def _by_interior_point(problem: Problem, newton: NewtonMatrix, end: EndOfPath) -> AssociatedResult | None:
     """The end of the central path made exact, or None where neither it nor its own motion proves the multiplier.
 
     Where it is not clear which contacts press and which move, exact forces beside the motion of the path do: both are
     feasible to rounding, so that the difference of their multipliers bounds the error of either (weak duality).
     """
     try:
-        result = follow_path(problem, newton, start_point(problem), PathSettings(1.0, gap=END.gap, residual=1e-3))
+        result = follow_path(problem, newton, start_point(problem), PathSettings(1.0, gap=end.gap, residual=1e-3))
     except NumericalFailure:
         return None
     if not result.gap < 1e-4 or result.statics > 0.1:
         return None
-    for bias in END.biases:
+    for bias in end.biases:
         state = _from_path(problem, newton, result.point, bias)
         clear = None if state is None else _at_rest_elsewhere(problem, newton, state)
-        if clear is not None and _unclear(problem, clear) <= END.exact:
+        if clear is not None and _unclear(problem, clear) <= end.exact:
             return AssociatedResult("optimal", clear, duality_gap(problem, clear), result.iterations)
-    for bias in END.held:
+    for bias in end.held:
         state = _from_path(problem, newton, result.point, bias)
-        if state is not None and _unclear(problem, state) <= END.exact:
+        if state is not None and _unclear(problem, state) <= end.exact:
             return AssociatedResult("optimal", state, duality_gap(problem, state), result.iterations)
     return None
 

@@ -45,9 +45,6 @@ class Centring:
     halved: float = 0.5
 
 
-CENTRING = Centring()
-
-
 @dataclass(frozen=True)
 class PathSettings:
     """How the central path is followed.
@@ -61,6 +58,7 @@ class PathSettings:
         fade: None, or the relative gap below which dilatancy fades from one in proportion to the gap, to reach
             zero-dilatancy flow from the well-behaved path of associated flow.
         above: None, or a multiplier at which the path ends if the forces are in equilibrium.
+        centring: how its steps are made longer and kept central.
     """
 
     dilatancy: float = 0.0
@@ -70,6 +68,12 @@ class PathSettings:
     patience: int = 12
     fade: float | None = None
     above: float | None = None
+    centring: Centring = Centring()
+
+    @classmethod
+    def sharp(cls) -> PathSettings:
+        """Of associated flow to a gap so small that rates of contacts at rest vanish against forces of any size."""
+        return cls(dilatancy=1.0, gap=1e-17, residual=1e-3, max_iterations=150, patience=5)
 
 
 @dataclass(frozen=True)
@@ -102,6 +106,7 @@ def start_point(
         tilt = generator.uniform(-0.5, 0.5, m)
         target = np.exp(generator.uniform(-spread, spread, (m, 4)))
     tight = close_tight(problem) if tight is None else tight
+    normal = np.minimum(normal, 0.25 * problem.law.greatest_compression[:, None])
     normal = np.where(tight[:, :2], 0.0, normal)
     tilt = np.where(tight[:, 2], -1.0, np.where(tight[:, 3], 1.0, tilt))
     forces = np.column_stack([normal, tilt * problem.law.strength(normal)])
@@ -156,14 +161,20 @@ def follow_path(
             best_merit = merit
         if not product.any() or merit <= 1.0 or iteration - best_at > settings.patience or not np.isfinite(merit):
             break
-        point = _centred_step(step, point, product, pairs, tight, dilatancy)
+        point = _centred_step(step, point, product, pairs, tight, dilatancy, settings.centring)
     if best is None:
         raise SingularMatrix("the interior point could not factorise its first system")
     return best
 
 
 def _centred_step(
-    step: NewtonStep, point: Point, product: FloatArray, pairs: int, tight: BoolArray, dilatancy: float
+    step: NewtonStep,
+    point: Point,
+    product: FloatArray,
+    pairs: int,
+    tight: BoolArray,
+    dilatancy: float,
+    options: Centring,
 ) -> Point:
     """Mehrotra's predictor and corrector; where that is blocked, a step that mostly centres."""
     mean = float(product.sum()) / pairs
@@ -171,39 +182,45 @@ def _centred_step(
     primal, dual = step_lengths(point, predictor, tight, 1.0, dilatancy)
     ahead = (point.slack + primal * predictor.slack) * (point.rates + dual * predictor.rates)
     mean_ahead = float(np.where(tight, 0.0, ahead).sum()) / pairs
-    centring = float(np.clip((mean_ahead / mean) ** 3, CENTRING.least, 1.0))
+    centring = float(np.clip((mean_ahead / mean) ** 3, options.least, 1.0))
     second_order = predictor.slack * predictor.rates * min(primal, dual)
-    target = np.clip(centring * mean - second_order, -CENTRING.spread * mean, CENTRING.spread * mean)
-    corrector, target, lengths = _longer_step(step, point, target, centring * mean, tight, dilatancy)
-    if min(lengths) < CENTRING.blocked:
-        safe = np.clip(CENTRING.halved * mean, product / CENTRING.spread, None)
+    target = np.clip(centring * mean - second_order, -options.spread * mean, options.spread * mean)
+    corrector, target, lengths = _longer_step(step, point, target, centring * mean, tight, dilatancy, options)
+    if min(lengths) < options.blocked:
+        safe = np.clip(options.halved * mean, product / options.spread, None)
         centred = step.direction(safe)
-        if min(step_lengths(point, centred, tight, CENTRING.to_boundary, dilatancy)) > min(lengths):
+        if min(step_lengths(point, centred, tight, options.to_boundary, dilatancy)) > min(lengths):
             corrector, target = centred, safe
     corrector = step.refined(corrector, target)
-    return step.advance(corrector, *step_lengths(point, corrector, tight, CENTRING.to_boundary, dilatancy))
+    return step.advance(corrector, *step_lengths(point, corrector, tight, options.to_boundary, dilatancy))
 
 
 def _longer_step(
-    step: NewtonStep, point: Point, target: FloatArray, mean: float, tight: BoolArray, dilatancy: float
+    step: NewtonStep,
+    point: Point,
+    target: FloatArray,
+    mean: float,
+    tight: BoolArray,
+    dilatancy: float,
+    options: Centring,
 ) -> tuple[Direction, FloatArray, tuple[float, float]]:
     """The step to a target, its target and lengths.
 
     Correctors bring the products of a longer step back to the middle (Gondzio 1996), while they lengthen it.
     """
     change = step.direction(target)
-    primal, dual = step_lengths(point, change, tight, CENTRING.to_boundary, dilatancy)
-    for _ in range(CENTRING.correctors):
-        if min(primal, dual) > CENTRING.long:
+    primal, dual = step_lengths(point, change, tight, options.to_boundary, dilatancy)
+    for _ in range(options.correctors):
+        if min(primal, dual) > options.long:
             break
-        reach = (min(1.0, primal + CENTRING.ahead), min(1.0, dual + CENTRING.ahead))
+        reach = (min(1.0, primal + options.ahead), min(1.0, dual + options.ahead))
         product = (point.slack + reach[0] * change.slack) * (point.rates + reach[1] * change.rates)
         shift = np.clip(
-            np.clip(product, mean / CENTRING.spread, CENTRING.spread * mean) - product, -CENTRING.spread * mean, None
+            np.clip(product, mean / options.spread, options.spread * mean) - product, -options.spread * mean, None
         )
         other = step.direction(target + shift)
-        lengths = step_lengths(point, other, tight, CENTRING.to_boundary, dilatancy)
-        if sum(lengths) < primal + dual + CENTRING.worth * CENTRING.ahead:
+        lengths = step_lengths(point, other, tight, options.to_boundary, dilatancy)
+        if sum(lengths) < primal + dual + options.worth * options.ahead:
             break
         change, target, (primal, dual) = other, target + shift, lengths
     return change, target, (primal, dual)

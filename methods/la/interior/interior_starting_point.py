@@ -36,25 +36,25 @@ class StartingPair:
     least_cost: float = 1e-9
 
 
-PAIR = StartingPair()
-
-
-def interior_starting_point(problem: Problem, newton: NewtonMatrix, gap: float) -> tuple[Point | None, int]:
+def interior_starting_point(
+    problem: Problem, newton: NewtonMatrix, gap: float, options: StartingPair = StartingPair()
+) -> tuple[Point | None, int]:
     """The pair as one point, or None where either path does not get there, and the Newton steps spent.
 
     Args:
         problem: the scaled wall.
         newton: its Newton matrix.
         gap: relative gap of the associated path at which its forces are taken; full steps may end below it.
+        options: how exact the pair is.
     """
-    settings = PathSettings(dilatancy=1.0, gap=gap, residual=PAIR.feasible)
+    settings = PathSettings(dilatancy=1.0, gap=gap, residual=options.feasible)
     forces = follow_path(problem, newton, start_point(problem), settings)
     if not forces.converged:
         return None, forces.iterations
     slack = forces.point.slack
-    cost = slack / float(np.median(slack)) + PAIR.least_cost
+    cost = slack / float(np.median(slack)) + options.least_cost
     programme = kinematic_programme(problem, np.where(close_tight(problem), 0.0, cost))
-    settings = PathSettings(dilatancy=1.0, gap=PAIR.early, residual=PAIR.feasible)
+    settings = PathSettings(dilatancy=1.0, gap=options.early, residual=options.feasible)
     mechanism = follow_path(programme, newton, start_point(programme), settings)
     steps = forces.iterations + mechanism.iterations
     if not mechanism.converged:

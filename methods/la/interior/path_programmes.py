@@ -19,7 +19,6 @@ from methods.la.core.problem import Problem
 from methods.la.core.state import CollapseState, residuals
 from methods.la.interior.interior_point import PathResult, PathSettings, follow_path, start_point
 from methods.la.interior.interior_starting_point import kinematic_programme
-from methods.la.interior.tresca_iteration import SHARP
 from methods.numerics.failures import NumericalFailure
 
 
@@ -48,9 +47,6 @@ class Exactness:
     )
 
 
-EXACTNESS = Exactness()
-
-
 def cheapest_mechanism(
     problem: Problem, newton: NewtonMatrix, cost: FloatArray, generator: np.random.Generator, least: float = 1e-4
 ) -> PathResult:
@@ -61,31 +57,35 @@ def cheapest_mechanism(
     spread = least * generator.uniform(0.5, 1.5, cost.shape)
     size = float(np.median(cost[cost > 0.0])) if np.any(cost > 0.0) else 1.0
     programme = kinematic_programme(problem, cost / size + spread)
-    return follow_path(programme, newton, start_point(programme), SHARP)
+    return follow_path(programme, newton, start_point(programme), PathSettings.sharp())
 
 
-def least_multiplier(problem: Problem, newton: NewtonMatrix, moving: BoolArray) -> PathResult:
+def least_multiplier(problem: Problem, newton: NewtonMatrix, moving: BoolArray, settings: PathSettings) -> PathResult:
     """The forces of least multiplier with the slacks of the moving contacts (m, 4) at zero, as a path's end.
 
     The path belongs to the reversed live load: its multiplier has the opposite sign.
     """
     tight = close_tight(problem, moving)
     reversed_load = replace(problem, live=-problem.live)
-    return follow_path(reversed_load, newton, start_point(reversed_load, tight=tight), EXACTNESS.linear, tight)
+    return follow_path(reversed_load, newton, start_point(reversed_load, tight=tight), settings, tight)
 
 
 def state_of_mechanism(
-    problem: Problem, newton: NewtonMatrix, velocities: FloatArray, moving: BoolArray
+    problem: Problem,
+    newton: NewtonMatrix,
+    velocities: FloatArray,
+    moving: BoolArray,
+    exactness: Exactness = Exactness(),
 ) -> tuple[CollapseState | None, int]:
     """The best collapse state of a mechanism with contacts `moving` (m, 4), exact to rounding, and the steps spent.
 
     One at a negative multiplier is none: the wall would not bear its dead load alone.
     """
-    result = least_multiplier(problem, newton, moving)
+    result = least_multiplier(problem, newton, moving, exactness.linear)
     point = result.point
     best: CollapseState | None = None
     merit = float("inf")
-    for bias in EXACTNESS.biases:
+    for bias in exactness.biases:
         tight = close_tight(problem, moving) | (point.rates > bias * point.slack)
         try:
             forces, multiplier = exact_forces(
@@ -93,13 +93,13 @@ def state_of_mechanism(
             )
         except NumericalFailure:
             continue
-        if multiplier < -EXACTNESS.kept:
+        if multiplier < -exactness.kept:
             continue
         state = CollapseState(forces, multiplier, velocities, moving)
         size = max(residuals(problem, state).values())
         if size < merit:
             best, merit = state, size
-        if merit < EXACTNESS.enough:
+        if merit < exactness.enough:
             break
     return best, result.iterations
 
@@ -108,7 +108,7 @@ def exact_state(
     problem: Problem,
     newton: NewtonMatrix,
     path: PathResult,
-    shares: tuple[float, ...] = EXACTNESS.shares,
+    exactness: Exactness = Exactness(),
 ) -> tuple[CollapseState | None, int]:
     """The first exact collapse state of a mechanism whose rates count as motion above a threshold, and the steps spent.
 
@@ -117,23 +117,23 @@ def exact_state(
     of its slack above which a rate counts leaves the forces the most freedom, and so the least multiplier, but the
     mechanism the least exact: lower shares are tried while they raise the multiplier by little.
     """
-    steps, best, merit = 0, None, EXACTNESS.kept
+    steps, best, merit = 0, None, exactness.kept
     tried: set[int] = set()
-    for threshold in EXACTNESS.thresholds:
-        for share in shares:
+    for threshold in exactness.thresholds:
+        for share in exactness.shares:
             moving = path.point.rates > np.maximum(threshold, share * path.point.slack)
             if int(moving.sum()) in tried:
                 continue
             tried.add(int(moving.sum()))
-            state, spent = state_of_mechanism(problem, newton, path.point.velocities, moving)
+            state, spent = state_of_mechanism(problem, newton, path.point.velocities, moving, exactness)
             steps += spent
-            if state is None or residuals(problem, state)["equilibrium"] > EXACTNESS.kept:
+            if state is None or residuals(problem, state)["equilibrium"] > exactness.kept:
                 break
             for candidate in (state, _at_rest_elsewhere(problem, newton, state)):
                 size = max(residuals(problem, candidate).values())
-                if size < merit and (best is None or candidate.multiplier < best.multiplier * (1.0 + EXACTNESS.worth)):
+                if size < merit and (best is None or candidate.multiplier < best.multiplier * (1.0 + exactness.worth)):
                     best, merit = candidate, size
-            if merit < EXACTNESS.enough:
+            if merit < exactness.enough:
                 return best, steps
         if best is not None:
             break

@@ -30,9 +30,6 @@ class Part:
     bed: float = 0.5
 
 
-PART = Part()
-
-
 @dataclass(frozen=True, eq=False)
 class Region:
     """The part as a problem of its own, with its Newton matrix and the interfaces (m,) of the whole it keeps."""
@@ -42,7 +39,7 @@ class Region:
     kept: BoolArray
 
 
-def moving_region(problem: Problem, velocities: FloatArray) -> Region:
+def moving_region(problem: Problem, velocities: FloatArray, options: Part = Part()) -> Region:
     """The blocks that a mechanism with velocities (3n,) moves, and all that rest on them.
 
     A fixed block that rests on a moving one would lock it, for without dilatancy it cannot be lifted.
@@ -50,7 +47,7 @@ def moving_region(problem: Problem, velocities: FloatArray) -> Region:
     assembly = problem.assembly
     motion = problem.to_mechanism(velocities) * np.array([1.0, 1.0, problem.unit_length])
     speed = abs(motion).max(axis=1)
-    fixed = ~with_all_above(assembly, speed > PART.moves * speed.max())
+    fixed = ~with_all_above(assembly, speed > options.moves * speed.max(), options.bed)
     kept = ~(fixed[assembly.block_a] & fixed[assembly.block_b])
     part = replace(
         assembly.with_joints(kept),
@@ -62,12 +59,12 @@ def moving_region(problem: Problem, velocities: FloatArray) -> Region:
     return Region(scaled, NewtonMatrix(scaled), kept)
 
 
-def with_all_above(assembly: Assembly, moves: BoolArray) -> BoolArray:
-    """The moving blocks (n,) and those that rest on them, directly or not."""
+def with_all_above(assembly: Assembly, moves: BoolArray, bed: float) -> BoolArray:
+    """The moving blocks (n,) and those that rest on them, directly or not, on joints that are beds as `Part` says."""
     down = assembly.dead[:, :2].sum(axis=0)
     rests = assembly.normal @ down / (np.linalg.norm(down) or 1.0)
-    lower = np.concatenate([assembly.block_a[rests < -PART.bed], assembly.block_b[rests > PART.bed]])
-    upper = np.concatenate([assembly.block_b[rests < -PART.bed], assembly.block_a[rests > PART.bed]])
+    lower = np.concatenate([assembly.block_a[rests < -bed], assembly.block_b[rests > bed]])
+    upper = np.concatenate([assembly.block_b[rests < -bed], assembly.block_a[rests > bed]])
     moves, count = moves & ~assembly.fixed, -1
     while moves.sum() != count:
         count = moves.sum()

@@ -47,11 +47,6 @@ class TrescaIteration:
     clipped: float = 5.0
 
 
-TRESCA_ITERATION = TrescaIteration()
-SHARP = PathSettings(dilatancy=1.0, gap=1e-17, residual=1e-3, max_iterations=150, patience=5)
-"""Rates of contacts that do not move must vanish against forces of any size, hence the small gap."""
-
-
 def with_bounds(problem: Problem, bound: FloatArray) -> Problem:
     """The problem with fixed bounds (m,) on shear instead of friction and cohesion."""
     none = np.zeros(len(bound))
@@ -59,7 +54,9 @@ def with_bounds(problem: Problem, bound: FloatArray) -> Problem:
     return replace(problem, law=JointLaw(none, none, constant))
 
 
-def tresca_mechanism(problem: Problem, newton: NewtonMatrix, steps: int, follow: float) -> tuple[PathResult, int]:
+def tresca_mechanism(
+    problem: Problem, newton: NewtonMatrix, steps: int, follow: float, options: TrescaIteration = TrescaIteration()
+) -> tuple[PathResult, int]:
     """The exact mechanism of the programme with the bounds reached, and the Newton steps in all.
 
     Args:
@@ -67,16 +64,17 @@ def tresca_mechanism(problem: Problem, newton: NewtonMatrix, steps: int, follow:
         newton: its Newton matrix.
         steps: Newton steps with lagged bounds at most.
         follow: part of the way to mu N that a bound moves in a step.
+        options: how the bounds lag behind.
 
     Raises:
         SingularMatrix: a Newton matrix is singular to rounding.
     """
-    settings = PathSettings(dilatancy=1.0, gap=TRESCA_ITERATION.start_gap, residual=1e-3)
+    settings = PathSettings(dilatancy=1.0, gap=options.start_gap, residual=1e-3)
     start = follow_path(problem, newton, start_point(problem), settings)
-    point, bound = start.point, _strength(problem, start.point)
+    point, bound = start.point, _strength(problem, start.point, options.least_bound)
     tight = close_tight(problem)
     mean = float((point.slack * point.rates).mean())
-    least = TRESCA_ITERATION.end_gap * problem.live_work / point.slack.size
+    least = options.end_gap * problem.live_work / point.slack.size
     taken = 0
     for _ in range(steps):
         held = with_bounds(problem, bound)
@@ -85,25 +83,25 @@ def tresca_mechanism(problem: Problem, newton: NewtonMatrix, steps: int, follow:
         except (NumericalFailure, FloatingPointError):
             break
         taken += 1
-        wanted = bound + follow * (_strength(problem, point) - bound)
-        point, length = _step(step, point, wanted - bound, mean)
+        wanted = bound + follow * (_strength(problem, point, options.least_bound) - bound)
+        point, length = _step(step, point, wanted - bound, mean, options)
         bound = 0.5 * point.slack[:, 2:].sum(axis=1)
-        if length < TRESCA_ITERATION.shortest:
+        if length < options.shortest:
             break
-        if length > TRESCA_ITERATION.free:
-            mean = max(TRESCA_ITERATION.fall * mean, least)
+        if length > options.free:
+            mean = max(options.fall * mean, least)
     held = with_bounds(problem, bound)
-    sharp = follow_path(held, newton, start_point(held), SHARP)
+    sharp = follow_path(held, newton, start_point(held), PathSettings.sharp())
     return sharp, start.iterations + taken + sharp.iterations
 
 
-def _strength(problem: Problem, point: Point) -> FloatArray:
-    return np.asarray(
-        np.maximum(problem.law.strength(problem.forces_of_slacks(point.slack)), TRESCA_ITERATION.least_bound)
-    )
+def _strength(problem: Problem, point: Point, least: float) -> FloatArray:
+    return np.asarray(np.maximum(problem.law.strength(problem.forces_of_slacks(point.slack)), least))
 
 
-def _step(step: NewtonStep, point: Point, shift: FloatArray, mean: float) -> tuple[Point, float]:
+def _step(
+    step: NewtonStep, point: Point, shift: FloatArray, mean: float, options: TrescaIteration
+) -> tuple[Point, float]:
     """A predictor and corrector to y o g = mean while both shear slacks grow by `shift` (m,); and its length."""
     grown = np.zeros(point.slack.shape)
     grown[:, 2:] = shift[:, None]
@@ -112,8 +110,8 @@ def _step(step: NewtonStep, point: Point, shift: FloatArray, mean: float) -> tup
     lengths = step_lengths(point, replace(predictor, slack=predictor.slack + grown), step.tight, 1.0, 1.0)
     with np.errstate(over="ignore"):  # A product without bound is clipped below like any large one.
         second = (predictor.slack + grown) * predictor.rates * min(lengths)
-    target = target - np.clip(second, -TRESCA_ITERATION.clipped * mean, TRESCA_ITERATION.clipped * mean)
+    target = target - np.clip(second, -options.clipped * mean, options.clipped * mean)
     corrector = step.refined(step.direction(target), target)
     corrector = replace(corrector, slack=corrector.slack + grown)
-    primal, dual = step_lengths(point, corrector, step.tight, TRESCA_ITERATION.to_boundary, 1.0)
+    primal, dual = step_lengths(point, corrector, step.tight, options.to_boundary, 1.0)
     return step.advance(corrector, primal, dual), min(primal, dual)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from contextlib import suppress
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import ClassVar
 
 import numpy as np
@@ -13,7 +13,7 @@ from methods.la.core.problem import Problem
 from methods.la.core.state import CollapseState
 from methods.la.interior.arc import ArcPath
 from methods.la.interior.interior_starting_point import interior_starting_point
-from methods.la.interior.path_programmes import EXACTNESS, cheapest_mechanism, exact_state
+from methods.la.interior.path_programmes import cheapest_mechanism, exact_state
 from methods.la.interior.region import Region, in_whole, moving_region
 from methods.la.sources.reduced_friction import with_reduced_friction
 from methods.la.sources.search import Search
@@ -99,6 +99,8 @@ def _end_of(arc_start: ArcStart, search: Search, region: Region) -> CollapseStat
     search.budget.stepped(steps, blocks)
     if start is None:
         return None
+    exactness = search.choices.exactness
+    quick = replace(exactness, shares=exactness.shares[:1])
     arc = ArcPath(guide, region.newton, start, arc_start.spread)
     for gap in arc_start.gaps:
         path = arc.follow(gap, arc_start.most_steps)
@@ -106,11 +108,11 @@ def _end_of(arc_start: ArcStart, search: Search, region: Region) -> CollapseStat
         if not path.converged:
             return None
         mechanism = cheapest_mechanism(guide, region.newton, path.point.slack, np.random.default_rng(search.seed))
-        state, steps = exact_state(part, region.newton, mechanism, EXACTNESS.shares[:1])
+        state, steps = exact_state(part, region.newton, mechanism, quick)
         search.budget.stepped(mechanism.iterations + steps, blocks)
         if state is None:
             continue
-        state, steps = exact_state(problem, search.newton, in_whole(problem, region, mechanism))
+        state, steps = exact_state(problem, search.newton, in_whole(problem, region, mechanism), exactness)
         search.stepped(steps)
         if state is not None:
             return state

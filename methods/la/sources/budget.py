@@ -90,10 +90,7 @@ class Sizes:
         return Limits(0, 40, descents=0, breakpoints=60_000, unbounded_breakpoints=1)
 
 
-SIZES = Sizes()
-
-
-def rounds_of(settings: SearchSettings, problem: Problem) -> tuple[Limits, ...]:
+def rounds_of(settings: SearchSettings, problem: Problem, sizes: Sizes = Sizes()) -> tuple[Limits, ...]:
     """The limits that the settings ask for, of one round of the search after the other.
 
     What they leave open depends on the size of the wall. Whoever asks for draws, starts or a ladder has them descended
@@ -102,7 +99,7 @@ def rounds_of(settings: SearchSettings, problem: Problem) -> tuple[Limits, ...]:
     asked = {name: value for name in ("starts", "failures", "ladder") if (value := getattr(settings, name)) is not None}
     rounds = []
     for effort in ("normal", "deep") if settings.effort == "deep" else (settings.effort,):
-        limits = SIZES.limits(effort, problem)
+        limits = sizes.limits(effort, problem)
         rounds.append(replace(limits, descents=max(limits.descents, 1), **asked) if asked else limits)
     return tuple(rounds)
 

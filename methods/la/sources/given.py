@@ -11,7 +11,7 @@ import numpy as np
 from harness.model.assembly import FloatArray
 from methods.la.core.problem import Problem
 from methods.la.core.state import CollapseState, moving_contacts
-from methods.la.sources.search import CHOICES, Search
+from methods.la.sources.search import Search
 
 
 @dataclass(frozen=True, eq=False)
@@ -20,9 +20,11 @@ class GivenMechanisms:
 
     Attributes:
         motions: (m, 3) openings at both ends and slip of the joints of each, at any scale.
+        most: interfaces up to which mechanisms are vertices, which tell whether the joints can move so here.
     """
 
     motions: tuple[FloatArray, ...]
+    most: int = 1000
     name: ClassVar[str] = "mechanisms of neighbouring walls"
 
     @property
@@ -31,8 +33,8 @@ class GivenMechanisms:
         return any(motion.any() for motion in self.motions)
 
     def applies(self, problem: Problem) -> bool:
-        """Where mechanisms are vertices, which tell whether the joints can move so here."""
-        return problem.n_interfaces <= CHOICES.vertices_up_to
+        """Where mechanisms are vertices."""
+        return problem.n_interfaces <= self.most
 
     def states(self, search: Search) -> Iterator[CollapseState]:
         """One state a mechanism whose joints can move alike in this wall and that forces fit."""

@@ -11,10 +11,25 @@ from methods.springs.model.factor import Factor, make_factor
 from methods.springs.model.settings import GapSettings
 from methods.springs.model.wall_model import WallModel, build_model
 from methods.springs.rest.equilibrium import gravity_state
-from methods.springs.rest.newton import NEWTON, Equilibrium
+from methods.springs.rest.newton import Equilibrium
 
-SPRINGS = GapSettings()
-"""Those of `fe`, whose falls under the dead load are named beside the answer."""
+
+@dataclass(frozen=True)
+class Springs:
+    """How paths of springs are followed.
+
+    Attributes:
+        certificate: residual of a mechanism at which a path ends.
+        most_breakpoints: changes of state per gap point after which one is given up.
+        ratios: kt / kn of further paths from the same kind of forces, in turn; the first is that of `fe`, whose falls
+            under the dead load are named beside the answer.
+        right: sine of the angle by which right-angled joints may be off.
+    """
+
+    certificate: float = 1e-12
+    most_breakpoints: int = 5
+    ratios: tuple[float, ...] = (GapSettings().stiffness_ratio, 5.0, 50.0)
+    right: float = 1e-6
 
 
 @dataclass(frozen=True)
@@ -30,7 +45,7 @@ class Gravity:
     def falling(self) -> list[str]:
         """Names of the blocks that fall; none where there is equilibrium, or the search for it did not end."""
         motion = self.model.block_displacements(self.equilibrium.rate)
-        return [] if self.equilibrium.found else self.model.moving_blocks(motion, NEWTON.falling)
+        return [] if self.equilibrium.found else self.model.moving_blocks(motion, self.model.options.newton.falling)
 
     @cached_property
     def forces(self) -> FloatArray | None:
@@ -41,7 +56,7 @@ class Gravity:
         return model.end_forces(*model.forces(found.u, found.history, found.state)) / self.problem.unit_force
 
 
-def gravity_of(problem: Problem, ratio: float = SPRINGS.stiffness_ratio) -> Gravity:
+def gravity_of(problem: Problem, ratio: float) -> Gravity:
     """The springs under the dead load of a wall that stands by statics, with kt/kn = ratio."""
     model = build_model(problem.assembly, GapSettings(stiffness_ratio=ratio))
     factor = make_factor(model)

@@ -131,7 +131,7 @@ class TrescaMechanisms:
                 path, spent = tresca_mechanism(search.problem, search.newton, steps, follow)
             except SingularMatrix:
                 continue
-            state, more = exact_state(search.problem, search.newton, path)
+            state, more = exact_state(search.problem, search.newton, path, search.choices.exactness)
             search.stepped(spent + more)
             if state is not None:
                 yield state

@@ -19,13 +19,13 @@ from methods.la.core.newton_matrix import NewtonMatrix
 from methods.la.core.problem import Problem
 from methods.la.core.programmes import KinematicProgramme, StaticProgramme
 from methods.la.core.state import CollapseState, moving_contacts, residuals, tight_contacts
-from methods.la.interior.associated import AssociatedResult, solve_associated
+from methods.la.interior.associated import AssociatedResult, EndOfPath, solve_associated
 from methods.la.interior.interior_point import PathResult, PathSettings, follow_path, start_point
 from methods.la.interior.newton_step import Point
-from methods.la.interior.path_programmes import EXACTNESS, cheapest_mechanism, exact_state, state_of_mechanism
+from methods.la.interior.path_programmes import Exactness, cheapest_mechanism, exact_state, state_of_mechanism
 from methods.la.interior.phase_one import phase_one_forces
 from methods.la.sources.budget import Budget, Limits
-from methods.la.sources.gravity import Gravity, gravity_of
+from methods.la.sources.gravity import Gravity, Springs, gravity_of
 from methods.la.sources.record import LEAST_IMPROVEMENT, Record
 
 
@@ -43,6 +43,7 @@ class Choices:
         widest_gap: relative gap at the end of a path above which its slacks tell no mechanism.
         central: accuracy of the central path: its end only tells the mechanism.
         nearly_zero, small: scaled slacks that count as zero when a mechanism is sought near them, first and then.
+        exactness: of states that are read from paths; associated: how that programme ends; springs: paths of springs.
     """
 
     vertices_up_to: int = 1000
@@ -53,9 +54,9 @@ class Choices:
     central: PathSettings = field(default_factory=lambda: PathSettings(gap=1e-7, residual=1e-6))
     nearly_zero: float = 1e-6
     small: float = 1e-3
-
-
-CHOICES = Choices()
+    exactness: Exactness = Exactness()
+    associated: EndOfPath = EndOfPath()
+    springs: Springs = Springs()
 
 
 class Search:
@@ -68,7 +69,8 @@ class Search:
         problem: the scaled wall; newton: its Newton matrix.
         seed: of all draws.
         budget: what may be spent.
-        parent: a search of the same wall at another friction, whose draws and budget this one shares.
+        parent: a search of the same wall at another friction, whose draws, budget and choices this one shares.
+        choices: how it solves its programmes.
     """
 
     def __init__(
@@ -78,12 +80,14 @@ class Search:
         seed: int = 0,
         budget: Budget | None = None,
         parent: Search | None = None,
+        choices: Choices = Choices(),
     ) -> None:
         self.problem, self.newton = problem, newton
         self.seed: int = seed if parent is None else parent.seed
         self.parent = parent
         self.generator: np.random.Generator = np.random.default_rng(seed) if parent is None else parent.generator
         self.budget: Budget = (budget or Budget()) if parent is None else parent.budget
+        self.choices: Choices = choices if parent is None else parent.choices
         self.record = Record()
         self.known: dict[bytes, CollapseState | None] = {}
         self.ends: list[float] = []
@@ -111,7 +115,7 @@ class Search:
     @cached_property
     def gravity(self) -> Gravity:
         """What the dead load does to the wall with springs in its joints and no self-stress in them."""
-        return gravity_of(self.problem)
+        return gravity_of(self.problem, self.choices.springs.ratios[0])
 
     @cached_property
     def central_forces(self) -> FloatArray | None:
@@ -123,7 +127,7 @@ class Search:
 
         It is taken to have one where it is too large for a vertex.
         """
-        if self.problem.n_interfaces > CHOICES.vertices_up_to:
+        if self.problem.n_interfaces > self.choices.vertices_up_to:
             return True
         shape = (self.problem.n_interfaces, 4)
         return self.kinematic.solve(np.ones(shape, dtype=bool), np.ones(shape)) is not None
@@ -159,10 +163,10 @@ class Search:
         return self.known[key]
 
     def _solved(self, velocities: FloatArray, moving: BoolArray) -> CollapseState | None:
-        if self.problem.n_interfaces > CHOICES.vertices_up_to:
-            state, steps = state_of_mechanism(self.problem, self.newton, velocities, moving)
+        if self.problem.n_interfaces > self.choices.vertices_up_to:
+            state, steps = state_of_mechanism(self.problem, self.newton, velocities, moving, self.choices.exactness)
             self.stepped(steps)
-            exact = state is not None and max(residuals(self.problem, state).values()) <= EXACTNESS.kept
+            exact = state is not None and max(residuals(self.problem, state).values()) <= self.choices.exactness.kept
             return state if exact else None
         self.budget.spent.programmes += 1
         solution = self.static.solve(moving)
@@ -172,7 +176,7 @@ class Search:
 
     def solve_associated(self) -> AssociatedResult:
         """The greatest multiplier of statics alone, which is kept: no collapse state is above it."""
-        self.associated = solve_associated(self.problem, self.newton)
+        self.associated = solve_associated(self.problem, self.newton, end=self.choices.associated)
         return self.associated
 
     def note(self, state: CollapseState) -> None:
@@ -187,7 +191,7 @@ class Search:
             rates: (m, 4) of the path that has these slacks, if they belong to one.
         """
         slack = np.maximum(slack, 0.0)
-        if self.problem.n_interfaces > CHOICES.vertices_up_to:
+        if self.problem.n_interfaces > self.choices.vertices_up_to:
             return self._nearest_by_path(slack)
         for allowed in self._allowed(slack, rates):
             self.budget.spent.programmes += 1
@@ -201,7 +205,7 @@ class Search:
     def _nearest_by_path(self, slack: FloatArray) -> CollapseState | None:
         mechanism = cheapest_mechanism(self.problem, self.newton, slack, np.random.default_rng(self.seed))
         self.stepped(mechanism.iterations)
-        state, steps = exact_state(self.problem, self.newton, mechanism)
+        state, steps = exact_state(self.problem, self.newton, mechanism, self.choices.exactness)
         self.stepped(steps)
         if state is not None:
             self.known[_key(state.moving)] = state
@@ -215,8 +219,8 @@ class Search:
     def _allowed(self, slack: FloatArray, rates: FloatArray | None) -> list[BoolArray]:
         everywhere = np.ones(slack.shape, dtype=bool)
         if rates is None:
-            return [slack <= CHOICES.nearly_zero, everywhere]
-        return [rates >= slack, slack <= CHOICES.small, everywhere]
+            return [slack <= self.choices.nearly_zero, everywhere]
+        return [rates >= slack, slack <= self.choices.small, everywhere]
 
     def follow(self, start: Point, settings: PathSettings) -> PathResult:
         """Interior point from a start; counts its steps."""
@@ -226,8 +230,8 @@ class Search:
 
     def path_end(self, spread: float = 0.0) -> PathResult | None:
         """Where the interior point leads from the centred or a random start; None if far from complementarity."""
-        result = self.follow(start_point(self.problem, spread, self.generator), CHOICES.central)
-        return None if result.gap > CHOICES.widest_gap else result
+        result = self.follow(start_point(self.problem, spread, self.generator), self.choices.central)
+        return None if result.gap > self.choices.widest_gap else result
 
     def interior(self, spread: float = 0.0) -> CollapseState | None:
         """The exact state nearest to where the interior point leads, from the centred or a random start."""
@@ -242,7 +246,7 @@ class Search:
         assembly = self.problem.assembly
         speed = np.abs(state.velocities.reshape(-1, 3)).max(axis=1)
         moves = np.zeros(assembly.n_blocks, dtype=bool)
-        moves[assembly.free] = speed > CHOICES.still * speed.max(initial=0.0)
+        moves[assembly.free] = speed > self.choices.still * speed.max(initial=0.0)
         edge = moves[assembly.block_a] != moves[assembly.block_b]
         slack = np.maximum(self.problem.slacks(state.forces), 0.0)
         self.budget.spent.programmes += 1
@@ -263,7 +267,7 @@ class Search:
 
     def descend(self, state: CollapseState) -> CollapseState:
         """Ray descent from a state."""
-        large = self.problem.n_interfaces > CHOICES.once_above
+        large = self.problem.n_interfaces > self.choices.once_above
         if large and any(abs(state.multiplier - end) <= LEAST_IMPROVEMENT for end in self.ends):
             return state
         failures, limits = 0, self.budget.limits

@@ -27,7 +27,7 @@ from harness.model.assembly import FloatArray
 from methods.la.core.problem import Problem
 from methods.la.core.state import CollapseState, friction_work, moving_contacts
 from methods.la.interior.interior_point import PathSettings, follow_path, start_point
-from methods.la.sources.gravity import SPRINGS, Gravity, gravity_of
+from methods.la.sources.gravity import Gravity, gravity_of
 from methods.la.sources.record import LEAST_IMPROVEMENT
 from methods.la.sources.reduced_friction import with_reduced_friction
 from methods.la.sources.search import Search
@@ -35,32 +35,11 @@ from methods.springs.model.factor import SingularTangent, make_factor
 from methods.springs.model.settings import GapSettings
 from methods.springs.model.wall_model import build_model
 from methods.springs.path.continuation import PathFollower
-from methods.springs.path.jump import JUMP
 from methods.springs.path.load_path import follow
 from methods.springs.path.path_record import PathEnd, PathRecord
 from methods.springs.path.plateau import finish
 from methods.springs.path.preload import preloaded
 from methods.springs.rest.equilibrium import doubled, first_step
-
-
-@dataclass(frozen=True)
-class Springs:
-    """How paths of springs are followed.
-
-    Attributes:
-        certificate: residual of a mechanism at which a path ends.
-        most_breakpoints: changes of state per gap point after which one is given up.
-        ratios: kt / kn of further paths from the same kind of forces, in turn; the first is that of `fe`.
-        right: sine of the angle by which right-angled joints may be off.
-    """
-
-    certificate: float = 1e-12
-    most_breakpoints: int = 5
-    ratios: tuple[float, ...] = (SPRINGS.stiffness_ratio, 5.0, 50.0)
-    right: float = 1e-6
-
-
-PATHS = Springs()
 
 
 @dataclass(frozen=True)
@@ -97,7 +76,7 @@ class CommittedHistories:
         """The path with kt/kn = ratio; None without equilibrium, or where no multiplier is known to measure commits."""
         least = _scale(search)
         gravity = gravity_of(search.problem, ratio)
-        return _from_gravity(gravity, least, self.share * least) if 0.0 < least < np.inf else None
+        return _from_gravity(search, gravity, least, self.share * least) if 0.0 < least < np.inf else None
 
 
 @dataclass(frozen=True)
@@ -145,7 +124,8 @@ class LowPrestress:
 
     def states(self, search: Search) -> Iterator[CollapseState]:
         """One state a path that ends, until the breakpoints are spent."""
-        right_angled, known = _right_angled(search.problem), search.record.least
+        right_angled = _right_angled(search.problem, search.choices.springs.right)
+        known = search.record.least
         for k, state in ends(search, self._starts(search)):
             yield state
             if k == 0 and right_angled and self._gravity_is_enough(search, known, state.multiplier):
@@ -161,7 +141,7 @@ class LowPrestress:
 
     def _starts(self, search: Search) -> Iterator[Start]:
         problem = search.problem
-        yield partial(_from_gravity, search.gravity, problem.unit_multiplier)
+        yield partial(_from_gravity, search, search.gravity, problem.unit_multiplier)
         if problem.n_interfaces > self.gravity_alone:
             return
         if problem.n_interfaces > self.vertices_up_to:
@@ -192,7 +172,8 @@ class LowPrestress:
             forces += own * own_forces
         if central is not None:
             forces += middle * central
-        return _from_forces(search.problem, forces, 0.0, PATHS.ratios[k % len(PATHS.ratios)])
+        ratios = search.choices.springs.ratios
+        return _from_forces(search, forces, 0.0, ratios[k % len(ratios)])
 
 
 @dataclass(frozen=True)
@@ -226,7 +207,7 @@ class ShiftedAssociated:
         if not safe.converged:
             return None
         forces = guide.forces_of_slacks(safe.point.slack)
-        return _from_forces(search.problem, forces, safe.point.multiplier, PATHS.ratios[0])
+        return _from_forces(search, forces, safe.point.multiplier, search.choices.springs.ratios[0])
 
 
 @dataclass(frozen=True)
@@ -253,7 +234,7 @@ class AnalyticCentre:
             yield from (state for _, state in ends(search, self._starts(search)))
 
     def _starts(self, search: Search) -> Iterator[Start]:
-        first, *others = PATHS.ratios
+        first, *others = search.choices.springs.ratios
         yield partial(_from_central_forces, search, first)
         if search.problem.n_interfaces > self.gravity_above:
             yield from self.committed.starts(search)
@@ -276,18 +257,19 @@ def ends(search: Search, starts: Iterator[Start]) -> Iterator[tuple[int, Collaps
             yield k, search.lowered(state)
 
 
-def _right_angled(problem: Problem) -> bool:
-    """Whether all joints are parallel or at right angles to each other."""
+def _right_angled(problem: Problem, sine: float) -> bool:
+    """Whether all joints are parallel or at right angles to each other, but for an angle of this sine."""
     assembly = problem.assembly
     first = assembly.tangent[0]
     off = np.minimum(abs(assembly.tangent @ first), abs(assembly.normal @ first))
-    return bool(off.max() < PATHS.right)
+    return bool(off.max() < sine)
 
 
-def _from_gravity(gravity: Gravity, scale: float, interval: float = np.inf) -> PathStart | None:
+def _from_gravity(search: Search, gravity: Gravity, scale: float, interval: float = np.inf) -> PathStart | None:
     """The path from the forces that gravity causes in a wall without self-stress; None if there are none.
 
     Args:
+        search: whose path it is.
         gravity: what the dead load does; scale: a multiplier of the order of collapse.
         interval: multiplier between two commits of the history.
     """
@@ -300,8 +282,8 @@ def _from_gravity(gravity: Gravity, scale: float, interval: float = np.inf) -> P
     if interval == np.inf:
         for further in doubled(model, factor, first):
             first = further
-    follower = PathFollower.from_rest(model, factor, first, PATHS.certificate)
-    return PathStart(follower, JUMP.most, interval)
+    follower = PathFollower.from_rest(model, factor, first, search.choices.springs.certificate)
+    return PathStart(follower, model.options.jump.most, interval)
 
 
 def _scale(search: Search) -> float:
@@ -314,21 +296,25 @@ def _from_central_forces(search: Search, ratio: float, share: float = np.inf) ->
     forces = search.central_forces
     if forces is None:
         return None
-    path_start = _from_forces(search.problem, forces, 0.0, ratio)
-    return path_start if share == np.inf else replace(path_start, jumps=JUMP.most, interval=share * _scale(search))
+    path_start = _from_forces(search, forces, 0.0, ratio)
+    if share == np.inf:
+        return path_start
+    jumps = path_start.follower.options.jump.most
+    return replace(path_start, jumps=jumps, interval=share * _scale(search))
 
 
-def _from_forces(problem: Problem, forces: FloatArray, multiplier: float, ratio: float) -> PathStart:
+def _from_forces(search: Search, forces: FloatArray, multiplier: float, ratio: float) -> PathStart:
     """The path from scaled forces (m, 3) in equilibrium with a scaled multiplier. Raises SingularTangent."""
+    problem = search.problem
     model = build_model(problem.assembly, GapSettings(stiffness_ratio=ratio))
     start = multiplier * problem.unit_multiplier, problem.to_forces(forces)
-    return PathStart(preloaded(model, make_factor(model), *start, PATHS.certificate))
+    return PathStart(preloaded(model, make_factor(model), *start, search.choices.springs.certificate))
 
 
 def _collapse_state(search: Search, path_start: PathStart) -> CollapseState | None:
     """The collapse state at the end of a path; None also below a multiplier of zero."""
     problem, record, model = search.problem, PathRecord(), path_start.follower.model
-    most = PATHS.most_breakpoints * model.n_points
+    most = search.choices.springs.most_breakpoints * model.n_points
     try:
         way = follow(path_start.follower, record, most, path_start.interval, jumps=path_start.jumps)
     finally:

@@ -8,12 +8,12 @@ from typing import Any
 import numpy as np
 
 from harness.model.assembly import FloatArray
+from methods.proof.same_wall import SAME_NUMBER
 from methods.proof.search.equations import Equations
 from methods.proof.search.rate_bounds import RateProof
 from methods.proof.search.relaxation import Relaxation
 from methods.proof.search.slack_bounds import SlackBounds, SlackProgramme
 from methods.proof.search.subproblem import AtContact, Division
-from methods.proof.search.tuning import PRECISION, ROUNDING
 from methods.proof.search.window_document import Scales, WindowDocument, below, whole_values
 from methods.proof.search.window_search import WindowProof
 from methods.proof.verify.cases import States, states_of
@@ -168,15 +168,15 @@ class CaseCertifier:
 
     def slacks(self, bounds: SlackBounds) -> None:
         """Note what is new of slacks that stay above zero and of least normal forces."""
-        length = self._scales.length
-        for contact in np.flatnonzero(bounds.least > ROUNDING.margin).tolist():
+        length, margin = self._scales.length, self._programme.margin
+        for contact in np.flatnonzero(bounds.least > margin).tolist():
             if contact not in self._states.known.still:
                 velocities = self._scales.velocities(bounds.still_velocities[contact] / length[contact // 4])
                 self._learn({"shows": "still", "contact": contact, "velocities": velocities})
-        for p in np.flatnonzero(bounds.normal_least > ROUNDING.margin).tolist():
+        for p in np.flatnonzero(bounds.normal_least > margin).tolist():
             least = below(float(bounds.normal_least[p] / length[p]))
             known = self._states.known.least.get(p)
-            if known is None or abs(least - known) > ROUNDING.wall * least:
+            if known is None or abs(least - known) > SAME_NUMBER * least:
                 velocities = self._scales.velocities(bounds.least_velocities[p] / length[p])
                 self._learn({"shows": "loaded", "interface": p, "least": str(least), "velocities": velocities})
 
@@ -188,7 +188,7 @@ class CaseCertifier:
 
     def rates(self, proofs: list[RateProof]) -> float:
         """The bound after virtual forces that show something of the mechanisms."""
-        scales, exponent = self._scales, PRECISION.forces
+        scales, exponent = self._scales, self._scales.precision.forces
         for proof in proofs:
             unit = scales.length[proof.contact // 4] if proof.contact >= 0 else 1.0
             step: dict[str, Any] = {

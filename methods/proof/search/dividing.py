@@ -8,7 +8,6 @@ from harness.model.assembly import FloatArray
 from methods.proof.search.halpern import Splitting
 from methods.proof.search.relaxation import Relaxation
 from methods.proof.search.subproblem import AtContact, AtNormalForce, Division
-from methods.proof.search.tuning import ROUNDING, WINDOWS
 
 
 def division_of(run: Splitting, vain: Division | None = None) -> Division | None:
@@ -29,7 +28,7 @@ def division_of(run: Splitting, vain: Division | None = None) -> Division | None
     normal, by_normal = _at_normal_force(relaxation, products)
     if isinstance(vain, AtNormalForce) or contact is None:
         return contact
-    narrow = relaxation.high - relaxation.low < WINDOWS.narrow * relaxation.high
+    narrow = relaxation.high - relaxation.low < relaxation.options.windows.narrow * relaxation.high
     return normal if isinstance(vain, AtContact) or (by_normal > max(by_contact, 0.0) and not narrow) else contact
 
 
@@ -44,23 +43,28 @@ def _at_normal_force(relaxation: Relaxation, products: FloatArray) -> tuple[Divi
     rates = np.maximum(products[relaxation.unit_row, : relaxation.work_column], 0.0)
     normals = slacks[0::4] + slacks[1::4]
     least, greatest = relaxation.bounds.normal_least, relaxation.bounds.normal_greatest
-    width = np.maximum(greatest - least, ROUNDING.margin)
-    inside = WINDOWS.inside * width
-    middle = np.clip(_balanced(normals, rates, least, greatest), least + inside, greatest - inside)
+    options = relaxation.options
+    width = np.maximum(greatest - least, options.rounding.margin)
+    inside = options.windows.inside * width
+    middle = np.clip(
+        _balanced(normals, rates, least, greatest, options.rounding.halvings), least + inside, greatest - inside
+    )
     apart = normals - middle[:, None] * rates
     beyond = np.minimum(np.maximum(apart, 0.0).sum(axis=1), np.maximum(-apart, 0.0).sum(axis=1))
     p = int((beyond / np.sqrt(width)).argmax())
     return AtNormalForce(p, float(middle[p])), float(beyond[p] / width[p])
 
 
-def _balanced(normals: FloatArray, rates: FloatArray, least: FloatArray, greatest: FloatArray) -> FloatArray:
+def _balanced(
+    normals: FloatArray, rates: FloatArray, least: FloatArray, greatest: FloatArray, halvings: int
+) -> FloatArray:
     """(m,) normal forces between limits beyond which columns (m, f) lie as much to the one side as to the other.
 
     Args:
         normals: (m, f) normal forces times rates; rates: (f,); least, greatest: (m,) limits.
     """
     below, above = least.copy(), greatest.copy()
-    for _ in range(ROUNDING.halvings):
+    for _ in range(halvings):
         middle = 0.5 * (below + above)
         apart = normals - middle[:, None] * rates
         more = np.maximum(apart, 0.0).sum(axis=1) > np.maximum(-apart, 0.0).sum(axis=1)
@@ -70,13 +74,13 @@ def _balanced(normals: FloatArray, rates: FloatArray, least: FloatArray, greates
 
 def _at_contact(relaxation: Relaxation, products: FloatArray) -> tuple[Division | None, float]:
     """The contact whose slack and rate are both large, and what is cut off; None if all are decided."""
-    m, f = relaxation.equations.n_interfaces, len(relaxation.free)
+    m, f, margin = relaxation.equations.n_interfaces, len(relaxation.free), relaxation.options.rounding.margin
     greatest, rate = relaxation.bounds.greatest, np.zeros(4 * m)
-    slack = products[: 4 * m, :f].sum(axis=1) / np.maximum(greatest, ROUNDING.margin)
+    slack = products[: 4 * m, :f].sum(axis=1) / np.maximum(greatest, margin)
     slip = products[relaxation.unit_row, relaxation.lift_column + 1 :]
     rate[relaxation.free] = products[relaxation.unit_row, :f]
     rate[4 * relaxation.unloadable + 2], rate[4 * relaxation.unloadable + 3] = slip, -slip
-    decided = (relaxation.bounds.least > ROUNDING.margin) | (greatest <= ROUNDING.margin)
+    decided = (relaxation.bounds.least > margin) | (greatest <= margin)
     decided[list(relaxation.case.tight | relaxation.case.still)] = True
     part = np.where(decided, -np.inf, np.minimum(slack, rate))
     contact = int(part.argmax())

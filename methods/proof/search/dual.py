@@ -8,7 +8,6 @@ import numpy as np
 
 from harness.model.assembly import FloatArray
 from methods.proof.search.relaxation import Relaxation
-from methods.proof.search.tuning import ROUNDING
 
 
 @dataclass(frozen=True)
@@ -44,7 +43,7 @@ def dual_bound(relaxation: Relaxation, iterate: FloatArray, step: float, cost: F
     matrix = _repaired(relaxation, (relaxation.project(iterate) - iterate) / step)
     left = float(abs(relaxation.row_basis.T @ matrix @ relaxation.column_basis).max())
     reduced = cost - matrix
-    if left > ROUNDING.unused * max(1.0, float(abs(reduced).max())):
+    if left > relaxation.options.rounding.unused * max(1.0, float(abs(reduced).max())):
         return None
     f, columns = len(relaxation.free), relaxation.lift_column + 1
     value = float(reduced[relaxation.unit_row, relaxation.work_column] * relaxation.unit)
@@ -85,7 +84,7 @@ def _repaired(relaxation: Relaxation, matrix: FloatArray) -> FloatArray:
     What rates, work and lift cannot take is first taken by the products of signed slips with their own interface.
     """
     matrix = np.where(relaxation.unused, 0.0, matrix)
-    for _ in range(ROUNDING.repairs):
+    for _ in range(relaxation.options.rounding.repairs):
         if relaxation.alone.shape[1]:
             rest = relaxation.row_basis.T @ matrix @ relaxation.column_basis @ relaxation.alone
             matrix[relaxation.own] -= relaxation.own_inverse @ rest.ravel()

@@ -10,6 +10,7 @@ import scipy.sparse as sp
 
 from harness.model.assembly import FloatArray
 from harness.model.joint_law import JointLaw, block_diagonal
+from methods.proof.search.options import ProofOptions
 
 
 @dataclass(frozen=True, eq=False)
@@ -20,12 +21,14 @@ class Equations:
         kinematic: sparse (3m, 3n) matrix C; a strain is (opening 1, opening 2, slip).
         dead, live: (3n,) loads in mean block weights.
         friction: (m,) friction coefficients.
+        options: of the search for a bound of its multiplier.
     """
 
     kinematic: sp.csr_matrix
     dead: FloatArray
     live: FloatArray
     friction: FloatArray
+    options: ProofOptions = ProofOptions()
 
     @property
     def n_interfaces(self) -> int:

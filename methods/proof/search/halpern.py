@@ -18,7 +18,6 @@ import numpy.typing as npt
 from harness.model.assembly import FloatArray, IntArray
 from methods.proof.search.dual import DualBound, dual_bound
 from methods.proof.search.relaxation import Relaxation
-from methods.proof.search.tuning import RESTARTS
 
 Products = npt.NDArray[np.floating[Any]]
 """(a, c) products of a relaxation in the precision of a sweep."""
@@ -47,15 +46,15 @@ class Splitting:
 
     def run(self, until: float, stop: Callable[[DualBound | None, float], bool]) -> None:
         """Iterate to this CPU time, or until `stop(bound, primal cost)` says so at a check."""
-        iterates = self._iterates()
-        check = self.iterations + RESTARTS.checked_every
+        restarts, iterates = self.relaxation.options.restarts, self._iterates()
+        check = self.iterations + restarts.checked_every
         first, before = 0.0, np.inf
         while True:
             residual = iterates.advance(self.step)
             self.iterations += 1
             first = residual if iterates.count == 1 else first
             if self.iterations >= check:
-                check = self.iterations + max(RESTARTS.checked_every, int(RESTARTS.checked_later * self.iterations))
+                check = self.iterations + max(restarts.checked_every, int(restarts.checked_later * self.iterations))
                 self.iterate = iterates.iterate.astype(np.float64)
                 bound, primal = dual_bound(self.relaxation, self.iterate, self.step, self.cost), iterates.primal
                 if stop(bound, primal) or time.process_time() > until:
@@ -65,9 +64,9 @@ class Splitting:
                     iterates = self._iterates()
                 if bound is not None:
                     self._balance(iterates, bound, primal)
-            stale = residual <= RESTARTS.necessary * first and residual > before
-            long = iterates.count > RESTARTS.long * self.iterations + RESTARTS.patience
-            if iterates.count > 1 and (residual <= RESTARTS.sufficient * first or stale or long):
+            stale = residual <= restarts.necessary * first and residual > before
+            long = iterates.count > restarts.long * self.iterations + restarts.patience
+            if iterates.count > 1 and (residual <= restarts.sufficient * first or stale or long):
                 iterates.restart()
             before = residual
 
@@ -81,8 +80,9 @@ class Splitting:
         A larger step lets the dual change less from one iterate to the next, so less of it is left to be paid. Either
         ratio alone runs away where its terms answer late; their mean does not.
         """
+        restarts = self.relaxation.options.restarts
         size = abs(bound.value) if self.size is None else self.size
-        tiny = RESTARTS.tiny * (1.0 + abs(bound.value))
+        tiny = restarts.tiny * (1.0 + abs(bound.value))
         lost, apart = max(bound.value - bound.of(size), tiny), max(abs(primal - bound.value), tiny)
         point = self.relaxation.project(self.iterate)
         dual = (point - self.iterate) / self.step
@@ -90,9 +90,9 @@ class Splitting:
         self._checked = point, dual
         moved, turned = (float(np.linalg.norm(a - b)) for a, b in zip((point, dual), before, strict=True))
         ratio = (lost / apart * max(moved, tiny) / max(turned * self.step, tiny)) ** 0.25
-        ratio = min(max(ratio, 1.0 / RESTARTS.step_change), RESTARTS.step_change)
+        ratio = min(max(ratio, 1.0 / restarts.step_change), restarts.step_change)
         step = min(max(ratio * self.step, self.steps[0]), self.steps[1])
-        if abs(np.log(step / self.step)) > np.log(RESTARTS.step_kept):
+        if abs(np.log(step / self.step)) > np.log(restarts.step_kept):
             iterates.restart(step / self.step)
             self.step = step
 
@@ -115,7 +115,7 @@ class Iterates:
         self._anchor, self._projected, self._gap = (self.iterate.copy() for _ in range(3))
         self._half = np.empty((len(self._rows), self._columns.shape[1]), dtype=kind)
         self._inner = np.empty((self._rows.shape[1], self._columns.shape[1]), dtype=kind)
-        self._noise = float(np.finfo(kind).eps) * RESTARTS.rounding
+        self._noise = float(np.finfo(kind).eps) * relaxation.options.restarts.rounding
         self.count, self.primal = 0, 0.0
 
     def _project(self) -> None:

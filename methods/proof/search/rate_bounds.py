@@ -13,7 +13,6 @@ from methods.numerics.linear_programme import INFINITY, Programme
 from methods.proof.search.equations import Equations
 from methods.proof.search.slack_bounds import SlackBounds
 from methods.proof.search.subproblem import Subproblem
-from methods.proof.search.tuning import ROUNDING
 
 
 @dataclass(frozen=True, eq=False)
@@ -80,7 +79,8 @@ class RateProgramme:
             case: what is decided already.
         """
         m, n = self._m, self._n
-        still = bounds.least > ROUNDING.margin
+        rounding = self._equations.options.rounding
+        still = bounds.least > rounding.margin
         still[list(case.still)] = True
         upper = np.where(still, 0.0, INFINITY)
         self._programme.set_columns(n, np.zeros(4 * m), upper)
@@ -101,12 +101,12 @@ class RateProgramme:
             status, least, dual = self._least(cost)
             if status == "infeasible":
                 return None, [self._no_mechanism()]
-            if status == "optimal" and least > ROUNDING.margin:
+            if status == "optimal" and least > rounding.margin:
                 tight.add(int(contact))
                 proofs.append(self._proof("tight", dual, int(contact)))
                 continue
             status, greatest, dual = self._least(-cost)
-            if status == "optimal" and -greatest < ROUNDING.no_row:
+            if status == "optimal" and -greatest < rounding.no_row:
                 held.add(int(contact))
                 proofs.append(self._proof("slow", dual, int(contact)))
         return replace(case, tight=frozenset(tight), still=frozenset(held)), proofs

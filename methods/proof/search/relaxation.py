@@ -17,8 +17,7 @@ import scipy.linalg
 from harness.model.assembly import FloatArray, IntArray
 from methods.proof.search.equations import Equations
 from methods.proof.search.slack_bounds import SlackBounds
-from methods.proof.search.subproblem import ROOT, Subproblem
-from methods.proof.search.tuning import ROUNDING
+from methods.proof.search.subproblem import Subproblem
 
 
 class Relaxation:
@@ -34,6 +33,7 @@ class Relaxation:
         lower, upper: (a, c) bounds of the scaled products; -inf and inf where a product is not used.
         row_scale, column_scale: (a,), (c,) factors that make rows of A and B unit vectors.
         n_rows: rows that are not local.
+        options: of the search.
         free: (f,) contacts; unloadable: (q,) interfaces that slip either way; normal: (m,) least normal forces.
         weights: (m + 1,) of the rates of each interface, and of the lift, in the size of a mechanism.
     """
@@ -44,15 +44,17 @@ class Relaxation:
         low: float,
         high: float,
         bounds: SlackBounds,
-        case: Subproblem = ROOT,
+        case: Subproblem = Subproblem(),
         weights: FloatArray | None = None,
     ) -> None:
+        self.options = equations.options
         self.equations, self.low, self.high, self.bounds, self.case = equations, low, high, bounds, case
         m = equations.n_interfaces
         self.weights = np.ones(m + 1) if weights is None else weights
-        positive = bounds.least > ROUNDING.margin
+        margin = self.options.rounding.margin
+        positive = bounds.least > margin
         self.normal = bounds.normal_least
-        loaded = (self.normal > ROUNDING.margin) | positive.reshape(-1, 4)[:, 2:].any(axis=1)
+        loaded = (self.normal > margin) | positive.reshape(-1, 4)[:, 2:].any(axis=1)
         self.loaded: IntArray = np.flatnonzero(loaded)
         held = np.zeros(4 * m, dtype=bool)
         held[list(case.still)] = True
@@ -64,7 +66,7 @@ class Relaxation:
         self.unit_row, self.multiplier_row, self.n_rows = 4 * m, 4 * m + 1, 4 * m + 3 + len(self.limits)
         self.work_column, self.lift_column = len(self.free), len(self.free) + 1
         self.rows, self.columns = self._static_rows(), self._kinematic_columns()
-        self.row_scale, self.column_scale = _scales(self.rows), _scales(self.columns)
+        self.row_scale, self.column_scale = (_scales(part, self._no_row) for part in (self.rows, self.columns))
         self.row_basis, self.row_factor = np.linalg.qr(self.rows * self.row_scale[:, None])
         self.column_basis, self.column_factor = np.linalg.qr(self.columns * self.column_scale[:, None])
         self.unit = float(self.row_scale[self.unit_row] * self.column_scale[self.work_column])
@@ -119,6 +121,10 @@ class Relaxation:
         lower[self.unit_row, self.work_column] = upper[self.unit_row, self.work_column] = self.unit
         return lower, upper
 
+    @property
+    def _no_row(self) -> float:
+        return self.options.rounding.no_row
+
     @cached_property
     def row_inverse(self) -> FloatArray:
         """Pseudo-inverse of the part of the basis of A that multiplies rates, work and lift."""
@@ -127,12 +133,12 @@ class Relaxation:
     @cached_property
     def column_inverse(self) -> FloatArray:
         """Pseudo-inverse of the part of the basis of B of rates, work and lift."""
-        return np.linalg.pinv(self.column_basis[: self.lift_column + 1], rcond=ROUNDING.no_row)
+        return np.linalg.pinv(self.column_basis[: self.lift_column + 1], rcond=self._no_row)
 
     @cached_property
     def alone(self) -> FloatArray:
         """Directions of the basis of B in which signed slips move alone."""
-        return scipy.linalg.null_space(self.column_basis[: self.lift_column + 1], rcond=ROUNDING.no_row)
+        return scipy.linalg.null_space(self.column_basis[: self.lift_column + 1], rcond=self._no_row)
 
     @cached_property
     def own(self) -> tuple[IntArray, IntArray]:
@@ -145,7 +151,7 @@ class Relaxation:
         """What of `own` has a part in `alone` by least change."""
         rows, columns = self.own
         image = np.einsum("ka,ke->aek", self.row_basis[rows], self.column_basis[columns] @ self.alone)
-        return np.linalg.pinv(image.reshape(-1, len(rows)), rcond=ROUNDING.no_row)
+        return np.linalg.pinv(image.reshape(-1, len(rows)), rcond=self._no_row)
 
     def project(self, products: FloatArray) -> FloatArray:
         """The nearest matrix of the form A Z B'."""
@@ -168,6 +174,6 @@ class Relaxation:
         return cost
 
 
-def _scales(matrix: FloatArray) -> FloatArray:
+def _scales(matrix: FloatArray, no_row: float) -> FloatArray:
     norms = np.linalg.norm(matrix, axis=1)
-    return np.where(norms < ROUNDING.no_row, 1.0, 1.0 / np.maximum(norms, ROUNDING.no_row))
+    return np.where(norms < no_row, 1.0, 1.0 / np.maximum(norms, no_row))

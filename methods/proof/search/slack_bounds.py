@@ -13,8 +13,7 @@ import scipy.sparse as sp
 from harness.model.assembly import FloatArray
 from methods.numerics.linear_programme import INFINITY, Programme
 from methods.proof.search.equations import Equations
-from methods.proof.search.subproblem import ROOT, Subproblem
-from methods.proof.search.tuning import ROUNDING
+from methods.proof.search.subproblem import Subproblem
 
 
 @dataclass(frozen=True, eq=False)
@@ -39,11 +38,16 @@ class SlackBounds:
 
 
 class SlackProgramme:
-    """The linear programme over forces and multiplier, kept between windows so that each starts from the last basis."""
+    """The linear programme over forces and multiplier, kept between windows so that each starts from the last basis.
+
+    Attributes:
+        margin: by which its bounds are widened, in mean block weights.
+    """
 
     def __init__(self, equations: Equations) -> None:
         m, n = equations.n_interfaces, len(equations.dead)
         self._m, self._n, self._friction = m, n, equations.friction
+        self.margin = equations.options.rounding.margin
         statics = sp.hstack([equations.kinematic.T, sp.csc_matrix((n, 4 * m)), sp.csc_matrix(equations.live[:, None])])
         yields = sp.hstack([sp.csc_matrix(equations.slack), -sp.eye(4 * m), sp.csc_matrix((4 * m, 1))])
         ends = np.repeat(np.eye(m), 4, axis=1) * np.tile([1.0, 1.0, 0.0, 0.0], m)
@@ -55,7 +59,7 @@ class SlackProgramme:
         upper = np.full(8 * m + 1, INFINITY)
         self._programme = Programme(sp.csc_matrix(matrix), np.zeros(8 * m + 1), (lower, upper), (right, right))
 
-    def window(self, low: float, high: float, case: Subproblem = ROOT) -> None:
+    def window(self, low: float, high: float, case: Subproblem = Subproblem()) -> None:
         """Keep multipliers within a window, and slacks and normal forces within a case, from now on."""
         greatest = np.full(4 * self._m, INFINITY)
         greatest[list(case.tight)] = 0.0
@@ -86,7 +90,7 @@ class SlackProgramme:
         ray = self._programme.ray()
         return np.zeros(self._n) if ray is None else ray[: self._n]
 
-    def bounds(self, low: float, high: float, case: Subproblem = ROOT) -> SlackBounds | None:
+    def bounds(self, low: float, high: float, case: Subproblem = Subproblem()) -> SlackBounds | None:
         """Bounds of all slacks for multipliers from `low` to `high`; None if no forces within yield exist there."""
         m = self._m
         self.window(low, high, case)
@@ -96,14 +100,14 @@ class SlackProgramme:
         if any(values is None for values in found):
             return None
         (least, still), (normal_least, lower), (normal_greatest, upper) = (part for part in found if part is not None)
-        by_normal = np.maximum(-normal_greatest, 0.0) + ROUNDING.margin
+        by_normal = np.maximum(-normal_greatest, 0.0) + self.margin
         by_slip = np.zeros(m)
         np.multiply(2.0 * self._friction, by_normal, out=by_slip, where=self._friction > 0.0)
         greatest = np.column_stack([by_normal, by_normal, by_slip, by_slip]).ravel()
         greatest[list(case.tight)] = 0.0
         return SlackBounds(
-            np.maximum(least - ROUNDING.margin, 0.0),
-            np.maximum(normal_least - ROUNDING.margin, 0.0),
+            np.maximum(least - self.margin, 0.0),
+            np.maximum(normal_least - self.margin, 0.0),
             by_normal,
             greatest,
             still,

@@ -55,6 +55,3 @@ class Subproblem:
             found += [(p, 1, least)] if least > 0.0 else []
             found += [(p, -1, greatest)] if greatest < np.inf else []
         return found
-
-
-ROOT = Subproblem()

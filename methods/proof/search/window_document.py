@@ -12,9 +12,9 @@ import numpy as np
 import scipy.linalg
 
 from harness.model.assembly import FloatArray, IntArray
+from methods.proof.search.options import Precision
 from methods.proof.search.relaxation import Relaxation
 from methods.proof.search.slack_bounds import SlackProgramme
-from methods.proof.search.tuning import PRECISION, ROUNDING
 from methods.proof.search.window_search import WindowProof
 from methods.proof.verify.cases import States
 from methods.proof.verify.exact_wall import CertificateError, ExactWall, Form
@@ -29,20 +29,22 @@ class Scales:
     Attributes:
         length: (m,) lengths of interfaces; velocity: (3n,) velocities per scaled one; multiplier: per scaled one;
         blocks: number of free blocks, the live work of scaled mechanisms; it is one in a certificate.
+        precision: of the numbers of the certificate.
     """
 
     length: FloatArray
     velocity: FloatArray
     multiplier: float
     blocks: float
+    precision: Precision = Precision()
 
     def velocities(self, velocities: FloatArray) -> list[Any]:
         """Velocities (.., 3n) that prove a bound of slacks, as whole numbers over 2^`Precision.velocities`."""
-        return whole_values(-velocities * self.velocity, PRECISION.velocities)
+        return whole_values(-velocities * self.velocity, self.precision.velocities)
 
     def scaled(self, multiplier: Fraction) -> float:
         """The scaled multiplier of the search, not above this one, whatever the conversion rounds."""
-        return float(multiplier) / self.multiplier * (1.0 - ROUNDING.below)
+        return float(multiplier) / self.multiplier * (1.0 - 1e-15)
 
     def low(self, relaxation: Relaxation) -> Fraction:
         """The lower end of a window."""
@@ -69,7 +71,8 @@ class WindowDocument:
         states: States | None = None,
     ) -> None:
         self.wall, self.scales, self.proof, self.programme, self.states = wall, scales, proof, programme, states
-        self.relaxation = proof.relaxation
+        self.relaxation, self._precision = proof.relaxation, scales.precision
+        self._rounding = self.relaxation.options.rounding
         m = wall.n_interfaces
         self.strains = np.array([[float(v) for v in row] for row in wall.rows]).reshape(3 * m, -1)
         self.friction = np.array([float(mu) for mu in wall.friction])
@@ -99,7 +102,7 @@ class WindowDocument:
         limits = self.limits
         size, greatest = self._shortest_size(limits)
         most, mine = Fraction(self.proof.bound) * Fraction(self.scales.multiplier), Fraction(0)
-        exponent, best = PRECISION.multipliers[0], self.parts
+        exponent, best = self._precision.multipliers[0], self.parts
         before: Fraction | None = None
         while True:
             products = self._products(self.proof.multiplier, exponent, False)
@@ -107,21 +110,21 @@ class WindowDocument:
             if best is self.parts or bound > mine:
                 best, mine = self.parts | {"size": size, "multiplier": products}, bound
             useless = before is not None and bound - before < (needed - bound) / 2
-            if bound >= needed or useless or exponent == PRECISION.multipliers[1]:
+            if bound >= needed or useless or exponent == self._precision.multipliers[1]:
                 return best, mine
             before = bound
             loss = float(most - bound) / max(float(most - needed), 1e-15 * float(most))
-            exponent = min(exponent + max(2, math.ceil(math.log2(max(loss, 1.0)))), PRECISION.multipliers[1])
+            exponent = min(exponent + max(2, math.ceil(math.log2(max(loss, 1.0)))), self._precision.multipliers[1])
 
     def _shortest_size(self, limits: WindowLimits) -> tuple[dict[str, Any], Fraction]:
         """The shortest multipliers that bound the size of mechanisms as the search does, else the longest."""
-        enough = PRECISION.enough_size * self.proof.greatest
-        for exponent in PRECISION.size:
+        enough = self._precision.enough_size * self.proof.greatest
+        for exponent in self._precision.size:
             products = self._products(self.proof.size, exponent, True)
             try:
                 greatest = limits.greatest_size(products)
             except CertificateError:
-                if exponent == PRECISION.size[-1]:
+                if exponent == self._precision.size[-1]:
                     raise
                 continue
             if greatest <= enough:
@@ -131,7 +134,7 @@ class WindowDocument:
     @cached_property
     def still(self) -> IntArray:
         """Contacts without a rate."""
-        return np.flatnonzero(self.relaxation.bounds.least > ROUNDING.margin)
+        return np.flatnonzero(self.relaxation.bounds.least > self._rounding.margin)
 
     def _least(self, forces: dict[str, Any], velocities: list[Any]) -> list[str]:
         """Least normal forces of the interfaces that are loaded: of the search, or what their velocities show of them.
@@ -159,11 +162,11 @@ class WindowDocument:
         parts: dict[str, Any] = {
             "low": str(self.low),
             "forces": {
-                "exponent": PRECISION.velocities,
+                "exponent": self._precision.velocities,
                 "total": scales.velocities(total[2]),
                 "greatest": scales.velocities(by_interface * bounds.greatest_velocities),
             },
-            "weight_exponent": PRECISION.weights,
+            "weight_exponent": self._precision.weights,
             "weights": [int(w) for w in self._weights[0]],
             "lift_weight": self._weights[1],
         }
@@ -186,7 +189,7 @@ class WindowDocument:
     @cached_property
     def _weights(self) -> tuple[FloatArray, int]:
         """Whole weights (m,) of rates in the size of a mechanism, and of the lift, over 2^`Precision.weights`."""
-        scales, unit, weights = self.scales, 2**PRECISION.weights, self.relaxation.weights
+        scales, unit, weights = self.scales, 2**self._precision.weights, self.relaxation.weights
         rates = scales.blocks / (scales.multiplier * scales.length) * weights[:-1]
         return np.round(rates * unit), round(float(weights[-1]) / scales.multiplier * unit)
 
@@ -197,13 +200,13 @@ class WindowDocument:
         bounded = np.setdiff1d(np.arange(3 * m), signed)
         _, triangle, order = scipy.linalg.qr(self.strains[bounded].T, pivoting=True, mode="economic")
         diagonal = abs(np.diag(triangle))
-        rank = int((diagonal > ROUNDING.no_row * diagonal[0]).sum())
+        rank = int((diagonal > self._rounding.no_row * diagonal[0]).sum())
         chosen, courses = bounded[order[:rank]], []
         if rank < n:
-            courses = self._courses(scipy.linalg.null_space(self.strains[bounded], rcond=ROUNDING.no_row))
+            courses = self._courses(scipy.linalg.null_space(self.strains[bounded], rcond=self._rounding.no_row))
             chosen = np.append(chosen, [3 * course["joints"][0] + 2 for course in courses]).astype(int)
         inverse = np.linalg.inv(self.strains[chosen])
-        exponent = PRECISION.motions
+        exponent = self._precision.motions
         return {
             "exponent": exponent,
             "strains": chosen.tolist(),
@@ -218,10 +221,10 @@ class WindowDocument:
         groups: list[tuple[FloatArray, list[int], list[float]]] = []
         for p, slip in zip(unloadable.tolist(), slips, strict=True):
             size = float(np.linalg.norm(slip))
-            if size < ROUNDING.no_row or self.friction[p] <= 0.0:
+            if size < self._rounding.no_row or self.friction[p] <= 0.0:
                 continue
             along = slip / size
-            alike = (g for g in groups if min(abs(g[0] - along).max(), abs(g[0] + along).max()) < ROUNDING.margin)
+            alike = (g for g in groups if min(abs(g[0] - along).max(), abs(g[0] + along).max()) < self._rounding.margin)
             same = next(alike, None)
             if same is None:
                 groups.append((along, [p], [size]))
@@ -230,13 +233,13 @@ class WindowDocument:
                 same[2].append(size)
         courses, chosen = [], np.zeros((0, motions.shape[1]))
         for along, joints, sizes in sorted(groups, key=lambda group: -len(group[1])):
-            if np.linalg.matrix_rank(np.vstack([chosen, along]), tol=ROUNDING.margin) <= len(chosen):
+            if np.linalg.matrix_rank(np.vstack([chosen, along]), tol=self._rounding.margin) <= len(chosen):
                 continue
             work = self.friction[joints] * np.array(sizes)
             weights = np.zeros((m, 4))
             weights[joints, :2] = (work / (work[0] * self.scales.length[joints]))[:, None]
             status, least, velocities = self.programme.least(weights.ravel())
-            if status == "optimal" and least > ROUNDING.margin:
+            if status == "optimal" and least > self._rounding.margin:
                 chosen = np.vstack([chosen, along])
                 courses.append({"joints": joints, "velocities": self.scales.velocities(velocities)})
         if len(courses) < motions.shape[1]:
@@ -285,7 +288,7 @@ class WindowDocument:
     def _alone(self) -> FloatArray:
         """Directions of motions in which nothing but signed slips moves."""
         rates, _, still = self._kinematic
-        return scipy.linalg.null_space(np.vstack([rates, still]), rcond=ROUNDING.no_row)
+        return scipy.linalg.null_space(np.vstack([rates, still]), rcond=self._rounding.no_row)
 
     def _products(self, products: FloatArray, exponent: int, of_size: bool) -> dict[str, Any]:
         """Multipliers of products, rounded, with the multiples of equations that leave next to nothing of the rest."""
@@ -309,7 +312,7 @@ class WindowDocument:
                 rest[3 * p : 3 * p + 3] -= np.outer(slips[k], signed[k])
             return rest
 
-        for _ in range(PRECISION.refinements):
+        for _ in range(self._precision.refinements):
             rest = rest_of(multipliers, own)
             rest -= basis @ (basis.T @ rest)
             own = own + self._own_change(rest, basis, signed)
@@ -385,7 +388,7 @@ def _matrix(forms: list[Form], width: int) -> FloatArray:
 
 def below(value: float | Fraction) -> Fraction:
     """A binary fraction next to a number, below it or equal."""
-    unit = 2**PRECISION.numbers
+    unit = 2**44
     return Fraction(math.floor(value * unit), unit)
 
 

@@ -15,11 +15,11 @@ from methods.proof.search.dividing import division_of
 from methods.proof.search.dual import DualBound
 from methods.proof.search.equations import Equations
 from methods.proof.search.halpern import Splitting, carried_over
+from methods.proof.search.options import CLOSED
 from methods.proof.search.rate_bounds import RateProgramme, RateProof
 from methods.proof.search.relaxation import Relaxation
 from methods.proof.search.slack_bounds import SlackBounds, SlackProgramme
-from methods.proof.search.subproblem import ROOT, Division, Subproblem
-from methods.proof.search.tuning import ROUNDING, STEPS, WINDOWS
+from methods.proof.search.subproblem import Division, Subproblem
 
 
 @dataclass(frozen=True, eq=False)
@@ -77,8 +77,8 @@ class Bracket:
 
     @property
     def closed(self) -> bool:
-        """Whether both ends agree to `Windows.closed`."""
-        return self.lower >= self.upper * (1.0 - WINDOWS.closed)
+        """Whether both ends agree to `CLOSED`."""
+        return self.lower >= self.upper * (1.0 - CLOSED)
 
 
 class Certify(Protocol):
@@ -113,10 +113,10 @@ class WindowSearch:
         found: Bracket,
         until: float,
         certify: Certify | None = None,
-        case: Subproblem = ROOT,
+        case: Subproblem = Subproblem(),
     ) -> None:
         self.equations, self.found, self.until, self.case = equations, found, until, case
-        self._slacks, self._certify = slacks, certify
+        self._slacks, self._certify, self._options = slacks, certify, equations.options
         self._rates: RateProgramme | None = None
         self._made_by: Division | None = None
         self._made_at = found.lower
@@ -153,7 +153,7 @@ class WindowSearch:
 
     def division(self) -> Division | None:
         """Where the states of this search are best divided; None if every contact is decided."""
-        gained = self.found.lower - self._made_at > WINDOWS.worth * (self.found.upper - self._made_at)
+        gained = self.found.lower - self._made_at > self._options.windows.worth * (self.found.upper - self._made_at)
         return division_of(self._runs["multiplier"], None if gained else self._made_by)
 
     def window(self) -> bool:
@@ -168,18 +168,18 @@ class WindowSearch:
             return self._rates is None
         stalled = self._bound_multiplier()
         if self._certify is not None and found.lower > before:
-            needed = found.lower - WINDOWS.below * (found.upper - found.lower)
+            needed = found.lower - self._options.windows.below * (found.upper - found.lower)
             found.lower = min(found.lower, max(before, self._certify.window(found.proofs[-1], needed)))
-        if self._slow and found.lower - before < WINDOWS.gain * (found.upper - before):
+        if self._slow and found.lower - before < self._options.windows.gain * (found.upper - before):
             return False
-        return found.lower - before > WINDOWS.worth * (found.upper - before) or (last and not stalled)
+        return found.lower - before > self._options.windows.worth * (found.upper - before) or (last and not stalled)
 
     def _is_last(self, relaxation: Relaxation) -> bool:
-        return self.found.upper - relaxation.low < WINDOWS.narrow * self.found.upper
+        return self.found.upper - relaxation.low < self._options.windows.narrow * self.found.upper
 
     def _build(self) -> bool:
         """Build the relaxation of the present bracket; False if no state is left in it that is not bounded."""
-        found, high = self.found, self.found.upper * (1.0 + WINDOWS.above)
+        found, high = self.found, self.found.upper * (1.0 + self._options.windows.above)
         self._gaps = [(time.process_time(), found.upper - found.lower)]
         bounds = self._slack_bounds(high, self.case)
         if bounds is not None and self._rates is not None:
@@ -190,10 +190,11 @@ class WindowSearch:
         new = Relaxation(self.equations, low, high, bounds, self.case, self._weights)
         costs: dict[str, FloatArray] = {"size": new.size_cost(), "multiplier": new.multiplier_cost()}
         for name, cost in costs.items():
-            run = Splitting(new, cost, STEPS[name].first, (STEPS[name].least, STEPS[name].most))
+            steps = self._options.size if name == "size" else self._options.multiplier
+            run = Splitting(new, cost, steps.first, (steps.least, steps.most))
             before = self._runs.get(name)
             if before is not None and before.iterate.size:
-                run.step = before.step if STEPS[name].kept else run.step
+                run.step = before.step if steps.kept else run.step
                 run.iterate = carried_over(new, run.step, before)
             self._runs[name] = run
         self._relaxation, self._size = new, np.inf
@@ -231,7 +232,7 @@ class WindowSearch:
 
     def _raise(self, least: float, certified: float | None) -> None:
         """Raise the bound to what a programme found, and no more than exact arithmetic leaves of it."""
-        found, least = self.found, least - ROUNDING.programme
+        found, least = self.found, least - self._options.rounding.programme
         found.lower = max(found.lower, min(found.upper, least if certified is None else min(least, certified)))
 
     def _bound_size(self) -> None:
@@ -244,7 +245,7 @@ class WindowSearch:
             size = bound.greatest_size()
             if size < self._size:
                 self._size, self._size_products = size, bound.products
-            return self._size < WINDOWS.size * max(abs(bound.value), 1e-9)
+            return self._size < self._options.windows.size * max(abs(bound.value), 1e-9)
 
         self._run("size", max(5.0, 0.25 * spent), stop)
 
@@ -253,21 +254,21 @@ class WindowSearch:
         found, run = self.found, self._runs["multiplier"]
         relaxation, run.size = run.relaxation, self._size
         start, last = found.lower, self._is_last(relaxation)
-        agreeing, mark, since = 0, found.upper - found.lower, run.iterations
+        windows, agreeing, mark, since = self._options.windows, 0, found.upper - found.lower, run.iterations
         self._slow = False
 
         def stop(bound: DualBound | None, primal: float) -> bool:
             nonlocal agreeing, mark, since
-            if found.upper - found.lower < (1.0 - WINDOWS.gain) * mark:
+            if found.upper - found.lower < (1.0 - windows.gain) * mark:
                 mark, since = found.upper - found.lower, run.iterations
-            self._slow = run.iterations - since > max(WINDOWS.patience, WINDOWS.share * run.iterations)
+            self._slow = run.iterations - since > max(windows.patience, windows.share * run.iterations)
             if bound is None or self._slow:
                 return self._slow
             self._weigh(bound)
             self._keep(relaxation, bound)
-            gained = found.lower > start + WINDOWS.gain * (found.upper - start)
+            gained = found.lower > start + windows.gain * (found.upper - start)
             fast = self._gains(found.upper - found.lower)
-            if found.lower >= found.upper * (1.0 - WINDOWS.finished) or (gained and not fast and not last):
+            if found.lower >= found.upper * (1.0 - windows.finished) or (gained and not fast and not last):
                 return True
             close = 0.05 * (found.upper - found.lower)
             ends = (relaxation.low + primal - found.lower, primal - bound.value)
@@ -283,15 +284,15 @@ class WindowSearch:
         self._gaps.append((now, gap))
         half = 0.5 * (self._gaps[0][0] + now)
         earlier = next(gap for when, gap in reversed(self._gaps) if when <= half)
-        return gap < (1.0 - WINDOWS.gain) * earlier
+        return gap < (1.0 - self._options.windows.gain) * earlier
 
     def _weigh(self, bound: DualBound) -> None:
         """Let the size of the next window's mechanisms weigh rates as duals price them, so that a few do not pay for
         all."""
         prices = np.append(bound.prices, bound.lift_price)
         if prices.max() > 0.0:
-            weights = np.maximum(prices / prices.max(), WINDOWS.least_weight)
-            share = WINDOWS.newest_weight
+            weights = np.maximum(prices / prices.max(), self._options.windows.least_weight)
+            share = self._options.windows.newest_weight
             self._weights = weights if self._weights is None else (1 - share) * self._weights + share * weights
 
     def _keep(self, relaxation: Relaxation, bound: DualBound) -> None:

@@ -9,7 +9,6 @@ earlier tangent and the product form of the changes since then: with K_{j+1} = K
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 from typing import Protocol
 
 import numpy as np
@@ -23,30 +22,10 @@ from methods.numerics.block_lu import BlockFactor, BlockPattern
 from methods.numerics.compiled import compiled
 from methods.numerics.failures import SingularMatrix, sparse_lu
 from methods.numerics.vectors import largest
-from methods.springs.model.wall_model import REGULARISATION, WallModel, add_tangent
+from methods.springs.model.wall_model import WallModel, add_tangent
 
 Change = tuple[int, int, int]
 """A point, its state and the state that it turns to."""
-
-
-@dataclass(frozen=True)
-class FactorTuning:
-    """How tangents are factorised, and how long a factor is corrected.
-
-    Attributes:
-        dense: unknowns up to which the dense inverse is faster than the sparse product form.
-        growth: entries of L above this cost too many digits: rows are exchanged then.
-        threshold: share of the largest entry of its column from which a pivot on the diagonal is kept even so.
-        updates: rank-one changes of one factor at most, for which the product form has room.
-    """
-
-    dense: int = 70
-    growth: float = 1e5
-    threshold: float = 1e-3
-    updates: int = 64
-
-
-FACTORS = FactorTuning()
 
 
 class SingularTangent(SingularMatrix):
@@ -105,7 +84,7 @@ class Factor(Protocol):
 
 def make_factor(model: WallModel) -> Factor:
     """The form that suits the size of the wall."""
-    return DenseFactor(model) if model.n_unknowns <= FACTORS.dense else SparseFactor(model)
+    return DenseFactor(model) if model.n_unknowns <= model.options.factors.dense else SparseFactor(model)
 
 
 def refactor_any(factor: Factor, state: IntArray, careful: bool = False, bordered: Sequence[int] = ()) -> None:
@@ -126,7 +105,7 @@ class DenseFactor:
 
     def __init__(self, model: WallModel) -> None:
         self.model = model
-        self.capacity = FACTORS.updates
+        self.capacity = model.options.factors.updates
         self.count = 0
         self.factorisations = 0
         self.careful = True
@@ -156,7 +135,7 @@ class DenseFactor:
             raise SingularTangent("the tangent is singular in these states")
         if (
             not (shift or regularised)
-            and REGULARISATION.least * largest((self.inverse * self._size).T @ self._size) > 1.0
+            and self.model.options.regularisation.least * largest((self.inverse * self._size).T @ self._size) > 1.0
         ):
             raise SingularTangent("the tangent is singular to rounding in these states")
 
@@ -190,7 +169,7 @@ class SparseFactor:
 
     def __init__(self, model: WallModel) -> None:
         self.model = model
-        self.capacity = FACTORS.updates
+        self.capacity = model.options.factors.updates
         self.count = 0
         self.factorisations = 0
         n = model.n_unknowns
@@ -235,11 +214,16 @@ class SparseFactor:
         self._lu.values[self._diagonal] += added
         for border in bordered:
             self._lu.values[self._diagonal[border]] += 1.0
-        return self._lu.factorise(FACTORS.growth) and self._stiff(self._lu.values[self._diagonal], added)
+        return self._lu.factorise(model.options.factors.growth) and self._stiff(self._lu.values[self._diagonal], added)
 
     def _stiff(self, pivots: FloatArray, added: FloatArray) -> bool:
         """Whether every pivot (N,) is beyond rounding, be it by what was added to the tangent."""
-        return bool((abs(pivots) >= REGULARISATION.least * np.where(added == 0.0, self.model.regularised, 0.0)).all())
+        return bool(
+            (
+                abs(pivots)
+                >= self.model.options.regularisation.least * np.where(added == 0.0, self.model.regularised, 0.0)
+            ).all()
+        )
 
     def _with_row_exchanges(self, matrix: sp.csc_matrix, added: FloatArray, bordered: Sequence[int]) -> SuperLU:
         options = {"SymmetricMode": True}
@@ -249,7 +233,7 @@ class SparseFactor:
             lu = sparse_lu(
                 matrix,
                 permc_spec="NATURAL",
-                diag_pivot_thresh=FACTORS.threshold,
+                diag_pivot_thresh=self.model.options.factors.threshold,
                 relax=1,
                 panel_size=1,
                 options=options,

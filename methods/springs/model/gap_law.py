@@ -13,8 +13,6 @@ K_new - K_old = a b' where b is the gradient of the breakpoint function that is 
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 import numpy as np
 
 from harness.model.assembly import FloatArray, IntArray
@@ -22,28 +20,6 @@ from methods.numerics.compiled import compiled
 
 OPEN, STICK, SLIP_PLUS, SLIP_MINUS = 0, 1, 2, 3
 """The states of a gap point, as compiled loops take them."""
-
-
-@dataclass(frozen=True)
-class BreakpointTolerances:
-    """When a gap point sits on its breakpoint, and when it moves towards it.
-
-    Attributes:
-        force: forces, as a share of the load scale, that count as the same: a point that near its breakpoint may be in
-            either state, and the choice among near ties may overrun a breakpoint by as much. Compressions that a
-            path starts from are at least as large, in block weights.
-        rate: rates of breakpoint functions below this share of the fastest gap rate count as zero.
-        soft_rate: the same on pinned pieces, as forces over a motion as long as the displacements so far.
-        sure_rate: such a rate, over the fastest velocity, from which its sign in a new direction is beyond doubt.
-    """
-
-    force: float = 1e-12
-    rate: float = 1e-11
-    soft_rate: float = 1e-7
-    sure_rate: float = 1e-6
-
-
-BREAKPOINTS = BreakpointTolerances()
 
 
 @compiled

@@ -29,24 +29,9 @@ from methods.springs.model.gap_law import (
     gap_forces,
     tangent_coefficients,
 )
+from methods.springs.model.options import SpringOptions
 from methods.springs.model.points import gap_points
 from methods.springs.model.settings import GapSettings
-
-
-@dataclass(frozen=True)
-class Regularisation:
-    """The stiffness of blocks against the ground that a singular tangent is factorised with.
-
-    Attributes:
-        stiffness: of a block, in springs of a gap point; refinement removes its force.
-        least: share of it below which a motion has no stiffness of its own: rounding of the tangent leaves 1e-8 of it.
-    """
-
-    stiffness: float = 1e-8
-    least: float = 1e-4
-
-
-REGULARISATION = Regularisation()
 
 
 @dataclass(frozen=True, eq=False)
@@ -68,6 +53,7 @@ class WallModel:
         footing: (N,) stiffness of every block against the ground that a singular tangent is factorised with.
         column_start, row_index: CSC pattern of the tangent; slot: (m, 36) where each interface adds to its values.
         force, length, displacement: what one unit inside is worth outside.
+        options: of all that is done with the model.
     """
 
     assembly: Assembly
@@ -91,6 +77,7 @@ class WallModel:
     force: float
     length: float
     displacement: float
+    options: SpringOptions = SpringOptions()
 
     @property
     def n_unknowns(self) -> int:
@@ -185,7 +172,12 @@ class WallModel:
         return [self.assembly.block_ids[i] for i in np.flatnonzero(speed > slowest * speed.max(initial=0.0))]
 
 
-def build_model(assembly: Assembly, settings: GapSettings, friction_cap: float = np.inf) -> WallModel:
+def build_model(
+    assembly: Assembly,
+    settings: GapSettings,
+    friction_cap: float = np.inf,
+    options: SpringOptions = SpringOptions(),
+) -> WallModel:
     """The gap-spring model of a wall.
 
     Raises:
@@ -214,7 +206,9 @@ def build_model(assembly: Assembly, settings: GapSettings, friction_cap: float =
     gyration = np.array([np.ptp(assembly.polygons[i], axis=0) @ np.ptp(assembly.polygons[i], axis=0) for i in order])
     lever = gyration / (12.0 * length**2)
     inertia = np.stack([mass, mass, mass * lever], axis=1).ravel()
-    regularised = REGULARISATION.stiffness * np.stack([np.ones_like(lever), np.ones_like(lever), lever], axis=1).ravel()
+    regularised = (
+        options.regularisation.stiffness * np.stack([np.ones_like(lever), np.ones_like(lever), lever], axis=1).ravel()
+    )
     stiffness = settings.normal_stiffness or 1000.0 * force / length
     model = WallModel(
         assembly=assembly,

@@ -6,42 +6,15 @@ decides which of them stick. Few points change, so the factor follows by rank-on
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 import numpy as np
 
 from harness.model.assembly import FloatArray, IntArray
 from methods.numerics.block_kernels import COLUMNS
 from methods.numerics.vectors import largest
 from methods.springs.model.factor import Change, Factor, SingularTangent, refactor_any
-from methods.springs.model.gap_law import BREAKPOINTS, OPEN, SLIP_MINUS, SLIP_PLUS, STICK, classify, same_forces
+from methods.springs.model.gap_law import OPEN, SLIP_MINUS, SLIP_PLUS, STICK, classify, same_forces
 from methods.springs.model.wall_model import WallModel, point_strains
 from methods.springs.path.continuation import PathFollower
-
-
-@dataclass(frozen=True)
-class CommitTuning:
-    """The finite step after a commit.
-
-    Attributes:
-        within: displacements, in multiples of the first, up to which the history is still committed.
-        steps: Newton steps at most.
-        updates: changed points above which a fresh factor is cheaper than updates.
-        pivot: |1 + b'y|, or its inverse, above which updates are not trusted here.
-        longest: steps longer than this many tangent steps may have left the branch and are not taken.
-        balanced: out-of-balance force (share of the load scale) up to which a step is taken without a further one: by
-            way of huge displacements, over a nearly singular tangent, it loses digits.
-    """
-
-    within: float = 300.0
-    steps: int = 12
-    updates: int = 24
-    pivot: float = 1e3
-    longest: float = 5.0
-    balanced: float = 1e-9
-
-
-COMMITS = CommitTuning()
 
 
 def committed_step(follower: PathFollower, ahead: float) -> PathFollower | None:
@@ -51,6 +24,7 @@ def committed_step(follower: PathFollower, ahead: float) -> PathFollower | None:
         A tracer on the new path, or None when Newton did not settle (the old tracer must then be `refresh`ed).
     """
     model, factor = follower.model, follower.factor
+    options, near = model.options.commits, model.options.breakpoints.force * follower.scale
     history = follower.commit()
     multiplier = follower.multiplier + ahead
     u, state = follower.u.copy(), follower.state.copy()
@@ -60,17 +34,17 @@ def committed_step(follower: PathFollower, ahead: float) -> PathFollower | None:
     seen: set[bytes] = set()
     landed = np.empty_like(state)
     try:
-        for _ in range(COMMITS.steps):
+        for _ in range(options.steps):
             step = factor.solve(model.out_of_balance(opening, trial, state, multiplier))
             u += step
             point_strains(model.unknown, model.rows, model.interface, model.position, step, opening_rate, slip_rate)
             opening += opening_rate
             trial += model.kt * slip_rate
             classify(opening, trial, model.kn, model.mu, landed, False)
-            if same_forces(opening, trial, model.kn, model.mu, state, landed, BREAKPOINTS.force * follower.scale):
+            if same_forces(opening, trial, model.kn, model.mu, state, landed, near):
                 opening, trial = model.strains(u)
                 trial = model.kt * trial + history
-                if largest(model.out_of_balance(opening, trial, state, multiplier)) > COMMITS.balanced * follower.scale:
+                if largest(model.out_of_balance(opening, trial, state, multiplier)) > options.balanced * follower.scale:
                     continue
                 if not _near(follower, u, ahead):
                     return None
@@ -89,7 +63,10 @@ def _near(follower: PathFollower, u: FloatArray, ahead: float) -> bool:
     """Whether a step stays on its branch: the live load works forwards, not much further than the tangent predicts."""
     moved = u - follower.u
     predicted = largest(follower.direction.velocity) * ahead
-    return float(follower.model.live @ moved) > 0.0 and largest(moved) <= COMMITS.longest * predicted
+    return (
+        float(follower.model.live @ moved) > 0.0
+        and largest(moved) <= follower.model.options.commits.longest * predicted
+    )
 
 
 def change_states(model: WallModel, factor: Factor, state: IntArray, wanted: IntArray) -> None:
@@ -103,7 +80,7 @@ def change_states(model: WallModel, factor: Factor, state: IntArray, wanted: Int
     """
     points = np.flatnonzero(state != wanted).tolist()
     changes = [change for p in points for change in _way(p, int(state[p]), int(wanted[p]))]
-    if len(points) <= COMMITS.updates and factor.count + len(changes) < factor.capacity:
+    if len(points) <= model.options.commits.updates and factor.count + len(changes) < factor.capacity:
         for k, change in enumerate(changes):
             if k % COLUMNS == 0:
                 factor.foresee(changes[k : k + COLUMNS])
@@ -134,7 +111,7 @@ def _change(model: WallModel, factor: Factor, change: Change) -> bool:
     index, _, b = model.change(*change)
     y = factor.solve_change(change)
     denominator = 1.0 + float(b @ y[index])
-    if not 1.0 / COMMITS.pivot < abs(denominator) < COMMITS.pivot:
+    if not 1.0 / model.options.commits.pivot < abs(denominator) < model.options.commits.pivot:
         return False
     factor.update(y, index, b, denominator)
     return True

@@ -15,13 +15,12 @@ from harness.model.assembly import FloatArray, IntArray
 from methods.numerics.block_kernels import COLUMNS
 from methods.numerics.vectors import largest
 from methods.springs.model.factor import Change, Factor, SingularTangent
-from methods.springs.model.gap_law import BREAKPOINTS, OPEN, SLIP_PLUS, STICK, gap_forces
+from methods.springs.model.gap_law import OPEN, SLIP_PLUS, STICK, gap_forces
 from methods.springs.model.wall_model import WallModel, load_scale
 from methods.springs.path.breakpoints import advance, coming_breakpoints, live_rate, next_breakpoint, strain_rates
 from methods.springs.path.direction import PathDirection
 from methods.springs.path.path_record import PathEnd, PathRecord, PathSnapshot, PathStep
-from methods.springs.path.plateau import COLLAPSE, worst_residual
-from methods.springs.path.tolerances import DRIFT, MECHANISM, UPDATES
+from methods.springs.path.plateau import worst_residual
 from methods.springs.rest.newton import Equilibrium
 
 
@@ -32,6 +31,7 @@ class PathFollower:
         u, multiplier, state: where the path is; history: (P,) frozen-in shears h.
         opening, trial: (P,) g and tau there; largest: the largest displacement.
         direction: of the present piece.
+        certificate: largest residual of a mechanism that ends the path; options: of the model.
         kept: the last mechanism on the way that is an exact collapse state but for rounding; kept_holds: whether its
             residuals pass the certificate; looked_at: the extent where they were last looked at.
     """
@@ -45,11 +45,12 @@ class PathFollower:
         history: FloatArray,
         state: IntArray,
         factorised: bool = False,
-        certificate: float = COLLAPSE.certificate,
+        certificate: float | None = None,
     ) -> None:
         self.model = model
         self.factor = factor
-        self.certificate = certificate
+        self.options = model.options
+        self.certificate = self.options.collapse.certificate if certificate is None else certificate
         self.u = u.copy()
         self.multiplier = multiplier
         self.history = history
@@ -75,7 +76,7 @@ class PathFollower:
 
     @classmethod
     def from_rest(
-        cls, model: WallModel, factor: Factor, rest: Equilibrium, certificate: float = COLLAPSE.certificate
+        cls, model: WallModel, factor: Factor, rest: Equilibrium, certificate: float | None = None
     ) -> PathFollower:
         """The path that goes on from a state of equilibrium."""
         return cls(model, factor, rest.u, rest.multiplier, rest.history, rest.state, certificate=certificate)
@@ -112,8 +113,8 @@ class PathFollower:
         worst = largest(residual) / self.scale
         self.worst_residual = max(self.worst_residual, worst)
         moved = False
-        for _ in range(DRIFT.corrections):
-            if worst < DRIFT.rounding:
+        for _ in range(self.options.drift.corrections):
+            if worst < self.options.drift.rounding:
                 break
             correction, rate = self.direction.balance(residual)
             self.direction.rates(correction, np.zeros_like(correction))
@@ -126,7 +127,7 @@ class PathFollower:
                 break
         if moved:
             self.direction.measure()
-        if min(worst, self.worst_residual) > DRIFT.lost:
+        if min(worst, self.worst_residual) > self.options.drift.lost:
             raise SingularTangent("the path was lost to rounding")
 
     def _out_of_balance(self) -> FloatArray:
@@ -143,7 +144,7 @@ class PathFollower:
         """Whether no force changes along the present piece (rates of forces negligible beside the fastest)."""
         way = self.direction
         strain, elastic = strain_rates(way.opening_rate, way.trial_rate, self.model.kt, self.state)
-        return elastic <= MECHANISM.elastic * strain
+        return elastic <= self.options.mechanism.elastic * strain
 
     def run(
         self, record: PathRecord, max_events: int, target: float = np.inf, turn: float = np.inf, note: int = 1
@@ -179,9 +180,9 @@ class PathFollower:
             model.kn,
             model.mu,
             self.state,
-            BREAKPOINTS.force * self.scale,
-            BREAKPOINTS.rate,
-            BREAKPOINTS.soft_rate * self.scale / self.extent if way.bordered else np.inf,
+            self.options.breakpoints.force * self.scale,
+            self.options.breakpoints.rate,
+            self.options.breakpoints.soft_rate * self.scale / self.extent if way.bordered else np.inf,
             self.last_point,
             self.last_old,
         )
@@ -223,24 +224,24 @@ class PathFollower:
         multiplier, and the last one that passes its check stands for the plateau when rounding ends the path. Among
         displacements of 1e10 times the elastic ones it is the plateau.
         """
-        model, way = self.model, self.direction
+        model, way, tests = self.model, self.direction, self.options.mechanism
         if not way.bordered:
             return False
         size, fastest = self.extent, largest(way.velocity)
         ahead = step * fastest
-        if ahead < MECHANISM.least * size or not self.is_mechanism() or live_rate(model.live, way.velocity) <= 0.0:
+        if ahead < tests.least * size or not self.is_mechanism() or live_rate(model.live, way.velocity) <= 0.0:
             return False
-        if way.opening_rate[self.state == OPEN].min(initial=0.0) < -MECHANISM.elastic * fastest:
+        if way.opening_rate[self.state == OPEN].min(initial=0.0) < -tests.elastic * fastest:
             return False
-        if ahead > MECHANISM.far * size:
+        if ahead > tests.far * size:
             return True
-        if size < MECHANISM.growth * self.looked_at:
+        if size < tests.growth * self.looked_at:
             return False
         self.looked_at = size
         holds = worst_residual(model, self.present()) <= self.certificate
         if holds or not self.kept_holds:
             self.kept, self.kept_holds = deepcopy(self.present()), holds
-        return holds and size > MECHANISM.confirmed * self.first_displacement
+        return holds and size > tests.confirmed * self.first_displacement
 
     def _advance(self, velocity: FloatArray, speed: float, step: float) -> None:
         way = self.direction
@@ -283,9 +284,9 @@ class PathFollower:
 
     def _drifted(self) -> bool:
         """Whether the out-of-balance force has grown enough to factorise afresh (looked at every few changes)."""
-        if self.factor.count % UPDATES.balance_every:
+        if self.factor.count % self.options.updates.balance_every:
             return False
-        return largest(self._out_of_balance()) > DRIFT.removed * self.scale
+        return largest(self._out_of_balance()) > self.options.drift.removed * self.scale
 
     def _breakpoint_rate(self, point: int, old: int, new: int) -> float:
         """b'v of a change of state and the velocity v of the present piece."""

@@ -23,9 +23,7 @@ from harness.model.assembly import FloatArray, IntArray
 from methods.numerics.vectors import combine, largest
 from methods.springs.model.exact_rates import exact_gap_rates
 from methods.springs.model.factor import Change, Factor, SingularTangent, refactor_any
-from methods.springs.model.gap_law import BREAKPOINTS
 from methods.springs.model.wall_model import WallModel, point_strains
-from methods.springs.path.tolerances import REFINEMENT, SOFT_MOTIONS, UPDATES
 
 
 @dataclass
@@ -46,10 +44,11 @@ class PathDirection:
         pins: the displacements that are pinned in the factor, the fastest first.
         fine: whether rates are measured in doubled precision.
         elastic: size of v / l on the first piece of the path, with which soft pieces are compared.
+        options: of the model.
     """
 
     def __init__(self, model: WallModel, factor: Factor) -> None:
-        self.model, self.factor = model, factor
+        self.model, self.factor, self.options = model, factor, model.options
         self.velocity, self.tail, self.speed = np.zeros(model.n_unknowns), np.zeros(model.n_unknowns), 1.0
         self.opening_rate, self.trial_rate = np.empty(model.n_points), np.empty(model.n_points)
         self.bordered: list[int] = []
@@ -90,9 +89,9 @@ class PathDirection:
 
     def _solve_pinned(self, state: IntArray, careful: bool) -> None:
         """Solve for the velocity, its fastest displacement pinned where the piece turns out to be soft."""
-        for _ in range(SOFT_MOTIONS.most):
+        for _ in range(self.options.soft_motions.most):
             before, rising = self.velocity, self.speed
-            self.bordered = [int(np.argmax(np.abs(before)))] if self.size > SOFT_MOTIONS.velocity else []
+            self.bordered = [int(np.argmax(np.abs(before)))] if self.size > self.options.soft_motions.velocity else []
             self._factorise(state, careful)
             self._solve(before, rising)
             if self._is_pinned_right():
@@ -101,8 +100,8 @@ class PathDirection:
     def _is_pinned_right(self) -> bool:
         """Whether a soft piece is pinned, where it moves."""
         if not self.bordered:
-            return self.size <= SOFT_MOTIONS.velocity
-        return bool(abs(self.velocity[self.bordered[0]]) >= SOFT_MOTIONS.held * largest(self.velocity))
+            return self.size <= self.options.soft_motions.velocity
+        return bool(abs(self.velocity[self.bordered[0]]) >= self.options.soft_motions.held * largest(self.velocity))
 
     def _factorise(self, state: IntArray, careful: bool) -> None:
         """Factorise the tangent, and where a pinned one is still soft, pin the softest motion as well.
@@ -118,7 +117,7 @@ class PathDirection:
                 not self.bordered
                 or not self._is_soft()
                 or softest in self.bordered
-                or len(self.bordered) == SOFT_MOTIONS.most
+                or len(self.bordered) == self.options.soft_motions.most
             ):
                 break
             self.bordered.insert(0 if self.factor.is_regularised else len(self.bordered), softest)
@@ -126,7 +125,7 @@ class PathDirection:
 
     def _is_soft(self) -> bool:
         """Whether the response to the live load shows a soft motion that is not pinned."""
-        return largest(self.response) > SOFT_MOTIONS.response * self.elastic
+        return largest(self.response) > self.options.soft_motions.response * self.elastic
 
     def solve_first(self, state: IntArray) -> None:
         """Solve for the velocity with the factor as it stands, the multiplier rising."""
@@ -155,7 +154,7 @@ class PathDirection:
         """Whether the velocity leads back, beyond rounding, over the breakpoint just crossed with a rate b'v."""
         index, _, b = self.model.change(*change)
         along = float(b @ self.velocity[index])
-        return abs(along) > BREAKPOINTS.sure_rate * largest(self.velocity) and along * rate < 0.0
+        return abs(along) > self.options.breakpoints.sure_rate * largest(self.velocity) and along * rate < 0.0
 
     def _hold(self, x: FloatArray, held: float = 0.0) -> tuple[FloatArray, float]:
         """Add m responses to the live load and shapes of the pins to x, so that the springs of the pins carry nothing.
@@ -233,14 +232,15 @@ class PathDirection:
             self.velocity /= unit
             self.tail /= unit
             self.speed /= unit
-        if self.factor.count >= self.factor.capacity - 1 or not 1.0 / UPDATES.pivot < abs(1.0 + along) < UPDATES.pivot:
+        pivot = self.options.updates.pivot
+        if self.factor.count >= self.factor.capacity - 1 or not 1.0 / pivot < abs(1.0 + along) < pivot:
             return False
         if not self._is_pinned_right():
             return False
         self.factor.update(y, index, b, 1.0 + along)
         if self.bordered:
             self.response -= y * (float(b @ self.response[index]) / (1.0 + along))
-            if self._is_soft() and len(self.bordered) < SOFT_MOTIONS.most:
+            if self._is_soft() and len(self.bordered) < self.options.soft_motions.most:
                 return False
             for shape in self.unit_responses:
                 shape.value -= y * (float(b @ shape.value[index]) / (1.0 + along))
@@ -253,20 +253,20 @@ class PathDirection:
 
         A defect of a soft piece that refinement no longer lowers is borne, unless it is to be strictly straight.
         """
-        self.fine = bool(self.unit_responses) or (bool(self.bordered) and extent > REFINEMENT.doubled)
+        by = self.options.refinement
+        self.fine = bool(self.unit_responses) or (bool(self.bordered) and extent > by.doubled)
         self.measure()
-        by = REFINEMENT
         if self.bordered:
             enough, bearable = by.soft_defect / extent, (by.soft_defect if strict else by.soft_accepted) / extent
         else:
             enough = bearable = by.defect * self.live_size * abs(self.speed)
         previous = np.inf
-        for count in range(REFINEMENT.steps):
+        for count in range(by.steps):
             defect = self.model.out_of_balance(self.opening_rate, self.trial_rate, state, self.speed, 0.0)
             worst = largest(defect)
             if worst <= enough and (count > 0 or not self.factor.is_regularised):
                 return True
-            if not worst < REFINEMENT.contraction * previous:
+            if not worst < by.contraction * previous:
                 return worst <= bearable
             previous = worst
             correction, rate = self.balance(defect)

@@ -2,32 +2,11 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 import numpy as np
 
 from methods.springs.model.factor import SingularTangent
 from methods.springs.path.continuation import PathFollower
 from methods.springs.rest.equilibrium import equilibrium
-
-
-@dataclass(frozen=True)
-class JumpTuning:
-    """When jumps are tried, and to where.
-
-    Attributes:
-        turn: share of the peak by which a path may turn down before a jump from it is tried.
-        most: jumps tried along one path: a loop would be tried to be left for ever.
-        above: share of the peak by which the load is raised above it; least: multiplier added to that.
-    """
-
-    turn: float = 0.1
-    most: int = 10
-    above: float = 1e-3
-    least: float = 1e-9
-
-
-JUMP = JumpTuning()
 
 
 def past_turn(follower: PathFollower, peak: float, jumps: int) -> tuple[PathFollower, float]:
@@ -41,14 +20,15 @@ def past_turn(follower: PathFollower, peak: float, jumps: int) -> tuple[PathFoll
     """
     after = _jump(follower, peak) if jumps > 0 else None
     if after is not None:
-        return after, JUMP.turn
+        return after, follower.model.options.jump.turn
     follower.refresh()
     return follower, np.inf
 
 
 def _jump(follower: PathFollower, peak: float) -> PathFollower | None:
     """The tracer just above the peak, at the equilibrium that the springs come to from where it is; None if at none."""
-    above = peak * (1.0 + JUMP.above) + JUMP.least
+    options = follower.model.options.jump
+    above = peak * (1.0 + options.above) + options.least
     answer = equilibrium(follower.model, follower.factor, follower.u, above, follower.history, commits=True)
     if not answer.found:
         return None

@@ -6,9 +6,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from methods.springs.path.commits import COMMITS, committed_step
+from methods.springs.path.commits import committed_step
 from methods.springs.path.continuation import PathFollower
-from methods.springs.path.jump import JUMP, past_turn, successor
+from methods.springs.path.jump import past_turn, successor
 from methods.springs.path.path_record import PathEnd, PathRecord
 
 
@@ -28,7 +28,7 @@ def follow(
     max_events: int,
     interval: float = np.inf,
     highest: float = np.inf,
-    jumps: int = JUMP.most,
+    jumps: int | None = None,
     committed_up_to: float = np.inf,
 ) -> LoadPath:
     """Follow a path from where the tracer stands to its end.
@@ -39,15 +39,18 @@ def follow(
         max_events: changes of state after which the path is given up.
         interval: multiplier between two commits of the history; infinite for none.
         highest: multiplier above which a path with commits counts as lost.
-        jumps: most jumps tried where the path turns down; none at a peak from which one was tried in vain.
+        jumps: most jumps tried where the path turns down (None: as the options say); none at a peak from which one was
+            tried in vain.
         committed_up_to: multiplier above which the history is no longer committed.
 
     Raises:
         SingularTangent: the path cannot be taken up again where it stands.
         OutOfTime: the time given is over; the record has the path so far.
     """
-    committing, large = interval < np.inf, COMMITS.within * follower.first_displacement
-    turn = JUMP.turn if jumps > 0 else np.inf
+    options = follower.model.options
+    jumps = options.jump.most if jumps is None else jumps
+    committing, large = interval < np.inf, options.commits.within * follower.first_displacement
+    turn = options.jump.turn if jumps > 0 else np.inf
     commits, residual, hopeless = 0, 0.0, -np.inf
     while True:
         after = None

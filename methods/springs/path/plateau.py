@@ -21,34 +21,9 @@ from methods.springs.model.gap_law import STICK, classify, gap_forces
 from methods.springs.model.wall_model import WallModel, point_strains
 from methods.springs.path.path_record import PathSnapshot
 
+IDLE = 1e-12
+"""Work of the live load on a mechanism, as a share of the sum of its terms' sizes, that is rounding."""
 
-@dataclass(frozen=True)
-class CollapseTolerances:
-    """How a collapse state is solved for, and when it counts as exact.
-
-    Attributes:
-        certificate: largest relative residual at which a final state counts as an exact collapse state.
-        exact: residual at which no more exact state is looked for.
-        zero: multipliers up to this share of the load unit are zero to rounding, as of a wall at its limit under the
-            dead load.
-        idle: work of the live load on a mechanism, as a share of the sum of its terms' sizes, that is rounding.
-        rounds: changes of states allowed while the last piece is solved for, and iterations with inertia.
-        corrections: Newton steps with which forces and multiplier are solved for in one set of states.
-        inertia: shift of a tangent in which several motions have no stiffness; iteration removes what it leaves.
-        still: rates below this share of the fastest are none, where several mechanisms move at once.
-    """
-
-    certificate: float = 1e-8
-    exact: float = 1e-12
-    zero: float = 1e-13
-    idle: float = 1e-12
-    rounds: int = 10
-    corrections: int = 4
-    inertia: float = 1e-7
-    still: float = 1e-6
-
-
-COLLAPSE = CollapseTolerances()
 NOT_UNIQUE = "the plateau is not unique: more than one mechanism moves at once"
 
 
@@ -89,9 +64,9 @@ def finish(model: WallModel, present: PathSnapshot, kept: PathSnapshot | None = 
                 state = way(model, shot)
                 if best is None or state.worst < best.worst:
                     best = state
-            if best is not None and best.worst <= COLLAPSE.exact:
+            if best is not None and best.worst <= model.options.collapse.exact:
                 return best
-        if best is not None and best.worst <= COLLAPSE.certificate:
+        if best is not None and best.worst <= model.options.collapse.certificate:
             return best
     return None
 
@@ -120,7 +95,7 @@ def _collapse_state(
     forces = model.end_forces(normal, shear)
     field = model.block_displacements(velocity)
     live = float(np.sum(assembly.live * field))
-    multiplier = 0.0 if abs(multiplier) <= COLLAPSE.zero * assembly.load_unit else multiplier
+    multiplier = 0.0 if abs(multiplier) <= model.options.collapse.zero * assembly.load_unit else multiplier
     return check(assembly, multiplier, forces, field / (abs(live) or 1.0))
 
 
@@ -133,7 +108,7 @@ def _solve_last_piece(model: WallModel, shot: PathSnapshot) -> PlateauState:
     opening, trial = shot.opening.copy(), shot.trial.copy()
     fastest = int(np.argmax(np.abs(shot.velocity)))
     landed = np.empty_like(state)
-    for _ in range(COLLAPSE.rounds):
+    for _ in range(model.options.collapse.rounds):
         tangent = model.tangent(state)
         factor = _bordered(tangent, fastest, model.live)
         multiplier = _corrected(model, factor, fastest, opening, trial, state, multiplier)
@@ -166,17 +141,19 @@ def _of_many_mechanisms(model: WallModel, shot: PathSnapshot) -> PlateauState:
         point_strains(*model_points, motion, opening_rate, slip_rate)
 
     strain(shot.velocity)
-    still = np.maximum(abs(opening_rate), abs(slip_rate)) <= COLLAPSE.still * float(abs(shot.velocity).max())
+    still = np.maximum(abs(opening_rate), abs(slip_rate)) <= model.options.collapse.still * float(
+        abs(shot.velocity).max()
+    )
     held = _regular(model, np.where(still, STICK, shot.state))
     velocity = shot.velocity
-    for _ in range(COLLAPSE.rounds):
-        velocity = held.solve(COLLAPSE.inertia * model.inertia * velocity)
+    for _ in range(model.options.collapse.rounds):
+        velocity = held.solve(model.options.collapse.inertia * model.inertia * velocity)
         velocity = velocity / (float(abs(velocity).max()) or 1.0)
     factor = _regular(model, shot.state)
     opening, trial, multiplier = shot.opening.copy(), shot.trial.copy(), shot.multiplier
     by_live = factor.solve(model.live)
     beside = model.inertia * velocity
-    for _ in range(COLLAPSE.rounds):
+    for _ in range(model.options.collapse.rounds):
         change = factor.solve(model.out_of_balance(opening, trial, shot.state, multiplier))
         rise = -float(beside @ change) / (float(beside @ by_live) or np.inf)
         strain(change + rise * by_live)
@@ -188,7 +165,7 @@ def _of_many_mechanisms(model: WallModel, shot: PathSnapshot) -> PlateauState:
 
 def _regular(model: WallModel, state: IntArray) -> SuperLU:
     try:
-        return sparse_lu(model.tangent(state, COLLAPSE.inertia))
+        return sparse_lu(model.tangent(state, model.options.collapse.inertia))
     except SingularMatrix as error:
         raise SingularTangent(NOT_UNIQUE) from error
 
@@ -198,7 +175,9 @@ def _beyond_yield(model: WallModel, opening: FloatArray, trial: FloatArray, stat
     normal, shear = np.empty_like(opening), np.empty_like(opening)
     gap_forces(opening, trial, model.kn, model.mu, state, normal, shear)
     borne = model.law.by_friction(normal)
-    return np.asarray((normal < -COLLAPSE.certificate) | (np.abs(shear) > borne + COLLAPSE.certificate))
+    return np.asarray(
+        (normal < -model.options.collapse.certificate) | (np.abs(shear) > borne + model.options.collapse.certificate)
+    )
 
 
 def _bordered(tangent: sp.csc_matrix, fastest: int, live: FloatArray) -> SuperLU:
@@ -219,7 +198,7 @@ def _corrected(
 ) -> float:
     """Bring the gaps (changed in place) and the multiplier into equilibrium, the fastest displacement held."""
     opening_rate, slip_rate = np.empty_like(opening), np.empty_like(trial)
-    for _ in range(COLLAPSE.corrections):
+    for _ in range(model.options.collapse.corrections):
         answer = factor.solve(model.out_of_balance(opening, trial, state, multiplier))
         if not np.isfinite(answer).all():
             raise SingularTangent(NOT_UNIQUE)
@@ -261,8 +240,8 @@ def check(assembly: Assembly, multiplier: float, forces: FloatArray, mechanism: 
     rates = (matrix @ velocity).reshape(-1, 3)
     power = float(live @ velocity)
     share = power / (float(abs(live) @ abs(velocity)) or 1.0)
-    power = power if share > COLLAPSE.idle else 0.0
-    speed = float(np.abs(velocity * lengths).max()) * min(1.0, max(share, COLLAPSE.idle)) or 1.0
+    power = power if share > IDLE else 0.0
+    speed = float(np.abs(velocity * lengths).max()) * min(1.0, max(share, IDLE)) or 1.0
     strength = assembly.law.strength(forces)
     size = max(assembly.load_unit, abs(multiplier))
     against = strength + np.sign(rates[:, 2]) * forces[:, 2]

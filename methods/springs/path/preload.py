@@ -12,14 +12,13 @@ import numpy as np
 
 from harness.model.assembly import FloatArray
 from methods.springs.model.factor import Factor
-from methods.springs.model.gap_law import BREAKPOINTS, STICK
+from methods.springs.model.gap_law import STICK
 from methods.springs.model.wall_model import WallModel
 from methods.springs.path.continuation import PathFollower
-from methods.springs.path.plateau import COLLAPSE
 
 
 def preloaded(
-    model: WallModel, factor: Factor, multiplier: float, forces: FloatArray, certificate: float = COLLAPSE.certificate
+    model: WallModel, factor: Factor, multiplier: float, forces: FloatArray, certificate: float | None = None
 ) -> PathFollower:
     """The path from contact forces, with a gap point at each end of every interface.
 
@@ -27,9 +26,9 @@ def preloaded(
         model: the wall; factor: its tangent.
         multiplier: of the live load that the forces are in equilibrium with.
         forces: (m, 3) end forces n1, n2, s [force] within yield; the shear is shared out as the compression is.
-        certificate: largest residual of a mechanism that ends the path.
+        certificate: largest residual of a mechanism that ends the path; None for that of the options.
     """
-    ends = np.maximum(forces[:, :2] / model.force, BREAKPOINTS.force)
+    ends = np.maximum(forces[:, :2] / model.force, model.options.breakpoints.force)
     share = (forces[:, 2] / model.force / ends.sum(axis=1))[model.interface]
     normal = np.where(model.position == 0.0, ends[model.interface, 0], ends[model.interface, 1])
     loaded = replace(model, initial_opening=-normal / model.kn)

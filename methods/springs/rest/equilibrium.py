@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
 
@@ -11,27 +11,7 @@ from harness.model.assembly import FloatArray
 from methods.springs.model.factor import Factor
 from methods.springs.model.wall_model import WallModel
 from methods.springs.rest.newton import Equilibrium, newton
-from methods.springs.rest.pseudo_transient import LOAD_RAISING, REST, PseudoTransient
-
-
-@dataclass(frozen=True)
-class FirstSteps:
-    """The Newton steps off the breakpoints on which gravity leaves many gap points.
-
-    Attributes:
-        multiplier: of the first.
-        shorter: factor on it where the wall does not stand that one; tries: how often, at most: a wall may collapse at
-            a multiplier below it.
-        newton_steps: at most, of each of the doubled steps that follow.
-    """
-
-    multiplier: float = 1e-3
-    shorter: float = 0.1
-    tries: int = 5
-    newton_steps: int = 25
-
-
-FIRST_STEPS = FirstSteps()
+from methods.springs.rest.pseudo_transient import PseudoTransient
 
 
 def equilibrium(
@@ -40,10 +20,10 @@ def equilibrium(
     u: FloatArray,
     multiplier: float,
     history: FloatArray,
-    limit: int = REST.steps,
+    limit: int | None = None,
     commits: bool = False,
 ) -> Equilibrium:
-    """Newton, then slow motion of at most `limit` Newton steps from where Newton started.
+    """Newton, then slow motion of at most `limit` Newton steps (None: as the options say) from where Newton started.
 
     Args:
         commits: whether that motion commits its friction history; the equilibrium holds under `history` if not.
@@ -57,7 +37,9 @@ def equilibrium(
 
 def gravity_state(model: WallModel, factor: Factor) -> Equilibrium:
     """Equilibrium under the dead load from the virgin state."""
-    return equilibrium(model, factor, np.zeros(model.n_unknowns), 0.0, model.history, REST.steps_under_dead_load)
+    return equilibrium(
+        model, factor, np.zeros(model.n_unknowns), 0.0, model.history, model.options.rest.steps_under_dead_load
+    )
 
 
 def first_step(model: WallModel, factor: Factor, rest: Equilibrium, scale: float) -> Equilibrium:
@@ -67,12 +49,13 @@ def first_step(model: WallModel, factor: Factor, rest: Equilibrium, scale: float
         model: the wall; factor: its tangent; rest: equilibrium under the dead load.
         scale: a multiplier of the order of collapse.
     """
-    multiplier = FIRST_STEPS.multiplier * min(1.0, scale)
+    options = model.options.first_steps
+    multiplier = options.multiplier * min(1.0, scale)
     first = equilibrium(model, factor, rest.u, multiplier, rest.history)
-    for _ in range(FIRST_STEPS.tries):
+    for _ in range(options.tries):
         if first.found:
             break
-        multiplier *= FIRST_STEPS.shorter
+        multiplier *= options.shorter
         first = equilibrium(model, factor, rest.u, multiplier, rest.history)
     return first
 
@@ -82,8 +65,9 @@ def doubled(model: WallModel, factor: Factor, first: Equilibrium) -> Iterator[Eq
 
     Without commits the law has no history, so they lie on the path from the first.
     """
-    while first.multiplier < LOAD_RAISING.furthest:
-        first = newton(model, factor, first.u, 2.0 * first.multiplier, first.history, FIRST_STEPS.newton_steps)
+    options = model.options
+    while first.multiplier < options.load_raising.furthest:
+        first = newton(model, factor, first.u, 2.0 * first.multiplier, first.history, options.first_steps.newton_steps)
         if not first.found:
             return
         yield first

@@ -14,29 +14,8 @@ import numpy as np
 
 from harness.model.assembly import FloatArray, IntArray
 from methods.springs.model.factor import Factor, SingularTangent, refactor_any
-from methods.springs.model.gap_law import BREAKPOINTS, same_forces
+from methods.springs.model.gap_law import same_forces
 from methods.springs.model.wall_model import WallModel, load_scale
-
-
-@dataclass(frozen=True)
-class NewtonTolerances:
-    """When Newton's steps are at an end.
-
-    Attributes:
-        steps: at most.
-        balanced: out-of-balance force, as a share of the load scale, of an equilibrium.
-        runaway: step, in dimensionless displacements over the load scale, after which none is to be expected.
-        falling: share of the fastest block's motion above which another falls with it; the others may still settle by
-            less.
-    """
-
-    steps: int = 40
-    balanced: float = 1e-8
-    runaway: float = 1e9
-    falling: float = 1e-3
-
-
-NEWTON = NewtonTolerances()
 
 
 @dataclass(frozen=True, eq=False)
@@ -63,9 +42,17 @@ class Equilibrium:
 
 
 def newton(
-    model: WallModel, factor: Factor, u: FloatArray, multiplier: float, history: FloatArray, limit: int = NEWTON.steps
+    model: WallModel, factor: Factor, u: FloatArray, multiplier: float, history: FloatArray, limit: int | None = None
 ) -> Equilibrium:
-    """Full Newton steps until the states repeat: found when they are those of the step itself, else a cycle."""
+    """Full Newton steps until the states repeat: found when they are those of the step itself, else a cycle.
+
+    Args:
+        model: the wall; factor: its tangent.
+        u: (N,) where the steps begin; multiplier: of the live load; history: (P,) frozen-in shears h.
+        limit: on the steps; None for that of the options.
+    """
+    options = model.options.newton
+    limit = options.steps if limit is None else limit
     virgin = not np.any(u)
     state = model.states(u, history, virgin)
     seen: set[bytes] = set()
@@ -78,14 +65,14 @@ def newton(
             step = factor.solve(model.residual(u, multiplier, history, state))
         except SingularTangent:
             break
-        if not np.isfinite(step).all() or np.abs(step).max() > NEWTON.runaway * scale:
+        if not np.isfinite(step).all() or np.abs(step).max() > options.runaway * scale:
             break
         u = u + step
         iterations += 1
         landed = model.states(u, history)
         if settled(model, u, history, state, landed, scale):
             residual = float(np.abs(model.residual(u, multiplier, history, state)).max() / scale)
-            found = residual < NEWTON.balanced
+            found = residual < options.balanced
             return Equilibrium(found, multiplier, u, history, state, residual, np.zeros_like(u), iterations)
         state = landed
     return Equilibrium(False, multiplier, u, history, state, np.inf, np.zeros_like(u), iterations)
@@ -96,4 +83,6 @@ def settled(
 ) -> bool:
     """Whether the two sets of states give the same forces at u."""
     opening, slip = model.strains(u)
-    return same_forces(opening, model.kt * slip + history, model.kn, model.mu, state, landed, BREAKPOINTS.force * scale)
+    return same_forces(
+        opening, model.kt * slip + history, model.kn, model.mu, state, landed, model.options.breakpoints.force * scale
+    )

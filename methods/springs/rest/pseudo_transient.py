@@ -30,89 +30,6 @@ from methods.springs.model.wall_model import WallModel, load_scale, point_strain
 from methods.springs.rest.newton import Equilibrium, newton
 
 
-@dataclass(frozen=True)
-class PseudoTime:
-    """sigma, the inverse square of the pseudo-time step, and how friction limits lag.
-
-    Attributes:
-        first, least, most: sigma at first, at least, and at which the motion is given up.
-        faster: factor after an increment of at most `easy` Newton steps; slower: after one that was not found.
-        relaxation: share of their way to mu N that the limits go after an increment.
-    """
-
-    first: float = 1.0
-    least: float = 1e-4
-    most: float = 1e8
-    faster: float = 0.5
-    slower: float = 4.0
-    easy: int = 8
-    relaxation: float = 0.5
-
-
-@dataclass(frozen=True)
-class IncrementTuning:
-    """Newton's method with a line search, in one increment.
-
-    Attributes:
-        balanced, rounding: out-of-balance force at its end, as a share of the load scale and of kn times the
-            displacements.
-        steps: at most; halvings: of one line search, at most.
-        slope: share of the slope at the start of a line search that is small enough at its end.
-    """
-
-    balanced: float = 1e-12
-    rounding: float = 1e-14
-    steps: int = 60
-    halvings: int = 12
-    slope: float = 0.5
-
-
-@dataclass(frozen=True)
-class RestTests:
-    """When a motion ends, at rest or in a fall.
-
-    Attributes:
-        still: forces of inertia, and changes of the friction limits (shares of the load scale), below which a wall is
-            at rest.
-        newton_every: increments after which plain Newton is tried; newton_steps: of it.
-        steady: increments over which the forces of inertia of a wall that falls keep up; kept: the share of them left
-            at the end.
-        steps: Newton steps from one rest to the next, at most; steps_under_dead_load: to the first of all.
-    """
-
-    still: float = 1e-9
-    newton_every: int = 5
-    newton_steps: int = 12
-    steady: int = 25
-    kept: float = 0.99
-    steps: int = 2000
-    steps_under_dead_load: int = 10_000
-
-
-@dataclass(frozen=True)
-class LoadRaising:
-    """The load raised from rest to rest.
-
-    Attributes:
-        first: rise of the multiplier, as a share of its scale; longer: factor on it after a rest.
-        width: of a bracket, over its upper end, that is narrow enough.
-        lowest: share of the scale below which a multiplier without rest is not halved again.
-        furthest: multiple of it beyond which none lies.
-    """
-
-    first: float = 1.0 / 64.0
-    longer: float = 2.0
-    width: float = 0.1
-    lowest: float = 1e-3
-    furthest: float = 1e6
-
-
-PSEUDO_TIME = PseudoTime()
-INCREMENT = IncrementTuning()
-REST = RestTests()
-LOAD_RAISING = LoadRaising()
-
-
 @dataclass(frozen=True, eq=False)
 class _Moment:
     """A moment of the motion: displacements u (N,), and openings g, shears tau and friction limits c (P,)."""
@@ -147,58 +64,61 @@ class PseudoTransient:
         Args:
             scale: a multiplier of the order of collapse.
         """
-        rise, highest = LOAD_RAISING.first * scale, np.inf
-        while highest - self._rest.multiplier >= LOAD_RAISING.width * highest and LOAD_RAISING.lowest * scale < highest:
+        options = self.model.options.load_raising
+        rise, highest = options.first * scale, np.inf
+        while highest - self._rest.multiplier >= options.width * highest and options.lowest * scale < highest:
             goal = self._rest.multiplier + rise
             if goal >= highest:
                 goal = 0.5 * (self._rest.multiplier + highest)
-            if goal > LOAD_RAISING.furthest * scale:
+            if goal > options.furthest * scale:
                 return
             rest = self.move(goal)
             if rest.found:
-                rise *= LOAD_RAISING.longer
+                rise *= options.longer
                 yield rest
             else:
                 highest = goal
 
-    def move(self, multiplier: float, limit: int = REST.steps) -> Equilibrium:
-        """Move to rest at another multiplier, in at most `limit` Newton steps.
+    def move(self, multiplier: float, limit: int | None = None) -> Equilibrium:
+        """Move to rest at another multiplier, in at most `limit` Newton steps (None: as the options say).
 
         Where none is found the wall stays where it was, and the answer says whether it falls: the motion of a wall
         that does becomes steady. One that neither rests nor moves steadily is undecided.
         """
         model, now = self.model, self._now
+        rest, times = model.options.rest, model.options.pseudo_time
+        limit = rest.steps if limit is None else limit
         scale, loads = load_scale(model, multiplier), model.dead + multiplier * model.live
         still = np.zeros_like(now.u)
         fall = ahead = still
-        sigma, increments, spent, before = PSEUDO_TIME.first, 0, 0, np.inf
-        while spent < limit and sigma < PSEUDO_TIME.most:
+        sigma, increments, spent, before = times.first, 0, 0, np.inf
+        while spent < limit and sigma < times.most:
             after, steps = self._increment(now, multiplier, sigma, ahead)
             spent += steps
             if after is None:
-                sigma, ahead = PSEUDO_TIME.slower * sigma, still
+                sigma, ahead = times.slower * sigma, still
                 continue
             increments += 1
             rate = after.u - now.u
             lag = _limits(model, after.opening) - now.limit
             inertia, change = sigma * largest(model.inertia * rate), largest(lag)
             history = self._history(after, now.limit + lag)
-            if max(inertia, change) < REST.still * scale:
+            if max(inertia, change) < rest.still * scale:
                 return self._at_rest(after.u, multiplier, history, spent)
-            if increments % REST.newton_every == 0:
-                near = newton(model, self.factor, after.u, multiplier, history, REST.newton_steps)
+            if increments % rest.newton_every == 0:
+                near = newton(model, self.factor, after.u, multiplier, history, rest.newton_steps)
                 spent += near.iterations
                 if near.found:
                     return self._at_rest(near.u, multiplier, history, spent)
             ahead = rate if change < inertia else still
-            if increments % REST.steady == 0:
-                if change < inertia and inertia > REST.kept * before and float(loads @ rate) > 0.0:
+            if increments % rest.steady == 0:
+                if change < inertia and inertia > rest.kept * before and float(loads @ rate) > 0.0:
                     fall = rate
                     break
                 before = inertia
-            now = self._committed(after, now.limit + PSEUDO_TIME.relaxation * lag)
-            if steps <= PSEUDO_TIME.easy and sigma > PSEUDO_TIME.least:
-                sigma *= PSEUDO_TIME.faster
+            now = self._committed(after, now.limit + times.relaxation * lag)
+            if steps <= times.easy and sigma > times.least:
+                sigma *= times.faster
         history = self._history(now, now.limit)
         return Equilibrium(False, multiplier, now.u, history, model.states(now.u, history), np.inf, fall, spent)
 
@@ -248,13 +168,13 @@ class PseudoTransient:
         Args:
             ahead: (N,) displacements of the increment that Newton starts from.
         """
-        model, resisting = self.model, self._resisting
+        model, resisting, options = self.model, self._resisting, self.model.options.increment
         opening_rate, slip_rate = self._strain_rates(ahead)
         opening, trial, moved = now.opening + opening_rate, now.trial + slip_rate, ahead
         residual = self._out_of_balance(now, multiplier, opening, trial) - sigma * model.inertia * moved
-        rounding = INCREMENT.rounding * largest(model.kn) * largest(now.u)
-        balanced = INCREMENT.balanced * load_scale(model, multiplier) + rounding
-        for count in range(1, INCREMENT.steps + 1):
+        rounding = options.rounding * largest(model.kn) * largest(now.u)
+        balanced = options.balanced * load_scale(model, multiplier) + rounding
+        for count in range(1, options.steps + 1):
             np.multiply(model.kn, opening < 0.0, out=resisting.kn)
             np.multiply(model.kt, np.abs(trial) < now.limit, out=resisting.kt)
             try:
@@ -264,18 +184,18 @@ class PseudoTransient:
                 return None, count
             opening_rate, slip_rate = self._strain_rates(step)
             slope, share, low, high = float(step @ residual), 1.0, 0.0, 1.0
-            for _ in range(INCREMENT.halvings):
+            for _ in range(options.halvings):
                 further = opening + share * opening_rate, trial + share * slip_rate, moved + share * step
                 residual = self._out_of_balance(now, multiplier, *further[:2]) - sigma * model.inertia * further[2]
                 left = float(step @ residual)
-                if abs(left) <= INCREMENT.slope * abs(slope) or (share == 1.0 and left >= 0.0):
+                if abs(left) <= options.slope * abs(slope) or (share == 1.0 and left >= 0.0):
                     break
                 low, high = (share, high) if left > 0.0 else (low, share)
                 share = 0.5 * (low + high)
             opening, trial, moved = further
             if largest(residual) < balanced:
                 return replace(now, u=now.u + moved, opening=opening, trial=trial), count
-        return None, INCREMENT.steps
+        return None, options.steps
 
     def _strain_rates(self, u: FloatArray) -> tuple[FloatArray, FloatArray]:
         """Rates of the openings g and of the trial shears tau (P,) along displacements u (N,)."""

@@ -1,8 +1,16 @@
-"""Constants of the search for a lower bound; docs/notes/lower-bound.md gives the evidence."""
+"""Options of the search for a lower bound; docs/notes/lower-bound.md gives the evidence.
+
+`ProofOptions` travels with the `Equations` of the wall."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
+
+CLOSED = 1e-6
+"""Relative distance of bound and state at which a bracket is closed."""
+
+PROVED = 2.001e-6
+"""Relative distance of a certified bound at which the state is called the minimum: as near as trees come."""
 
 
 @dataclass(frozen=True)
@@ -10,28 +18,23 @@ class Windows:
     """How windows on the multiplier follow each other.
 
     Attributes:
-        closed: relative distance of bound and state at which the bracket is closed.
-        proved: relative distance of a certified bound at which the state is called the minimum: as near as trees come.
         narrow: relative width of a window below which a narrower one costs more than it gains.
         gain: part of the bracket that one window must gain before the next is built, and the last half of its time to
             go on with it.
         size: bound of the size of mechanisms, in that which its relaxation comes to, that is good enough.
         above: relative distance of the window's upper end above the state, so that rounding does not cut it off.
         below: part of the bracket that a certificate may lose to rounding before it takes more digits.
-        finished: relative distance at which a window ends: less than `closed`, because a certificate loses some.
+        finished: relative distance at which a window ends: less than `CLOSED`, because a certificate loses some.
         patience: iterations in which the bracket is to lose `gain` of itself; else its states are divided.
         worth: part of the bracket that a window must gain for the next not to be of a half of its states.
         inside: part of the range of a normal force that either half of a division has at least, so that none is divided
             next to the end of its range.
-        loose: interfaces above which the bound after some minutes is far below the state.
         share: of its iterations that a window may spend so.
         least_weight: of a rate in the size of mechanisms, the greatest price being one. A smaller one loses less to the
             price, but the size may then be unbounded.
         newest_weight: share of the weights that the last check has, since prices change from one to the next.
     """
 
-    closed: float = 1e-6
-    proved: float = 2.001e-6
     narrow: float = 4e-3
     gain: float = 0.3
     size: float = 2.5
@@ -41,7 +44,6 @@ class Windows:
     patience: int = 12_000
     worth: float = 0.1
     inside: float = 0.1
-    loose: int = 140
     share: float = 0.5
     least_weight: float = 0.3
     newest_weight: float = 0.25
@@ -99,10 +101,7 @@ class Rounding:
         margin: added to both sides of a bound from a linear programme, in mean block weights: a thousand times its
             tolerances.
         halvings: of the range of a normal force, to where it is divided.
-        wall: difference of a number in a certificate from that of the wall, relative to what it belongs to: short
-            fractions lie within 1e-13 of the float they were read from, and loads are once divided by a unit besides.
         programme: what the value of a programme may be wrong by, in load units: its tolerance.
-        below: relative distance below a fraction at which a float is not above it, whatever the conversion rounds.
     """
 
     repairs: int = 2
@@ -111,25 +110,21 @@ class Rounding:
     margin: float = 1e-6
     halvings: int = 40
     programme: float = 1e-9
-    wall: float = 1e-11
-    below: float = 1e-15
 
 
 @dataclass(frozen=True)
 class Precision:
-    """Binary places of the numbers in the certificate of a window.
+    """Binary places of the numbers in the certificate of a window, which `Scales` carries.
 
     Attributes:
-        numbers: of multipliers and least forces; velocities: of virtual velocities; forces: of virtual forces, and of
+        velocities: of virtual velocities; forces: of virtual forces, and of
             what steps of cases prove; weights: of the size of mechanisms;
         motions: of the velocities that strains give; size: of multipliers of products that bound the size,
         the first with which it is at most `enough_size` times that of the search.
         multipliers: of those that bound the multiplier, at first and at most, with as many more as what is lost needs.
         refinements: of what the multipliers of products leave, before they are rounded.
-        short, shown: characters of a fraction up to which a sentence shows it alone, and beside its value.
     """
 
-    numbers: int = 44
     velocities: int = 40
     forces: int = 54
     weights: int = 20
@@ -138,10 +133,18 @@ class Precision:
     enough_size: float = 1.1
     multipliers: tuple[int, int] = (28, 54)
     refinements: int = 2
-    short: int = 9
-    shown: int = 40
 
 
-PRECISION = Precision()
-WINDOWS, RESTARTS, ROUNDING = Windows(), Restarts(), Rounding()
-STEPS = {"size": Steps(25.0, 2.5, 2.5e4, kept=False), "multiplier": Steps(1e3, 1e2, 1e5, kept=True)}
+@dataclass(frozen=True)
+class ProofOptions:
+    """All options of one search.
+
+    Attributes:
+        size, multiplier: steps of the splitting for the size of mechanisms and for the multiplier.
+    """
+
+    windows: Windows = Windows()
+    restarts: Restarts = Restarts()
+    rounding: Rounding = Rounding()
+    size: Steps = Steps(25.0, 2.5, 2.5e4, kept=False)
+    multiplier: Steps = Steps(1e3, 1e2, 1e5, kept=True)

@@ -1,0 +1,108 @@
+"""The command that runs methods on a frozen set of walls."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import click
+
+from drystone.bench import Bench, bench, set_names, wall_set
+from drystone.cli import terminal
+from drystone.cli.options import (
+    OUTPUT,
+    catching,
+    fresh_flag,
+    jobs_option,
+    json_flag,
+    memory_option,
+    print_json,
+    say,
+    seconds_option,
+    store_option,
+)
+from harness.engine.isolate import preload_methods
+from harness.engine.plan import check_methods
+from harness.engine.run import Limits
+from harness.model.errors import InputError
+from harness.model.library import library
+from harness.model.writing import replacing
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+
+@click.command("bench")
+@click.option("--set", "name", default="core", show_default=True, help=f"One of {', '.join(set_names())}.")
+@click.option("--methods", help=f"Separated by commas.  [default: {','.join(library().methods.compare)}]")
+@click.option(
+    "--join",
+    "others",
+    multiple=True,
+    type=click.Path(exists=True, dir_okay=False, path_type=Path),
+    help="Also count the rows of this table; may be repeated.",
+)
+@click.option("-o", "--output", multiple=True, type=OUTPUT, help="The table as .csv, its figure as .pdf, .svg or .png.")
+@seconds_option
+@memory_option
+@jobs_option
+@store_option
+@fresh_flag
+@json_flag
+@catching
+def bench_(
+    name: str,
+    methods: str | None,
+    others: tuple[Path, ...],
+    output: tuple[Path, ...],
+    seconds: float,
+    memory: int,
+    jobs: int,
+    store: Path,
+    fresh: bool,
+    as_json: bool,
+) -> None:
+    """Run methods on a frozen set of walls: shares answered and correct, error, CPU time.
+
+    Exit code 0 whatever the methods answer: `drystone check` holds methods to references.
+    """
+    chosen = wall_set(name)
+    names = (
+        list(library().methods.compare) if methods is None else [part.strip() for part in methods.split(",") if part]
+    )
+    check_methods(names)
+    tables = [_read(path) for path in others]
+    preload_methods(names)
+    with terminal.progress(len(chosen.walls) * len(names), quiet=as_json) as told:
+        made = bench(
+            name, names, jobs=jobs, limits=Limits(seconds, memory * 2**20), store=store, fresh=fresh, told=told
+        )
+    for path, table in zip(others, tables, strict=True):
+        made = made.joined(table, str(path))
+    for path in output:
+        _write(made, path)
+    if as_json:
+        print_json({"set": name, "version": chosen.version, "methods": made.summary().to_dict("records")})
+        return
+    say(f'Set "{name}", version {chosen.version}: {chosen.title}. Every share is of all its walls.')
+    say(made.summary().to_string(index=False, float_format="{:.4g}".format, na_rep="-"))
+
+
+def _read(path: Path) -> pd.DataFrame:
+    import pandas as pd
+
+    try:
+        return pd.read_csv(path)
+    except ValueError as error:
+        said = f"it is no table of `drystone bench` ({error})"
+        raise InputError(said, "Give its CSV file", source=str(path)) from None
+
+
+def _write(made: Bench, path: Path) -> None:
+    if path.suffix.lower() != ".csv":
+        from reports.drawing.figures import save
+
+        save(made.plot, path)
+        return
+    with replacing(path) as draft:
+        made.table.to_csv(draft, index=False)

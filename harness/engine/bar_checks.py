@@ -1,0 +1,55 @@
+"""What the judge asks of ties and props: tensions in their range, and an elongation only where they are at its ends.
+
+The prestress of a bar is part of the dead load; these are tensions beyond it. They are read from the details of an
+answer (`harness.model.bars.BAR_FORCES`), total tensions in the order of the wall's ties and then props.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from harness.model.assembly import Assembly, FloatArray
+from harness.model.bars import BAR_FORCES, Bars
+
+
+def tensions_beyond(assembly: Assembly, details: dict[str, Any], name: str = BAR_FORCES) -> FloatArray | str | None:
+    """(k,) tensions beyond the prestress that an answer gives under a name; None without bars; or what is wrong."""
+    bars = assembly.bars
+    if not len(bars):
+        return None
+    listed = details.get(name)
+    if listed is None:
+        return f"It gives no tensions of the ties and props (`{name}`), so it cannot be checked."
+    try:
+        tension = np.asarray(listed, dtype=float)
+    except (TypeError, ValueError):
+        tension = np.full(0, np.nan)
+    if tension.shape != (len(bars),) or not np.isfinite(tension).all():
+        return f"`{name}` are not {len(bars)} finite tensions."
+    return tension - bars.prestress
+
+
+def outside_range(bars: Bars, beyond: FloatArray) -> FloatArray:
+    """(k,) tension beyond the range of each bar [force]."""
+    return np.asarray(np.maximum(0.0, np.maximum(bars.least - beyond, beyond - bars.greatest)))
+
+
+def dissipated_by_bars(assembly: Assembly, mechanism: FloatArray) -> float:
+    """Power that bars take beyond what their prestress gives [force x velocity]: at yield, or where they go slack."""
+    rate = assembly.bars.elongations(mechanism, assembly.centroid)
+    return float(np.maximum(assembly.bars.greatest * rate, assembly.bars.least * rate).sum())
+
+
+def bars_at_work(
+    assembly: Assembly, beyond: FloatArray, scale: FloatArray, mechanism: FloatArray
+) -> tuple[float, float]:
+    """Flow residual of the bars of a component, as for sliding, and the work of their slacks: as of a plastic bar.
+
+    A bar lengthens at its greatest tension alone and shortens at its least alone.
+    """
+    rate = assembly.bars.elongations(mechanism, assembly.centroid)
+    slack = np.where(rate > 0.0, assembly.bars.greatest - beyond, beyond - assembly.bars.least)
+    at_fault = np.minimum(abs(slack) / scale, abs(rate)).max(initial=0.0)
+    return float(at_fault), float(abs(slack * rate).sum())

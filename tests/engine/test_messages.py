@@ -1,0 +1,75 @@
+"""A command that was typed nearly right says what would be right."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import pytest
+
+from tests.commands import drystone
+
+WALL = {
+    "$schema": "wall-1.schema.json",
+    "comment": ["measured in May", "by two people"],
+    "format": "wall/1",
+    "unit_weight": 20.0,
+    "friction": 0.4,
+    "pattern": {"type": "stack", "width": 0.3, "height": 0.2, "count": 1},
+    "loads": {"live": {"body": [{"per_weight": [1, 0]}]}},
+}
+
+
+@pytest.fixture
+def wall(tmp_path: Path) -> Path:
+    path = tmp_path / "wall.json"
+    path.write_text(json.dumps(WALL))
+    return path
+
+
+@pytest.mark.parametrize(
+    ("words", "said"),
+    [
+        (("cmpare", "wall.json"), 'Did you mean "compare"?'),
+        (("new", "metod", "x"), 'Did you mean "method"?'),
+        (("methods", "ad", "x"), 'Did you mean "add"?'),
+        (("run", "la", "wall.json", "--jsn"), "--json"),
+        (("run", "wall.json", "la"), "The method comes first: la wall.json"),
+        (("run", "la-asociated", "wall.json"), 'Did you mean "la-associated"?'),
+        (("run", "la", "wal-21"), 'Did you mean "wall-21"?'),
+        (("compare", "wall.json", "--methods", "la", "fe"), "--methods la,fe"),
+        (("sweep", "wall.json", "--vary", "friction=0.5-0.8"), "FROM:TO:COUNT, for example 0.5:0.8:7"),
+        (("sweep", "wall.json", "--vary", "friction=0.5 to 0.8"), "FROM:TO:COUNT"),
+    ],
+)
+def test_what_was_meant_is_said(words: tuple[str, ...], said: str, wall: Path):
+    done = drystone(*words, cwd=wall.parent)
+    assert done.returncode == 2
+    assert said in done.stderr
+
+
+@pytest.mark.parametrize("words", [("--methods", "la-associated,la"), ("--method", "la-associated", "--method", "la")])
+def test_figure_and_compare_name_methods_alike(words: tuple[str, ...], wall: Path):
+    compared = drystone("compare", wall.name, *words, "--no-report", "--json", cwd=wall.parent)
+    rows = json.loads(compared.stdout)["cases"][0]["results"]
+    assert [row["method"] for row in rows] == ["la-associated", "la"]
+    drawn = drystone("figure", wall.name, *words, "--format", "svg", "-o", "drawn.svg", cwd=wall.parent)
+    assert drawn.returncode == 0, drawn.stderr
+    assert "la-associated" in (wall.parent / "drawn.svg").read_text()
+
+
+def test_schema_and_comment_are_taken_kept_and_decide_no_answer(wall: Path):
+    expanded = json.loads(drystone("expand", wall.name, cwd=wall.parent).stdout)
+    assert (expanded["$schema"], expanded["comment"]) == (WALL["$schema"], WALL["comment"])
+    run = ("run", "la-associated", wall.name, "--store", "s.sqlite", "--json")
+    first = json.loads(drystone(*run, cwd=wall.parent).stdout)
+    plain = {name: value for name, value in WALL.items() if name not in ("$schema", "comment")}
+    wall.write_text(json.dumps(plain))
+    assert json.loads(drystone(*run, cwd=wall.parent).stdout)["key"] == first["key"]
+
+
+def test_a_method_for_tests_of_the_engine_stands_in_no_list_and_runs_by_name(wall: Path):
+    assert "dummy" not in drystone("list", "methods", cwd=wall.parent).stdout
+    assert "dummy" not in drystone("run", "dumy", wall.name, cwd=wall.parent).stderr
+    done = drystone("run", "dummy", wall.name, "--json", cwd=wall.parent)
+    assert json.loads(done.stdout)["status"] == "ok"

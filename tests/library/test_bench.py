@@ -1,0 +1,133 @@
+"""`drystone bench`: frozen sets, shares of all walls, profiles in which nothing unsolved counts, joined tables."""
+
+from __future__ import annotations
+
+import json
+import math
+from collections import Counter
+from pathlib import Path
+
+import numpy as np
+import pandas as pd
+import pytest
+
+from drystone.bench import Bench, machine_speed, wall_set
+from harness.model.errors import InputError
+from tests import commands
+
+ROW = {
+    "set": "core", "version": 1, "blocks": 3, "interfaces": 3, "finding": "collapses", "status": "ok",
+    "judge": "accepted", "lower": math.nan, "upper": math.nan, "wall_seconds": 1.0, "peak_memory_bytes": 1,
+    "speed_seconds": 1.0, "speed_spread": 0.1, "processor": "p",
+}  # fmt: skip
+
+
+def row(wall: str, method: str, multiplier: float, cpu: float, *, correct: bool = True, exact: bool = True) -> dict:
+    return ROW | {
+        "wall": wall, "method": method, "multiplier": multiplier, "cpu_seconds": cpu, "answered": True,
+        "correct": correct, "exact": exact, "proved": exact and correct,
+    }  # fmt: skip
+
+
+TABLE = pd.DataFrame(
+    [
+        row("a", "quick", 0.5, 1.0),
+        row("a", "slow", 0.4, 4.0),
+        row("b", "quick", 0.1, 1.0, correct=False),  # rejected: counts nowhere, its value bounds nothing
+        row("b", "slow", 0.3, 3.0),
+        row("c", "quick", 0.2, 1.0),
+        row("c", "slow", 0.1, 2.0, exact=False),  # measured: no state of the joint law
+    ]
+)
+
+
+def test_sets_are_frozen_in_number_and_names():
+    core, standard = wall_set("core"), wall_set("standard")
+    assert (len(core.walls), len(standard.walls)) == (30, 150)
+    names = [wall.name for wall in standard.walls]
+    assert max(Counter(names).values()) == 1
+    assert {wall.name for wall in core.walls} <= set(names)
+    assert max(wall.assembly.n_free for wall in core.walls) <= 61
+
+
+def test_unknown_set_is_refused_with_those_there_are():
+    with pytest.raises(InputError, match='Did you mean "core"'):
+        wall_set("cores")
+
+
+def test_least_known_is_of_correct_exact_states_only():
+    table = Bench(TABLE).complete.set_index(["wall", "method"])
+    assert table.loc[("a", "quick"), "above_least"] == pytest.approx(0.25)
+    assert table.loc[("b", "slow"), "least_known"] == 0.3
+    assert table.loc[("c", "quick"), "least_known"] == 0.2
+
+
+def test_every_share_is_of_all_walls():
+    summary = Bench(TABLE).summary().set_index("method")
+    assert summary.loc["quick", "correct"] == pytest.approx(2 / 3)
+    assert summary.loc["quick", "at_least_known"] == pytest.approx(1 / 3)
+    assert summary.loc["slow", "correct"] == 1.0
+    assert summary.loc["slow", "at_least_known"] == pytest.approx(2 / 3)
+    assert summary.loc["quick", "cpu_seconds"] == 3.0  # the wrong answer cost time as well
+    assert summary.loc["slow", "cpu_of_best"] == pytest.approx((4.0 * 1.0 * 2.0) ** (1 / 3))
+
+
+def test_unsolved_wall_is_within_no_ratio_of_a_profile():
+    profiles = Bench(TABLE).profile()
+    assert profiles["quick"] == ([1.0, 1.0], pytest.approx([1 / 3, 2 / 3]))
+    assert profiles["slow"] == ([1.0, 2.0, 4.0], pytest.approx([1 / 3, 2 / 3, 1.0]))
+
+
+def test_joined_table_can_lower_what_is_known():
+    theirs = pd.DataFrame([row("a", "theirs", 0.25, 9.0)])
+    joined = Bench(TABLE).joined(theirs, "theirs.csv")
+    table = joined.complete.set_index(["wall", "method"])
+    assert table.loc[("a", "slow"), "above_least"] == pytest.approx(0.6)
+    assert joined.summary().set_index("method").loc["slow", "at_least_known"] == pytest.approx(1 / 3)
+
+
+@pytest.mark.parametrize(
+    ("change", "said"), [({"version": 2}, "its version is 2"), ({"set": "large"}, "its set is large")]
+)
+def test_table_of_another_set_is_not_joined(change: dict, said: str):
+    with pytest.raises(InputError, match=said):
+        Bench(TABLE).joined(TABLE.assign(**change), "other.csv")
+    with pytest.raises(InputError, match="no column wall"):
+        Bench(TABLE).joined(TABLE.drop(columns="wall"), "other.csv")
+
+
+def test_speed_of_a_machine_has_a_spread():
+    speed = machine_speed(5)
+    assert 0.0 < speed.seconds < 60.0
+    assert 0.0 <= speed.spread < speed.seconds
+
+
+@pytest.mark.slow
+def test_command_runs_a_set_and_writes_its_table_and_figure(tmp_path: Path):
+    words = ["bench", "--methods", "la-associated,fe", "--store", tmp_path / "s.sqlite"]
+    done = commands.drystone(*words, "--json", "-o", tmp_path / "t.csv", "-o", tmp_path / "t.svg")
+    assert done.returncode == 0, done.stderr
+    told = {item["method"]: item for item in json.loads(done.stdout)["methods"]}
+    assert told["fe"]["walls"] == 30
+    assert told["fe"]["correct"] == told["la-associated"]["correct"] == 1.0
+    table = pd.read_csv(tmp_path / "t.csv")
+    assert len(table) == 60
+    wide = table.pivot(index="wall", columns="method", values="multiplier")
+    assert (
+        wide["fe"] <= wide["la-associated"] * (1.0 + 1e-9)
+    ).all()  # theory: no wall bears more than the associated maximum
+    assert "<svg" in (tmp_path / "t.svg").read_text()
+    again = commands.drystone(*words, "--join", tmp_path / "t.csv", "--json")
+    told = {item["method"]: item for item in json.loads(again.stdout)["methods"]}
+    assert told["fe"]["walls"] == 60
+    assert np.isclose(told["fe"]["correct"], 1.0)
+
+
+def test_command_refuses_what_is_no_table(tmp_path: Path):
+    (tmp_path / "t.csv").write_text("")
+    done = commands.drystone("bench", "--join", tmp_path / "t.csv")
+    assert done.returncode == 2
+    assert "no table of `drystone bench`" in done.stderr
+    done = commands.drystone("bench", "--set", "cor")
+    assert done.returncode == 2
+    assert 'no set of walls is called "cor"' in done.stderr
