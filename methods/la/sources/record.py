@@ -70,6 +70,12 @@ class Record:
         """What each source led to in the end: of one descent or more, or without any."""
         return [tried.ends or tried.states for tried in self.tried]
 
+    @property
+    def agreeing(self) -> int:
+        """How many times a source, or descents from its states, ended at the least multiplier."""
+        ends = (min((state.multiplier for state in states), default=float("inf")) for states in self.ends)
+        return sum(end <= self.least + LEAST_IMPROVEMENT for end in ends)
+
     @contextmanager
     def trying(self, source: str, spent: Work) -> Iterator[Tried]:
         """Note what is found and spent in this time as of a source; `spent` is the count that goes on."""

@@ -148,6 +148,12 @@ class Search:
         """The best collapse state of a mechanism, or None if no forces fit it."""
         return self._best_of(velocities, moving_contacts(rates))
 
+    def lowered(self, state: CollapseState) -> CollapseState:
+        """The lowest state of the mechanism of a state: other forces may fit it at a lower multiplier."""
+        least = self._best_of(state.velocities, state.moving)
+        lower = least is not None and least.multiplier < state.multiplier - LEAST_IMPROVEMENT
+        return least if least is not None and lower else state
+
     def _best_of(self, velocities: FloatArray, moving: BoolArray) -> CollapseState | None:
         key = _key(moving)
         if key not in self.known:

@@ -91,7 +91,8 @@ class LowPrestress:
         vertices_up_to: interfaces up to which paths start from pure vertices. Above, none is begun on walls of
             right-angled joints where gravity ends above the least known state. Gravity is no such sign where joints
             have many directions.
-            Up to there none is where gravity leads to nothing lower and friction does work in the least state.
+            Up to there none is where gravity leads to nothing lower, friction does work in the least state and as many
+            strategies as `agreeing` ended at it.
         rubs: share of the work of the live load that friction takes in such a state; rounding leaves 1e-15.
         gravity_alone: interfaces above which there is no other path, because updated histories need many breakpoints
             and gain little.
@@ -105,6 +106,7 @@ class LowPrestress:
     most: int = 6000
     vertices_up_to: int = 200
     rubs: float = 1e-6
+    agreeing: int = 2
     gravity_alone: int = 2000
     committed: CommittedHistories = CommittedHistories()
     vertex: tuple[tuple[float, float, float], ...] = ((1.0, 0.0, 0.0),)
@@ -123,8 +125,8 @@ class LowPrestress:
     def states(self, search: Search) -> Iterator[CollapseState]:
         """One state a path that ends, until the breakpoints are spent."""
         right_angled = _right_angled(search.problem, search.choices.springs.right)
+        known = search.record.least
         for k, state in ends(search, self._starts(search)):
-            known = search.record.least
             yield state
             if k == 0 and right_angled and self._gravity_is_enough(search, known, state.multiplier):
                 return
@@ -134,7 +136,8 @@ class LowPrestress:
         if search.problem.n_interfaces > self.vertices_up_to:
             return gravity > known + LEAST_IMPROVEMENT
         least = search.record.improvements[-1].state
-        return gravity >= known - LEAST_IMPROVEMENT and friction_work(search.problem, least) > self.rubs
+        rubs = friction_work(search.problem, least) > self.rubs
+        return gravity >= known - LEAST_IMPROVEMENT and rubs and search.record.agreeing >= self.agreeing
 
     def _starts(self, search: Search) -> Iterator[Start]:
         problem = search.problem
@@ -251,7 +254,7 @@ def ends(search: Search, starts: Iterator[Start]) -> Iterator[tuple[int, Collaps
             path_start = start()
             state = None if path_start is None else _collapse_state(search, path_start)
         if state is not None:
-            yield k, state
+            yield k, search.lowered(state)
 
 
 def _right_angled(problem: Problem, sine: float) -> bool:
