@@ -8,11 +8,12 @@ from dataclasses import replace
 from typing import Any
 
 from harness.model.assembly import Assembly
-from harness.model.method import Answer, Finding, OutOfTime, Solver, Status
-from methods.la.answers import dead_load_answer, not_converged, with_residual
+from harness.model.method import Answer, Finding, Solver
+from methods.la.answers import dead_load_answer
 from methods.la.core.newton_matrix import NewtonMatrix
 from methods.la.core.problem import Problem, make_problem
 from methods.numerics.claims import analysed
+from methods.numerics.residual_strength import plastic_and_residual
 
 Answering = Callable[[Assembly, Problem, NewtonMatrix, Any], Answer]
 """Answers for a component that stands under its dead load and carries a live load, by the settings."""
@@ -57,14 +58,7 @@ class LimitAnalysisFamily(Solver):
 
     def _of_wall(self, assembly: Assembly, settings: Any, answer: Answering | None = None) -> Answer:
         """As `solve`, each component answered by `answer`; where joints have strength, with the residual answer."""
-        found = self._of_components(assembly, settings, answer)
-        if not assembly.strong or found.status is not Status.OK:
-            return found
-        try:
-            residual = self._of_components(assembly.without_strength, settings, answer)
-        except OutOfTime:
-            residual = not_converged("The time was over before the wall without strength was solved.")
-        return with_residual(found, residual)
+        return plastic_and_residual(assembly, lambda wall: self._of_components(wall, settings, answer))
 
     def _of_components(self, assembly: Assembly, settings: Any, answer: Answering | None = None) -> Answer:
         """As `solve`, each component answered by `answer`, by default the method's own."""
