@@ -362,21 +362,10 @@ def bonded_blocks() -> Iterator[Recipe]:
             pattern={"type": "stack", "width": width, "height": height, "count": 1},
             loads=push(),
         )
-        references = [
-            r.reference(
-                "closed-form",
-                "exact",
-                value,
-                ["la", "la-associated"],
-                f"{STATICS}: lambda = {formula}, A = b t, T = f_t A, t = 1 m",
-                f"The block {does} at {formula} = {value:g}.",
-                tolerance=r.ROUND_OFF,
-                tolerance_reason=r.ROUND_OFF_REASON,
-                gate=True,
-            )
-        ]
+        source = f"{STATICS}: lambda = {formula}, A = b t, T = f_t A, t = 1 m"
+        references = exact(value, source, f"The block {does} at {formula} = {value:g}.")
         summary = f"Pushed by a multiple of its weight, it {does} at {formula}; without strength it would at less."
-        remarks = Remarks(BONDED, summary, ("strength",), methods=("la", "la-associated"))
+        remarks = Remarks(BONDED, summary, ("strength",))
         yield recipe(name, content, references, remarks)
 
 
@@ -419,7 +408,7 @@ def bonded_wall() -> Iterator[Recipe]:
         "Dry, the wall collapses at 0.5579978 (least known) and 0.584461 (associated). Cohesion as large as the weight "
         "of a twentieth of a brick length adds 8 and 6 %; real joints are brittle, so rely on the dry values."
     )
-    remarks = Remarks(BONDED, summary, ("strength",), methods=("la", "la-associated"))
+    remarks = Remarks(BONDED, summary, ("strength",))
     yield recipe("bonded-wall-21", content, references, remarks)
 
 

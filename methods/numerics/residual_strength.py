@@ -6,7 +6,7 @@ from collections.abc import Callable
 from dataclasses import replace
 
 from harness.model.assembly import Assembly
-from harness.model.method import Answer, Finding, OutOfTime, Status
+from harness.model.method import MOVING_FORCES, Answer, Finding, OutOfTime, Status
 
 
 def plastic_and_residual(assembly: Assembly, solve: Callable[[Assembly], Answer]) -> Answer:
@@ -37,13 +37,15 @@ def with_residual(plastic: Answer, residual: Answer) -> Answer:
         "finding": str(residual.finding),
         "sentence": residual.sentence,
         "multiplier": residual.multiplier,
+        "bracket": None if residual.bracket is None else list(residual.bracket),
+        "bracket_meaning": residual.bracket_meaning,
         "forces": None if residual.forces is None else residual.forces.tolist(),
         "forces_multiplier": residual.forces_multiplier,
         "mechanism": None if residual.mechanism is None else residual.mechanism.tolist(),
         "flow": residual.flow,
         "details": {
             name: residual.details[name]
-            for name in ("live_forces", "dilatant_mechanism", "dead_forces")
+            for name in ("live_forces", "dilatant_mechanism", "dead_forces", MOVING_FORCES)
             if name in residual.details
         },
     }

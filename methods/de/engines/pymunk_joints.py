@@ -19,7 +19,7 @@ from pymunk import batch
 from harness.model.assembly import Assembly, FloatArray, IntArray
 from methods.de.engines.engine import motion_units
 from methods.de.engines.mass_scaling import MassScaling, courses, masses, number_of_courses
-from methods.de.engines.strips import STRIP, build_strips
+from methods.de.engines.strips import STRIP, CannotModel, build_strips
 
 
 @dataclass(frozen=True)
@@ -55,12 +55,14 @@ class PymunkJoints:
         tuning: masses and damping.
 
     Raises:
-        CannotModel: see `methods.de.engines.strips.build_strips`.
+        CannotModel: joints have strength; or see `methods.de.engines.strips.build_strips`.
     """
 
     def __init__(
         self, assembly: Assembly, blocks: IntArray, joints: IntArray, iterations: int, tuning: MassScaling
     ) -> None:
+        if assembly.strong:
+            raise CannotModel("contacts in pymunk have no strength beside friction; take the engine 'sweeps'")
         self.assembly = assembly
         self.interfaces = assembly.n_interfaces
         self.steps = 0

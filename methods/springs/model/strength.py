@@ -1,4 +1,4 @@
-"""Joints with cohesion and tensile strength as gap springs: a dry joint that is clamped, and a cohesion spring beside it.
+"""Joints with cohesion and tensile strength as gap springs: a clamped dry joint with a cohesion spring beside it.
 
 With the clamping N' = N + T of a joint of tensile strength T the yield domain |s| <= mu N + c A is that of a dry joint,
 |s| <= mu N', and of a shear c A - mu T besides, which no compression changes. So the joint is a dry one under the
