@@ -52,7 +52,7 @@ def reactions(wall: Wall, tolerance: float = 1e-9) -> tuple[Reaction, Reaction] 
         tolerance: the largest residual that the judge accepts.
 
     Raises:
-        InputError: no support with a joint moves.
+        InputError: no support with a joint moves, or joints crush.
     """
     from methods.la.core.reaction import extreme_reaction
 
@@ -60,6 +60,9 @@ def reactions(wall: Wall, tolerance: float = 1e-9) -> tuple[Reaction, Reaction] 
     if not np.any(assembly.support_strains):
         remedy = 'Give "settlements": [{"blocks": [...], "translation": [0, -1]}]'
         raise InputError("no support with a joint moves", remedy, "settlements")
+    if assembly.crushes:
+        remedy = "Leave compressive strength out: the programmes of reactions are linear"
+        raise InputError("some joints have compressive strength", remedy, "settlements")
     found: list[Reaction] = []
     for greatest in (False, True):
         answer = extreme_reaction(assembly, greatest)

@@ -60,6 +60,9 @@ def bound(
     if found.assembly.strong:
         remedy = "Leave cohesion and tensile strength out: certificates are of dry joints"
         raise InputError("some joints have cohesion or tensile strength", remedy, case)
+    if found.assembly.crushes:
+        remedy = "Leave compressive strength out: certificates are of joints that do not crush"
+        raise InputError("some joints have compressive strength", remedy, case)
     search = SearchSettings(effort=effort)
     attempt = find_certificate(found.assembly, seconds, search, nodes, lambda sentence: say(sentence, err=True))
     if attempt.document is None:

@@ -5,6 +5,7 @@
 
 from __future__ import annotations
 
+from functools import partial
 from typing import Any
 
 from harness.model.assembly import Assembly
@@ -14,6 +15,8 @@ from methods.la.core.newton_matrix import NewtonMatrix
 from methods.la.core.problem import Problem
 from methods.la.family import LimitAnalysisFamily
 from methods.la.interior.associated import AssociatedResult, solve_associated, solve_with_cvxpy, with_mechanism
+from methods.la.interior.cones import greatest_by_cones
+from methods.numerics.stress_blocks import Greatest, greatest_by_chords
 
 
 class AssociatedLimitAnalysis(LimitAnalysisFamily):
@@ -22,6 +25,10 @@ class AssociatedLimitAnalysis(LimitAnalysisFamily):
     def answer(self, assembly: Assembly, problem: Problem, newton: NewtonMatrix, settings: Any) -> Answer:
         """The linear programme by simplex or interior point."""
         return associated_answer(problem, solve_associated(problem, newton, settings.solver), 1e-9)
+
+    def greatest(self, settings: Any) -> Greatest:
+        """Linear programmes with chords and tangents of the stress blocks."""
+        return greatest_by_chords
 
 
 class AssociatedLimitAnalysisCvxpy(LimitAnalysisFamily):
@@ -33,6 +40,10 @@ class AssociatedLimitAnalysisCvxpy(LimitAnalysisFamily):
         if forces is None:
             return associated_answer(problem, AssociatedResult(outcome), 1e-9)
         return associated_answer(problem, with_mechanism(problem, newton, forces, multiplier, 0), 1e-9)
+
+    def greatest(self, settings: Any) -> Greatest:
+        """The programme of cones."""
+        return partial(greatest_by_cones, solver=settings.cone_solver)
 
 
 def associated_answer(problem: Problem, result: AssociatedResult, tolerance: float) -> Answer:

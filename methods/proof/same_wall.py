@@ -45,7 +45,7 @@ def _require_dry(assembly: Assembly) -> None:
     """
     if assembly.dilates:
         raise CertificateError("it is of a wall without dilatancy, and joints of this one have dilatancy")
-    if not assembly.law.dry.all():
+    if assembly.crushes or not assembly.law.dry.all():
         raise CertificateError("it is of a wall with dry joints, and joints of this one have strength of their own")
     if np.any(assembly.support_motion):
         raise CertificateError("it is of a wall whose supports rest, and supports of this one move")

@@ -49,7 +49,7 @@ def certificate(
     """
     end = time.process_time() + seconds
     # The equations in fractions are of dry joints and lift none.
-    if not assembly.has_live_load or assembly.dilates or assembly.strong:
+    if not assembly.has_live_load or assembly.dilates or assembly.strong or assembly.crushes:
         return None
     problem = make_problem(assembly)
     search = Search(problem, NewtonMatrix(problem))

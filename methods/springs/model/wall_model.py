@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field
-from functools import cached_property, partial
+from functools import cached_property
 from typing import cast
 
 import numpy as np
@@ -94,7 +94,7 @@ class WallModel:
     force: float
     length: float
     displacement: float
-    cohesive: IntArray = field(default_factory=partial(np.empty, 0, dtype=np.int64))
+    cohesive: IntArray = field(default_factory=lambda: np.empty(0, dtype=np.int64))
 
     @property
     def n_unknowns(self) -> int:
