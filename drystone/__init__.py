@@ -9,7 +9,7 @@
 `read_wall`, `build_wall`, `new_wall` and `library_wall` give a `Wall`; `analyse` runs one method in this process,
 `compare` many, each run in a process of its own; `judge` holds an answer against equilibrium, yield and flow. `sweep`
 varies friction, proportions or seeds over many walls, and `check` compares methods with checked references.
-`factor` is the factor of safety on friction.
+`factor` is the factor of safety on friction, and `domain` the interaction domain of two live loads.
 """
 
 from __future__ import annotations
@@ -22,6 +22,7 @@ __all__ = [
     "Answer",
     "Check",
     "Comparison",
+    "Domain",
     "FactorOfSafety",
     "Finding",
     "InputError",
@@ -37,6 +38,7 @@ __all__ = [
     "build_wall",
     "check",
     "compare",
+    "domain",
     "factor",
     "judge",
     "library_wall",
@@ -51,6 +53,7 @@ if TYPE_CHECKING:
     from drystone.analysis import Result, analyse, judge, methods
     from drystone.checking import Check, check
     from drystone.comparing import Comparison, compare
+    from drystone.interaction import Domain, domain
     from drystone.safety import FactorOfSafety, factor
     from drystone.studies import Sweep, sweep
     from drystone.walls import Wall, build_wall, library_wall, library_walls, new_wall, read_wall
@@ -62,6 +65,7 @@ _HOME = {
     "drystone.analysis": ("Result", "analyse", "judge", "methods"),
     "drystone.checking": ("Check", "check"),
     "drystone.comparing": ("Comparison", "compare"),
+    "drystone.interaction": ("Domain", "domain"),
     "drystone.safety": ("FactorOfSafety", "factor"),
     "drystone.studies": ("Sweep", "sweep"),
     "drystone.walls": ("Wall", "build_wall", "library_wall", "library_walls", "new_wall", "read_wall"),

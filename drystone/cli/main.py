@@ -38,6 +38,7 @@ COMMANDS = {
     "repair": ("drawings", "repair", "Close the gaps and overlaps of a drawing, and list the displacements."),
     "show": ("drawings", "show", "Draw CASE to a file or in a window."),
     "factor": ("factor", "factor", "Find the factor of safety on friction of CASE."),
+    "domain": ("domain", "domain", "Find the pairs of multipliers of two live loads under which CASE stands."),
     "figure": ("walls", "figure", "Draw the answers of methods as a figure for a paper."),
     "import": ("files", "import_", "Convert a drawing to WALL.json."),
     "export": ("files", "export", "Write a wall and its answer for other programs."),

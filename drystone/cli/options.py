@@ -85,7 +85,8 @@ def _finite(_context: click.Context, _option: click.Parameter, value: float) -> 
     return value
 
 
-def _pair(text: str) -> tuple[float, float]:
+def pair(text: str) -> tuple[float, float]:
+    """Two numbers with a comma between them; raises click.BadParameter."""
     try:
         x, y = (float(part) for part in text.split(","))
     except ValueError:
@@ -174,7 +175,7 @@ junit_option = click.option("--junit", type=OUTPUT, help="Also write the outcome
 live_option = click.option(
     "--live",
     metavar="X,Y",
-    callback=lambda _context, _option, value: None if value is None else _pair(value),
+    callback=lambda _context, _option, value: None if value is None else pair(value),
     help="Live load as a multiple of every weight, in place of that of the file: 1,0 is to the right.",
 )
 load_case_option = click.option("--load-case", metavar="NAME", help="One of the named load cases of the wall.")

@@ -1,0 +1,238 @@
+"""The boundary of an interaction domain: the edges of a convex polygon, or points of a curve.
+
+With associated flow the domain is a convex polygon, possibly unbounded. A collapse state in one direction gives one of
+its edges, because the power of the loads on the mechanism is (Drucker, Prager and Greenberg 1952)
+
+    p1 x + p2 y <= p1 x0 + p2 y0,   p_k = l_k . u
+
+at every (x, y) that the wall bears, with l_k the loads (n, 3), u the motion (n, 3), and (x0, y0) the multipliers of the
+state. Two neighbouring edges meet in a point; if the wall bears it, it is a vertex, otherwise its direction gives a new
+edge. The polygon is complete when every meeting point is a vertex. Without dilatancy the domain need not be convex, so
+its boundary is sampled: directions are halved until the boundary between them is straight enough.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterable
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from harness.model.assembly import FloatArray
+from harness.model.method import Finding, Status
+from harness.model.result import Result
+
+PARALLEL = 1e-9
+"""Sine of an angle between two directions that is rounding."""
+FAR = 100.0
+"""A boundary is followed to this multiple of its nearest point. Farther out the weight is so small beside the live load
+that a linear programme has too few digits for the judge's tolerance of 1e-9."""
+
+
+@dataclass(frozen=True, eq=False)
+class BoundaryPoint:
+    """Where the boundary of a domain lies in one direction.
+
+    Attributes:
+        direction: (2,) of the plane of the two multipliers.
+        reach: multiple of the direction at which the wall collapses; infinite: it bears every multiple.
+        bracket: the ends between which a measured reach lies; both are the reach if it is computed.
+        normal: (2,) of the edge, with normal . (x, y) <= 1 in the whole domain; None: no edge follows from it.
+        result: the judged answer.
+    """
+
+    direction: FloatArray
+    reach: float
+    bracket: tuple[float, float]
+    normal: FloatArray | None
+    result: Result
+
+    @property
+    def at(self) -> FloatArray:
+        """The point (2,), or the direction in which there is none."""
+        return self.direction * (self.reach if math.isfinite(self.reach) else 1.0)
+
+    @property
+    def bounded(self) -> bool:
+        """Whether the wall collapses in this direction."""
+        return math.isfinite(self.reach)
+
+
+class Stopped(Exception):
+    """No further run helps: the text says why."""
+
+
+class Refused(Stopped):
+    """One direction has no accepted answer."""
+
+
+@dataclass
+class Boundary:
+    """The boundary of a domain as its runs trace it.
+
+    Attributes:
+        loads: (2, n, 3); run: makes the judged result of a direction; accuracy, most: as of `domain`.
+        found: every point, by the angle of its direction; vertices: ids of those that are corners of a polygon.
+        excess, runs, reason: as of `Domain`.
+    """
+
+    loads: FloatArray
+    run: Callable[[FloatArray], Result]
+    accuracy: float
+    most: int
+    found: list[BoundaryPoint] = field(default_factory=list)
+    vertices: list[BoundaryPoint] = field(default_factory=list)
+    excess: float = 0.0
+    runs: int = 0
+    reason: str = ""
+
+    def polygon(self) -> None:
+        """Find every edge, from the four directions of the axes on."""
+        self._all_sides(self._edge_between)
+
+    def points_between(self) -> None:
+        """Halve directions, from the four of the axes on, the most curved part of the boundary first."""
+        self._all_sides(self._halve)
+
+    def _all_sides(
+        self, between: Callable[[BoundaryPoint, BoundaryPoint], list[tuple[BoundaryPoint, BoundaryPoint]]]
+    ) -> None:
+        axes = [self.ask(np.array(way)) for way in ((1.0, 0.0), (0.0, 1.0), (-1.0, 0.0), (0.0, -1.0))]
+        waiting = list(zip(axes, [*axes[1:], axes[0]], strict=True))
+        while waiting:
+            waiting += between(*waiting.pop(0))
+
+    def ask(self, direction: FloatArray) -> BoundaryPoint:
+        """The boundary in a direction.
+
+        Raises:
+            Refused: the answer is not accepted.
+            Stopped: the wall does not stand under its dead load, or there were enough runs.
+        """
+        if self.runs >= self.most:
+            raise Stopped(f"It stopped after {self.runs} runs; ask for more.")
+        self.runs += 1
+        result = self.run(direction)
+        if result.status is not Status.OK or result.judge.accepted is not True:
+            said = result.sentence if result.status is not Status.OK else result.judge.sentence
+            raise Refused(
+                f"In the direction ({direction[0]:.6g}, {direction[1]:.6g}) there is no accepted answer: {said}"
+            )
+        if result.finding is Finding.FALLS:
+            raise Stopped("The wall falls under its dead load.")
+        point = self._point(direction, result)
+        self.found.append(point)
+        return point
+
+    def _point(self, direction: FloatArray, result: Result) -> BoundaryPoint:
+        if not result.finding.has_multiplier or result.multiplier is None:
+            return BoundaryPoint(direction, math.inf, (math.inf, math.inf), None, result)
+        reach = result.multiplier
+        bracket = (reach, reach) if result.bracket is None else (result.bracket[0], result.bracket[1])
+        normal = None
+        if result.mechanism is not None and reach > 0.0:
+            powers = np.einsum("kij,ij->k", self.loads, np.asarray(result.mechanism, dtype=float))
+            normal = powers / (powers @ direction * reach)
+        return BoundaryPoint(direction, reach, bracket, normal, result)
+
+    def _edge_between(self, a: BoundaryPoint, b: BoundaryPoint) -> list[tuple[BoundaryPoint, BoundaryPoint]]:
+        """Ask the direction in which the edges of two neighbours meet; the two pairs that it leaves, or none."""
+        if not a.bounded and not b.bounded:
+            return []
+        if (a.bounded and a.normal is None) or (b.bounded and b.normal is None):
+            raise Stopped("The wall is at its limit under its dead load: no edge follows from its mechanism.")
+        if a.bounded and b.bounded:
+            assert a.normal is not None
+            assert b.normal is not None
+            difference = a.normal - b.normal
+            if max(abs(a.normal @ b.at - 1.0), abs(b.normal @ a.at - 1.0)) <= self.accuracy:
+                return []  # one edge
+        else:
+            normal = a.normal if a.bounded else b.normal
+            assert normal is not None
+            difference = normal
+        meeting = np.array([-difference[1], difference[0]])
+        meeting *= np.sign(_cross(a.direction, meeting)) or 1.0
+        meeting /= np.hypot(*meeting)
+        at_a, at_b = _cross(a.direction, meeting) <= PARALLEL, _cross(meeting, b.direction) <= PARALLEL
+        if at_a or at_b:
+            self.vertices.append(a if at_a else b)  # the edge of one ends at the other, or in its direction
+            return []
+        if not a.bounded or not b.bounded:
+            return self._along(meeting, a, b)
+        point = self.ask(meeting)
+        beyond = max(float(line @ point.at) for line in (a.normal, b.normal) if line is not None)
+        if point.bounded and beyond >= 1.0 - self.accuracy:
+            self.excess = max(self.excess, abs(1.0 - beyond))
+            self.vertices.append(point)
+            return []
+        return [(a, point), (point, b)]
+
+    def _along(
+        self, asymptote: FloatArray, a: BoundaryPoint, b: BoundaryPoint
+    ) -> list[tuple[BoundaryPoint, BoundaryPoint]]:
+        """Ask far along the edge of the one neighbour that is bounded: it goes on, or another edge cuts it."""
+        near = a if a.bounded else b
+        assert near.normal is not None
+        point = self.ask(asymptote + near.direction / FAR)
+        if point.bounded and abs(near.normal @ point.at - 1.0) > self.accuracy:
+            return [(a, point), (point, b)]
+        self.vertices.append(BoundaryPoint(asymptote, math.inf, (math.inf, math.inf), None, point.result))
+        return []
+
+    def _halve(self, a: BoundaryPoint, b: BoundaryPoint) -> list[tuple[BoundaryPoint, BoundaryPoint]]:
+        """Ask the direction between two neighbours; the two pairs that it leaves, or none where the chord holds."""
+        if not a.bounded and not b.bounded:
+            return []
+        ends = [end.at if end.bounded else end.direction * self._size() for end in (a, b)]
+        middle = ends[0] / 2.0 + ends[1] / 2.0
+        size = float(np.hypot(*middle))
+        narrow = _cross(*ends) <= self.accuracy * np.hypot(*ends[0]) * np.hypot(*ends[1])
+        if narrow or size > FAR * min(end.reach for end in self.found):
+            return []
+        try:
+            point = self.ask(middle / size)
+        except Refused as refused:
+            self.reason = str(refused)
+            return []
+        if a.bounded and b.bounded and point.bounded and abs(point.reach - size) <= self.accuracy * size:
+            return []
+        return [(a, point), (point, b)]
+
+    def _size(self) -> float:
+        """The largest reach so far."""
+        return max((point.reach for point in self.found if point.bounded), default=1.0)
+
+    def all_points(self) -> tuple[BoundaryPoint, ...]:
+        """Every point by the angle of its direction."""
+        return _by_angle(self.found)
+
+    def corners(self) -> tuple[BoundaryPoint, ...]:
+        """The corners of a polygon by angle, with the directions of its unbounded edges."""
+        return _by_angle({id(point): point for point in self.vertices}.values())
+
+    def edges(self) -> FloatArray:
+        """(k, 2) normals of the edges, by angle: lines through two vertices, or one and an unbounded direction."""
+        corners = self.corners()
+        kept: list[FloatArray] = []
+        for line in (point.normal for point in self.found if point.normal is not None):
+            size = float(np.hypot(*line))
+            on = [
+                abs(line @ end.at - 1.0) <= self.accuracy
+                if end.bounded
+                else abs(line @ end.direction) <= PARALLEL * size
+                for end in corners
+            ]
+            known = any(np.abs(line - other).max() <= self.accuracy * np.abs(other).max() for other in kept)
+            if sum(on) >= 2 and not known:
+                kept.append(line)
+        return np.array(sorted(kept, key=lambda line: math.atan2(line[1], line[0]))).reshape(-1, 2)
+
+
+def _by_angle(points: Iterable[BoundaryPoint]) -> tuple[BoundaryPoint, ...]:
+    return tuple(sorted(points, key=lambda point: math.atan2(point.direction[1], point.direction[0])))
+
+
+def _cross(a: FloatArray, b: FloatArray) -> float:
+    return float(a[0] * b[1] - a[1] * b[0])

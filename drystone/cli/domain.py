@@ -1,0 +1,106 @@
+"""The command that finds the interaction domain of two live loads."""
+
+from __future__ import annotations
+
+import sys
+from pathlib import Path
+
+import click
+
+from drystone.cli.options import (
+    OUTPUT,
+    cases_option,
+    catching,
+    fresh_flag,
+    json_flag,
+    memory_option,
+    pair,
+    print_json,
+    say,
+    seconds_option,
+    settings_option,
+    warn,
+)
+from drystone.cli.settings import settings_of
+from drystone.interaction import LoadPair, domain_by
+from harness.engine.plan import find_cases
+from harness.engine.run import Limits
+from harness.model.writing import replacing
+
+
+@click.command()
+@click.argument("case")
+@click.option("--method", default="la-associated", show_default=True, help="An associated maximum gives the polygon.")
+@settings_option
+@click.option("--load-cases", metavar="A,B", help="Two load cases of the wall.  [default: those it has]")
+@click.option(
+    "--live",
+    "live",
+    multiple=True,
+    metavar="X,Y",
+    callback=lambda _context, _option, given: tuple(pair(text) for text in given),
+    help="A multiple of every weight; given twice.  [default: 1,0 and 0,-1 without load cases]",
+)
+@click.option("--accuracy", type=float, help="Relative.  [default: 1e-6 for a polygon, 0.01 for points]")
+@click.option("--most", type=click.IntRange(4), default=200, show_default=True, help="Runs after which it stops.")
+@click.option("-o", "--output", type=OUTPUT, help="Also draw or list it: .pdf, .svg, .png or .csv.")
+@click.option("--store", type=click.Path(path_type=Path), help="Where runs are kept.  [default: nowhere]")
+@fresh_flag
+@json_flag
+@cases_option
+@seconds_option
+@memory_option
+@catching
+def domain(
+    case: str,
+    method: str,
+    settings: tuple[str, ...],
+    load_cases: str | None,
+    live: tuple[tuple[float, float], ...],
+    accuracy: float | None,
+    most: int,
+    output: Path | None,
+    store: Path | None,
+    fresh: bool,
+    as_json: bool,
+    folders: tuple[Path, ...],
+    seconds: float,
+    memory: int,
+) -> None:
+    """Find all pairs of multipliers of two live loads under which CASE stands (an id, a case folder or a WALL.json).
+
+    A method of the associated maximum gives the whole convex polygon, others points of its boundary. Exit code 1: it is
+    incomplete.
+    """
+    (found,) = find_cases([case], None, folders)
+    loads = LoadPair.of(found, load_cases=() if load_cases is None else load_cases.split(","), live=live)
+    warn(loads.cases[0])
+    answer = domain_by(
+        loads,
+        method,
+        settings_of(method, settings),
+        accuracy=accuracy,
+        most=most,
+        limits=Limits(seconds, memory * 2**20),
+        store=store,
+        fresh=fresh,
+    )
+    if output is not None and output.suffix.lower() == ".csv":
+        with replacing(output) as draft:
+            draft.write_text(answer.as_csv(), encoding="utf-8")
+    elif output is not None:
+        from reports.drawing.figures import save
+
+        save(answer.plot, output)
+    if as_json:
+        print_json(answer.as_json())
+    else:
+        say(answer.sentence)
+        for point in answer.points:
+            where = (
+                "{:14.7g} {:14.7g}".format(*point.at)
+                if point.bounded
+                else "     unbounded: {:g},{:g}".format(*point.at)
+            )
+            say(where)
+    sys.exit(1 if answer.reason else 0)

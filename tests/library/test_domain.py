@@ -1,0 +1,154 @@
+"""The interaction domain of two live loads: closed forms of one block, rays of bonded walls, and what is refused."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+import drystone
+from harness.model.errors import InputError
+from tests import commands
+from tests.walls import stack
+
+WEIGHT, WIDTH, HEIGHT, FRICTION = 16.0, 0.4, 2.0, 0.5
+
+
+def force(y: float, x: float = 1.0) -> dict[str, Any]:
+    """A horizontal live force on the block at this height."""
+    return {"live": {"points": [{"block": "1", "at": [WIDTH / 2.0, y], "force": [x, 0.0]}]}}
+
+
+def document(**cases: Any) -> dict[str, Any]:
+    """A block of 0.4 x 2 m and 16 kN, with friction 0.5 below, under load cases."""
+    made = {"format": "wall/1", "unit_weight": 20, "friction": FRICTION, "pattern": stack(1, WIDTH, HEIGHT)}
+    return {**made, "load_cases": cases or {"top": force(HEIGHT), "foot": force(0.0)}}
+
+
+BLOCK = drystone.build_wall(document(), "block")
+CORNERS = np.array([(1.6, 6.4), (-1.6, 9.6), (-1.6, -6.4), (1.6, -9.6)])
+"""Overturning: |x| h <= W b / 2; sliding: |x + y| <= mu W."""
+
+
+def ray(edges: np.ndarray, direction: np.ndarray) -> float:
+    """How far a direction goes in the polygon that these normals bound."""
+    return float(1.0 / (edges @ direction).max())
+
+
+def test_block_pushed_at_top_and_foot_overturns_or_slides():
+    found = drystone.domain(BLOCK)
+    assert found.exact
+    assert found.reason == ""
+    order = np.lexsort(found.vertices.T)
+    np.testing.assert_allclose(found.vertices[order], CORNERS[np.lexsort(CORNERS.T)], rtol=1e-9)
+    assert len(found.edges) == 4
+    np.testing.assert_allclose(abs(found.edges @ CORNERS.T).max(axis=1), 1.0, rtol=1e-9)
+    assert len(found.unbounded) == 0
+
+
+def test_weights_of_a_block_bound_a_cone_of_its_friction():
+    # |x| <= mu (1 + y), y downwards: nothing is borne upwards beyond the weight, everything downwards.
+    found = drystone.domain(drystone.new_wall("stack", count=1, width=1.0, height=0.2, friction=0.3))
+    np.testing.assert_allclose(found.vertices, [(0.0, -1.0)], atol=1e-9)
+    slope = found.unbounded[:, 0] / found.unbounded[:, 1]
+    np.testing.assert_allclose(sorted(slope), [-0.3, 0.3], rtol=1e-6)
+    assert "unbounded" in found.sentence
+
+
+def test_scale_of_a_load_scales_its_axis_only():
+    found = drystone.domain(drystone.build_wall(document(top=force(HEIGHT, 1e-3), foot=force(0.0)), "block"))
+    scaled = CORNERS * [1e3, 1.0]
+    np.testing.assert_allclose(found.vertices[np.lexsort(found.vertices.T)], scaled[np.lexsort(scaled.T)], rtol=1e-7)
+
+
+def test_polygon_of_a_bonded_wall_is_what_single_directions_give():
+    wall = drystone.new_wall("running-bond", length=1.5, height=0.8)
+    blocks = [wall.assembly.block_ids[k] for k in wall.assembly.free]
+    cases = {
+        name: {"live": {"points": [{"block": block, "at": centre, "force": way}]}}
+        for name, block, centre, way in (
+            ("a", blocks[-1], wall.assembly.centroid[wall.assembly.free[-1]].tolist(), [1.0, 0.0]),
+            ("b", blocks[0], wall.assembly.centroid[wall.assembly.free[0]].tolist(), [0.6, -0.8]),
+        )
+    }
+    given = json.loads(wall.case.wall.model_dump_json(exclude_unset=True, by_alias=True))
+    given.pop("loads", None)
+    found = drystone.domain(drystone.build_wall({**given, "load_cases": cases}, "bond"))
+    assert found.reason == ""
+    assert len(found.edges) >= 4
+    loads = [case["live"]["points"][0] for case in cases.values()]
+    for angle in np.radians([17.0, 101.0, 203.0, 318.0]):
+        x, y = np.cos(angle), np.sin(angle)
+        points = [
+            {**load, "force": (share * np.array(load["force"])).tolist()}
+            for load, share in zip(loads, (x, y), strict=True)
+        ]
+        alone = drystone.build_wall({**given, "loads": {"live": {"points": points}}}, "alone")
+        single = drystone.analyse(alone, "la-associated-cvxpy")
+        reach = ray(found.edges, np.array([x, y]))
+        if single.multiplier is None:
+            assert reach > 100.0 or reach < 0.0
+        else:
+            assert reach == pytest.approx(single.multiplier, rel=1e-6)
+
+
+def test_points_of_the_least_known_states_lie_on_the_closed_form():
+    found = drystone.domain(BLOCK, "la", accuracy=0.05)
+    assert not found.exact
+    overturns = abs(found.vertices[:, 0]) * HEIGHT / (WEIGHT * WIDTH / 2.0)
+    slides = abs(found.vertices.sum(axis=1)) / (FRICTION * WEIGHT)
+    np.testing.assert_allclose(np.maximum(overturns, slides), 1.0, rtol=1e-7)
+    assert "points of the boundary" in found.sentence
+
+
+def test_wall_that_falls_has_no_domain():
+    made = document()
+    made["load_cases"]["top"]["gravity"] = made["load_cases"]["foot"]["gravity"] = [1.0, -0.1]
+    found = drystone.domain(drystone.build_wall(made, "falls"))
+    assert len(found.vertices) == 0
+    assert "falls under its dead load" in found.sentence
+
+
+def test_runs_are_limited_and_the_sentence_says_so():
+    found = drystone.domain(BLOCK, most=5)
+    assert found.runs == 5
+    assert "stopped after 5 runs" in found.sentence
+    assert found.as_json()["exact"] is False
+
+
+@pytest.mark.parametrize(
+    ("cases", "asked", "said"),
+    [
+        ({}, {"load_cases": ("top", "top")}, "two different load cases"),
+        ({}, {"load_cases": ("top", "fot")}, 'Did you mean "foot"'),
+        ({}, {"live": ((1.0, 0.0),)}, "two different live loads"),
+        ({}, {"load_cases": ("top", "foot"), "live": ((1.0, 0.0), (0.0, 1.0))}, "both given"),
+        ({"top": force(2.0)}, {}, "1 load cases with a live load"),
+        ({"top": force(2.0), "foot": {**force(0.0), "gravity": [0.1, -1.0]}}, {}, "dead loads"),
+    ],
+)
+def test_loads_that_make_no_domain_are_refused(cases: dict[str, Any], asked: dict[str, Any], said: str):
+    with pytest.raises(InputError, match=said):
+        drystone.domain(drystone.build_wall(document(**cases), "block"), **asked)
+
+
+def test_command_prints_draws_and_lists(tmp_path: Path):
+    wall = tmp_path / "block.json"
+    wall.write_text(json.dumps(document()))
+    done = commands.drystone("domain", wall, "--json", "-o", tmp_path / "domain.csv")
+    assert done.returncode == 0, done.stderr
+    told = json.loads(done.stdout)
+    assert told["exact"] is True
+    assert len(told["edges"]) == 4
+    rows = (tmp_path / "domain.csv").read_text().splitlines()
+    assert rows[0].startswith("direction_x")
+    assert len(rows) == 5
+    drawn = commands.drystone("domain", wall, "-o", tmp_path / "domain.svg")
+    assert drawn.returncode == 0, drawn.stderr
+    assert "1.6" in drawn.stdout
+    assert "<svg" in (tmp_path / "domain.svg").read_text()
+    assert commands.drystone("domain", wall, "--most", "4").returncode == 1
+    assert commands.drystone("domain", wall, "--load-cases", "top").returncode == 2
