@@ -145,7 +145,8 @@ def stresses_of(given: JointStrength) -> tuple[float, float, float]:
 
 def _gives_strength(given: JointStrength) -> bool:
     """Whether any strength is given."""
-    return not given.cohesion is given.tensile_strength is given.compressive_strength is None
+    strengths = given.cohesion, given.tensile_strength, given.compressive_strength
+    return any(value is not None for value in strengths)
 
 
 def _check_strength(given: JointStrength, friction: float) -> None:
