@@ -289,7 +289,8 @@ def domain_by(
         InputError: as `domain`.
     """
     loaded = _checked(pair, method, settings)
-    exact = loaded.traits.bounds_above
+    # Where joints crush the domain of an associated method is convex, but no polygon.
+    exact = loaded.traits.bounds_above and not pair.cases[0].assembly.crushes
     if accuracy is None:
         accuracy = 1e-6 if exact else 1e-2
     if not 1e-9 <= accuracy < 1.0:

@@ -59,7 +59,7 @@ def reactions(wall: Wall, tolerance: float = 1e-9) -> tuple[Reaction, Reaction] 
         tolerance: the largest residual that the judge accepts.
 
     Raises:
-        InputError: no support with a joint moves.
+        InputError: no support with a joint moves, or joints crush.
     """
     from methods.la.core.reaction import extreme_reaction
 
@@ -67,6 +67,9 @@ def reactions(wall: Wall, tolerance: float = 1e-9) -> tuple[Reaction, Reaction] 
     if not np.any(with_bars_as_joints(assembly).support_strains):
         remedy = 'Give "settlements": [{"blocks": [...], "translation": [0, -1]}]'
         raise InputError("no support with a joint, a tie or a prop moves", remedy, "settlements")
+    if assembly.crushes:
+        remedy = "Leave compressive strength out: the programmes of reactions are linear"
+        raise InputError("some joints have compressive strength", remedy, "settlements")
     found: list[Reaction] = []
     for greatest in (False, True):
         answer = extreme_reaction(assembly, greatest)

@@ -62,6 +62,9 @@ def bound(
         raise InputError("some joints have cohesion or tensile strength", remedy, case)
     if len(found.assembly.bars):
         raise InputError("the wall has ties or props", "Leave them out: certificates are of blocks and joints", case)
+    if found.assembly.crushes:
+        remedy = "Leave compressive strength out: certificates are of joints that do not crush"
+        raise InputError("some joints have compressive strength", remedy, case)
     search = SearchSettings(effort=effort)
     attempt = find_certificate(found.assembly, seconds, search, nodes, lambda sentence: say(sentence, err=True))
     if attempt.document is None:

@@ -194,6 +194,11 @@ WITHOUT_END = 1e-12
 """Largest residual of forces that balance the live load alone: what is violated by more ends, if far away."""
 COUNTABLE = 1e100
 """Largest number of an answer: sums of products of such numbers are finite, so that no residual is lost in them."""
+GAPS = ("complementarity", "virtual_work", "dilatancy")
+"""Residuals that are the distance between what the forces bear and what the mechanism takes."""
+CRUSHING_GAP = 1e-6
+"""Largest such residual of a wall whose joints crush: its yield domain is round, and forces and mechanism of lines that
+approach it are both admissible, and differ by as much. The error of the multiplier is no more."""
 COARSEST = 1e-2
 """Largest tolerance that shows something: a hundredth of the loads. Ten times the coarsest of the library's methods."""
 MOST_OPEN = 4.0
@@ -231,7 +236,8 @@ def _judge_collapse(
         return said
     residuals = collapse_residuals(assembly, forces, at, mechanism, result.flow, beyond)
     residuals["multiplier"] = apart(multiplier, at)
-    said = _decide(residuals, tolerance, f"The collapse state ({result.flow} flow)")
+    wider = dict.fromkeys(GAPS, CRUSHING_GAP) if assembly.crushes else None
+    said = _decide(residuals, tolerance, f"The collapse state ({result.flow} flow)", wider=wider)
     if said.accepted:
         size = max(assembly.load_unit, abs(multiplier))
         error = abs(multiplier - at) + size * (residuals["complementarity"] + residuals["virtual_work"])
@@ -315,7 +321,14 @@ def _judge_unbounded(assembly: Assembly, forces: FloatArray | None, result: Resu
     if ray.shape != forces.shape or not _countable(ray):
         return _said(tolerance, False, f"`live_forces` are not {len(forces)} finite triples.")
     residuals = force_residuals(assembly, forces, 0.0, beyond=_beyond(assembly, result))
-    alone = replace(assembly, dead=np.zeros_like(assembly.dead), constant=np.zeros_like(assembly.constant), bars=Bars())
+    none = np.where(np.isinf(assembly.crushing), np.inf, 0.0)  # nor does what crushes bear any more
+    alone = replace(
+        assembly,
+        dead=np.zeros_like(assembly.dead),
+        constant=np.zeros_like(assembly.constant),
+        crushing=none,
+        bars=Bars(),
+    )
     residuals |= {f"live_{name}": value for name, value in force_residuals(alone, ray, 1.0).items()}
     what = "Forces under the dead load and forces that balance the live load alone"
     return _decide(residuals, tolerance, what, dict.fromkeys(("live_equilibrium", "live_yield"), WITHOUT_END))
@@ -411,7 +424,7 @@ def _fall_of(part: Assembly, motion: FloatArray, tolerance: float) -> tuple[bool
     """
     opening, slip = relative_velocities(part, motion)
     lift = (part.friction * abs(slip))[:, None]
-    closings = np.maximum(0.0, lift - opening)
+    closings = np.maximum(0.0, lift - opening)[np.isinf(part.crushing)]  # joints that crush close at a cost, see gain
     closing = float(closings.max(initial=0.0))
     taken = dissipated_by_strength(part, opening - lift, slip) + dissipated_by_bars(part, motion)
     gain = (power(part.dead, motion) - taken) / part.force_scale
@@ -426,12 +439,17 @@ def apart(multiplier: float, other: float) -> float:
 
 
 def _decide(
-    residuals: dict[str, float], tolerance: float, what: str, stricter: dict[str, float] | None = None
+    residuals: dict[str, float],
+    tolerance: float,
+    what: str,
+    stricter: dict[str, float] | None = None,
+    wider: dict[str, float] | None = None,
 ) -> Judgement:
-    """Accepted where every residual is within the tolerance, or within its own where that is stricter."""
+    """Accepted where every residual is within the tolerance, or within its own where that is stricter or wider."""
     within = {name: min(tolerance, (stricter or {}).get(name, tolerance)) for name in residuals}
+    within |= {name: max(tolerance, value) for name, value in (wider or {}).items() if name in residuals}
     failed = [
-        f"{name} {value:.3g}" + (f" (at most {within[name]:.3g})" if within[name] < tolerance else "")
+        f"{name} {value:.3g}" + (f" (at most {within[name]:.3g})" if within[name] != tolerance else "")
         for name, value in residuals.items()
         if name != "live_work" and not value <= within[name]
     ]

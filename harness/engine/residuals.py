@@ -5,15 +5,17 @@ r = largest radius of a block; each independent component's mechanism scaled so 
 so that its live work is that of the largest live load that does any, along the motion of its block at speed 1,
 whichever makes it larger: a block that moves fast and does no work hides nothing, and the load of one at rest is
 beside the point). Joints with cohesion c and tensile strength T = f_t A bear T/2 at each end and c A in shear besides
-friction, and dissipate that as they open and slide; in dry joints both are zero:
+friction, and dissipate that as they open and slide; in dry joints both are zero. Joints with a compressive strength
+bear what their stress block does, and may close where it crushes (`harness.engine.crushing`):
 
 supports            fastest vertex of a fixed block, to the fastest of the wall
 equilibrium         out-of-balance force or moment/r of a free block / what is small on that block; where its contact
                     forces are immense beside the loads, from sums in fractions
-yield               tension beyond T/2 at an end, or excess of |s| over mu (n1 + n2) + c A / what is small on either of
-                    the two blocks
+yield               tension beyond T/2 at an end, excess of |s| over mu (n1 + n2) + c A, or excess over the stress
+                    block / what is small on either of the two blocks
 interpenetration    closing velocity at a contact point (beyond what the flow rule asks for)
-dilatancy           opening of a contact point that is not at its tensile strength: min(slack / smaller F, velocity)
+dilatancy           opening of a contact point that is not at its tensile strength: min(slack / smaller F, velocity);
+                    of a joint that crushes, what its stress block would take more than its forces do / (F x velocity)
 sliding             slip against slack of the shear strength, the same way
 complementarity     work of these slacks where nothing should move, in live work at max(unit, |multiplier|)
 bars                tension beyond the range of a bar, as yield; elongation of one below its greatest tension, or
@@ -33,6 +35,7 @@ from __future__ import annotations
 import numpy as np
 
 from harness.engine.bar_checks import bars_at_work, dissipated_by_bars, outside_range
+from harness.engine.crushing import block_excess, block_power
 from harness.engine.measures import Measures, between, exact_sum, magnitudes
 from harness.model.assembly import Assembly, FloatArray
 from harness.model.components import Component, components_of
@@ -101,6 +104,8 @@ def force_residuals(
     tension, cohesion = own_strength(assembly)
     excess = np.maximum(-shear - cohesion[:, 0], shear - cohesion[:, 1]) - assembly.friction * normal.sum(axis=1)
     broken = np.maximum(0.0, np.maximum((-normal - tension).max(axis=1), excess))
+    if assembly.crushes:
+        broken = np.maximum(broken, block_excess(assembly, forces))
     violation = measures.relative(broken, between(assembly, measures.acting), between(assembly, measures.own))
     found = {
         "equilibrium": float(unbalanced[assembly.free].max(initial=0.0)),
@@ -120,15 +125,20 @@ def own_strength(assembly: Assembly) -> tuple[FloatArray, FloatArray]:
 
 
 def dissipated_by_strength(assembly: Assembly, opening: FloatArray, slip: FloatArray) -> float:
-    """Power that tensile strength and cohesion take [force x velocity].
+    """Power that tensile strength, cohesion and compressive strength take [force x velocity].
 
     Args:
         assembly: the wall.
-        opening: (m, 2) openings of the ends beyond what the flow lifts; closings count as none.
+        opening: (m, 2) openings of the ends beyond what the flow lifts; closings count as none but in joints that
+            crush.
         slip: (m,) slips.
     """
     tension, cohesion = own_strength(assembly)
     ways = np.maximum(np.column_stack([slip, -slip]), 0.0)
+    if assembly.crushes:
+        tension = np.where(np.isfinite(assembly.crushing)[:, None], 0.0, tension)
+        crushed = float(block_power(assembly, opening).sum())
+        return float((tension * np.maximum(opening, 0.0)).sum() + (cohesion * ways).sum()) + crushed
     return float((tension * np.maximum(opening, 0.0)).sum() + (cohesion * ways).sum())
 
 
@@ -323,17 +333,25 @@ def _mechanism_residuals(
     tension, cohesion = own_strength(assembly)
     slack_normal = normal + tension
     slack_forward, slack_backward = strength + shear + cohesion[:, 0], strength - shear + cohesion[:, 1]
-    idle_work = float(
-        abs(slack_normal * opening).sum() + abs(slack_forward * forward).sum() + abs(slack_backward * backward).sum()
-    )
+    stays = abs(slack_normal * opening)
+    rigid = np.isinf(assembly.crushing)
+    unused = np.zeros(len(opening))
+    if assembly.crushes:
+        unused = np.where(rigid, 0.0, block_power(assembly, opening) + (normal * opening).sum(axis=1))
+    stays, closing = stays[rigid], -opening[rigid]
+    idle_work = float(stays.sum() + abs(slack_forward * forward).sum() + abs(slack_backward * backward).sum())
+    idle_work += float(abs(unused).sum())
     bars_at_fault, idle_in_bars = bars_at_work(assembly, *bars, mechanism)
     idle_work += idle_in_bars
     # Virtual work: contact forces do work r.q on the mechanism; friction dissipates what lifting does not give back.
     dissipation = float((strength * abs(slip) - normal.sum(axis=1) * lift).sum())
     dissipation += dissipated_by_strength(assembly, opening, slip) + dissipated_by_bars(assembly, mechanism)
     residuals = {
-        "interpenetration": max(0.0, float((-opening).max(initial=0.0))),
-        "dilatancy": float(np.minimum(abs(slack_normal) / scale[:, None], np.maximum(opening, 0.0)).max(initial=0.0)),
+        "interpenetration": max(0.0, float(closing.max(initial=0.0))),
+        "dilatancy": max(
+            float(np.minimum(abs(slack_normal) / scale[:, None], np.maximum(opening, 0.0))[rigid].max(initial=0.0)),
+            float((abs(unused) / scale).max(initial=0.0)),
+        ),
         "sliding": float(
             max(
                 np.minimum(abs(slack_forward) / scale, forward).max(initial=0.0),

@@ -68,7 +68,7 @@ def scaled(assembly: Assembly) -> Assembly:
 
 def heavier(assembly: Assembly) -> Assembly:
     """All loads and strengths 250 times as great."""
-    forces = ("weight", "dead", "live", "constant")
+    forces = ("weight", "dead", "live", "constant", "crushing")
     of_bars = ("prestress", "least", "greatest")
     bars = replace(assembly.bars, **{name: 250.0 * getattr(assembly.bars, name) for name in of_bars})
     return replace(assembly, bars=bars, **{name: 250.0 * getattr(assembly, name) for name in forces})
@@ -102,6 +102,7 @@ def renumbered(assembly: Assembly, seed: int = 1) -> Assembly:
         friction=assembly.friction[joints],
         dilatancy=assembly.dilatancy[joints],
         constant=np.where(swap[:, None], assembly.constant[joints][:, [0, 1, 3, 2]], assembly.constant[joints]),
+        crushing=assembly.crushing[joints],
         joint=tuple(assembly.joint[k] for k in joints),
         bars=assembly.bars.chosen(rng.permutation(len(assembly.bars)), place),
     )
@@ -141,6 +142,7 @@ def beside(assembly: Assembly, share: float) -> Assembly:
         friction=np.append(assembly.friction, 0.5),
         dilatancy=np.append(assembly.dilatancy, 0.0),
         constant=np.vstack([assembly.constant, np.zeros(4)]),
+        crushing=np.append(assembly.crushing, np.inf),
         joint=(*assembly.joint, "bed"),
     )
 

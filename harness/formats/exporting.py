@@ -104,8 +104,9 @@ def write_svg(built: Built, result: Result | None, path: Path) -> None:
 def write_geojson(built: Built, result: Result | None, path: Path) -> None:
     """A feature a block (id, material, fixed, weight, motion) and one a joint (blocks, friction, forces, state).
 
-    Joints with strength have the tension and the cohesion that they bear besides friction too [force]. Ties and props
-    are features of their own, with the range of their tension and, of an answer, the tension.
+    Joints with strength have the tension and the cohesion that they bear besides friction too, and the compression at
+    which they crush [force]. Ties and props are features of their own, with the range of their tension and, of an
+    answer, the tension.
     """
     assembly = built.assembly
     features: list[dict[str, Any]] = []
@@ -129,6 +130,8 @@ def write_geojson(built: Built, result: Result | None, path: Path) -> None:
         if assembly.strong:
             joint["tension"] = 2.0 * float(assembly.constant[number, 0])
             joint["cohesion"] = float(assembly.constant[number, 2])
+        if np.isfinite(assembly.crushing[number]):
+            joint["crushing"] = float(assembly.crushing[number])
         if result is not None and result.forces is not None:
             joint["n1"], joint["n2"], joint["s"] = result.forces[number]
         if result is not None and result.states is not None:
@@ -205,9 +208,9 @@ def matrices(built: Built, result: Result | None) -> dict[str, Any]:
 
     Rows of C are (opening 1, opening 2, slip) of every joint, columns (ux, uy, omega) of every free block, so that
     C^T (n1, n2, s) + dead + multiplier x live = 0, with compression positive and |s| <= friction (n1 + n2).
-    Where joints have strength, `constant` holds what is added to n1, n2 and to both limits of s. Rows of `B` are the
-    elongations of ties and props: their tensions beyond the prestress, which is in `dead`, add -B^T T, and lie between
-    `bar_least` and `bar_greatest`.
+    Where joints have strength, `constant` holds what is added to n1, n2 and to both limits of s, and `crushing` the
+    compression at which they crush. Rows of `B` are the elongations of ties and props: their tensions beyond the
+    prestress, which is in `dead`, add -B^T T, and lie between `bar_least` and `bar_greatest`.
     """
     assembly = built.assembly
     dead, live = assembly.free_loads()
@@ -228,6 +231,8 @@ def matrices(built: Built, result: Result | None) -> dict[str, Any]:
     }
     if assembly.strong:
         arrays["constant"] = assembly.constant
+    if assembly.crushes:
+        arrays["crushing"] = assembly.crushing
     if len(assembly.bars):
         arrays["B"] = with_bars_as_joints(assembly).kinematic_matrix[3 * assembly.n_interfaces + 2 :: 3].toarray()
         arrays["bar_least"], arrays["bar_greatest"] = assembly.bars.least, assembly.bars.greatest

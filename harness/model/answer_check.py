@@ -75,6 +75,8 @@ class _Residual(BaseModel, defer_build=True):
     finding: Finding
     sentence: str
     multiplier: float | None = None
+    bracket: tuple[float, float] | None = None
+    bracket_meaning: str = ""
     forces: list[Triple] | None = None
     forces_multiplier: float | None = None
     mechanism: list[Triple] | None = None

@@ -34,7 +34,19 @@ IntArray = NDArray[np.int64]
 BoolArray = NDArray[np.bool_]
 
 OF_BLOCKS = ("polygons", "centroid", "weight", "fixed", "dead", "live", "support_motion")
-OF_JOINTS = ("block_a", "block_b", "end1", "end2", "face1", "face2", "normal", "friction", "dilatancy", "constant")
+OF_JOINTS = (
+    "block_a",
+    "block_b",
+    "end1",
+    "end2",
+    "face1",
+    "face2",
+    "normal",
+    "friction",
+    "dilatancy",
+    "constant",
+    "crushing",
+)
 
 
 @dataclass(frozen=True, eq=False)
@@ -57,6 +69,8 @@ class Assembly:
         joint: (m,) names of the joints ("bed", "head" or as given).
         dead, live: (n, 3) generalised loads (fx, fy, moment about the centroid); zero on fixed blocks.
         constant: (m, 4) constant parts of the yield slacks [force], as `joint_law` has them; zero for dry joints.
+        crushing: (m,) compression f_c A at which a joint crushes, pressed evenly and without tension [force]; infinite
+            where it does not.
         support_motion: (n, 3) prescribed motion (ux, uy, omega) of fixed blocks; zero where supports rest, and on free
             blocks.
         bars: ties and props between blocks; their prestress is part of the dead load.
@@ -81,6 +95,7 @@ class Assembly:
     dead: FloatArray
     live: FloatArray
     constant: FloatArray = field(default_factory=partial(np.zeros, (0, 4)))
+    crushing: FloatArray = field(default_factory=partial(np.zeros, 0))
     support_motion: FloatArray = field(default_factory=partial(np.zeros, (0, 3)))
     bars: Bars = field(default_factory=Bars)
 
@@ -92,6 +107,8 @@ class Assembly:
         """
         if not len(self.constant):
             object.__setattr__(self, "constant", np.zeros((len(self.joint), 4)))
+        if not len(self.crushing):
+            object.__setattr__(self, "crushing", np.full(len(self.joint), np.inf))
         if not len(self.support_motion):
             object.__setattr__(self, "support_motion", np.zeros((len(self.block_ids), 3)))
         for names, count in ((OF_BLOCKS, len(self.block_ids)), (OF_JOINTS, len(self.joint))):
@@ -128,6 +145,11 @@ class Assembly:
     def strong(self) -> bool:
         """Whether any joint has cohesion or tensile strength."""
         return not self.law.is_cone
+
+    @property
+    def crushes(self) -> bool:
+        """Whether any joint has a compressive strength."""
+        return bool(np.isfinite(self.crushing).any())
 
     @property
     def without_strength(self) -> Assembly:

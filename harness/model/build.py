@@ -138,7 +138,7 @@ def build(wall: Wall, name: str = "wall") -> Built:
     if laws.strong:
         faces = np.linalg.norm(assembly.face2 - assembly.face1, axis=1)
         area = np.asarray(faces * _joint_thickness(wall, blocks, assembly))
-        assembly = replace(assembly, constant=laws.constant(area))
+        assembly = replace(assembly, constant=laws.constant(area), crushing=laws.crushing(area))
     if wall.loads.live is not None and not assembly.has_live_load:
         raise InputError(
             "the live load puts no force on any free block",
@@ -157,6 +157,12 @@ def build(wall: Wall, name: str = "wall") -> Built:
         warnings += interface_warnings(assembly, size, trusted)
     explicit = partial(_explicit, wall, blocks, weight, interfaces, joints, laws)
     return Built(assembly, tuple(warnings), explicit, partial(_joint_thickness, wall, blocks, assembly))
+
+
+MOST_CRUSHING = 1e5
+"""Crushing force of a joint, in dead loads, above which the pressed strip is thinner than a hundred-thousandth of it.
+
+A multiplier changes by that share, and the rates at which such a joint closes are lost to rounding."""
 
 
 def _check_sizes(assembly: Assembly) -> None:
@@ -181,6 +187,15 @@ def _check_sizes(assembly: Assembly) -> None:
         raise InputError(
             "its strength is more than a thousand million times the dead load: too large to compute with",
             "Check the units: cohesion and tensile strength are in force/length^2 of the file",
+            f"interface between {between}",
+        )
+    crushing = np.where(np.isfinite(assembly.crushing), assembly.crushing, 0.0)
+    if crushing.max(initial=0.0) > MOST_CRUSHING * assembly.force_scale:
+        joint = int(crushing.argmax())
+        between = f"{assembly.block_ids[assembly.block_a[joint]]} and {assembly.block_ids[assembly.block_b[joint]]}"
+        raise InputError(
+            f"it crushes under more than {MOST_CRUSHING:g} times the dead load, which changes no digit of an answer",
+            "Check the units: compressive strength is in force/length^2 of the file; or leave it out",
             f"interface between {between}",
         )
 
@@ -288,7 +303,7 @@ def weight_of(block: Block, wall: Wall) -> float:
 
 @dataclass(frozen=True, eq=False)
 class _Laws:
-    """What was given for the joints: (m, 4) friction, dilatancy, cohesion and tensile strength [force/length^2]."""
+    """(m, 5) of the joints: friction, dilatancy, cohesion, tensile and compressive strength [force/length^2]."""
 
     given: FloatArray
 
@@ -304,13 +319,18 @@ class _Laws:
 
     @property
     def strong(self) -> bool:
-        """Whether any joint has cohesion or tensile strength."""
-        return bool(self.given[:, 2:].any())
+        """Whether any joint has cohesion, tensile or compressive strength."""
+        return bool(self.given[:, 2:4].any() or np.isfinite(self.given[:, 4]).any())
 
     def constant(self, area: FloatArray) -> FloatArray:
         """(m, 4) constant parts T/2, T/2, c A, c A of the yield slacks of joints with areas A (m,), T = f_t A."""
         cohesion, tension = area * self.given[:, 2], area * self.given[:, 3]
         return np.column_stack([0.5 * tension, 0.5 * tension, cohesion, cohesion])
+
+    def crushing(self, area: FloatArray) -> FloatArray:
+        """(m,) forces f_c A at which joints with areas A (m,) crush, infinite where they do not."""
+        finite = np.isfinite(self.given[:, 4])
+        return np.where(finite, area * np.where(finite, self.given[:, 4], 0.0), np.inf)
 
 
 def _laws(
@@ -321,7 +341,7 @@ def _laws(
     given = [
         _law(wall, interface, joint, blocks, index, rules) for interface, joint in zip(interfaces, joints, strict=True)
     ]
-    return _Laws(np.array(given, dtype=float).reshape(-1, 4))
+    return _Laws(np.array(given, dtype=float).reshape(-1, 5))
 
 
 def _rules_by_selector(rules: Sequence[FrictionRule]) -> dict[tuple[str, ...], FrictionRule]:
@@ -344,8 +364,8 @@ def _law(
     blocks: list[Block],
     index: dict[str, int],
     rules: dict[tuple[str, ...], FrictionRule],
-) -> tuple[float, float, float, float]:
-    """Friction, dilatancy, cohesion and tensile strength, all from the most particular that holds for an interface."""
+) -> tuple[float, float, float, float, float]:
+    """Friction, dilatancy, cohesion, tensile and compressive strength, all from the most particular that holds."""
     if interface.friction is not None or interface.friction_angle is not None:
         friction = coefficient_of(interface.friction, interface.friction_angle)
         return friction, interface.dilatancy or 0.0, *stresses_of(interface)
@@ -585,9 +605,10 @@ def _explicit(
                         "dilatancy": psi or None,
                         "cohesion": cohesion or None,
                         "tensile_strength": tension or None,
+                        "compressive_strength": crushing if math.isfinite(crushing) else None,
                     }
                 )
-                for interface, joint, (mu, psi, cohesion, tension) in zip(
+                for interface, joint, (mu, psi, cohesion, tension, crushing) in zip(
                     interfaces, joints, laws.given.tolist(), strict=True
                 )
             ],

@@ -34,6 +34,8 @@ def content_of(assembly: Assembly) -> str:
         digest.update(np.asarray(joined, dtype="<i8").tobytes() + b";")
     origin = points.min(axis=0) if len(points) else 0.0
     besides = [(assembly.constant, load)] if assembly.strong else []
+    if assembly.crushes:
+        besides.append((np.where(np.isinf(assembly.crushing), -load, assembly.crushing), load))
     if np.any(assembly.support_motion):
         besides.append((assembly.support_motion, float(abs(assembly.support_motion).max())))
     bars = assembly.bars

@@ -123,6 +123,7 @@ class Traits(BaseModel):
         any_dilatancy: it follows the dilatancy that a wall gives its joints; other methods refuse such a wall.
         any_strength: it takes joints with cohesion and tensile strength; other methods refuse such a wall.
         any_bars: it takes ties and props; other methods refuse such a wall.
+        any_crushing: it takes joints with compressive strength; other methods refuse such a wall.
         moves_no_lower: it measures when rigid blocks on even faces move (`details["lowest_moving"]`): where theory
             knows the least multiplier, moving below it is an error.
         colour: of its curves, as "#rrggbb"; empty: the drawing chooses.
@@ -143,6 +144,7 @@ class Traits(BaseModel):
     any_dilatancy: bool = False
     any_strength: bool = False
     any_bars: bool = False
+    any_crushing: bool = False
     moves_no_lower: bool = False
     colour: str = Field(default="", pattern="^(#[0-9a-f]{6})?$")
     marker: str = ""
@@ -253,8 +255,8 @@ class Listed(Method):
 def check_takes(method: Method, assembly: Assembly) -> None:
     """Refuse a wall with joints or supports that a method does not take.
 
-    Dilatancy and strength of joints, ties and props are taken by methods whose traits say so; supports that move are
-    taken by none yet, only by the programmes of `methods.la`.
+    Dilatancy and each strength of joints, ties and props are taken by methods whose traits say so; supports that move
+    are taken by none yet, only by the programmes of `methods.la`.
 
     Raises:
         InputError: the wall has such joints or supports.
@@ -282,6 +284,12 @@ def check_takes(method: Method, assembly: Assembly) -> None:
         raise InputError(
             f"{method.name} takes no ties and props; the wall has {first_few(assembly.bars.names, 4)}",
             f"Take a method that knows them ({', '.join(methods_with('any_bars'))}), or leave them out",
+        )
+    if assembly.crushes and not method.traits.any_crushing:
+        raise InputError(
+            f"{method.name} takes joints that do not crush; that between {between(int(np.argmin(assembly.crushing)))} "
+            "has a compressive strength",
+            f"Take a method that takes it ({', '.join(methods_with('any_crushing'))}), or leave it out",
         )
     if np.any(assembly.support_motion):
         block = int(np.argmax(np.any(assembly.support_motion, axis=1)))

@@ -11,8 +11,8 @@ _OUTSIDE = {
     "joints that soften, or whose friction falls as they slide (cohesion and tensile_strength are fields)": (
         "mortar", "mortar_joint", "residual_friction", "peak_friction", "roughness", "fracture_energy",
     ),
-    "blocks that crush, crack or deform": (
-        "strength", "compressive_strength", "crushing_strength", "crushing", "fc", "fk", "fm", "fd",
+    "blocks that crack or deform (joints crush by their compressive_strength)": (
+        "strength", "crushing_strength", "crushing", "fc", "fk", "fm", "fd",
         "young", "youngs_modulus", "young_modulus", "elastic_modulus", "modulus", "poisson", "poisson_ratio",
         "shear_modulus", "stiffness", "normal_stiffness", "shear_stiffness", "kn", "ks", "creep",
     ),

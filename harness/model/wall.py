@@ -119,6 +119,10 @@ Cohesion = Annotated[
 TensileStrength = Annotated[
     NonNegative | None, Field(description="[force/length^2 of the file], from 0 (absent) to cohesion / friction")
 ]
+CompressiveStrength = Annotated[
+    Positive | None,
+    Field(description="stress at which a joint crushes [force/length^2 of the file]; else it never does"),
+]
 
 
 class JointStrength(Protocol):
@@ -132,15 +136,26 @@ class JointStrength(Protocol):
     def tensile_strength(self) -> float | None:
         """Tensile strength [force/length^2]."""
 
+    @property
+    def compressive_strength(self) -> float | None:
+        """Compressive strength [force/length^2]."""
 
-def stresses_of(given: JointStrength) -> tuple[float, float]:
-    """Cohesion and tensile strength [force/length^2], zero where none is given."""
-    return given.cohesion or 0.0, given.tensile_strength or 0.0
+
+def stresses_of(given: JointStrength) -> tuple[float, float, float]:
+    """Cohesion, tensile, compressive strength [force/length^2]: zero, and the last infinite, where none is given."""
+    crushing = given.compressive_strength
+    return given.cohesion or 0.0, given.tensile_strength or 0.0, math.inf if crushing is None else crushing
+
+
+def _gives_strength(given: JointStrength) -> bool:
+    """Whether any strength is given."""
+    strengths = given.cohesion, given.tensile_strength, given.compressive_strength
+    return any(value is not None for value in strengths)
 
 
 def _check_strength(given: JointStrength, friction: float) -> None:
     """A joint bears no tension at which its shear strength would be used up already, but for rounding."""
-    cohesion, tension = stresses_of(given)
+    cohesion, tension, _ = stresses_of(given)
     if friction * tension > cohesion * (1.0 + 1e-9):
         raise ValueError(
             f"the tensile strength {tension:g} is above cohesion / friction = {cohesion / friction:.6g}, where no "
@@ -161,6 +176,7 @@ class FrictionRule(Strict):
     dilatancy: Dilatancy = None
     cohesion: Cohesion = None
     tensile_strength: TensileStrength = None
+    compressive_strength: CompressiveStrength = None
     materials: tuple[str, str] | None = None
     joint: str | None = Field(None, description='"bed", "head", or a name given in `interfaces`')
     between: tuple[str, str] | None = Field(None, description="ids of the two blocks")
@@ -192,6 +208,7 @@ class Friction(Strict):
     dilatancy: Dilatancy = None
     cohesion: Cohesion = None
     tensile_strength: TensileStrength = None
+    compressive_strength: CompressiveStrength = None
     rules: list[FrictionRule] = Field(default_factory=list)
 
     @model_validator(mode="after")
@@ -232,6 +249,7 @@ class Interface(Strict):
     dilatancy: Dilatancy = None
     cohesion: Cohesion = None
     tensile_strength: TensileStrength = None
+    compressive_strength: CompressiveStrength = None
     joint: str | None = Field(None, description='a name for friction rules; "bed" or "head" by inclination if absent')
     inset: Inset | None = None
 
@@ -245,8 +263,10 @@ class Interface(Strict):
             _check_strength(self, friction)
         elif self.dilatancy is not None:
             raise ValueError("an interface gives dilatancy beside a friction of its own")
-        elif self.cohesion is not None or self.tensile_strength is not None:
-            raise ValueError("an interface gives cohesion and tensile strength beside a friction of its own")
+        elif _gives_strength(self):
+            raise ValueError(
+                "an interface gives cohesion, tensile and compressive strength beside a friction of its own"
+            )
         return self
 
 
@@ -359,7 +379,7 @@ Interfaces = Annotated[
 
 
 class Wall(Strict):
-    """A wall, format `wall/1`. Its own cohesion and tensile strength are of all joints."""
+    """A wall, format `wall/1`. Its own cohesion, tensile and compressive strength are of all joints."""
 
     format: Literal["wall/1"]
     title: str = ""
@@ -377,6 +397,7 @@ class Wall(Strict):
     friction_angle: Angle | None = Field(None, description="phi [degrees], instead of `friction`")
     cohesion: Cohesion = None
     tensile_strength: TensileStrength = None
+    compressive_strength: CompressiveStrength = None
     pattern: Patterns | None = None
     blocks: list[Block] = Field(default_factory=list)
     interfaces: Interfaces = Field(default_factory=Detection)
@@ -406,10 +427,10 @@ class Wall(Strict):
         if self.friction is not None and self.friction_angle is not None:
             raise ValueError("a wall gives either friction or friction_angle")
         if isinstance(self.friction, Friction):
-            if self.cohesion is not None or self.tensile_strength is not None:
+            if _gives_strength(self):
                 raise ValueError(
-                    'friction by rules holds the cohesion and tensile strength too: give them beside "default" or in a '
-                    "rule"
+                    "friction by rules holds the cohesion, tensile and compressive strength too: give them beside "
+                    '"default" or in a rule'
                 )
         else:
             _check_strength(self, coefficient_of(self.friction, self.friction_angle))

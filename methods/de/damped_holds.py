@@ -19,6 +19,7 @@ from methods.de.holds.release import release
 from methods.de.methods import DE, DE_MUJOCO
 from methods.de.settings import MujocoSettings, ReleaseSettings, SweepSettings
 from methods.numerics.claims import analysed
+from methods.numerics.residual_strength import plastic_and_residual
 
 
 class DampedHolds(Solver):
@@ -31,7 +32,9 @@ class DampedHolds(Solver):
     def solve(self, assembly: Assembly, settings: SweepSettings) -> Answer:
         """Bracket of the collapse multiplier over sweep orders; see `methods.de.answers`."""
 
-        return analysed(assembly, lambda part: self._of_component(part, settings))
+        return plastic_and_residual(
+            assembly, lambda wall: analysed(wall, lambda part: self._of_component(part, settings))
+        )
 
     def _of_component(self, assembly: Assembly, settings: SweepSettings) -> Answer:
         def engine(blocks: IntArray, joints: IntArray, tuning: MassScaling) -> Engine:

@@ -27,6 +27,7 @@ DE = Listed(
         caption="between held and moving",
         brackets=True,
         moves_no_lower=True,
+        any_strength=True,
         colour="#2f6b3a",
         marker="d",
     ),

@@ -124,7 +124,7 @@ class TrescaProgramme:
             sp.triu(self._quadratic, format="csc"),
             np.zeros(n + 3 * p),
             self._constraint,
-            np.zeros(4 * p),
+            np.concatenate([0.0 - self.model.initial_opening, np.zeros(3 * p)]),
             np.full(4 * p, np.inf),
             verbose=False,
             eps_abs=self._accuracy,
@@ -165,7 +165,7 @@ class TrescaProgramme:
         u = result.x[: self.n]
         sliding = result.x[self.n + self.p : self.n + 2 * self.p] - result.x[self.n + 2 * self.p :]
         self.shear = model.kt * (self._slip @ u - sliding) + h
-        self.normal = np.maximum(0.0, -model.kn * (self._opening @ u))
+        self.normal = np.maximum(0.0, -model.kn * (self._opening @ u + model.initial_opening))
         return u, self.normal
 
 

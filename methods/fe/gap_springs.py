@@ -27,6 +27,7 @@ from methods.fe.histories import HistoryResult, HistoryTuning, Plan, trace_histo
 from methods.fe.incremental import IncrementalResult, march
 from methods.fe.settings import GapSpringsSettings, NewtonSettings
 from methods.numerics.claims import analysed
+from methods.numerics.residual_strength import plastic_and_residual
 from methods.springs.model.factor import Factor, make_factor
 from methods.springs.model.wall_model import WallModel, build_model
 from methods.springs.path.path_record import PathEnd
@@ -76,7 +77,9 @@ class GapSprings(Solver):
 
     def solve(self, assembly: Assembly, settings: Any) -> Answer:
         """Gravity first, then the live load to the plateau under every history asked for."""
-        return analysed(assembly, lambda part: self._of_component(part, settings))
+        return plastic_and_residual(
+            assembly, lambda wall: analysed(wall, lambda part: self._of_component(part, settings))
+        )
 
     def _of_component(self, assembly: Assembly, settings: Any) -> Answer:
         answer = self._solve(build_model(assembly, settings, settings.friction_cap), settings)
@@ -180,7 +183,9 @@ class IncrementalNewton(Solver):
 
     def solve(self, assembly: Assembly, settings: Any) -> Answer:
         """March as a general code does; a value only where a mechanism was reached and checked."""
-        return analysed(assembly, lambda part: self._of_component(part, settings))
+        return plastic_and_residual(
+            assembly, lambda wall: analysed(wall, lambda part: self._of_component(part, settings))
+        )
 
     def _of_component(self, assembly: Assembly, settings: Any) -> Answer:
         model = build_model(assembly, settings)
@@ -208,7 +213,9 @@ class ConvexSteps(Solver):
 
     def solve(self, assembly: Assembly, settings: Any) -> Answer:
         """Bracket the multiplier at which the steps lose their equilibrium; refused above the set number of blocks."""
-        return analysed(assembly, lambda part: self._of_component(part, settings))
+        return plastic_and_residual(
+            assembly, lambda wall: analysed(wall, lambda part: self._of_component(part, settings))
+        )
 
     def _of_component(self, assembly: Assembly, settings: Any) -> Answer:
         if assembly.n_free > settings.max_blocks:

@@ -31,15 +31,18 @@ def load_steps(model: WallModel, steps: list[PathStep], most: int) -> LoadSteps:
 
 def joint_states(model: WallModel, state: IntArray) -> IntArray:
     """(m,) places in `STATES` of the interfaces whose gap points are in the given states (P,)."""
-    m = model.assembly.n_interfaces
+    m, contacts = model.assembly.n_interfaces, model.n_contacts
+    interface, position = model.interface[:contacts], model.position[:contacts]
 
     def every(holds: np.ndarray) -> np.ndarray:
-        return np.asarray(np.bincount(model.interface, ~holds, m) == 0)
+        return np.asarray(np.bincount(interface, ~holds[:contacts], m) == 0)
 
     open_ = state == OPEN
     slides = (state == SLIP_PLUS) | (state == SLIP_MINUS)
-    end = (model.position == 0.0) | (model.position == 1.0)
-    names = np.where(every(slides | open_), STATES.index("slip"), STATES.index("stick"))
-    names[~every(~(open_ & end))] = STATES.index("rock")
+    end = (position == 0.0) | (position == 1.0)
+    slips = every(slides | open_)
+    slips[model.cohesive] &= slides[contacts:]
+    names = np.where(slips, STATES.index("slip"), STATES.index("stick"))
+    names[~every(~(open_[:contacts] & end))] = STATES.index("rock")
     names[every(open_)] = STATES.index("open")
     return np.asarray(names, dtype=np.int64)

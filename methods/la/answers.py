@@ -2,13 +2,11 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
 from typing import Any
 
 import numpy as np
 
 from harness.model.assembly import Assembly, FloatArray
-from harness.model.bars import BAR_FORCES, DEAD_BAR_FORCES
 from harness.model.errors import first_few
 from harness.model.method import Answer, Finding, Status
 from methods.la.core.newton_matrix import NewtonMatrix
@@ -89,43 +87,6 @@ def not_converged(sentence: str, iterations: int = 0, details: dict[str, Any] | 
 def unbounded_answer(sentence: str, iterations: int = 0, details: dict[str, Any] | None = None) -> Answer:
     """The answer for a live load that cannot make the wall collapse."""
     return Answer(Status.OK, Finding.UNBOUNDED, sentence, iterations=iterations, details=details or {})
-
-
-def with_residual(plastic: Answer, residual: Answer) -> Answer:
-    """The answer of a wall whose joints keep their strength, with that of the same wall without.
-
-    Joints of mortar are brittle: what is left of them once they have moved is friction, the residual strength. Its
-    whole answer goes along as `details["without_strength"]`, so that the judge can tell whether it is right.
-    """
-    own = {
-        "status": str(residual.status),
-        "finding": str(residual.finding),
-        "sentence": residual.sentence,
-        "multiplier": residual.multiplier,
-        "forces": None if residual.forces is None else residual.forces.tolist(),
-        "forces_multiplier": residual.forces_multiplier,
-        "mechanism": None if residual.mechanism is None else residual.mechanism.tolist(),
-        "flow": residual.flow,
-        "details": {
-            name: residual.details[name]
-            for name in ("live_forces", "dilatant_mechanism", "dead_forces", BAR_FORCES, DEAD_BAR_FORCES)
-            if name in residual.details
-        },
-    }
-    if residual.status is not Status.OK:
-        said = "what it bears without cohesion and tensile strength was not found"
-    elif residual.multiplier is not None:
-        said = f"without cohesion and tensile strength it is {residual.multiplier:.7g}, the residual multiplier"
-    else:
-        said = f"without cohesion and tensile strength the answer is: {residual.finding}"
-    rely = "Rely on the residual answer"
-    if residual.flow == "associated" and residual.finding is not Finding.FALLS:
-        rely = "Both are upper bounds: rely on the least residual multiplier (`la`)"
-    sentence = (
-        f"{plastic.sentence} That is with plastic strength of the joints; {said}. {rely}, because joints of mortar are "
-        "brittle."
-    )
-    return replace(plastic, sentence=sentence, details=plastic.details | {"without_strength": own})
 
 
 def dead_load_answer(problem: Problem, newton: NewtonMatrix, has_live_load: bool) -> Answer | None:

@@ -5,6 +5,7 @@
 
 from __future__ import annotations
 
+from functools import partial
 from typing import Any
 
 from harness.model.assembly import Assembly
@@ -20,6 +21,8 @@ from methods.la.interior.associated import (
     solve_with_cvxpy,
     with_mechanism,
 )
+from methods.la.interior.cones import greatest_by_cones
+from methods.numerics.stress_blocks import Greatest, greatest_by_chords
 
 
 class AssociatedLimitAnalysis(LimitAnalysisFamily):
@@ -36,6 +39,10 @@ class AssociatedLimitAnalysis(LimitAnalysisFamily):
         """The linear programme by simplex or interior point."""
         return associated_answer(problem, solve_associated(problem, newton, settings.solver, self._end), 1e-9)
 
+    def greatest(self, settings: Any) -> Greatest:
+        """Linear programmes with chords and tangents of the stress blocks."""
+        return greatest_by_chords
+
 
 class AssociatedLimitAnalysisCvxpy(LimitAnalysisFamily):
     """The same linear programme written in cvxpy, to be read beside the formulas (`la-associated-cvxpy`)."""
@@ -46,6 +53,10 @@ class AssociatedLimitAnalysisCvxpy(LimitAnalysisFamily):
         if forces is None:
             return associated_answer(problem, AssociatedResult(outcome), 1e-9)
         return associated_answer(problem, with_mechanism(problem, newton, forces, multiplier, 0), 1e-9)
+
+    def greatest(self, settings: Any) -> Greatest:
+        """The programme of cones."""
+        return partial(greatest_by_cones, solver=settings.cone_solver)
 
 
 def associated_answer(problem: Problem, result: AssociatedResult, tolerance: float) -> Answer:

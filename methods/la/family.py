@@ -11,12 +11,14 @@ import numpy as np
 
 from harness.model.assembly import Assembly
 from harness.model.bars import BAR_FORCES, DEAD_BAR_FORCES, Bars, tensions, with_bars_as_joints
-from harness.model.deadline import best_so_far
-from harness.model.method import Answer, Finding, Solver, Status
-from methods.la.answers import dead_load_answer, not_converged, with_residual
+from harness.model.method import Answer, Finding, Solver
+from methods.la.answers import dead_load_answer
 from methods.la.core.newton_matrix import NewtonMatrix
 from methods.la.core.problem import Problem, make_problem
+from methods.la.crushing import crushing_answer
 from methods.numerics.claims import analysed
+from methods.numerics.residual_strength import plastic_and_residual
+from methods.numerics.stress_blocks import Greatest
 
 Answering = Callable[[Assembly, Problem, NewtonMatrix, Any], Answer]
 """Answers for a component that stands under its dead load and carries a live load, by the settings."""
@@ -70,14 +72,7 @@ class LimitAnalysisFamily(Solver):
 
     def _of_wall(self, assembly: Assembly, settings: Any, answer: Answering | None = None) -> Answer:
         """As `solve`, each component answered by `answer`; where joints have strength, with the residual answer."""
-        found = self._of_components(assembly, settings, answer)
-        if not assembly.strong or found.status is not Status.OK:
-            return found
-        residual = best_so_far(
-            lambda: self._of_components(assembly.without_strength, settings, answer),
-            lambda: not_converged("The time was over before the wall without strength was solved."),
-        )
-        return with_residual(found, residual)
+        return plastic_and_residual(assembly, lambda wall: self._of_components(wall, settings, answer))
 
     def _of_components(self, assembly: Assembly, settings: Any, answer: Answering | None = None) -> Answer:
         """As `solve`, each component answered by `answer`, by default the method's own."""
@@ -94,10 +89,20 @@ class LimitAnalysisFamily(Solver):
 
     def _of_component(self, assembly: Assembly, settings: Any, answer: Answering | None = None) -> Answer:
         """The answer of the dead load where it decides, else that of `answer`, by default the method's own."""
+        if assembly.crushes:
+            return crushing_answer(assembly, self.greatest(settings))
         problem = make_problem(assembly)
         newton = NewtonMatrix(problem)
         early = dead_load_answer(problem, newton, assembly.has_live_load)
         return early if early is not None else (answer or self.answer)(assembly, problem, newton, settings)
+
+    def greatest(self, settings: Any) -> Greatest:
+        """What solves for the greatest multiplier where joints crush.
+
+        Raises:
+            ValueError: the method takes no such joints; `harness.model.method.check_takes` refuses them before.
+        """
+        raise ValueError("it takes no joints with compressive strength")
 
     @abstractmethod
     def answer(self, assembly: Assembly, problem: Problem, newton: NewtonMatrix, settings: Any) -> Answer:

@@ -27,9 +27,11 @@ class CvxpySettings(Settings):
 
     Attributes:
         solver: a linear solver cvxpy knows; HIGHS gives a vertex.
+        cone_solver: one for second-order cones, where joints have a compressive strength.
     """
 
     solver: str = "HIGHS"
+    cone_solver: str = "CLARABEL"
 
 
 class SearchSettings(Settings):

@@ -5,6 +5,8 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 
+import numpy as np
+
 from harness.model.assembly import Assembly, FloatArray
 from harness.model.components import analysed_apart
 from harness.model.deadline import best_so_far
@@ -79,7 +81,7 @@ def at_limit(assembly: Assembly, answer: Answer) -> Answer:
 def _leaves_open(assembly: Assembly, answer: Answer) -> bool:
     """Whether an answer may be that of a wall at its limit, or claims a multiplier below zero."""
     multiplier, mechanism = answer.multiplier, answer.mechanism
-    if not assembly.has_live_load or answer.status is Status.REFUSED:
+    if not assembly.has_live_load or answer.status is Status.REFUSED or assembly.crushes:
         return False
     if multiplier is not None:
         low = multiplier if answer.bracket is None else answer.bracket[0]
@@ -226,8 +228,7 @@ def with_proof(assembly: Assembly, answer: Answer) -> Answer:
 def _proved(assembly: Assembly, answer: Answer) -> Answer:
     """As `with_proof`; raises OutOfTime where the time is over."""
     if answer.finding is Finding.UNBOUNDED:
-        # Cohesion and tension do not grow with the load.
-        growth = admissible_forces(assembly.without_strength, assembly.live)
+        growth = _growing_forces(assembly)
         forces = answer.forces if answer.forces_multiplier == 0.0 else admissible_forces(assembly, assembly.dead)
         if growth is None or forces is None:
             return answer
@@ -245,3 +246,14 @@ def _proved(assembly: Assembly, answer: Answer) -> Answer:
         if proof is not None:
             return replace(answer, details=answer.details | {"dilatant_mechanism": proof.tolist()})
     return answer
+
+
+def _growing_forces(assembly: Assembly) -> FloatArray | None:
+    """Forces (m, 3) that bear the live load and any multiple of it, as no strength of a joint does; None if none."""
+    rigid = np.isinf(assembly.crushing)
+    found = admissible_forces(assembly.without_strength.with_joints(rigid), assembly.live)
+    if found is None:
+        return None
+    growth = np.zeros((assembly.n_interfaces, 3))
+    growth[rigid] = found
+    return growth

@@ -93,6 +93,10 @@ def admissible_forces(assembly: Assembly, load: FloatArray) -> FloatArray | None
         return np.zeros((m, 3))
     if m == 0:
         return None
+    if assembly.crushes:
+        from methods.numerics.stress_blocks import borne_forces  # which builds on this module
+
+        return borne_forces(assembly, load)
     vertex, unit = _vertex_of_forces(assembly, load)
     return None if vertex is None else assembly.law.in_units(unit).within(vertex.value.reshape(-1, 3)) * unit
 
@@ -100,8 +104,11 @@ def admissible_forces(assembly: Assembly, load: FloatArray) -> FloatArray | None
 def greatest_multiplier(assembly: Assembly) -> tuple[float, FloatArray, FloatArray] | None:
     """The greatest multiplier of statics, its contact forces (m, 3) and the dilatant mechanism (n, 3) dual to them.
 
-    None where no forces within yield bear any multiplier, or any multiplier is borne, or the programme fails.
+    None where no forces within yield bear any multiplier, or any multiplier is borne, or the programme fails; and where
+    joints crush, for which `methods.numerics.stress_blocks` has it.
     """
+    if assembly.crushes:
+        return None
     if assembly.n_interfaces == 0 or not (np.any(assembly.dead[assembly.free]) and assembly.has_live_load):
         return None
     vertex, unit = _vertex_of_forces(assembly, assembly.dead, assembly.live)
@@ -169,7 +176,7 @@ def dilatant_mechanism(
 
     It is that of the greatest work near `about`; None where that is `LEAST_WORK` or less, or where the programme
     fails: exactly no work would mean an equilibrium (Farkas' lemma), but the programme holds to its tolerances only.
-    None too where joints have cohesion or tensile strength, whose work is not in the programme.
+    None too where joints have strength, whose work is not in the programme.
 
     Args:
         assembly: the wall.
@@ -180,7 +187,7 @@ def dilatant_mechanism(
     """
     from methods.numerics.linear_programme import INFINITY, Programme  # HiGHS, which few answers need
 
-    if assembly.strong:
+    if assembly.strong or assembly.crushes:
         return None
     length = assembly.length_scale or 1.0
     column = np.tile([1.0, 1.0, 1.0 / length], assembly.n_free)

@@ -48,7 +48,7 @@ def _require_dry(assembly: Assembly) -> None:
     """
     if assembly.dilates:
         raise CertificateError("it is of a wall without dilatancy, and joints of this one have dilatancy")
-    if not assembly.law.dry.all():
+    if assembly.crushes or not assembly.law.dry.all():
         raise CertificateError("it is of a wall with dry joints, and joints of this one have strength of their own")
     if len(assembly.bars):
         raise CertificateError("it is of a wall without ties and props, and this one has some")

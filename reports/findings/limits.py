@@ -15,8 +15,8 @@ LIMITS: tuple[tuple[str, str, tuple[str, ...]], ...] = (
         "All methods",
         "",
         (
-            "Blocks are rigid and infinitely strong, joints have no tensile strength, and friction is Coulomb's with "
-            "one coefficient. Crushing, wear and cohesion are outside of the model.",
+            "Blocks are rigid and infinitely strong, and friction is Coulomb's with one coefficient. Joints have the "
+            "cohesion, tensile and compressive strength that their wall gives, which is plastic; wear is not modelled.",
             "Displacements are small: a multiplier belongs to the wall as drawn. Second-order effects that lower it "
             "as the wall leans are included only by methods that state so.",
             "The wall is plane. Forces across its thickness, and effects at its ends out of plane are not modelled.",

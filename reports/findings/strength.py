@@ -1,10 +1,12 @@
-"""Walls whose joints have cohesion and tensile strength: what is given, plastic and residual values side by side."""
+"""Walls whose joints have strength: what is given, plastic and residual values side by side."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
 
-from harness.model.assembly import Assembly, FloatArray
+import numpy as np
+
+from harness.model.assembly import Assembly, BoolArray, FloatArray
 from harness.model.comparison import CaseResults
 from harness.model.method import Status
 from harness.model.result import residual_of
@@ -35,13 +37,21 @@ def strength_rows(item: CaseResults) -> list[StrengthRow]:
 
 
 def strength_text(assembly: Assembly, unit: str) -> str:
-    """The greatest cohesion c A and tension T = f_t A of the joints [force], and how many have any; empty if none."""
-    if not assembly.strong:
-        return ""
-    cohesion, tension = assembly.constant[:, 2], 2.0 * assembly.constant[:, 0]
-    number = int((~assembly.law.dry).sum())
-    joints = "all" if number == assembly.n_interfaces else f"{number} of {assembly.n_interfaces}"
-    return f"cohesion c A {_range(cohesion, unit)}, tension T {_range(tension, unit)}; {joints} interfaces"
+    """The ranges of c A, T = f_t A and f_c A of the joints [force], and how many have any; empty if none."""
+    parts = []
+    if assembly.strong:
+        cohesion, tension = assembly.constant[:, 2], 2.0 * assembly.constant[:, 0]
+        joints = _number(~assembly.law.dry)
+        parts.append(f"cohesion c A {_range(cohesion, unit)}, tension T {_range(tension, unit)}; {joints}")
+    if assembly.crushes:
+        finite = np.isfinite(assembly.crushing)
+        parts.append(f"crushing force f_c A {_range(assembly.crushing[finite], unit)}; {_number(finite)}")
+    return "; ".join(parts)
+
+
+def _number(joints: BoolArray) -> str:
+    number = int(joints.sum())
+    return "all interfaces" if number == len(joints) else f"{number} of {len(joints)} interfaces"
 
 
 def _range(values: FloatArray, unit: str) -> str:

@@ -43,12 +43,12 @@ def assumptions(case: Case) -> tuple[str, ...]:
     """What the analysis of a wall assumes, a sentence each; joints are dry unless the wall gives their strength."""
     dry = "Joints are dry: they bear no tension, and shear up to friction times compression (Coulomb), at each contact."
     strength = strength_text(case.assembly, case.wall.units.force)
-    joints = (
-        f"Joints bear shear by friction and cohesion, and tension: {strength}. This strength is plastic: it remains "
-        "however far a joint moves. Joints of mortar are brittle: rely on the value without this strength."
-    )
+    joints = f"The strength of joints beside friction is plastic, it remains however far a joint moves: {strength}."
+    if case.assembly.strong:
+        joints += " Cohesion and tension of mortar are brittle: rely on the value without them."
+    crush = "joints crush by a rectangular stress block" if case.assembly.crushes else "joints do not crush"
     return (
-        "The wall is plane; blocks are rigid and do not crush.",
+        f"The wall is plane; blocks are rigid, and {crush}.",
         joints if strength else dry,
         "Sliding is without dilatancy, except in the associated maximum: an upper bound and no design value.",
         "Displacements before collapse are small: equilibrium is that of the wall as drawn.",

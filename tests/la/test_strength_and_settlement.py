@@ -249,7 +249,7 @@ def test_methods_take_or_refuse_strength_and_refuse_moving_supports(name: str):
     if method.traits.any_strength:
         check_takes(method, with_strength(wall, 1.0))
     else:
-        with pytest.raises(InputError, match=f"{name} takes dry joints only.*la, la-associated"):
+        with pytest.raises(InputError, match=f"{name} takes dry joints only.*fe-qp, la, la-associated"):
             check_takes(method, with_strength(wall, 1.0))
     with pytest.raises(InputError, match=f"{name} takes supports at rest only; .* moves"):
         check_takes(method, replace(wall, support_motion=np.where(wall.fixed[:, None], [0.0, -1.0, 0.0], 0.0)))
@@ -264,7 +264,15 @@ def test_a_method_that_says_nothing_of_strength_refuses_it():
 
     with pytest.raises(InputError, match="stranger takes dry joints only"):
         check_takes(Stranger(), with_strength(single(1.0, 0.2, 0.5), 1.0))
-    assert methods_with("any_strength") == ["la", "la-associated", "la-associated-cvxpy"]
+    assert methods_with("any_strength") == [
+        "de",
+        "fe",
+        "fe-newton",
+        "fe-qp",
+        "la",
+        "la-associated",
+        "la-associated-cvxpy",
+    ]
 
 
 def test_components_of_a_wall_keep_strength_and_motion():

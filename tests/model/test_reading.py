@@ -72,7 +72,7 @@ def test_a_near_word_is_asked_for(word: str, meant: str):
     assert did_you_mean(word, ["friction", "blocks"]) == (f'Did you mean "{meant}"?' if meant else "")
 
 
-@pytest.mark.parametrize("field", ["fracture_energy", "creep", "anchors", "compressive_strength", "youngsModulus"])
+@pytest.mark.parametrize("field", ["fracture_energy", "creep", "anchors", "crushing", "youngsModulus"])
 def test_a_field_of_another_model_is_told_to_be_outside_with_the_way_to_the_scope(field: str):
     with pytest.raises(InputError, match=rf'"{field}" is outside the model.*docs/scope\.md'):
         parse_wall({"format": "wall/1", "friction": 0.5, field: 1.0}, "wall.json")

@@ -125,7 +125,7 @@ def test_walls_that_differ_in_strength_have_keys_of_their_own():
         ({"friction": {"default": 0.5}, "cohesion": 1.0}, 'give them beside "default" or in a rule'),
         (
             {"interfaces": [{"between": ["1", "2"], "from": [0, 0], "to": [1, 0], "cohesion": 1.0}]},
-            "cohesion and tensile strength beside a friction of its own",
+            "cohesion, tensile and compressive strength beside a friction of its own",
         ),
     ],
 )

@@ -19,7 +19,7 @@ from pymunk import batch
 from harness.model.assembly import Assembly, FloatArray, IntArray
 from methods.de.engines.engine import motion_units
 from methods.de.engines.mass_scaling import MassScaling, courses, masses, number_of_courses
-from methods.de.engines.strips import StripShape, build_strips
+from methods.de.engines.strips import CannotModel, StripShape, build_strips
 
 
 @dataclass(frozen=True)
@@ -55,7 +55,7 @@ class PymunkJoints:
         options: of the strips in pymunk; shape: how they are drawn.
 
     Raises:
-        CannotModel: see `methods.de.engines.strips.build_strips`.
+        CannotModel: joints have strength; or see `methods.de.engines.strips.build_strips`.
     """
 
     def __init__(
@@ -68,6 +68,8 @@ class PymunkJoints:
         options: StripTuning = StripTuning(),
         shape: StripShape = StripShape(),
     ) -> None:
+        if assembly.strong:
+            raise CannotModel("contacts in pymunk have no strength beside friction; take the engine 'sweeps'")
         self._options, self._shape = options, shape
         self.assembly = assembly
         self.interfaces = assembly.n_interfaces

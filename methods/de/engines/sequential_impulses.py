@@ -3,8 +3,9 @@
 A time step solves M (v+ - beta v) = f + C' J with 0 <= J_n, w_n >= 0, J_n w_n = 0 and |J_t| <= mu J_n, J_t against the
 slip rate w_t where it slips, w = C v+ (Moreau 1988; Jean 1999). One contact after the other, J_n <- max(J_n - m_n w_n,
 0) and J_t <- min(max(J_t - m_t w_t, -mu J_n), mu J_n) with effective masses m_n, m_t, from the impulses of the last
-step (E. Catto, Iterative dynamics with temporal coherence, GDC 2005). Contacts are constant, so there is no search for
-them and no position to integrate. Units: length scale, mean dead load of a block, time step.
+step (E. Catto, Iterative dynamics with temporal coherence, GDC 2005). Joints with strength have J_n >= -T/2 and
+|J_t| <= mu J_n + c A/2 at each of their two contacts, for as long as they move. Contacts are constant, so there is no
+search for them and no position to integrate. Units: length scale, mean dead load of a block, time step.
 
 Contacts that share no free block do not affect each other, so a sweep visits them level by level, each as early as the
 contacts before it in the given order allow (level scheduling: Y. Saad, Iterative Methods for Sparse Linear Systems,
@@ -36,6 +37,8 @@ class Rows(NamedTuple):
             then along the tangent (the normal turned by +90 degrees).
         across, along: (k,) effective mass of both bodies along normal and tangent.
         friction: (k,) coefficients.
+        least: (k,) least normal impulse: minus half the tensile strength of the joint; zero in dry joints.
+        cohesion: (k,) half the cohesion of the joint, an impulse.
     """
 
     first: IntArray
@@ -45,6 +48,8 @@ class Rows(NamedTuple):
     across: FloatArray
     along: FloatArray
     friction: FloatArray
+    least: FloatArray
+    cohesion: FloatArray
 
 
 class SequentialImpulses:
@@ -111,9 +116,11 @@ class SequentialImpulses:
 
         friction = np.repeat(wall.friction[joints], 2)
         across, along = effective(*arms[:, :2].T), effective(*arms[:, 2:].T)
+        law = wall.law.in_units(self._force)
+        strength = law.least_normal[joints].ravel(), np.repeat(0.5 * law.constant[joints, 2], 2)
         by_level = np.argsort(_levels(first, second, len(self._blocks)), kind="stable")
         self._points = (2 * np.repeat(joints, 2) + np.tile([0, 1], len(joints)))[by_level]
-        given = Rows(first, second, normal, arms, across, along, friction)
+        given = Rows(first, second, normal, arms, across, along, friction, *strength)
         return Rows._make(part[by_level] for part in given)
 
     def load(self, multiplier: float) -> None:
@@ -195,8 +202,8 @@ def _step(
                 va, vb = velocity[a, 2], velocity[b, 2]
                 opening = vx * nx + vy * ny + vb * arms[q, 1] - va * arms[q, 0]
                 slip = vy * nx - vx * ny + vb * arms[q, 3] - va * arms[q, 2]
-                normal_force = max(impulses[q, 0] - opening * rows.across[q], 0.0)
-                limit = rows.friction[q] * normal_force
+                normal_force = max(impulses[q, 0] - opening * rows.across[q], rows.least[q])
+                limit = rows.friction[q] * normal_force + rows.cohesion[q]
                 shear = min(max(impulses[q, 1] - slip * rows.along[q], -limit), limit)
                 pressed, rubbed = normal_force - impulses[q, 0], shear - impulses[q, 1]
                 impulses[q, 0], impulses[q, 1] = normal_force, shear

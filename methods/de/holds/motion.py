@@ -141,7 +141,9 @@ def by_power(assembly: Assembly, load: FloatArray, field: FloatArray, forces: Fl
     """
     rates = (assembly.kinematic_matrix @ field[assembly.free].ravel()).reshape(-1, 3)
     given = float(np.sum(load[assembly.free] * field[assembly.free]))
-    friction = float(np.sum(assembly.law.strength(np.maximum(forces[:, :2], 0.0)) * np.abs(rates[:, 2])))
+    friction = float(
+        np.sum(assembly.law.strength(np.maximum(forces[:, :2], assembly.law.least_normal)) * np.abs(rates[:, 2]))
+    )
     contacts = float(np.sum(np.abs(forces[:, :2] * rates[:, :2])))
     return Motion(MotionProof.POWER, field) if given - friction - contacts > 0.0 else None
 

@@ -49,7 +49,8 @@ def certificate(
     """
     end = time.process_time() + seconds
     # The equations in fractions are of dry joints and lift none.
-    if not assembly.has_live_load or assembly.dilates or assembly.strong or len(assembly.bars):
+    beyond_dry = assembly.dilates or assembly.strong or assembly.crushes or len(assembly.bars)
+    if not assembly.has_live_load or beyond_dry:
         return None
     problem = make_problem(assembly)
     search = Search(problem, NewtonMatrix(problem))

@@ -33,6 +33,7 @@ from methods.springs.model.gap_law import (
 from methods.springs.model.options import SpringOptions
 from methods.springs.model.points import gap_points
 from methods.springs.model.settings import GapSettings
+from methods.springs.model.strength import with_strength
 
 
 @dataclass(frozen=True, eq=False)
@@ -54,6 +55,8 @@ class WallModel:
         footing: (N,) stiffness of every block against the ground that a singular tangent is factorised with.
         column_start, row_index: CSC pattern of the tangent; slot: (m, 36) where each interface adds to its values.
         force, length, displacement: what one unit inside is worth outside.
+        cohesive: (k,) interfaces with a cohesion spring, which are the last k of the points, with rows of their own
+            behind the m.
         options: of all that is done with the model.
         deadline: of the run in which it is made; all that goes on for long asks for it.
     """
@@ -79,6 +82,7 @@ class WallModel:
     force: float
     length: float
     displacement: float
+    cohesive: IntArray = field(default_factory=lambda: np.empty(0, dtype=np.int64))
     options: SpringOptions = SpringOptions()
     deadline: Deadline = field(default_factory=Deadline.of_run)
 
@@ -91,6 +95,11 @@ class WallModel:
     def n_points(self) -> int:
         """P, the number of gap points."""
         return len(self.kn)
+
+    @property
+    def n_contacts(self) -> int:
+        """The number of gap points that may open: all but the cohesion springs, which come last."""
+        return self.n_points - len(self.cohesive)
 
     @cached_property
     def law(self) -> JointLaw:
@@ -121,7 +130,14 @@ class WallModel:
     def end_forces(self, normal: FloatArray, shear: FloatArray) -> FloatArray:
         """(m, 3) contact forces (n1, n2, s) [force] from the gap forces N and T (P,)."""
         count = self.assembly.n_interfaces
-        return self.force * equivalent_end_forces(self.position, self.interface, normal, shear, count)
+        if not self.assembly.strong:
+            return self.force * equivalent_end_forces(self.position, self.interface, normal, shear, count)
+        dry = slice(self.n_contacts)
+        ends = equivalent_end_forces(self.position[dry], self.interface[dry], normal[dry], shear[dry], count)
+        ends[self.cohesive, 2] -= shear[self.n_contacts :]
+        ends *= self.force
+        ends[:, :2] -= self.assembly.law.constant[:, :2]  # the clamping, which the springs bear besides
+        return ends
 
     def residual(self, u: FloatArray, multiplier: float, history: FloatArray, state: IntArray) -> FloatArray:
         """Out-of-balance forces (N,): loads minus internal forces of points held in the given states."""
@@ -236,7 +252,7 @@ def build_model(
         length=length,
         displacement=force / stiffness,
     )
-    return model
+    return with_strength(model) if assembly.strong else model
 
 
 def load_scale(model: WallModel, multiplier: float) -> float:

@@ -243,10 +243,12 @@ def check(assembly: Assembly, multiplier: float, forces: FloatArray, mechanism: 
     power = power if share > IDLE else 0.0
     speed = float(np.abs(velocity * lengths).max()) * min(1.0, max(share, IDLE)) or 1.0
     strength = assembly.law.strength(forces)
+    tension = assembly.law.constant[:, :2]
     size = max(assembly.load_unit, abs(multiplier))
     against = strength + np.sign(rates[:, 2]) * forces[:, 2]
-    idle = float(np.abs(forces[:, :2] * rates[:, :2]).sum() + np.abs(against * rates[:, 2]).sum())
-    pressing = np.column_stack([forces[:, :2], against]) / scale
+    pressed = forces[:, :2] + tension
+    idle = float(np.abs(pressed * rates[:, :2]).sum() + np.abs(against * rates[:, 2]).sum())
+    pressing = np.column_stack([pressed, against]) / scale
     motion = np.abs(rates) / speed
     residuals = {
         "both": float(np.minimum(np.abs(pressing), motion).max()),
@@ -255,8 +257,8 @@ def check(assembly: Assembly, multiplier: float, forces: FloatArray, mechanism: 
         "dilatancy": max(0.0, -float(rates[:, :2].min())) / speed,
         "complementarity": idle / (power * size) if power > 0.0 else np.inf,
     }
-    # power of the contact forces is friction only: n . opening = 0, s slip = -mu (n1 + n2) |slip|
-    friction_work = float(np.sum(strength * np.abs(rates[:, 2])))
-    work = float(friction_work - dead @ velocity) / power if power else float("inf")
+    # what joints take: n . opening = -(T / 2) opening where they open, s slip = -(mu (n1 + n2) + c A) |slip|
+    taken = float(np.sum(strength * np.abs(rates[:, 2]))) + float(np.sum(tension * np.maximum(rates[:, :2], 0.0)))
+    work = float(taken - dead @ velocity) / power if power else float("inf")
     residuals["work"] = abs(work - multiplier) / size if power > 0.0 else 1.0
     return PlateauState(multiplier, work, forces, mechanism, residuals)
