@@ -248,11 +248,8 @@ def _followed(follower: PathFollower, plan: Plan, record: PathRecord) -> History
 
 def _not_collapse(model: WallModel, velocity: FloatArray) -> str:
     """Why a last piece that moves along velocities (N,) is no collapse state."""
-    assembly = model.assembly
-    loads = np.abs(assembly.dead) + np.abs(assembly.live)
-    without_load = {assembly.block_ids[k] for k in np.flatnonzero(loads.max(axis=1) == 0.0)}
     moving = model.moving_blocks(model.block_displacements(velocity))
-    if without_load.issuperset(moving):
+    if model.idle_blocks.issuperset(moving):
         return (
             f"blocks without weight or load move freely ({first_few(moving, 8)}), in an undetermined direction: "
             "give every block a weight, however small"

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from harness.model.assembly import FloatArray
-from methods.de.engines.soft_wall import EXPLICIT, SoftWall
+from methods.de.engines.soft_wall import ExplicitTuning, SoftWall
 from tests.walls import assembly, running_bond, stack
 
 WALLS = {"bond": assembly(running_bond(3, 2), 0.65), "stack": assembly(stack(3), 0.5)}
@@ -47,14 +47,14 @@ def test_blocks_that_turn_as_one_body_do_not_shear_their_joints(name: str, angle
     """Both blocks of a contact have the same velocity at the point of contact, to rounding of its terms."""
     soft, _ = turning(name, angle, speed, 0.0)
     soft.advance(1)
-    size = soft.contacts.kt.max() * EXPLICIT.time_step * abs(speed) * soft.assembly.length_scale
+    size = soft.contacts.kt.max() * ExplicitTuning().time_step * abs(speed) * soft.assembly.length_scale
     assert abs(soft.shear).max() <= 1e-14 * size
 
 
 @pytest.mark.parametrize("step", [1e-3, -1e-3, 1e-4])
 def test_a_finite_step_of_turning_shears_by_the_square_of_its_angle(step: float):
     """The velocity of a step is that before it: (omega dt)^2 times the distance of the centroids, and no more."""
-    soft, between = turning("bond", 0.2, step / EXPLICIT.time_step, step)
+    soft, between = turning("bond", 0.2, step / ExplicitTuning().time_step, step)
     soft.advance(1)
     expected = soft.contacts.kt * step**2 * between
     # The next term of the series is smaller by the angle of the step.

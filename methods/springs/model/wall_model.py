@@ -86,6 +86,13 @@ class WallModel:
     options: SpringOptions = SpringOptions()
     deadline: Deadline = field(default_factory=Deadline.of_run)
 
+    @cached_property
+    def idle_blocks(self) -> frozenset[str]:
+        """Names of free blocks with neither dead nor live load, which may come loose without any force."""
+        assembly = self.assembly
+        loads = (abs(assembly.dead) + abs(assembly.live)).max(axis=1)
+        return frozenset(assembly.block_ids[k] for k in np.flatnonzero((loads == 0.0) & ~assembly.fixed))
+
     @property
     def n_unknowns(self) -> int:
         """N, three for each free block."""

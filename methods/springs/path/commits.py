@@ -72,11 +72,11 @@ def _near(follower: PathFollower, u: FloatArray, ahead: float) -> bool:
 def change_states(model: WallModel, factor: Factor, state: IntArray, wanted: IntArray) -> None:
     """Bring a factor from one set of states (changed in place) to another.
 
-    A tangent that turns singular on the way belongs to a step gone astray, which is not worth a regularised factor; one
-    that was regularised before has a free motion of its own, and stays so.
+    A tangent that turns singular on the way belongs to a step gone astray, which is not worth a regularised factor.
+    Only one that was regularised before, or a wall with a block without load, has free motions that nothing resists.
 
     Raises:
-        SingularTangent: the tangent is singular, and was not before.
+        SingularTangent: the tangent is singular, and may not be.
     """
     points = np.flatnonzero(state != wanted).tolist()
     changes = [change for p in points for change in _way(p, int(state[p]), int(wanted[p]))]
@@ -90,7 +90,7 @@ def change_states(model: WallModel, factor: Factor, state: IntArray, wanted: Int
             state[:] = wanted
             return
     state[:] = wanted
-    if factor.is_regularised:
+    if factor.is_regularised or model.idle_blocks:
         refactor_any(factor, state)
     else:
         factor.refactor(state)
