@@ -109,7 +109,9 @@ def sources_version(*packages: str, others: Sequence[str] = ()) -> str:
     return digest.hexdigest()[:16]
 
 
-JUDGE = tuple(f"harness.engine.{name}" for name in ("judge", "bar_checks", "crushing", "measured_motion", "measures", "residuals"))
+JUDGE = tuple(
+    f"harness.engine.{name}" for name in ("judge", "bar_checks", "crushing", "measured_motion", "measures", "residuals")
+)
 """The modules that judge, besides `harness.model`."""
 
 
