@@ -16,7 +16,7 @@ from drystone.walls import Wall
 from harness.engine.executors import Executor, LocalExecutor
 from harness.engine.run import Limits
 from harness.engine.store import Store, open_store
-from harness.engine.sweep.expand import Source, SweepRun, expand, sources_of
+from harness.engine.sweep.expand import SweepRun, WallSource, expand, sources_of
 from harness.engine.sweep.neighbours import handed_on
 from harness.engine.sweep.quick import varied
 from harness.engine.sweep.running import Row
@@ -29,7 +29,7 @@ from harness.model.reading import wall_json
 if TYPE_CHECKING:
     import pandas as pd
 
-    from harness.engine.sweep.summary import Summary
+    from harness.engine.sweep.summary import GridSummary
 
 Told = Callable[[bool], None]
 """Called after each run, with whether it came from the store."""
@@ -59,7 +59,7 @@ class Sweep:
         return tidy(self.rows, varied_of(self.study))
 
     @cached_property
-    def summary(self) -> Summary:
+    def summary(self) -> GridSummary:
         """Statistics that the rows allow, and sentences that a reader should see."""
         from harness.engine.sweep.summary import summarise
 
@@ -220,12 +220,12 @@ def _asked(
     multipliers: Sequence[float],
     limits: Limits,
     folders: Sequence[Path],
-) -> tuple[Study, list[Source]]:
+) -> tuple[Study, list[WallSource]]:
     if isinstance(what, Wall):
         if not vary:
             raise InputError(f'nothing of "{what.name}" varies', 'Give vary={"friction": [0.4, 0.6]}', "vary")
         study = varied(what.name, dict(vary), methods, dict(settings or {}), limits, list(multipliers))
-        return study, [Source(what.name, json.loads(wall_json(what.case.wall)))]
+        return study, [WallSource(what.name, json.loads(wall_json(what.case.wall)))]
     if vary:
         raise InputError("a study defines what varies", "Leave vary out, or give a wall", "vary")
     study, place = (what, None) if isinstance(what, Study) else _read(what)

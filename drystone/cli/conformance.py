@@ -11,7 +11,7 @@ import click
 from drystone.cli import terminal
 from drystone.cli.methods import words_of
 from drystone.cli.options import catching, json_flag, print_json, say
-from harness.conformance import Check, conforms, suite
+from harness.conformance import ConformanceCheck, conforms, suite
 from harness.engine.plan import check_methods
 from harness.engine.threads import pin
 from harness.model.errors import InputError
@@ -50,7 +50,7 @@ def conformance(methods: tuple[str, ...], command: str | None, lines: bool, desc
     sys.exit(0 if all(document["conforms"] for document in documents) else 1)
 
 
-def _shown(title: str, checks: list[Check], *, quiet: bool) -> Iterator[Check]:
+def _shown(title: str, checks: list[ConformanceCheck], *, quiet: bool) -> Iterator[ConformanceCheck]:
     """The checks one by one, with a bar on a terminal."""
     hidden = quiet or not sys.stderr.isatty()
     with click.progressbar(checks, label=title, file=sys.stderr, hidden=hidden) as bar:

@@ -59,7 +59,7 @@ class _NotTested(Exception):
 
 
 @dataclass(frozen=True)
-class Row:
+class CheckFound:
     """What one check of one method found.
 
     Attributes:
@@ -83,7 +83,7 @@ class Row:
 
 
 @dataclass(frozen=True)
-class Check:
+class ConformanceCheck:
     """One check of the suite. Called with a method, it returns an empty string or what is wrong.
 
     Attributes:
@@ -103,7 +103,7 @@ class Check:
         row = self.row(method)
         return "" if row.outcome in (Outcome.CONFORMS, Outcome.NOT_TESTED) else f"{row.outcome}: {row.sentence}"
 
-    def row(self, method: Method) -> Row:
+    def row(self, method: Method) -> CheckFound:
         """What the check finds of a method, whatever the method does."""
         before = cpu_seconds(method.processes_kept())
         try:
@@ -118,7 +118,7 @@ class Check:
         except Exception as error:
             outcome, sentence = Outcome.FAILS, f"it raised {type(error).__name__}: {error}"
         seconds = cpu_seconds(method.processes_kept()) - before
-        return Row(self.group, self.name, self.requirement, outcome, sentence, max(seconds, 0.0))
+        return CheckFound(self.group, self.name, self.requirement, outcome, sentence, max(seconds, 0.0))
 
 
 def slack_of(method: Method) -> float:
@@ -265,46 +265,48 @@ def _same_in_a_process_of_its_own(method: Method) -> str:
 ENDED = (Status.OK, Status.NOT_CONVERGED, Status.TIMEOUT)
 
 
-def suite() -> Iterator[Check]:
+def suite() -> Iterator[ConformanceCheck]:
     """Every check, in the order of the table."""
     for form in CLOSED_FORMS:
-        yield Check("closed forms", form.name, f"The multiplier is {form.formula}.", _closed_form(form))
+        yield ConformanceCheck("closed forms", form.name, f"The multiplier is {form.formula}.", _closed_form(form))
     for form in WITH_FEATURES:
         asked = f"The multiplier is {form.formula}; or the method refuses {form.name}."
-        yield Check("features", form.name, asked, _closed_form(form))
+        yield ConformanceCheck("features", form.name, asked, _closed_form(form))
     for name in VIEWS:
-        yield Check("views", f"view-{name}", f"A wall that is {name} has the same multiplier.", _view(name))
+        yield ConformanceCheck("views", f"view-{name}", f"A wall that is {name} has the same multiplier.", _view(name))
     for name, wall, finding in (
         ("stands", STANDING, Finding.STANDS),
         ("falls", FALLING, Finding.FALLS),
         ("unbounded", PRESSED, Finding.UNBOUNDED),
     ):
-        yield Check("endings", name, f'A wall is found "{finding}", with a proof.', _ending(wall, finding))
-    yield Check(
+        yield ConformanceCheck("endings", name, f'A wall is found "{finding}", with a proof.', _ending(wall, finding))
+    yield ConformanceCheck(
         "limits",
         "time",
         "A run of over 90 blocks ends within 2 s or is stopped.",
         _keeps_to_limits(2.0, 4096, ENDED),
     )
-    yield Check(
+    yield ConformanceCheck(
         "limits",
         "memory",
         "A run under a limit of 256 MiB answers, or is ended as one without memory.",
         _keeps_to_limits(20.0, 256, (*ENDED, Status.OUT_OF_MEMORY)),
     )
-    yield Check("manners", "repeats", "The same wall has the same answer to the last bit.", _repeats)
-    yield Check("manners", "leaves-the-wall", "The arrays of the wall are not changed.", _leaves_the_wall)
-    yield Check("manners", "odd-names", "Names of blocks may have any letters.", _takes_odd_names)
-    yield Check("manners", "own-process", "A process of its own gives the same answer.", _same_in_a_process_of_its_own)
+    yield ConformanceCheck("manners", "repeats", "The same wall has the same answer to the last bit.", _repeats)
+    yield ConformanceCheck("manners", "leaves-the-wall", "The arrays of the wall are not changed.", _leaves_the_wall)
+    yield ConformanceCheck("manners", "odd-names", "Names of blocks may have any letters.", _takes_odd_names)
+    yield ConformanceCheck(
+        "manners", "own-process", "A process of its own gives the same answer.", _same_in_a_process_of_its_own
+    )
 
 
-def checks() -> Iterator[tuple[str, Check]]:
+def checks() -> Iterator[tuple[str, ConformanceCheck]]:
     """Every check with its name; a check called with a method returns an empty string, or what is wrong."""
     for check in suite():
         yield check.name, check
 
 
-def conforms(rows: Sequence[Row]) -> bool:
+def conforms(rows: Sequence[CheckFound]) -> bool:
     """Whether a method conforms: nothing fails, and it answers at least one wall of which the value is known."""
     return all(row.outcome is not Outcome.FAILS for row in rows) and any(
         row.outcome is Outcome.CONFORMS and row.group == "closed forms" for row in rows

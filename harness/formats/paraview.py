@@ -26,7 +26,7 @@ STEPS = 20
 
 
 @dataclass(frozen=True, eq=False)
-class Frame:
+class VtkStep:
     """One file of a series.
 
     Attributes:
@@ -75,12 +75,12 @@ def _write(mesh: Any, path: Path) -> None:
         mesh.write(draft, file_format="vtu", binary=True)
 
 
-def _frame(assembly: Assembly, result: Result | None, time: float, displacement: list[FloatArray]) -> Frame:
+def _frame(assembly: Assembly, result: Result | None, time: float, displacement: list[FloatArray]) -> VtkStep:
     """The frame of a wall with the forces and states of its answer."""
     m = assembly.n_interfaces
     given = None if result is None else result.forces
     known = None if result is None else result.states
-    return Frame(
+    return VtkStep(
         time=time,
         multiplier=np.nan if result is None or result.forces_multiplier is None else result.forces_multiplier,
         displacement=displacement,
@@ -89,7 +89,7 @@ def _frame(assembly: Assembly, result: Result | None, time: float, displacement:
     )
 
 
-def _mesh(built: Built, result: Result | None, frame: Frame) -> Any:
+def _mesh(built: Built, result: Result | None, frame: VtkStep) -> Any:
     """The mesh of a wall in a frame, with the mechanism of its answer."""
     import meshio
 
@@ -168,7 +168,7 @@ def write_pvd(built: Built, result: Result | None, path: Path) -> None:
     write_whole(path, text + "\n".join(rows) + "\n  </Collection>\n</VTKFile>\n")
 
 
-def _frames(assembly: Assembly, result: Result | None) -> Iterator[Frame]:
+def _frames(assembly: Assembly, result: Result | None) -> Iterator[VtkStep]:
     """The frames of the series that an answer has most to show in."""
     followed = None if result is None else released(result, assembly.n_blocks)
     steps = None if result is None else LoadSteps.of(result.details, assembly)
@@ -182,7 +182,7 @@ def _frames(assembly: Assembly, result: Result | None) -> Iterator[Frame]:
     elif steps is not None:
         for k, multiplier in enumerate(steps.multiplier.tolist()):
             shift = _by_blocks(assembly, steps.displacements[k])
-            yield Frame(float(k), multiplier, shift, steps.forces[k], steps.states[k])
+            yield VtkStep(float(k), multiplier, shift, steps.forces[k], steps.states[k])
     else:
         drawn = [SHOWN * assembly.length_scale * v for v in velocities(assembly, result)]
         for step in range(STEPS + 1):

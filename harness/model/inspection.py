@@ -27,7 +27,7 @@ from harness.model.wall import Block, Detection, Interface, Wall
 
 
 @dataclass(frozen=True)
-class Mark:
+class FaultMark:
     """Something wrong or doubtful.
 
     Attributes:
@@ -71,11 +71,11 @@ class Inspection:
     names: tuple[str, ...]
     outlines: tuple[FloatArray, ...]
     fixed: BoolArray
-    marks: tuple[Mark, ...]
+    marks: tuple[FaultMark, ...]
     built: Built | None
 
     @property
-    def faults(self) -> tuple[Mark, ...]:
+    def faults(self) -> tuple[FaultMark, ...]:
         """What keeps the wall from being built."""
         return tuple(mark for mark in self.marks if mark.kind == "fault")
 
@@ -119,7 +119,7 @@ def inspect(wall: Wall, name: str = "wall", before: Sequence[InputError] = ()) -
     bad, polygons = _outlines(blocks)
     faults = [*faults_of_wall(wall, blocks), *bad, *sorted_out(lambda block: weight_of(block, wall), blocks)[0]]
     faults += support_faults(fixed)
-    doubts: list[Mark] = []
+    doubts: list[FaultMark] = []
     if polygons:
         kept = np.array(list(polygons), dtype=np.int64)
         found, doubts = _lying(wall, [apart[k] for k in kept], list(polygons.values()), _hulls(blocks, polygons))
@@ -134,7 +134,7 @@ def inspect(wall: Wall, name: str = "wall", before: Sequence[InputError] = ()) -
     marks = [*(_marked(fault, "fault") for fault in (*before, *faults)), *doubts]
     # Near misses are in the list one by one, so the sentence that sums them up would be a repetition.
     warnings = (*wall.doubts, *unknown_in_rules(wall, blocks).values()) if built is None else built.warnings
-    marks += [Mark("doubt", "", text) for text in warnings if NEAR_MISS not in text]
+    marks += [FaultMark("doubt", "", text) for text in warnings if NEAR_MISS not in text]
     middle = {block.id: np.mean(np.array(block.polygon), axis=0) for block in apart}
     names = tuple(block.id for block in apart)
     outlines = tuple(polygons.get(k, np.array(block.polygon, dtype=float)) for k, block in enumerate(blocks))
@@ -175,7 +175,7 @@ def _hulls(blocks: Sequence[Block], polygons: dict[int, FloatArray]) -> list[sha
 
 def _lying(
     wall: Wall, blocks: Sequence[Block], polygons: Sequence[FloatArray], hulls: Sequence[shapely.Geometry]
-) -> tuple[list[InputError], list[Mark]]:
+) -> tuple[list[InputError], list[FaultMark]]:
     """What is wrong and doubtful about where blocks of sound outlines lie."""
     names = [block.id for block in blocks]
     fixed = np.array([block.fixed for block in blocks], dtype=bool)
@@ -217,14 +217,14 @@ def _beside(polygons: Sequence[FloatArray], hulls: Sequence[shapely.Geometry], s
     return near
 
 
-def _missed(names: Sequence[str], joints: Joints) -> list[Mark]:
+def _missed(names: Sequence[str], joints: Joints) -> list[FaultMark]:
     """The near misses one by one, the nearest first."""
     marks = []
     for k in np.argsort(joints.missed_gap, kind="stable").tolist():
         pair, gap = tuple(names[i] for i in joints.missed[k].tolist()), float(joints.missed_gap[k])
         at = (float(joints.missed_at[k, 0]), float(joints.missed_at[k, 1]))
         marks.append(
-            Mark(
+            FaultMark(
                 "doubt",
                 f'blocks "{pair[0]}" and "{pair[1]}"',
                 f"faces {NEAR_MISS} {gap:.3g} apart, or overlap by as much, and have no joint, because "
@@ -238,20 +238,20 @@ def _missed(names: Sequence[str], joints: Joints) -> list[Mark]:
     return marks
 
 
-def _marked(error: InputError, kind: str) -> Mark:
+def _marked(error: InputError, kind: str) -> FaultMark:
     spot = error.spot or Spot(())
-    return Mark(kind, error.element, error.problem, error.remedy, spot.blocks, spot.at, spot.size)
+    return FaultMark(kind, error.element, error.problem, error.remedy, spot.blocks, spot.at, spot.size)
 
 
-def _once(marks: Sequence[Mark]) -> list[Mark]:
+def _once(marks: Sequence[FaultMark]) -> list[FaultMark]:
     """The marks without repetitions: a wrong name shows in the file, and again in what is left of it."""
-    first: dict[tuple[object, ...], Mark] = {}
+    first: dict[tuple[object, ...], FaultMark] = {}
     for mark in marks:
         first.setdefault((mark.problem, mark.blocks, mark.at) if mark.blocks else (mark.problem, mark.element), mark)
     return list(first.values())
 
 
-def _placed(mark: Mark, middle: dict[str, FloatArray]) -> Mark:
+def _placed(mark: FaultMark, middle: dict[str, FloatArray]) -> FaultMark:
     """The mark at the middle of its blocks where nothing says a closer place."""
     there = [middle[name] for name in mark.blocks if name in middle]
     if mark.at is not None or not there:

@@ -23,7 +23,7 @@ from methods.fe.answers import (
     stands,
 )
 from methods.fe.convex_steps import bracket_collapse
-from methods.fe.histories import HistoryResult, HistoryTuning, Plan, trace_history, with_initial_shear
+from methods.fe.histories import HistoryPlan, HistoryResult, HistoryTuning, trace_history, with_initial_shear
 from methods.fe.incremental import IncrementalResult, march
 from methods.fe.settings import GapSpringsSettings, NewtonSettings
 from methods.numerics.claims import analysed
@@ -109,7 +109,7 @@ class GapSprings(Solver):
         for step in chosen_histories(model, settings, events):
             if settings.histories is None and _agree(results, events.agreeing):
                 break
-            plan = Plan(step, scale, limit, load_steps=settings.load_steps, options=histories)
+            plan = HistoryPlan(step, scale, limit, load_steps=settings.load_steps, options=histories)
             result = trace_history(model, factor, start, plan)
             results.append(result)
             start = result.raised or start

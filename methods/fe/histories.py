@@ -65,7 +65,7 @@ BELOW_ZERO = "the path has a peak but runs down below zero: past its peak the wa
 
 
 @dataclass(frozen=True)
-class Plan:
+class HistoryPlan:
     """How a history is to be traced.
 
     Attributes:
@@ -97,7 +97,7 @@ class HistoryResult:
         raised: the rest up to which the load was raised in finite steps, None if the path is exact from the start.
     """
 
-    plan: Plan
+    plan: HistoryPlan
     end: PathEnd
     sentence: str
     record: PathRecord
@@ -107,7 +107,7 @@ class HistoryResult:
     raised: Equilibrium | None = None
 
 
-def trace_history(model: WallModel, factor: Factor, start: Equilibrium, plan: Plan) -> HistoryResult:
+def trace_history(model: WallModel, factor: Factor, start: Equilibrium, plan: HistoryPlan) -> HistoryResult:
     """Trace one history from the gravity state, or from the rest that another raised the load to.
 
     A lost history with commits is traced again with commits up to 97, then 90, then 80 % of the multiplier scale only:
@@ -139,7 +139,7 @@ def trace_history(model: WallModel, factor: Factor, start: Equilibrium, plan: Pl
     return result
 
 
-def _committed(model: WallModel, factor: Factor, start: Equilibrium, plan: Plan) -> HistoryResult:
+def _committed(model: WallModel, factor: Factor, start: Equilibrium, plan: HistoryPlan) -> HistoryResult:
     """A history with commits, up to the end or as far as it is not lost."""
     for share in plan.options.committed_up_to:
         result = _trace(model, factor, start, replace(plan, committed_up_to=share * plan.scale))
@@ -148,7 +148,9 @@ def _committed(model: WallModel, factor: Factor, start: Equilibrium, plan: Plan)
     return result
 
 
-def _raised(model: WallModel, factor: Factor, gravity: Equilibrium, plan: Plan, record: PathRecord) -> HistoryResult:
+def _raised(
+    model: WallModel, factor: Factor, gravity: Equilibrium, plan: HistoryPlan, record: PathRecord
+) -> HistoryResult:
     """Trace a path into the record from the multiplier that the load can be raised to in finite steps.
 
     Raises:
@@ -163,7 +165,9 @@ def _raised(model: WallModel, factor: Factor, gravity: Equilibrium, plan: Plan, 
     return _resumed(model, factor, rest, plan, record)
 
 
-def _resumed(model: WallModel, factor: Factor, rest: Equilibrium, plan: Plan, record: PathRecord) -> HistoryResult:
+def _resumed(
+    model: WallModel, factor: Factor, rest: Equilibrium, plan: HistoryPlan, record: PathRecord
+) -> HistoryResult:
     """Trace a path into the record from the rest that the load was raised to. Raises as `_raised` does."""
     result = _followed(PathFollower.from_rest(model, factor, rest), plan, record)
     sentence = f"{result.sentence}; up to {rest.multiplier:.4g} the load was raised in finite steps"
@@ -174,12 +178,12 @@ def _lost(result: HistoryResult) -> bool:
     return result.state is None and result.end not in (PathEnd.UNBOUNDED, PathEnd.TIME)
 
 
-def _trace(model: WallModel, factor: Factor, start: Equilibrium, plan: Plan) -> HistoryResult:
+def _trace(model: WallModel, factor: Factor, start: Equilibrium, plan: HistoryPlan) -> HistoryResult:
     """Trace one history from an equilibrium, as far as the time allows."""
     return _as_far_as_possible(partial(_trace_in_time, model, factor, start, plan), plan)
 
 
-def _as_far_as_possible(trace: Callable[[PathRecord], HistoryResult], plan: Plan) -> HistoryResult:
+def _as_far_as_possible(trace: Callable[[PathRecord], HistoryResult], plan: HistoryPlan) -> HistoryResult:
     """What a trace into a record leads to, or how far the record came where the time is over or the path is lost."""
     record = PathRecord(most=plan.load_steps)
     try:
@@ -188,7 +192,7 @@ def _as_far_as_possible(trace: Callable[[PathRecord], HistoryResult], plan: Plan
         return HistoryResult(plan, PathEnd.BREAKDOWN, SENTENCES[PathEnd.BREAKDOWN], record, None, 0, 0.0)
 
 
-def _stopped(plan: Plan, record: PathRecord) -> HistoryResult:
+def _stopped(plan: HistoryPlan, record: PathRecord) -> HistoryResult:
     """How far a record came in the time there was."""
     sentence = SENTENCES[PathEnd.TIME]
     if record.multiplier:
@@ -197,7 +201,7 @@ def _stopped(plan: Plan, record: PathRecord) -> HistoryResult:
 
 
 def _trace_in_time(
-    model: WallModel, factor: Factor, start: Equilibrium, plan: Plan, record: PathRecord
+    model: WallModel, factor: Factor, start: Equilibrium, plan: HistoryPlan, record: PathRecord
 ) -> HistoryResult:
     """Trace one history into the record.
 
@@ -222,7 +226,7 @@ def _trace_in_time(
     return _followed(PathFollower.from_rest(model, factor, first), plan, record)
 
 
-def _followed(follower: PathFollower, plan: Plan, record: PathRecord) -> HistoryResult:
+def _followed(follower: PathFollower, plan: HistoryPlan, record: PathRecord) -> HistoryResult:
     """What following a path from where the tracer stands leads to. Raises OutOfTime and SingularTangent as above."""
     model, scale = follower.model, plan.scale
     interval = plan.step * scale or np.inf

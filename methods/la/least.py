@@ -26,7 +26,7 @@ from methods.la.answers import (
     not_converged,
     unbounded_answer,
 )
-from methods.la.certify.proof import Proof, prove
+from methods.la.certify.proof import TreeProof, prove
 from methods.la.certify.rational import confirm
 from methods.la.core.exact import exact_mechanism
 from methods.la.core.newton_matrix import NewtonMatrix
@@ -102,7 +102,7 @@ def _found(search: Search, settings: SearchSettings, tolerance: float) -> Answer
     return _with_falling_blocks(replace(answer, path=search.record.path(problem.unit_multiplier)), falling)
 
 
-def _chosen(search: Search) -> tuple[CollapseState, Proof] | None:
+def _chosen(search: Search) -> tuple[CollapseState, TreeProof] | None:
     """The least state, exact, and what a tree proves of it; None where none holds beside the lightest blocks."""
     problem, newton, states = search.problem, search.newton, search.record.states
     badly_scaled = row_scaling(problem)
@@ -199,12 +199,12 @@ def confirmed(
 
 
 def _of_uneven(
-    problem: Problem, newton: NewtonMatrix, units: RowScaling, states: list[CollapseState], proof: Proof
-) -> tuple[CollapseState, Proof]:
+    problem: Problem, newton: NewtonMatrix, units: RowScaling, states: list[CollapseState], proof: TreeProof
+) -> tuple[CollapseState, TreeProof]:
     """The least state that is confirmed, and what the tree proves of it: nothing where its own is not confirmed."""
     best = least_of(problem, confirmed(problem, newton, units, [*states, proof.state]) or states)
     holds = best.multiplier <= proof.state.multiplier + SAME_MULTIPLIER * abs(proof.state.multiplier)
-    return best, replace(proof, state=best) if holds else Proof(best, 0.0, proof.nodes)
+    return best, replace(proof, state=best) if holds else TreeProof(best, 0.0, proof.nodes)
 
 
 def _with_falling_blocks(answer: Answer, falling: list[str]) -> Answer:
@@ -218,7 +218,7 @@ def _with_falling_blocks(answer: Answer, falling: list[str]) -> Answer:
     return replace(answer, sentence=sentence, details={**answer.details, "falls_without_self_stress": falling})
 
 
-def _details(search: Search, best: CollapseState | None, proof: Proof | None) -> dict[str, Any]:
+def _details(search: Search, best: CollapseState | None, proof: TreeProof | None) -> dict[str, Any]:
     """What the search found and spent, and what is proved."""
     problem, spent = search.problem, search.budget.spent
     values = [problem.to_multiplier(state.multiplier) for states in search.record.ends for state in states]
@@ -242,7 +242,7 @@ def _details(search: Search, best: CollapseState | None, proof: Proof | None) ->
     return details
 
 
-def _sentence(search: Search, best: CollapseState, proof: Proof) -> str:
+def _sentence(search: Search, best: CollapseState, proof: TreeProof) -> str:
     least = search.problem.to_multiplier(best.multiplier)
     if proof.complete:
         nodes = f"{proof.nodes} node{'s' if proof.nodes != 1 else ''}"

@@ -47,9 +47,6 @@ class ChordTolerances:
     rounds: int = 40
 
 
-CHORDS = ChordTolerances()
-
-
 @dataclass(frozen=True, eq=False)
 class BlockLimit:
     """The greatest multiplier of a load beside a dead one.
@@ -78,13 +75,19 @@ def crushing_force(assembly: Assembly) -> tuple[IntArray, FloatArray]:
     return joints, assembly.crushing[joints] + 2.0 * assembly.constant[joints, 0]
 
 
-def greatest_by_chords(assembly: Assembly, dead: FloatArray, live: FloatArray, most: float = np.inf) -> BlockLimit:
+def greatest_by_chords(
+    assembly: Assembly,
+    dead: FloatArray,
+    live: FloatArray,
+    most: float = np.inf,
+    options: ChordTolerances = ChordTolerances(),
+) -> BlockLimit:
     """The greatest multiplier up to `most` of live (n, 3) beside dead (n, 3), by linear programmes with a known gap."""
-    programme = _Programme(assembly, dead, live, most)
+    programme = _Programme(assembly, dead, live, most, options)
     best, upper, motion = BlockLimit("unknown"), np.inf, None
     size, gap = programme.per_unit, np.inf
-    for rounds in range(1, CHORDS.rounds + 1):
-        exact = upper - best.multiplier <= CHORDS.exact * size
+    for rounds in range(1, options.rounds + 1):
+        exact = upper - best.multiplier <= options.exact * size
         outer = programme.solve(*programme.tangents(), exact)
         if isinstance(outer, str):
             return BlockLimit(outer, rounds=rounds)
@@ -100,7 +103,7 @@ def greatest_by_chords(assembly: Assembly, dead: FloatArray, live: FloatArray, m
         at_most = best.forces is not None and best.multiplier >= most
         size = max(programme.per_unit, abs(upper) if upper < np.inf else 0.0)
         before, gap = gap, upper - best.multiplier
-        if at_most or gap <= CHORDS.gap * size or CHORDS.settled * before < gap <= CHORDS.stated * size:
+        if at_most or gap <= options.gap * size or options.settled * before < gap <= options.stated * size:
             break
     return best
 
@@ -129,7 +132,10 @@ class _Found:
 class _Programme:
     """Statics of a wall with lines in place of the parabolas of its k joints that crush; two ends a joint, 2k ends."""
 
-    def __init__(self, assembly: Assembly, dead: FloatArray, live: FloatArray, most: float) -> None:
+    def __init__(
+        self, assembly: Assembly, dead: FloatArray, live: FloatArray, most: float, options: ChordTolerances
+    ) -> None:
+        self._options = options
         self._assembly, m, n = assembly, assembly.n_interfaces, assembly.n_free
         self._column = np.tile([1.0, 1.0, 1.0 / (assembly.length_scale or 1.0)], n)
         own, acting = dead[assembly.free].ravel() * self._column, live[assembly.free].ravel() * self._column
@@ -144,7 +150,7 @@ class _Programme:
         self._first, self._full = 3 * np.repeat(joints, 2), np.repeat(full / self._unit, 2)
         self._tension = 2.0 * np.repeat(self._law.constant[joints, 0], 2)
         self._own = self._first + np.tile([0, 1], len(joints))
-        start = np.array([0.0, *CHORDS.first, 1.0])
+        start = np.array([0.0, *options.first, 1.0])
         self._points = [start * full for full in self._full]
 
     def tangents(self) -> tuple[IntArray, FloatArray, FloatArray]:
@@ -164,7 +170,7 @@ class _Programme:
         force = (forces / self._unit).ravel()
         at = np.clip(force[self._first] + force[self._first + 1] + self._tension, 0.0, self._full)
         for end, (points, full, new) in enumerate(zip(self._points, self._full, at, strict=True)):
-            if abs(points - new).min() > CHORDS.new * full:
+            if abs(points - new).min() > self._options.new * full:
                 self._points[end] = np.sort(np.append(points, new))
 
     def solve(self, end: IntArray, a: FloatArray, b: FloatArray, exact: bool) -> _Found | str:

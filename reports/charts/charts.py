@@ -168,7 +168,7 @@ def thin(x: list[float], y: list[float], most: int = MOST_POINTS) -> tuple[list[
     return [x[k] for k in kept], [y[k] for k in kept]
 
 
-class Drawing(Markup):
+class DrawnChart(Markup):
     """A chart as an SVG element that still knows what it shows, so that its data can be written beside it."""
 
     chart: Chart | None = None
@@ -211,7 +211,7 @@ def svg(chart: Chart) -> Markup:
         if rows:
             parts.append(_legend(series, number, chart.per_row))
     parts.append(Markup("</svg>"))
-    drawing = Drawing(Markup("").join(parts))
+    drawing = DrawnChart(Markup("").join(parts))
     drawing.chart = chart
     return drawing
 

@@ -27,7 +27,7 @@ Members = list[tuple[float, CaseResults]]
 
 
 @dataclass(frozen=True)
-class Study:
+class StudyCurves:
     """Charts or a table with the sentence that introduces them and how to read them.
 
     Attributes:
@@ -74,13 +74,13 @@ class Parameter:
     key: Callable[[Assembly], str]
 
 
-def families(run: ComparisonRun) -> list[Study]:
+def families(run: ComparisonRun) -> list[StudyCurves]:
     """Studies of all families of at least three walls, friction first."""
     sound = [item for item in run.cases if not shapes.problem(item.case)]
     return [study for parameter in PARAMETERS for study in _families(run, sound, parameter)]
 
 
-def _families(run: ComparisonRun, items: list[CaseResults], parameter: Parameter) -> Iterator[Study]:
+def _families(run: ComparisonRun, items: list[CaseResults], parameter: Parameter) -> Iterator[StudyCurves]:
     """Families over one parameter; those of one kind of wall, which the other parameter tells apart, stand together."""
     groups: dict[str, Members] = defaultdict(list)
     for item in items:
@@ -123,7 +123,7 @@ def _series(members: Members, methods: list[str]) -> list[charts.Series]:
     return series
 
 
-def _study(drawn: list[tuple[Members, list[charts.Series]]], parameter: Parameter) -> Study:
+def _study(drawn: list[tuple[Members, list[charts.Series]]], parameter: Parameter) -> StudyCurves:
     first = drawn[0][0]
     found = []
     for members, series in drawn:
@@ -138,7 +138,7 @@ def _study(drawn: list[tuple[Members, list[charts.Series]]], parameter: Paramete
     how_many = (
         f"The same wall with {len({value for value, _ in first})} values of {parameter.name}, all methods in one plot"
     )
-    return Study(
+    return StudyCurves(
         f"Multiplier against {parameter.name}: walls that differ in it alone",
         f"{how_many}. {_changes(first)}" if len(drawn) == 1 else f"{how_many}; {len(drawn)} walls side by side.",
         "A bar is a bracket. Where a line bends, another mechanism takes over; where the lines differ, the "

@@ -13,7 +13,7 @@ from markupsafe import Markup
 from harness.model.comparison import CaseResults, ComparisonRun
 from harness.model.method import Traits
 from harness.model.ranges import Range, differences, range_of
-from reports.charts.families import Study, friction_of, proportion_of, same_but_both, solved
+from reports.charts.families import StudyCurves, friction_of, proportion_of, same_but_both, solved
 from reports.environment import environment
 from reports.geometry import shapes, thrust_lines
 from reports.labels import labels, numbers
@@ -23,7 +23,7 @@ WITHIN = 0.01
 
 
 @dataclass(frozen=True)
-class Cell:
+class GridCell:
     """One wall of the grid.
 
     Attributes:
@@ -112,9 +112,9 @@ def _width(ends: Range | None) -> float:
     return 0.0 if ends is None else ends[1] - ends[0]
 
 
-def grids(run: ComparisonRun) -> list[Study]:
+def grids(run: ComparisonRun) -> list[StudyCurves]:
     """A study for every kind of wall of which at least two proportions, frictions and methods are in the comparison."""
-    groups: dict[str, list[Cell]] = defaultdict(list)
+    groups: dict[str, list[GridCell]] = defaultdict(list)
     kinds: dict[str, str] = {}
     for number, item in enumerate(run.cases):
         if shapes.problem(item.case):
@@ -127,14 +127,14 @@ def grids(run: ComparisonRun) -> list[Study]:
     return [_study(kinds[key], cells) for key, cells in groups.items() if _is_grid(cells)]
 
 
-def _is_grid(cells: list[Cell]) -> bool:
+def _is_grid(cells: list[GridCell]) -> bool:
     """Whether most places of a table of at least two rows and columns are filled, by at least two methods."""
     rows, across = {cell.proportion for cell in cells}, {cell.friction for cell in cells}
     filled = min(len(rows), len(across)) > 1 and 2 * len(cells) > len(rows) * len(across)
     return filled and len({name for cell in cells for name in cell.ranges}) > 1
 
 
-def _cell(number: int, item: CaseResults) -> Cell | None:
+def _cell(number: int, item: CaseResults) -> GridCell | None:
     assembly = item.case.assembly
     proportion, friction = proportion_of(assembly), friction_of(assembly)
     if proportion is None or friction is None:
@@ -145,7 +145,7 @@ def _cell(number: int, item: CaseResults) -> Cell | None:
         for result in (*mains, *([above] if above is not None else []))
         if solved(result) and (found := thrust_lines.head_thrust(assembly, result.forces)) is not None
     }
-    return Cell(
+    return GridCell(
         number=number,
         proportion=proportion,
         friction=friction,
@@ -157,7 +157,7 @@ def _cell(number: int, item: CaseResults) -> Cell | None:
     )
 
 
-def _study(kind: str, cells: list[Cell]) -> Study:
+def _study(kind: str, cells: list[GridCell]) -> StudyCurves:
     proportions = sorted({cell.proportion for cell in cells})
     frictions = sorted({cell.friction for cell in cells})
     at = {(cell.proportion, cell.friction): cell for cell in cells}
@@ -174,7 +174,7 @@ def _study(kind: str, cells: list[Cell]) -> Study:
             ],
         )
     )
-    return Study(
+    return StudyCurves(
         f"Where {who} agree: {kind}, by proportion and friction",
         " ".join(sentence for sentence in (_where(cells), *_why(cells)) if sentence),
         "A row is a proportion of the brick (width over height), a column a friction. “agree” means that all "
@@ -185,7 +185,7 @@ def _study(kind: str, cells: list[Cell]) -> Study:
     )
 
 
-def _where(cells: list[Cell]) -> str:
+def _where(cells: list[GridCell]) -> str:
     agree, differ = [cell for cell in cells if cell.agree], [cell for cell in cells if cell.differ]
     missing = [cell for cell in cells if cell.spread is None]
     open_ = len(cells) - len(agree) - len(differ) - len(missing)
@@ -205,7 +205,7 @@ def _where(cells: list[Cell]) -> str:
     )
 
 
-def _why(cells: list[Cell]) -> Iterable[str]:
+def _why(cells: list[GridCell]) -> Iterable[str]:
     """What the numbers say of the differences; a sentence only where its own figures bear it out."""
     differ = [cell for cell in cells if cell.differ]
     for sign, where in ((-1.0, "lowest"), (1.0, "highest")):
@@ -217,7 +217,7 @@ def _why(cells: list[Cell]) -> Iterable[str]:
     yield from _self_stress(differ)
 
 
-def _odd(name: str, odd: list[Cell], number: int, where: str) -> str:
+def _odd(name: str, odd: list[GridCell], number: int, where: str) -> str:
     """On how many walls a method stands apart, how far at most, and what its head joints carry there beside others'."""
     most = max(100.0 * abs(cell.odd_one_out[1]) for cell in odd)
     walls = (
@@ -238,7 +238,7 @@ def _odd(name: str, odd: list[Cell], number: int, where: str) -> str:
     return f"{said}."
 
 
-def _falling(cells: list[Cell]) -> Iterable[str]:
+def _falling(cells: list[GridCell]) -> Iterable[str]:
     """The least known multiplier that falls while friction grows."""
     found = []
     for proportion in sorted({cell.proportion for cell in cells}):
@@ -258,7 +258,7 @@ def _falling(cells: list[Cell]) -> Iterable[str]:
         yield f"The least known multiplier is not monotone in friction: it falls at {'; '.join(found)}."
 
 
-def _self_stress(differ: list[Cell]) -> Iterable[str]:
+def _self_stress(differ: list[GridCell]) -> Iterable[str]:
     """How far the associated maximum lies above springs, and what its head joints carry beside those of others."""
     above = [
         (cell.associated / elastic[1] - 1.0, elastic[0])

@@ -16,7 +16,7 @@ import numpy as np
 from harness.model.comparison import CaseResults, ComparisonRun
 from harness.model.result import Result
 from reports.charts import charts
-from reports.charts.families import Study, families, methods_of, solved
+from reports.charts.families import StudyCurves, families, methods_of, solved
 from reports.charts.grid import grids
 from reports.charts.styles import Mark, mark_of
 from reports.labels import numbers
@@ -25,7 +25,7 @@ from reports.memo import memo
 
 
 @memo
-def studies(run: ComparisonRun) -> list[Study]:
+def studies(run: ComparisonRun) -> list[StudyCurves]:
     """All studies the results allow, then those the comparison brought."""
     found = [study for study in (cost_against_size(run), performance_profile(run)) if study is not None]
     found = [*grids(run), *families(run), *found]
@@ -33,7 +33,7 @@ def studies(run: ComparisonRun) -> list[Study]:
     return found + [_given(item) for item in given if isinstance(item, dict)]
 
 
-def cost_against_size(run: ComparisonRun) -> Study | None:
+def cost_against_size(run: ComparisonRun) -> StudyCurves | None:
     """CPU time of collapses found against the number of free blocks and of interfaces, log-log, with slopes."""
     by_blocks = _costs(run, lambda item, result: result.blocks)
     by_interfaces = _costs(run, lambda item, result: item.case.assembly.n_interfaces)
@@ -44,7 +44,7 @@ def cost_against_size(run: ComparisonRun) -> Study | None:
         title = f"CPU time against number of {what}"
         chart = charts.Chart(title, what, "CPU time [s]", series, log_x=True, log_y=True)
         drawings.append((f"Against {what}", charts.svg(chart)))
-    return Study(
+    return StudyCurves(
         "Cost against size",
         _slopes(run),
         "Both axes are logarithmic: a slope of 1 means that twice the blocks cost twice the time. Only runs "
@@ -138,7 +138,7 @@ def profile(run: ComparisonRun, methods: list[str]) -> dict[str, list[float]]:
     return {method: sorted(values) for method, values in ratios.items()}
 
 
-def performance_profile(run: ComparisonRun) -> Study | None:
+def performance_profile(run: ComparisonRun) -> StudyCurves | None:
     """Share of all cases solved within a multiple of the fastest method's time."""
     bounds = {r.method for item in run.cases for r in item.results if r.traits.bounds_above}
     methods = [method for method in methods_of(run) if method not in bounds]
@@ -164,7 +164,7 @@ def performance_profile(run: ComparisonRun) -> Study | None:
         log_x=True,
         zero_y=True,
     )
-    return Study(
+    return StudyCurves(
         "Performance profile",
         f"How much of the {numbers.count(len(run.cases), 'case')} each method solved within a multiple of the "
         f"fastest method's time; {numbers.count(unsolved, 'case')} no method solved.",
@@ -176,7 +176,7 @@ def performance_profile(run: ComparisonRun) -> Study | None:
     )
 
 
-def _given(item: dict[str, Any]) -> Study:
+def _given(item: dict[str, Any]) -> StudyCurves:
     """A study the comparison brought with it."""
     series = [
         charts.Series(
@@ -197,4 +197,4 @@ def _given(item: dict[str, Any]) -> Study:
         log_x=bool(item.get("log_x", False)),
         log_y=bool(item.get("log_y", False)),
     )
-    return Study(title, str(item.get("sentence", "")), str(item.get("read", "")), [("", charts.svg(chart))])
+    return StudyCurves(title, str(item.get("sentence", "")), str(item.get("read", "")), [("", charts.svg(chart))])

@@ -17,7 +17,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from harness.model.assembly import FloatArray
-from harness.model.inspection import Inspection, Mark
+from harness.model.inspection import FaultMark, Inspection
 from harness.model.rings import rings_of
 from harness.model.units import DIMENSIONLESS
 from reports.drawing.display_list import Arrows, DisplayList, Frame, Polygons
@@ -192,7 +192,7 @@ def _axes(ax: Axes, extent: shapes.Extent, margin: float, unit: str, sheet: Shee
     ax.text(left + length, low, f"  {length:g} {unit}", va="center", fontsize=sheet.text, color=COLOURS["ink"])
 
 
-def _marks(ax: Axes, marks: Sequence[Mark], sheet: Sheet) -> None:
+def _marks(ax: Axes, marks: Sequence[FaultMark], sheet: Sheet) -> None:
     """The numbers of marks at their places, those at one place beside each other."""
     there: dict[tuple[float, float], list[int]] = {}
     for number, mark in enumerate(marks, start=1):
@@ -215,7 +215,7 @@ def _marks(ax: Axes, marks: Sequence[Mark], sheet: Sheet) -> None:
         )
 
 
-def _legend(marks: Sequence[Mark], sheet: Sheet) -> list[str]:
+def _legend(marks: Sequence[FaultMark], sheet: Sheet) -> list[str]:
     """The first marks in words."""
     lines: list[str] = []
     for number, mark in enumerate(marks[: sheet.listed], start=1):

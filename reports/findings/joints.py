@@ -20,7 +20,7 @@ SLIDE, ROCK, BOTH, OPEN, DILATANT, STICK = "slide", "rock", "rock and slide", "o
 
 
 @dataclass(frozen=True)
-class Motion:
+class JointMotion:
     """What joints do in a mechanism, as facts each.
 
     Attributes:
@@ -42,7 +42,7 @@ class Motion:
 
 
 @memo
-def _motion(assembly: Assembly, result: Result) -> Motion:
+def _motion(assembly: Assembly, result: Result) -> JointMotion:
     velocities = normalised_mechanism(assembly, np.asarray(result.mechanism, dtype=float))
     opening, slip = relative_velocities(assembly, velocities)
     still = STILL_MEASURED if result.flow == "approximate" else STILL
@@ -52,10 +52,10 @@ def _motion(assembly: Assembly, result: Result) -> Motion:
     ends = np.asarray(opening - lifted[:, None] > still)
     slides = np.asarray(abs(slip) > still)
     parts = ends[:, 0] & ends[:, 1]
-    return Motion(slides, ends[:, 0] | ends[:, 1], parts, slides & associated & ~parts)
+    return JointMotion(slides, ends[:, 0] | ends[:, 1], parts, slides & associated & ~parts)
 
 
-def motion(assembly: Assembly, result: Result) -> Motion | None:
+def motion(assembly: Assembly, result: Result) -> JointMotion | None:
     """How the joints of a result move; None for a measured velocity field, in which nothing is exactly at rest."""
     if result.mechanism is None or result.flow == "approximate":
         return None
@@ -91,7 +91,7 @@ def open_with_force(assembly: Assembly, result: Result) -> int:
     return sum(bool(force) and name == OPEN for name, force in zip(states, carries, strict=True))
 
 
-def joints_in_words(found: Motion) -> str:
+def joints_in_words(found: JointMotion) -> str:
     """How many joints slide, rock and part, e.g. "3 joints slide, 9 rock, 2 do both"."""
     rocks = found.opens & ~found.parts & ~found.dilates
     both = int((rocks & found.slides).sum())

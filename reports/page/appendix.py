@@ -69,7 +69,7 @@ class MethodRow:
 
 
 @dataclass(frozen=True)
-class BlockRow:
+class SheetBlock:
     """What is given of one free block."""
 
     name: str
@@ -143,12 +143,12 @@ def _loads(item: CaseResults) -> list[tuple[str, str, str]]:
     ]
 
 
-def _blocks(item: CaseResults) -> list[BlockRow]:
+def _blocks(item: CaseResults) -> list[SheetBlock]:
     assembly = item.case.assembly
     if assembly.n_free > BLOCK_ROWS:
         return []
     return [
-        BlockRow(
+        SheetBlock(
             assembly.block_ids[k],
             numbers.plain(float(assembly.centroid[k, 0]), 4),
             numbers.plain(float(assembly.centroid[k, 1]), 4),

@@ -103,7 +103,7 @@ def _charts(run: ComparisonRun) -> dict[str, bytes]:
         drawings += [(f"study-{place}-{number}", drawing) for number, (_, drawing) in enumerate(study.charts, start=1)]
     contents: dict[str, bytes] = {}
     for name, drawing in drawings:
-        if isinstance(drawing, charts.Drawing) and drawing.chart is not None:
+        if isinstance(drawing, charts.DrawnChart) and drawing.chart is not None:
             contents[f"charts/{name}.csv"] = charts.csv_of(drawing.chart).encode()
             contents[f"charts/{name}.svg"] = vectors.alone(str(drawing)).encode()
     return contents

@@ -56,7 +56,7 @@ class Picture:
 
 
 @dataclass(frozen=True)
-class Part:
+class GlancePart:
     """A plot with its heading and the sentence that says what it shows."""
 
     title: str
@@ -84,7 +84,7 @@ class Glance:
     case: str = ""
     pictures: list[Picture] = field(default_factory=list)
     sentence: str = ""
-    parts: list[Part] = field(default_factory=list)
+    parts: list[GlancePart] = field(default_factory=list)
     governs: Governing | None = None
     drawing: Markup = field(default_factory=Markup)
     words: str = ""
@@ -108,7 +108,9 @@ def glance(run: ComparisonRun) -> Glance:
         parts.extend(filter(None, [_cost(run, item)]))
     elif item is not block:
         plot = wall_plot(item)
-        parts.append(Part("Multiplier by method", html(plot), "Filled: proved minimum. A bar is a measured bracket."))
+        parts.append(
+            GlancePart("Multiplier by method", html(plot), "Filled: proved minimum. A bar is a measured bracket.")
+        )
     drawing, words = _governing_mechanism(own)
     return Glance(
         headline(run),
@@ -244,7 +246,7 @@ def _paper_found(item: CaseResults) -> str:
     return f"In the paper {said.mechanisms}." if item.case.id == said.case else ""
 
 
-def _block(item: CaseResults) -> Part:
+def _block(item: CaseResults) -> GlancePart:
     """The paper's block: what it prints, and ours, on one axis."""
     results = {result.method: result for result in plotted(item) if result.multiplier is not None}
     printed = [row for row in paper.printed().block.rows if row.exact is not None and row.method in results]
@@ -259,7 +261,7 @@ def _block(item: CaseResults) -> Part:
     ends = [end for result in results.values() for end in range_of(result) or ()]
     values = [*ends, *(mark.value for mark in theirs)]
     plot = DotPlot("Multipliers of the single block, the paper's and ours", plain_scale(values), rows)
-    return Part("Single block", html(plot) + legend(plot), _block_in_words(item, list(results.values())))
+    return GlancePart("Single block", html(plot) + legend(plot), _block_in_words(item, list(results.values())))
 
 
 def labels_of(dots: list[Dot]) -> str:
@@ -280,7 +282,7 @@ def _block_in_words(item: CaseResults, results: list[Result]) -> str:
     return f"{said}{'; ' + ', '.join(others) if others else ''}: equilibrium does not determine the contact forces."
 
 
-def _cost(run: ComparisonRun, item: CaseResults) -> Part | None:
+def _cost(run: ComparisonRun, item: CaseResults) -> GlancePart | None:
     """CPU time as ratios beside the paper's, and the largest walls."""
     found = paper.paper_comparison(run)
     if found is None or not found.ratio_ours:
@@ -310,7 +312,7 @@ def _cost(run: ComparisonRun, item: CaseResults) -> Part | None:
     sentence = (
         f"{found.names} is {found.ratio_paper} in the paper and {found.ratio_ours} here{until}. {largest_walls(run)}"
     )
-    return Part("CPU time, ratio", html(plot) + legend(plot), sentence)
+    return GlancePart("CPU time, ratio", html(plot) + legend(plot), sentence)
 
 
 def largest_walls(run: ComparisonRun) -> str:

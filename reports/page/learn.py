@@ -56,7 +56,7 @@ def block_answers(rear: float, front: float) -> BlockAnswers:
 
 
 @dataclass(frozen=True)
-class Panel:
+class LessonPanel:
     """One method's answer on one wall, for the page."""
 
     method: str
@@ -70,7 +70,7 @@ class Step:
     """One friction of the wall."""
 
     friction: str
-    panels: list[Panel]
+    panels: list[LessonPanel]
 
 
 @dataclass(frozen=True)
@@ -128,14 +128,14 @@ def render(run: ComparisonRun, start: Demonstration = Demonstration()) -> str:
     )
 
 
-def _panels(item: CaseResults) -> list[Panel]:
+def _panels(item: CaseResults) -> list[LessonPanel]:
     panels = []
     for result in labels.in_order(item):
         if result.status is not Status.OK or result.mechanism is None:
             continue
         found = motion(item.case.assembly, result)
         panels.append(
-            Panel(
+            LessonPanel(
                 result.method,
                 value_in_words(result),
                 inline(mechanism_drawing(item.case, result)),

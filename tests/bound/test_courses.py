@@ -19,7 +19,7 @@ from harness.model.reading import parse_wall
 from harness.model.wall import Wall
 from methods.proof.verify.checker import digest, verify
 from methods.proof.verify.exact_wall import CertificateError, ExactWall
-from methods.proof.verify.force_limits import Known
+from methods.proof.verify.force_limits import KnownLimits
 from methods.proof.verify.window_limits import Columns, Course, Motions
 from methods.proof.verify.windows import WindowLimits
 from tests.bound.test_window_certificate import certificate_of
@@ -139,7 +139,7 @@ def columns_of(still: set[int], least: dict[int, Fraction], slow: dict[int, Frac
     """Of the slab, with what is known of its contacts; a rate of the left joint weighs 2, of the right one 4."""
     wall, window = ExactWall(of_slab()), of_slab()["windows"][0]
     said = {"weight_exponent": 1, "weights": [4, 8], "lift_weight": 2}
-    return Columns(WindowLimits(wall, window).forces, Known(frozenset(still), least, slow), said)
+    return Columns(WindowLimits(wall, window).forces, KnownLimits(frozenset(still), least, slow), said)
 
 
 def test_rates_of_a_loaded_joint_are_weighed_and_lose_friction_by_hand() -> None:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from harness.conformance import Check, checks
+from harness.conformance import ConformanceCheck, checks
 from harness.conformance.suite import Outcome
 from harness.model.method import load_method
 
@@ -24,7 +24,7 @@ METHODS += ["de", "de-soft", "de-tilt"]
 
 @pytest.mark.parametrize("method", METHODS)
 @pytest.mark.parametrize("check", [pytest.param(check, id=name) for name, check in checks()])
-def test_method_conforms(method: str, check: Check):
+def test_method_conforms(method: str, check: ConformanceCheck):
     """Walls with cohesion or dilatancy, or of a hundred blocks, may be refused, and nothing else."""
     row = check.row(load_method(method))
     allowed = {Outcome.CONFORMS, Outcome.REFUSED} if check.group in ("features", "limits") else {Outcome.CONFORMS}

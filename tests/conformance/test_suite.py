@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from harness.conformance import conforms, suite
-from harness.conformance.suite import Outcome, Row
+from harness.conformance.suite import CheckFound, Outcome
 from harness.model.assembly import Assembly
 from harness.model.errors import InputError
 from harness.model.method import Answer, Finding, Method, Settings, Status, load_method
@@ -49,7 +49,7 @@ class Faulty(Method):
         return answer
 
 
-def rows_of(what: str) -> dict[str, Row]:
+def rows_of(what: str) -> dict[str, CheckFound]:
     method = Faulty(what)
     return {check.name: check.row(method) for check in suite() if check.group != "limits"}
 

@@ -26,7 +26,7 @@ from methods.la.search import LimitAnalysis
 from methods.la.settings import AssociatedSettings, SearchSettings
 from methods.la.sources import explore
 from methods.la.sources.arcs import ArcPaths
-from methods.la.sources.budget import Budget, Limits
+from methods.la.sources.budget import Budget, SearchLimits
 from methods.la.sources.search import Choices, Search
 from tests.la.bodies import running_bond
 
@@ -129,7 +129,7 @@ def test_what_rests_on_a_moving_block_moves() -> None:
 
 def test_search_of_the_part_that_collapses_gives_states_of_the_whole_wall() -> None:
     problem = make_problem(running_bond(14, 7, 0.175, 0.65))
-    search = Search(problem, NewtonMatrix(problem), budget=Budget(Limits(descents=0)))
+    search = Search(problem, NewtonMatrix(problem), budget=Budget(SearchLimits(descents=0)))
     explore(search, [ArcPaths(least=100)])
     states = search.record.states
     assert states

@@ -15,7 +15,7 @@ from methods.la.core.state import CollapseState, polished, residuals
 from methods.la.search import LimitAnalysis
 from methods.la.settings import SearchSettings
 from methods.la.sources import SOURCES, Source, explore
-from methods.la.sources.budget import Budget, Limits
+from methods.la.sources.budget import Budget, SearchLimits
 from methods.la.sources.search import Search
 from methods.la.sources.springs import AnalyticCentre, CommittedHistories, LowPrestress, ShiftedAssociated
 from tests.la.bodies import block_on_halves, running_bond
@@ -31,7 +31,7 @@ WALLS = {
 def search_of(wall: Assembly, breakpoints: int) -> Search:
     """With a budget of breakpoints, and the greatest multiplier known."""
     problem = make_problem(wall)
-    search = Search(problem, NewtonMatrix(problem), budget=Budget(Limits(breakpoints=breakpoints)))
+    search = Search(problem, NewtonMatrix(problem), budget=Budget(SearchLimits(breakpoints=breakpoints)))
     search.solve_associated()
     return search
 

@@ -14,7 +14,7 @@ from methods.la.core.programmes import KinematicProgramme, StaticProgramme
 from methods.la.interior.interior_point import start_point
 from methods.la.interior.newton_step import NewtonStep, Point
 from methods.la.settings import SearchSettings
-from methods.la.sources.budget import Budget, Limits, Sizes, Work, rounds_of
+from methods.la.sources.budget import Budget, SearchLimits, Sizes, Work, rounds_of
 from tests.la.bodies import block_on_halves, column, running_bond
 
 
@@ -201,7 +201,7 @@ class _Sized:
         self.assembly: Any = type("Wall", (), {"n_free": blocks})
 
 
-def limits(blocks: int, interfaces: int, effort: str = "normal") -> Limits:
+def limits(blocks: int, interfaces: int, effort: str = "normal") -> SearchLimits:
     sized: Any = _Sized(blocks, interfaces)
     return Sizes().limits(effort, sized)
 
@@ -236,7 +236,7 @@ def test_settings_take_the_place_of_limits_and_deep_searches_begin_with_a_normal
 
 
 def test_a_budget_ends_where_it_is_spent_and_lasts_longer_while_nothing_is_known() -> None:
-    budget = Budget(Limits(programmes=10, block_steps=100.0, breakpoints=50))
+    budget = Budget(SearchLimits(programmes=10, block_steps=100.0, breakpoints=50))
     budget.stepped(5, 20)
     assert (budget.spent.newton_steps, budget.spent.block_steps) == (5, 100.0)
     assert (budget.steps_left(True), budget.steps_left(False)) == (False, True)

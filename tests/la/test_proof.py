@@ -9,7 +9,7 @@ from benchmarks.walls import small_arch
 from harness.model.assembly import Assembly
 from harness.model.build import build
 from harness.model.wall import Wall
-from methods.la.certify.proof import Proof, _Certificates, _Part, prove
+from methods.la.certify.proof import TreeProof, _Certificates, _Part, prove
 from methods.la.core.newton_matrix import NewtonMatrix
 from methods.la.core.problem import Problem, make_problem
 from methods.la.core.state import CollapseState
@@ -24,7 +24,7 @@ from tests.la.test_mechanisms import six_blocks
 from tests.soak import random_wall
 
 
-def proof_from(wall: Assembly, nodes: int) -> tuple[Problem, CollapseState, Proof]:
+def proof_from(wall: Assembly, nodes: int) -> tuple[Problem, CollapseState, TreeProof]:
     """What the tree proves from the state that the interior point ends at, which need not be the least."""
     problem = make_problem(wall)
     search = Search(problem, NewtonMatrix(problem))

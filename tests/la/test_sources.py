@@ -16,7 +16,7 @@ from methods.la.core.programmes import StaticProgramme
 from methods.la.search import LimitAnalysis
 from methods.la.settings import SearchSettings
 from methods.la.sources import SOURCES, explore
-from methods.la.sources.budget import Budget, Limits, Sizes
+from methods.la.sources.budget import Budget, SearchLimits, Sizes
 from methods.la.sources.paths import CentralPath
 from methods.la.sources.search import Search
 from methods.la.sources.springs import LowPrestress
@@ -27,7 +27,7 @@ from tests.soak import random_wall
 
 def search_of(wall: Any, **limits: Any) -> Search:
     problem = make_problem(wall)
-    return Search(problem, NewtonMatrix(problem), budget=Budget(Limits(**limits)))
+    return Search(problem, NewtonMatrix(problem), budget=Budget(SearchLimits(**limits)))
 
 
 def test_result_tells_which_source_found_the_least_state_and_what_it_took() -> None:

@@ -248,7 +248,7 @@ def test_joints_are_told_by_what_they_do_and_forces_by_the_state_they_are_of():
 
 def test_joint_that_rocks_and_slides_counts_as_both():
     slides, opens = np.array([True, True, False, False]), np.array([False, True, True, True])
-    moves = joints.Motion(slides, opens, np.array([False, False, False, True]), np.zeros(4, dtype=bool))
+    moves = joints.JointMotion(slides, opens, np.array([False, False, False, True]), np.zeros(4, dtype=bool))
     assert joints.joints_in_words(moves) == (
         "of the joints 1 slides, 1 rocks, 1 rocks and slides and 1 opens along its whole length"
     )

@@ -312,7 +312,7 @@ def test_frames_of_another_wall_are_not_drawn():
 MAINS = ("fe", "la", "de")
 
 
-def grid_of(values: dict[tuple[float, float], tuple[float, float, float]]) -> families.Study:
+def grid_of(values: dict[tuple[float, float], tuple[float, float, float]]) -> families.StudyCurves:
     """The grid study of walls (length of a brick, friction) with multipliers of FE, LA and DE."""
     items = []
     for (length, friction), found in values.items():
@@ -403,7 +403,7 @@ def test_friction_at_its_limit_is_decided_from_the_forces_and_not_from_what_is_s
         assert circled == thrust_lines.at_friction_limit(case.assembly, forces)[number]
 
 
-def bracketed_grid(low: float, high: float) -> families.Study:
+def bracketed_grid(low: float, high: float) -> families.StudyCurves:
     """A grid of four walls, on which DE brackets one, and the others agree."""
     items = []
     for number, (length, friction) in enumerate(((0.4, 0.5), (0.4, 0.8), (0.6, 0.5), (0.6, 0.8))):

@@ -27,7 +27,7 @@ from harness.model.wall import Wall
 
 
 @dataclass(frozen=True)
-class Source:
+class WallSource:
     """A wall that a study starts from."""
 
     name: str
@@ -35,7 +35,7 @@ class Source:
 
 
 @dataclass(frozen=True, eq=False)
-class Variant:
+class WallVariant:
     """One wall of a study: where it comes from and what was changed.
 
     Attributes:
@@ -46,7 +46,7 @@ class Variant:
         walls: those of the study that are held in memory.
     """
 
-    source: Source
+    source: WallSource
     values: Mapping[str, Any]
     draw: int | None
     study: str
@@ -97,9 +97,9 @@ class Walls:
 
     def __init__(self, most: int = 64) -> None:
         self._most = most
-        self._kept: OrderedDict[Variant, Assembly] = OrderedDict()
+        self._kept: OrderedDict[WallVariant, Assembly] = OrderedDict()
 
-    def assembly(self, variant: Variant) -> Assembly:
+    def assembly(self, variant: WallVariant) -> Assembly:
         """The assembly of a variant, see `Variant.assembly`."""
         found = self._kept.get(variant)
         if found is None:
@@ -119,17 +119,17 @@ class SweepRun(Run):
         varied: every quantity that the study varies and that this run depends on, by name.
     """
 
-    case: Variant
+    case: WallVariant
     number: int = field(kw_only=True)
     varied: Mapping[str, Any] = field(kw_only=True)
 
     @property
-    def variant(self) -> Variant:
+    def variant(self) -> WallVariant:
         """The wall."""
         return self.case
 
 
-def sources_of(study: Study, folders: Sequence[Path] = (), place: Path | None = None) -> list[Source]:
+def sources_of(study: Study, folders: Sequence[Path] = (), place: Path | None = None) -> list[WallSource]:
     """The walls a study starts from; wall files are looked for beside the study's file.
 
     Raises:
@@ -137,12 +137,12 @@ def sources_of(study: Study, folders: Sequence[Path] = (), place: Path | None = 
     """
     if study.wall is not None:
         wall = parse_wall({"format": "wall/1"} | study.wall, f"wall of study {study.name}")
-        return [Source(study.name, json.loads(wall_json(wall)))]
+        return [WallSource(study.name, json.loads(wall_json(wall)))]
     words = [str(place / word) if place is not None and (place / word).exists() else word for word in study.cases]
-    return [Source(case.id, json.loads(wall_json(case.wall))) for case in find_cases(words, None, folders)]
+    return [WallSource(case.id, json.loads(wall_json(case.wall))) for case in find_cases(words, None, folders)]
 
 
-def expand(study: Study, sources: Sequence[Source]) -> list[SweepRun]:
+def expand(study: Study, sources: Sequence[WallSource]) -> list[SweepRun]:
     """Every run of a study. The order depends on the study alone: cases, grid (last axis fastest), draws, methods.
 
     Raises:
@@ -163,12 +163,12 @@ def expand(study: Study, sources: Sequence[Source]) -> list[SweepRun]:
         for assignment in itertools.product(*axes):
             grid = {name: value for part in assignment for name, value in part.items()}
             for draw, drawn in draws:
-                runs += _runs(study, Variant(source, {}, draw, study.name, walls), grid | drawn, limits, len(runs))
+                runs += _runs(study, WallVariant(source, {}, draw, study.name, walls), grid | drawn, limits, len(runs))
     _check(study, runs)
     return runs
 
 
-def _runs(study: Study, wall: Variant, values: dict[str, Any], limits: Limits, first: int) -> Iterator[SweepRun]:
+def _runs(study: Study, wall: WallVariant, values: dict[str, Any], limits: Limits, first: int) -> Iterator[SweepRun]:
     """The runs on one wall. A method whose settings vary is run for each of them, the others once."""
     settings = {name: where for name in values if (where := setting_of(name)) is not None}
     of_wall = {name: value for name, value in values.items() if name not in settings}
@@ -188,7 +188,7 @@ def _check(study: Study, runs: Sequence[SweepRun]) -> None:
         if owner not in study.methods:
             raise InputError(f'"{name}" is a setting of {owner}, which the study does not run', "Name it in methods")
     seen: set[str] = set()
-    looked_at: Variant | None = None
+    looked_at: WallVariant | None = None
     classes = {name: load_method(name).Settings for name in study.methods if _has_settings(study, name, owners)}
     for run in runs:
         if run.method in classes:

@@ -16,7 +16,7 @@ NO_SALIB = "SALib is not installed, so no sensitivities are reported: pip instal
 
 
 @dataclass(frozen=True)
-class Summary:
+class GridSummary:
     """A study with its results.
 
     Attributes:
@@ -94,7 +94,7 @@ def _taken_over(rows: pd.DataFrame, place: list[str]) -> tuple[pd.DataFrame, str
     )
 
 
-def summarise(study: Study, rows: pd.DataFrame) -> Summary:
+def summarise(study: Study, rows: pd.DataFrame) -> GridSummary:
     """The statistics that a study's rows allow."""
     groups = ["case", "method", *grid_of(study)]
     rows = rows.copy()
@@ -132,4 +132,4 @@ def summarise(study: Study, rows: pd.DataFrame) -> Summary:
             found = statistics.sensitivity(rows, list(study.draw), groups)
             if len(found):
                 tables["sensitivity"] = found
-    return Summary(study, rows, groups, tables, remarks)
+    return GridSummary(study, rows, groups, tables, remarks)

@@ -44,7 +44,7 @@ class ExplicitTuning:
     steps_at_once: int = 20
 
 
-class Contacts(NamedTuple):
+class ElasticContacts(NamedTuple):
     """The contacts of rounded corners with faces, two an interface: 2m of them.
 
     Attributes:
@@ -75,7 +75,7 @@ class Contacts(NamedTuple):
     friction: FloatArray
 
 
-def contacts_of(assembly: Assembly, stiffness: float, shear_ratio: float, least_radius: float) -> Contacts:
+def contacts_of(assembly: Assembly, stiffness: float, shear_ratio: float, least_radius: float) -> ElasticContacts:
     """The contacts of a wall.
 
     A contact point that is set in from the end of its face is where a round of that radius begins; other corners are
@@ -87,7 +87,7 @@ def contacts_of(assembly: Assembly, stiffness: float, shear_ratio: float, least_
         shear_ratio: stiffness along over stiffness across.
         least_radius: of a corner [length].
     """
-    rows: list[Contacts] = []
+    rows: list[ElasticContacts] = []
     small = SAME * assembly.length_scale
     for p in range(assembly.n_interfaces):
         faces = np.array([assembly.face1[p], assembly.face2[p]])
@@ -115,8 +115,8 @@ def contacts_of(assembly: Assembly, stiffness: float, shear_ratio: float, least_
                 "kt": shear_ratio * kn,
                 "friction": assembly.friction[p],
             }
-            rows.append(Contacts(**{name: np.asarray(value) for name, value in contact.items()}))
-    return Contacts(*(np.array(column) for column in zip(*rows, strict=True)))
+            rows.append(ElasticContacts(**{name: np.asarray(value) for name, value in contact.items()}))
+    return ElasticContacts(*(np.array(column) for column in zip(*rows, strict=True)))
 
 
 def _extent(assembly: Assembly, block: int, p: int, end: FloatArray, along: FloatArray) -> tuple[float, float]:
@@ -263,7 +263,7 @@ def _advance(
     places: FloatArray,
     velocity: FloatArray,
     shear: FloatArray,
-    contacts: Contacts,
+    contacts: ElasticContacts,
     centroid: FloatArray,
     loads: FloatArray,
     mass: FloatArray,

@@ -10,7 +10,7 @@ import numpy as np
 from harness.model.assembly import FloatArray
 from harness.model.deadline import Deadline
 from methods.de.engines.engine import Engine, MeasuredState, motion_units
-from methods.de.holds.motion import Motion, MotionProof, StaticLimit, Trend, by_power, by_virtual_work
+from methods.de.holds.motion import HeldMotion, MotionProof, StaticLimit, Trend, by_power, by_virtual_work
 from methods.de.settings import HoldSettings
 
 SMALL = 0.01
@@ -127,7 +127,7 @@ class ConvergenceMonitor:
             return count >= usual
         return not 0.0 < count * self.decay < relaxations
 
-    def motion(self, engine: MeasuredState, statics: StaticLimit) -> Motion | None:
+    def motion(self, engine: MeasuredState, statics: StaticLimit) -> HeldMotion | None:
         """The motion, where it is shown that the wall moves; else None. Virtual work is asked where statics fails."""
         if len(self.velocities) < 8 or self.residuals[-1] <= self.moving:
             return None

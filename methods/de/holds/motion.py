@@ -80,7 +80,7 @@ class Trend:
 
 
 @dataclass(frozen=True, eq=False)
-class Motion:
+class HeldMotion:
     """A motion that was shown.
 
     Attributes:
@@ -114,7 +114,7 @@ class StaticLimit:
         return found[0] if found is not None and borne else -np.inf
 
 
-def by_virtual_work(assembly: Assembly, load: FloatArray, field: FloatArray, near: float = 0.3) -> Motion | None:
+def by_virtual_work(assembly: Assembly, load: FloatArray, field: FloatArray, near: float = 0.3) -> HeldMotion | None:
     """The motion, where the field made admissible for dilatant flow gains work of the loads; else None.
 
     Args:
@@ -128,10 +128,10 @@ def by_virtual_work(assembly: Assembly, load: FloatArray, field: FloatArray, nea
     if not (np.isfinite(size) and size > 0.0):
         return None
     found = dilatant_mechanism(assembly, load, field / size, near)
-    return None if found is None else Motion(MotionProof.VIRTUAL_WORK, field)
+    return None if found is None else HeldMotion(MotionProof.VIRTUAL_WORK, field)
 
 
-def by_power(assembly: Assembly, load: FloatArray, field: FloatArray, forces: FloatArray) -> Motion | None:
+def by_power(assembly: Assembly, load: FloatArray, field: FloatArray, forces: FloatArray) -> HeldMotion | None:
     """The motion, where the loads give more power than friction and contacts can take; else None.
 
     Args:
@@ -145,10 +145,10 @@ def by_power(assembly: Assembly, load: FloatArray, field: FloatArray, forces: Fl
         np.sum(assembly.law.strength(np.maximum(forces[:, :2], assembly.law.least_normal)) * np.abs(rates[:, 2]))
     )
     contacts = float(np.sum(np.abs(forces[:, :2] * rates[:, :2])))
-    return Motion(MotionProof.POWER, field) if given - friction - contacts > 0.0 else None
+    return HeldMotion(MotionProof.POWER, field) if given - friction - contacts > 0.0 else None
 
 
-def by_travel(assembly: Assembly, load: FloatArray, travelled: FloatArray, reach: float) -> Motion | None:
+def by_travel(assembly: Assembly, load: FloatArray, travelled: FloatArray, reach: float) -> HeldMotion | None:
     """The motion, where a block has moved by so many length scales and the loads did work; else None.
 
     Args:
@@ -159,7 +159,7 @@ def by_travel(assembly: Assembly, load: FloatArray, travelled: FloatArray, reach
     """
     far = float(np.abs(travelled[:, :2]).max(initial=0.0)) >= reach * assembly.length_scale
     work = float(np.sum(load[assembly.free] * travelled[assembly.free]))
-    return Motion(MotionProof.TRAVEL, travelled) if far and work > 0.0 else None
+    return HeldMotion(MotionProof.TRAVEL, travelled) if far and work > 0.0 else None
 
 
 def _size(assembly: Assembly, field: FloatArray) -> float:

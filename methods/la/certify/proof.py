@@ -42,7 +42,7 @@ class Tree:
 
 
 @dataclass(frozen=True)
-class Proof:
+class TreeProof:
     """What the tree shows.
 
     Attributes:
@@ -63,7 +63,9 @@ class Proof:
         return self.lower_bound >= _below(self.state.multiplier)
 
 
-def prove(search: Search, known: CollapseState, most: int, leaves: int | None = None, options: Tree = Tree()) -> Proof:
+def prove(
+    search: Search, known: CollapseState, most: int, leaves: int | None = None, options: Tree = Tree()
+) -> TreeProof:
     """The least collapse state and the bound that a tree of `most` nodes proves, as far as the budget goes.
 
     A tree that does not come to an end is cut back to its first divisions where the whole takes too many programmes to
@@ -76,7 +78,7 @@ def prove(search: Search, known: CollapseState, most: int, leaves: int | None = 
         options: of the tree.
     """
     if most == 0:
-        return Proof(known, 0.0, 0)
+        return TreeProof(known, 0.0, 0)
     tree = _Tree(search, known, options)
     nothing = np.zeros((search.problem.n_interfaces, 4), dtype=bool)
     tree.add(nothing, nothing, 0.0)
@@ -95,8 +97,8 @@ def prove(search: Search, known: CollapseState, most: int, leaves: int | None = 
         if bound <= 0.0:  # It needs no certificate, and the first divisions prove no more than all.
             break
         if _bounded_to_rounding(search, given_up, bound, programmes):
-            return Proof(tree.known, bound, len(tree.parts), tuple((part.tight, part.still) for part in given_up))
-    return Proof(tree.known, 0.0, len(tree.parts))
+            return TreeProof(tree.known, bound, len(tree.parts), tuple((part.tight, part.still) for part in given_up))
+    return TreeProof(tree.known, 0.0, len(tree.parts))
 
 
 def _below(multiplier: float) -> float:

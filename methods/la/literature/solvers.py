@@ -18,7 +18,7 @@ from methods.la.literature.cooperation import project_forces
 from methods.la.literature.paper_programme import PaperResult, solve_paper_programme
 from methods.la.literature.tresca import tresca_sequence
 from methods.la.methods import LA_FROM_FE, LA_PAPER, LA_TRESCA
-from methods.la.sources.budget import Budget, Limits
+from methods.la.sources.budget import Budget, SearchLimits
 from methods.la.sources.search import Search
 from methods.numerics.failures import NumericalFailure
 
@@ -135,7 +135,7 @@ class FromFiniteElements(LimitAnalysisFamily):
         forces, _, projected = project_forces(
             problem, given.forces / problem.unit_force, given.multiplier / problem.unit_multiplier
         )
-        limits = Limits(failures=settings.failures)
+        limits = SearchLimits(failures=settings.failures)
         warm = Search(problem, newton, settings.seed, Budget(limits))
         first = warm.nearest_state(problem.slacks(forces), fe_rates(problem, given))
         warm_end = None if first is None else warm.descend(first)

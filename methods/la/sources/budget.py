@@ -14,7 +14,7 @@ from methods.la.settings import SearchSettings
 
 
 @dataclass(frozen=True)
-class Limits:
+class SearchLimits:
     """How much is tried.
 
     Attributes:
@@ -70,27 +70,29 @@ class Sizes:
         *(0.55, 0.6, 0.65, 0.7, 0.75, 0.8, 0.85, 0.9, 0.95),
     )
 
-    def limits(self, effort: str, problem: Problem) -> Limits:
+    def limits(self, effort: str, problem: Problem) -> SearchLimits:
         """The limits of an effort ("quick", "normal" or "deep") on a wall."""
         blocks, interfaces = problem.assembly.n_free, problem.n_interfaces
         most = self.provable_ring if interfaces <= blocks + 2 else self.provable
         nodes = 1500 if interfaces <= most else 0
         descents = int(interfaces <= self.descended)
         if effort == "quick":
-            return Limits(0, 8, 200, descents, nodes=min(nodes, 100), breakpoints=300, unbounded_breakpoints=300)
+            return SearchLimits(0, 8, 200, descents, nodes=min(nodes, 100), breakpoints=300, unbounded_breakpoints=300)
         if effort == "deep":
             nodes = 20000 if interfaces <= 2 * most else 0
-            return Limits(20, 40, 200, 8, self.fine_ladder, nodes, 3 * nodes, nodes, 1_000_000, 1e7, 100_000, 100_000)
+            return SearchLimits(
+                20, 40, 200, 8, self.fine_ladder, nodes, 3 * nodes, nodes, 1_000_000, 1e7, 100_000, 100_000
+            )
         if blocks <= self.few_blocks:
-            return Limits(0, 12, 200, 3, self.ladder, nodes)
+            return SearchLimits(0, 12, 200, 3, self.ladder, nodes)
         if blocks <= self.some_blocks:
-            return Limits(0, 12, 200, 3, self.ladder[::2], nodes)
+            return SearchLimits(0, 12, 200, 3, self.ladder[::2], nodes)
         if descents:
-            return Limits(0, 40, breakpoints=20_000, unbounded_breakpoints=20_000)
-        return Limits(0, 40, descents=0, breakpoints=60_000, unbounded_breakpoints=1)
+            return SearchLimits(0, 40, breakpoints=20_000, unbounded_breakpoints=20_000)
+        return SearchLimits(0, 40, descents=0, breakpoints=60_000, unbounded_breakpoints=1)
 
 
-def rounds_of(settings: SearchSettings, problem: Problem, sizes: Sizes = Sizes()) -> tuple[Limits, ...]:
+def rounds_of(settings: SearchSettings, problem: Problem, sizes: Sizes = Sizes()) -> tuple[SearchLimits, ...]:
     """The limits that the settings ask for, of one round of the search after the other.
 
     What they leave open depends on the size of the wall. Whoever asks for draws, starts or a ladder has them descended
@@ -127,7 +129,7 @@ class Work:
 class Budget:
     """The limits of a search, and what it and those of other friction that serve it have spent."""
 
-    limits: Limits = field(default_factory=Limits)
+    limits: SearchLimits = field(default_factory=SearchLimits)
     spent: Work = field(default_factory=Work)
 
     def stepped(self, steps: int, blocks: int) -> None:

@@ -24,7 +24,7 @@ from methods.la.interior.interior_point import PathResult, PathSettings, follow_
 from methods.la.interior.newton_step import Point
 from methods.la.interior.path_programmes import Exactness, cheapest_mechanism, exact_state, state_of_mechanism
 from methods.la.interior.phase_one import phase_one_forces
-from methods.la.sources.budget import Budget, Limits
+from methods.la.sources.budget import Budget, SearchLimits
 from methods.la.sources.gravity import Gravity, Springs, gravity_of
 from methods.la.sources.record import LEAST_IMPROVEMENT, Record
 
@@ -93,7 +93,7 @@ class Search:
         self.ends: list[float] = []
         self.associated = AssociatedResult("unknown")
 
-    def begin_round(self, limits: Limits) -> None:
+    def begin_round(self, limits: SearchLimits) -> None:
         """Go on with other limits; more draws may lead down from where a descent ended."""
         self.budget.limits = limits
         self.ends.clear()

@@ -34,7 +34,7 @@ from methods.proof.verify.exact_wall import (
     whole,
     whole_numbers,
 )
-from methods.proof.verify.force_limits import Forces, Known
+from methods.proof.verify.force_limits import Forces, KnownLimits
 from methods.proof.verify.window_limits import most_of
 from methods.proof.verify.windows import WindowLimits
 
@@ -52,7 +52,7 @@ class States:
 
     forces: Forces
     reach: Vector
-    known: Known
+    known: KnownLimits
     low: Fraction
 
     @property

@@ -164,7 +164,7 @@ def rays_of(wall: ExactWall, tight: Collection[int]) -> list[list[tuple[int, int
 
 
 @dataclass(frozen=True)
-class Known:
+class KnownLimits:
     """What is known of the contacts of all states of a window.
 
     Attributes:
@@ -177,7 +177,7 @@ class Known:
     slow: Mapping[int, Fraction]
 
 
-def known_of(forces: Forces, document: Any) -> Known:
+def known_of(forces: Forces, document: Any) -> KnownLimits:
     """What virtual velocities show of contacts.
 
     Raises:
@@ -194,4 +194,4 @@ def known_of(forces: Forces, document: Any) -> Known:
         least[p] = number(claimed)
         if least[p] < 0 or -forces.greatest({p: Fraction(-1)}, velocities) < least[p]:
             raise CertificateError("a normal force may be less than stated")
-    return Known(frozenset(still), least, {})
+    return KnownLimits(frozenset(still), least, {})

@@ -15,7 +15,7 @@ from methods.proof.verify.exact_wall import (
     whole,
     whole_numbers,
 )
-from methods.proof.verify.force_limits import Forces, Known
+from methods.proof.verify.force_limits import Forces, KnownLimits
 
 
 class Columns:
@@ -28,7 +28,7 @@ class Columns:
         weights: {contact: weight} of rates in the size of a mechanism, and of the lift.
     """
 
-    def __init__(self, forces: Forces, known: Known, document: Any) -> None:
+    def __init__(self, forces: Forces, known: KnownLimits, document: Any) -> None:
         self.wall, self.forces, self.known = forces.wall, forces, known
         self.n = len(self.wall.dead)
         quantum = Fraction(1, 2 ** whole(document["weight_exponent"], 0, 200))

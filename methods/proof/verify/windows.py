@@ -35,7 +35,7 @@ from methods.proof.verify.exact_wall import (
     whole,
     whole_numbers,
 )
-from methods.proof.verify.force_limits import Forces, Known, known_of
+from methods.proof.verify.force_limits import Forces, KnownLimits, known_of
 from methods.proof.verify.window_limits import Columns, Motions, Reach
 
 
@@ -46,7 +46,7 @@ class WindowLimits:
         forces, columns, motions: its limits.
     """
 
-    def __init__(self, wall: ExactWall, document: Any, case: tuple[Forces, Known, Vector] | None = None) -> None:
+    def __init__(self, wall: ExactWall, document: Any, case: tuple[Forces, KnownLimits, Vector] | None = None) -> None:
         """A window of all states.
 
         Args:
