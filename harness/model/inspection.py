@@ -17,7 +17,7 @@ from harness.model import geometry
 from harness.model.assembly import BoolArray, FloatArray, IntArray
 from harness.model.build import Built, build, polygons_of, support_faults, weight_of, written_out
 from harness.model.contacts import check_gap
-from harness.model.errors import InputError, Spot, sorted_out
+from harness.model.errors import MOST_WORDED, InputError, Spot, sorted_out
 from harness.model.input_checks import unknown_in_rules
 from harness.model.interfaces import Joints, faults_of_given, floating, floating_groups, joints_of, limits_of
 from harness.model.load_cases import build_load_case, named_loads
@@ -185,8 +185,13 @@ def _lying(
     shapes = geometry.shapes_of(polygons)
     size = geometry.typical_size(shapes[~fixed])
     limits = limits_of(Detection() if isinstance(asked, list) else asked, size)
-    faults = geometry.overlaps(shapes, names, fixed, limits.overlap)
-    joints = Joints(asked) if isinstance(asked, list) else joints_of(asked, polygons, names, fixed, limits)
+    faults: list[InputError] = []
+    try:
+        overlapping, shared = geometry.overlapping(shapes, fixed, limits.overlap)
+        faults += geometry.overlap_faults(shapes, names, overlapping, shared)
+        joints = Joints(asked) if isinstance(asked, list) else joints_of(asked, polygons, names, fixed, limits)
+    except InputError as error:  # there is more than can be looked at
+        return [*faults, *error.faults], []
     if isinstance(asked, Detection):
         try:
             check_gap(shapes, names, limits.gap)
@@ -195,18 +200,21 @@ def _lying(
     index = {name: k for k, name in enumerate(names)}
     known = [item for item in joints.interfaces if set(item.between) <= index.keys()]
     faults += faults_of_given(joints, index, fixed)
-    pairs = _joined(known, faults, index)
+    # Blocks that overlap bear on each other once that is mended.
+    pairs = np.concatenate([_joined(known, index), overlapping])
     held = fixed | _beside(polygons, hulls, limits.sight)
-    faults += [floating(names, group, joints) for group in floating_groups(held, pairs)]
+    groups = floating_groups(held, pairs)
+    faults += [floating(names, group, joints) for group in groups[:MOST_WORDED]]
+    if len(groups) > MOST_WORDED:
+        more = f"{len(groups) - MOST_WORDED:,} more groups of blocks float"
+        faults.append(InputError(more, "Mend those listed first", "blocks"))
     said = {fault.spot.blocks for fault in faults if fault.spot is not None}
     return faults, [mark for mark in _missed(names, joints) if mark.blocks not in said]
 
 
-def _joined(interfaces: Iterable[Interface], faults: Sequence[InputError], index: dict[str, int]) -> IntArray:
-    """Pairs (k, 2) of blocks with an interface, and those that overlap: once mended, they bear on each other."""
-    pairs: list[tuple[str, ...]] = [item.between for item in interfaces]
-    pairs += [fault.spot.blocks for fault in faults if fault.spot is not None and len(fault.spot.blocks) == 2]
-    return np.array([[index[name] for name in pair] for pair in pairs], dtype=np.int64).reshape(-1, 2)
+def _joined(interfaces: Iterable[Interface], index: dict[str, int]) -> IntArray:
+    """Pairs (k, 2) of blocks with an interface."""
+    return np.array([[index[name] for name in item.between] for item in interfaces], dtype=np.int64).reshape(-1, 2)
 
 
 def _beside(polygons: Sequence[FloatArray], hulls: Sequence[shapely.Geometry], sight: float) -> BoolArray:

@@ -38,6 +38,22 @@ def flat(count: int, y: float) -> list[list[float]]:
     return [[k / count, y] for k in range(count + 1)] + [[1.0 - k / count, y + 1.0] for k in range(count + 1)]
 
 
+def box(x0: float, y0: float, x1: float, y1: float) -> list[list[float]]:
+    """A rectangle by two opposite corners."""
+    return [[x0, y0], [x1, y0], [x1, y1], [x0, y1]]
+
+
+def aside(number: int) -> tuple[float, float]:
+    """The lower left corner of a square of side 1 among others, a thousandth of it from each and all off the ground."""
+    return 1.001 * (number % 70), 1.001 + 1.001 * (number // 70)
+
+
+def comb(count: int) -> list[list[float]]:
+    """A polygon of so many teeth of height 2, side by side on a bar of length 1."""
+    teeth = [[[k, 0], [k, 2], [k + 0.5, 2], [k + 0.5, 0]] for k in range(count)]
+    return [[0.0, -1.0], *([x / count, y] for tooth in teeth for x, y in tooth), [1.0, -1.0]]
+
+
 KINDS: dict[str, Callable[[int], Document]] = {
     "rules for the same materials": lambda n: bonded(
         10, friction={"default": 0.5, "rules": [{"materials": ["stone", "stone"], "value": 0.1}] * n}
@@ -65,6 +81,28 @@ KINDS: dict[str, Callable[[int], Document]] = {
     "faults of all kinds": lambda n: wall(**{f"f{k}": 0 for k in range(n)}),
     "blocks that are none": lambda n: wall(blocks=[{}] * n),
     "ids that are one": lambda n: wall(blocks=[GROUND, *[BLOCK] * n]),
+    "blocks that are one": lambda n: wall(blocks=[GROUND, *({**BLOCK, "id": f"s{k}"} for k in range(n))]),
+    "as many blocks that are one as are compared": lambda n: wall(
+        blocks=[GROUND, *({**BLOCK, "id": f"s{k}"} for k in range(min(n, 250)))]  # compared twice, 1 s each
+    ),
+    "blocks within blocks": lambda n: wall(
+        blocks=[GROUND, *({"id": f"s{k}", "polygon": [[k, k], [-k, k], [-k, -k], [k, -k]]} for k in range(1, n))]
+    ),
+    "bars across bars": lambda n: wall(
+        blocks=[GROUND]
+        + [{"id": f"h{k}", "polygon": box(0.0, k, n, k + 0.5)} for k in range(n // 2)]
+        + [{"id": f"v{k}", "polygon": box(k, 0.0, k + 0.5, n)} for k in range(n // 2)]
+    ),
+    "combs across combs": lambda n: wall(
+        blocks=[
+            GROUND,
+            {"id": "h", "polygon": comb(n // 4 - 1)},
+            {"id": "v", "polygon": [[y - 0.5, x + 0.5] for x, y in reversed(comb(n // 4 - 1))]},
+        ]
+    ),
+    "blocks in the air": lambda n: wall(
+        blocks=[GROUND] + [{"id": f"s{k}", "polygon": box(*aside(k), *(1.0 + at for at in aside(k)))} for k in range(n)]
+    ),
     "slivers": lambda n: wall(
         blocks=[GROUND]
         + [

@@ -247,18 +247,22 @@ def test_faults_of_outlines_name_their_element(polygon: list[Any], words: str):
     assert geometry.polygon_faults([], []) == []
 
 
+def overlaps(shapes: np.ndarray, names: list[str], fixed: np.ndarray, tolerance: float) -> list[InputError]:
+    return geometry.overlap_faults(shapes, names, *geometry.overlapping(shapes, fixed, tolerance))
+
+
 @pytest.mark.parametrize("size", [0.01, 1.0, 100.0])
 def test_a_drawing_may_be_as_rough_as_a_fiftieth_of_a_block_of_any_size(size: float):
     for deep, rough in ((0.0199, True), (0.0201, False)):
         polygons = [outline(0.0, 0.0, size, size), outline(size * (1.0 - deep), 0.0, size, size)]
-        (fault,) = geometry.overlaps(geometry.shapes_of(polygons), ["a", "b"], np.zeros(2, dtype=bool), 0.0)
+        (fault,) = overlaps(geometry.shapes_of(polygons), ["a", "b"], np.zeros(2, dtype=bool), 0.0)
         assert ("greatest_overlap" in str(fault)) is rough
 
 
 def test_overlaps_are_told_the_worst_first_with_area_depth_place_and_the_remedy():
     polygons = [outline(0.0, 0.0, 1.0, 1.0), outline(0.9, 0.0, 1.0, 1.0), outline(0.0, 0.99, 1.0, 1.0)]
     shapes, names, free = geometry.shapes_of(polygons), ["a", "b", "c"], np.zeros(3, dtype=bool)
-    faults = geometry.overlaps(shapes, names, free, 1e-6)
+    faults = overlaps(shapes, names, free, 1e-6)
     assert [fault.element for fault in faults] == [f'blocks "{x}" and "{y}"' for x, y in ("ab", "ac", "bc")]
     assert "an area of 0.1, 0.1 deep" in str(faults[0])
     assert "greatest_overlap" not in str(faults[0])  # no drawing is as rough as a tenth of a block
@@ -275,10 +279,30 @@ def test_overlaps_are_told_the_worst_first_with_area_depth_place_and_the_remedy(
         geometry.check_overlaps(shapes[:2], names[:2], free[:2], 1e-6)
     assert "more pair" not in str(alone.value)
     held = np.array([True, True, False])
-    assert [fault.element for fault in geometry.overlaps(shapes, names, held, 1e-6)] == [
+    assert [fault.element for fault in overlaps(shapes, names, held, 1e-6)] == [
         'blocks "a" and "c"',
         'blocks "b" and "c"',
     ]
     # A tolerance explains the area of a strip along the outline: .0024 x 4 < .01 < .0026 x 4.
-    assert len(geometry.overlaps(shapes[[0, 2]], ["a", "c"], free[:2], 0.0024)) == 1
-    assert len(geometry.overlaps(shapes[[0, 2]], ["a", "c"], free[:2], 0.0026)) == 0
+    assert len(overlaps(shapes[[0, 2]], ["a", "c"], free[:2], 0.0024)) == 1
+    assert len(overlaps(shapes[[0, 2]], ["a", "c"], free[:2], 0.0026)) == 0
+
+
+def test_at_most_so_many_pairs_are_compared_and_five_hundred_put_into_words():
+    def equal(count: int) -> tuple[np.ndarray, list[str], np.ndarray]:
+        polygons = [outline(0.0, 0.0, 1.0, 1.0)] * count
+        return geometry.shapes_of(polygons), [f"s{k}" for k in range(count)], np.zeros(count, dtype=bool)
+
+    faults = overlaps(*equal(40), 1e-6)  # 40 x 39 / 2 pairs
+    assert len(faults) == 501
+    assert faults[-1].problem == "280 more pairs of blocks overlap"
+    with pytest.raises(InputError, match="pairs touch or overlap, too many to compare"):
+        overlaps(*equal(1000), 1e-6)  # 499,500 pairs read 5 million vertices
+
+
+def test_a_fan_of_wedges_about_one_point_has_no_overlap_however_many_meet_there():
+    turns = 2.0 * np.pi * np.arange(301) / 300
+    rim = np.stack([np.cos(turns), np.sin(turns)], axis=1)
+    shapes = geometry.shapes_of([np.array([[0.0, 0.0], rim[k], rim[k + 1]]) for k in range(300)])
+    pairs, _ = geometry.overlapping(shapes, np.zeros(300, dtype=bool), 1e-6)
+    assert len(pairs) == 0
