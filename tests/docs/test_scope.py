@@ -67,7 +67,7 @@ def _table() -> tuple[list[str], dict[str, list[str]]]:
 
 
 @pytest.mark.parametrize("feature", FEATURES)
-def test_the_table_of_scope_states_what_each_method_takes(feature: str):
+def test_the_table_of_scope_states_what_each_method_takes(feature: str) -> None:
     heads, rows = _table()
     assert set(rows) == set(FEATURES)
     named = {word.strip("`,") for head in heads for word in head.split() if word.startswith("`")}
