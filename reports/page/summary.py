@@ -9,10 +9,10 @@ import numpy as np
 from harness.model.comparison import CaseResults, ComparisonRun
 from harness.model.errors import first_few
 from harness.model.live_load import direction_in_words
-from harness.model.method import Status
+from harness.model.method import Finding, Status
 from harness.model.proof import least_known, proof_of
 from harness.model.ranges import percent_text
-from harness.model.result import Result, Verdict
+from harness.model.result import Result, Verdict, residual_of
 from reports.charts.overview import AGREE
 from reports.drawing.display_list import DisplayList
 from reports.drawing.mechanism_drawing import mechanism_drawing, overlay_drawing
@@ -219,8 +219,9 @@ def which_number(item: CaseResults) -> str:
         return ""
     value = numbers.multiplier(least.multiplier)
     proof = proof_of(item, least)
-    first = f"For safety use {value} ({least.method}), {proof.label}: {proof.clause}."
-    sentences = [first]
+    known = f"{value} ({least.method}), {proof.label}: {proof.clause}."
+    brittle = _without_strength(item)
+    sentences = [f"{brittle} With its strength: {known}" if brittle else f"For safety use {known}"]
     springs = [r for r in mains(item) if r.traits.elastic and r is not least and r.multiplier is not None]
     if springs and springs[0].finding.has_multiplier:
         sentences.append(
@@ -231,6 +232,25 @@ def which_number(item: CaseResults) -> str:
             f"Do not rely on {_height(associated, least)} ({associated.method}): its joints open as they slide."
         )
     return " ".join(sentences)
+
+
+def _without_strength(item: CaseResults) -> str:
+    """The number to use for joints with cohesion or tensile strength, which are brittle in mortar; empty for others."""
+    found = [
+        (0.0 if residual.finding is Finding.FALLS else residual.multiplier, r.method)
+        for r in mains(item)
+        if not (r.traits.bounds_above or r.traits.brackets or r.judge.accepted is False)
+        and (residual := residual_of(r)) is not None
+        and (residual.finding is Finding.FALLS or residual.finding.has_multiplier)
+    ]
+    known = [(value, method) for value, method in found if value is not None]
+    if not known:
+        return ""
+    value, method = min(known)
+    return (
+        f"For safety use {numbers.multiplier(value)} ({method}), the residual multiplier: mortar is brittle, and this "
+        "is the wall without its cohesion and tensile strength."
+    )
 
 
 def _height(associated: Result, least: Result) -> str:

@@ -32,6 +32,9 @@ def written(tmp_path_factory: pytest.TempPathFactory) -> tuple[str, list[dict[st
 def test_report_shows_plastic_and_residual_side_by_side(written: tuple[str, list[dict[str, str]]]):
     page, _ = written
     assert "With and without the strength of the joints" in page
+    assert "For safety use 0.50000 (" in page, "dry, the block slides at its friction, by every method"
+    assert "the residual multiplier: mortar is brittle" in page
+    assert "For safety use 0.75000" not in page
     assert '<th scope="row">la</th><td class="num">0.75000</td><td class="num">0.50000</td>' in page
     assert "la-associated (upper bound)" in page
     assert "<dt>Strength of joints</dt><dd>cohesion c A 1 kN, tension T 0 kN; all interfaces</dd>" in page
