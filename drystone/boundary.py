@@ -15,7 +15,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Iterable
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
@@ -58,6 +58,11 @@ class BoundaryPoint:
         """Whether the wall collapses in this direction."""
         return math.isfinite(self.reach)
 
+    def of_loads(self, scale: FloatArray) -> BoundaryPoint:
+        """The same point in the plane of loads that are `scale` (2,) times larger."""
+        normal = None if self.normal is None else self.normal * scale
+        return replace(self, direction=self.direction / scale, normal=normal)
+
 
 class Stopped(Exception):
     """No further run helps: the text says why."""
@@ -72,7 +77,8 @@ class Boundary:
     """The boundary of a domain as its runs trace it.
 
     Attributes:
-        loads: (2, n, 3); run: makes the judged result of a direction; accuracy, most: as of `domain`.
+        loads: (2, n, 3), of about the same size, so that angles of the plane have digits on both axes; run: makes the
+            judged result of a direction; accuracy, most: as of `domain`.
         found: every point, by the angle of its direction; vertices: ids of those that are corners of a polygon.
         excess, runs, reason: as of `Domain`.
     """
@@ -88,8 +94,23 @@ class Boundary:
     reason: str = ""
 
     def polygon(self) -> None:
-        """Find every edge, from the four directions of the axes on."""
+        """Find every edge, from the four directions of the axes on.
+
+        A closed polygon has as many edges as vertices; an open one has one more, or is a strip or a half-plane.
+
+        Raises:
+            Stopped: the edges do not fit the vertices, so one was missed; or as `ask`.
+        """
         self._all_sides(self._edge_between)
+        corners = self.corners()
+        vertices = sum(point.bounded for point in corners)
+        is_open = vertices < len(corners)
+        due = {vertices} if not is_open else {vertices + 1} if vertices else {1, 2}
+        if (edges := len(self.edges())) not in due:
+            raise Stopped(
+                f"The edges ({edges}) and vertices ({vertices}) found make no whole polygon: the accuracy is too "
+                "coarse, or the two loads are so nearly multiples of each other that their digits do not suffice."
+            )
 
     def points_between(self) -> None:
         """Halve directions, from the four of the axes on, the most curved part of the boundary first."""
@@ -146,7 +167,9 @@ class Boundary:
             assert a.normal is not None
             assert b.normal is not None
             difference = a.normal - b.normal
-            if max(abs(a.normal @ b.at - 1.0), abs(b.normal @ a.at - 1.0)) <= self.accuracy:
+            apart = float(max(abs(a.normal @ b.at - 1.0), abs(b.normal @ a.at - 1.0)))
+            if apart <= self.accuracy:
+                self.excess = max(self.excess, apart)
                 return []  # one edge
         else:
             normal = a.normal if a.bounded else b.normal

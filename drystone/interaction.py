@@ -17,6 +17,7 @@ from drystone.boundary import FAR, Boundary, BoundaryPoint, Stopped
 from drystone.walls import Wall
 from harness.engine import pipeline
 from harness.engine.executors import InProcess, LocalExecutor
+from harness.engine.measures import magnitudes
 from harness.engine.plan import check_methods
 from harness.engine.run import Limits, Run
 from harness.model.assembly import Assembly, FloatArray
@@ -31,6 +32,8 @@ from harness.model.result import Result
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
+FINEST = 1e-6
+"""Accuracy of a polygon unless another is asked: a thousand times what the judge tolerates of an associated state."""
 LIVE = ((1.0, 0.0), (0.0, -1.0))
 """The loads of a wall without load cases: its weight to the right, and its weight downwards."""
 
@@ -72,6 +75,12 @@ class LoadPair:
     def loads(self) -> FloatArray:
         """Both live loads (2, n, 3)."""
         return np.array([case.assembly.live for case in self.cases])
+
+    @property
+    def scale(self) -> FloatArray:
+        """(2,) sizes of the loads beside the first, as powers of two: divided by them they are of about one size."""
+        first, second = (magnitudes(case.assembly, case.assembly.live).sum() for case in self.cases)
+        return np.array([1.0, 2.0 ** np.round(np.log2(second) - np.log2(first))])
 
     @classmethod
     def of(cls, case: Case, *, load_cases: Sequence[str] = (), live: Sequence[tuple[float, float]] = ()) -> LoadPair:
@@ -150,7 +159,8 @@ class Domain:
         exact: whether it is the whole polygon of an associated method; otherwise points of the boundary.
         points: counter-clockwise by direction; of an exact domain the vertices, and the directions of unbounded edges.
         edges: (k, 2) normals of the edges of an exact domain, normal . (x, y) <= 1.
-        excess: largest relative distance by which a meeting point of two edges lies outside what the wall bears.
+        excess: largest relative distance by which a meeting point of two edges lies outside what the wall bears, or
+            one of two neighbours off the edge of the other that was taken for theirs.
         runs: number of runs.
         reason: why it is incomplete; empty where it is not.
     """
@@ -179,15 +189,21 @@ class Domain:
         """What was found and how sure it is."""
         loads = f'of "{self.names[0]}" (x) and "{self.names[1]}" (y)'
         count = len(self.vertices)
-        if not count:
+        whole = self.exact and not self.reason
+        if not count and not (whole and len(self.edges)):
             what = f"No boundary of the domain {loads} was found."
-        elif self.exact and not self.reason:
+        elif whole:
             opened = f", unbounded as far as it was followed ({FAR:g} times)" if len(self.unbounded) else ""
             corners = "vertex" if count == 1 else "vertices"
+            shape = f"convex polygon of {len(self.edges)} edges and {count} {corners}"
+            if not count:
+                shape = "half-plane behind one edge" if len(self.edges) == 1 else "strip between two parallel edges"
             what = (
-                f"The domain {loads} is a convex polygon of {len(self.edges)} edges and {count} {corners}{opened}. "
-                "Outside it no equilibrium within yield exists, whatever the flow of the joints."
+                f"The domain {loads} is a {shape}{opened}. "
+                "Outside its edges no equilibrium within yield exists, whatever the flow of the joints."
             )
+            if self.excess > FINEST:
+                what += f" Its vertices lie inside the lines of its edges by up to {self.excess:.1%}."
         else:
             what = (
                 f"{count} points of the boundary of the domain {loads} by {self.method}; between them it is not known."
@@ -292,28 +308,31 @@ def domain_by(
     # Where joints crush the domain of an associated method is convex, but no polygon.
     exact = loaded.traits.bounds_above and not pair.cases[0].assembly.crushes
     if accuracy is None:
-        accuracy = 1e-6 if exact else 1e-2
+        accuracy = FINEST if exact else 1e-2
     if not 1e-9 <= accuracy < 1.0:
         raise InputError(f"the accuracy {accuracy:g} is out of range", "Give one from 1e-9 to below 1", "accuracy")
     executor = InProcess() if limits is None else LocalExecutor(1)
+    scale = pair.scale
     with pipeline.opened_at(store) as opened:
 
         def run(direction: FloatArray) -> Result:
-            asked = Run(CombinedWall(pair, float(direction[0]), float(direction[1])), method, settings, limits)
+            x, y = (direction / scale).tolist()
+            asked = Run(CombinedWall(pair, x, y), method, settings, limits)
             (record,) = pipeline.execute([asked], opened, 1, fresh=fresh, executor=executor)
             return record
 
-        boundary = Boundary(pair.loads(), run, accuracy, most)
+        boundary = Boundary(pair.loads() / scale[:, None, None], run, accuracy, most)
         try:
             (boundary.polygon if exact else boundary.points_between)()
         except Stopped as stop:
             boundary.reason = str(stop)
+    found = boundary.corners() if exact and not boundary.reason else boundary.all_points()
     return Domain(
         pair.names,
         method,
         exact,
-        boundary.corners() if exact and not boundary.reason else boundary.all_points(),
-        boundary.edges(),
+        tuple(point.of_loads(scale) for point in found),
+        boundary.edges() * scale,
         boundary.excess,
         boundary.runs,
         boundary.reason,

@@ -17,8 +17,9 @@ def block_excess(assembly: Assembly, forces: FloatArray) -> FloatArray:
     """(m,) by how much forces (m, 3) at the worse end of a joint exceed its stress block [force]; zero within it."""
     tension, full = _tension_and_full(assembly)
     compression = forces[:, 0] + forces[:, 1] + tension
-    share = np.divide(compression, full, out=np.sign(compression), where=full > 0.0)
-    beyond = 0.5 * (abs(forces[:, 0] - forces[:, 1]) - compression * (1.0 - share))
+    share = np.divide(compression, full, out=np.zeros_like(full), where=full > 0.0)
+    borne = np.where(full > 0.0, compression * (1.0 - share), -abs(compression))  # no strength bears no force
+    beyond = 0.5 * (abs(forces[:, 0] - forces[:, 1]) - borne)
     return np.where(np.isfinite(assembly.crushing), np.maximum(beyond, 0.0), 0.0)
 
 

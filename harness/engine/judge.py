@@ -79,8 +79,10 @@ def judge(assembly: Assembly, result: Result, tolerance: float) -> Judgement:
     for name, value in numbers.items():
         if value is not None and not _countable(value):
             return _said(tolerance, False, f"Its {name}: not finite, or larger than {COUNTABLE:g}.")
-    if forces is not None and isinstance(fault := tensions_beyond(assembly, result.details), str):
-        return _said(tolerance, False, fault)
+    if forces is not None and isinstance(beyond := tensions_beyond(assembly, result.details), str):
+        return _said(tolerance, False, beyond)
+    if forces is not None and beyond is not None and not _countable(beyond):
+        return _said(tolerance, False, f"Its tensions of ties and props: larger than {COUNTABLE:g}.")
     if fault := _contradiction(assembly, result, tolerance):
         return _said(tolerance, False, fault)
     said = _judge_finding(assembly, forces, mechanism, result, tolerance)

@@ -128,6 +128,26 @@ def test_growing_forces_must_do_without_strength():
         assert judged.accepted is accepted
 
 
+def test_a_joint_that_crushes_bears_no_live_load_without_end():
+    """A weight of 4 on a joint that bears 20 collapses at 4 times more: no central compression grows for ever."""
+    load = {"live": {"body": [{"per_weight": [0, -1]}]}}
+    wall = assembly(stack(1, 1.0, 0.2), 0.5, cohesion=0.0, tensile_strength=0.0, compressive_strength=20.0, loads=load)
+    assert answered(load_method("la-associated"), wall)[0].multiplier == pytest.approx(4.0, rel=1e-6)
+    pressed = [[2.0, 2.0, 0.0]]
+    answer = Answer(
+        Status.OK,
+        Finding.UNBOUNDED,
+        "it bears any",
+        forces=np.array(pressed),
+        forces_multiplier=0.0,
+        details={"live_forces": pressed},
+    )
+    judged = said(wall, answer)
+    assert judged.accepted is False
+    assert judged.residuals["live_yield"] > 0.1
+    assert said(replace(wall, crushing=np.full(1, np.inf)), answer).accepted is True
+
+
 def test_a_dry_wall_is_judged_to_the_bit_as_without_the_field():
     dry, result = state_of_dry("la")
     bare = replace(dry, constant=np.zeros((0, 4)))

@@ -209,6 +209,19 @@ def test_a_program_describes_what_it_takes_and_its_settings(folder: Path):
     assert "dry joints only" in strong["sentence"]
 
 
+@pytest.mark.parametrize("stream", [1, 2])
+def test_a_description_without_end_is_cut_off(stream: int, folder: Path):
+    """A program that prints as fast as it can is ended after a megabyte, long before its 30 s."""
+    (folder / "prints.py").write_text(f"import os\nwhile True:\n    os.write({stream}, b'x' * 65536)\n")
+    begun = time.monotonic()
+    words = json.dumps([sys.executable, "prints.py", "{wall}", "{result}"])
+    (folder / "methods.toml").write_text(f"[methods.prints]\ncommand = {words}\ndescribe = true\n")
+    done = drystone("run", "prints", "slide", cwd=folder)
+    assert time.monotonic() - begun < 20.0
+    assert done.returncode == 2
+    assert "prints more than a description" in done.stderr
+
+
 def wall_with(**more: object) -> dict[str, object]:
     pattern = {"type": "stack", "width": 0.3, "height": 0.2, "count": 1}
     loads = {"live": {"body": [{"per_weight": [1, 0]}]}}

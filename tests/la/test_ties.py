@@ -342,6 +342,14 @@ def test_judge_finds_tensions_out_of_balance_and_beyond_yield():
     assert early.residuals["virtual_work"] > 1e-2
 
 
+def test_judge_refuses_tensions_whose_sums_are_lost():
+    """Beyond 1e100, as of forces: sums of products of greater numbers need not be finite."""
+    wall = tied(1.0)
+    said = said_of(wall, asked("la", wall), bar_forces=[1e308])
+    assert said.accepted is False
+    assert "larger than 1e+100" in said.sentence
+
+
 def test_judge_counts_what_ties_take_of_a_fall():
     """The dead load pushes the block over unless the tie bears it: a fall at T_y = 1, none at 3."""
     push = {"dead": {"points": [{"block": "block", "at": [0.0, 1.8], "force": [4.0, 0.0]}]}}

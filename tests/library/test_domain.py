@@ -29,6 +29,7 @@ def document(**cases: Any) -> dict[str, Any]:
 
 
 BLOCK = drystone.build_wall(document(), "block")
+FLAT = drystone.new_wall("stack", count=1, width=1.0, height=0.2, friction=0.3)
 CORNERS = np.array([(1.6, 6.4), (-1.6, 9.6), (-1.6, -6.4), (1.6, -9.6)])
 """Overturning: |x| h <= W b / 2; sliding: |x + y| <= mu W."""
 
@@ -62,6 +63,43 @@ def test_scale_of_a_load_scales_its_axis_only():
     found = drystone.domain(drystone.build_wall(document(top=force(HEIGHT, 1e-3), foot=force(0.0)), "block"))
     scaled = CORNERS * [1e3, 1.0]
     np.testing.assert_allclose(found.vertices[np.lexsort(found.vertices.T)], scaled[np.lexsort(scaled.T)], rtol=1e-7)
+
+
+@pytest.mark.parametrize("factor", [1e-9, 1e9])
+def test_loads_of_very_different_size_bound_the_same_polygon(factor: float):
+    """|x| h <= W b / 2 and |x + k y| <= mu W; and of weights |x| <= mu (1 + k y), which is open."""
+    found = drystone.domain(drystone.build_wall(document(top=force(HEIGHT), foot=force(0.0, factor)), "block"))
+    scaled = CORNERS / [1.0, factor]
+    np.testing.assert_allclose(found.vertices[np.lexsort(found.vertices.T)], scaled[np.lexsort(scaled.T)], rtol=1e-7)
+    assert found.reason == ""
+    weights = drystone.domain(FLAT, live=((1.0, 0.0), (0.0, -factor)))
+    np.testing.assert_allclose(weights.vertices * [1.0, factor], [(0.0, -1.0)], atol=1e-9)
+    assert len(weights.edges) == len(weights.unbounded) == 2
+
+
+@pytest.mark.parametrize("second", [2.0, -1.0])
+def test_equal_and_opposite_loads_bound_a_strip(second: float):
+    """|x + k y| <= mu of a block that slides."""
+    found = drystone.domain(FLAT, live=((1.0, 0.0), (second, 0.0)))
+    np.testing.assert_allclose(abs(found.edges), np.array([[1.0, abs(second)]] * 2) / 0.3, rtol=1e-9)
+    np.testing.assert_allclose(found.edges[0], -found.edges[1], rtol=1e-9)
+    assert "strip between two parallel edges" in found.sentence
+
+
+def test_a_load_that_lifts_bounds_a_half_plane():
+    """x - y <= 1: weights upwards and downwards."""
+    found = drystone.domain(FLAT, live=((0.0, 1.0), (0.0, -1.0)))
+    np.testing.assert_allclose(found.edges, [(1.0, -1.0)], rtol=1e-9)
+    assert "half-plane" in found.sentence
+
+
+def test_edges_that_do_not_fit_the_vertices_are_no_polygon():
+    """Loads that differ by 1e-12 have a vertex at 1e12, where lines have no digits; coarse accuracy misses edges."""
+    near = drystone.domain(FLAT, live=((1.0, 0.0), (1.0, 1e-12)))
+    coarse = drystone.domain(BLOCK, accuracy=0.9)
+    for found in (near, coarse):
+        assert "make no whole polygon" in found.reason
+        assert found.as_json()["exact"] is False
 
 
 def test_polygon_of_a_bonded_wall_is_what_single_directions_give():

@@ -24,7 +24,7 @@ from harness.model.foreign.description import About, Description, settings_class
 from harness.model.foreign.explicit import explicit_document, write_arrays
 from harness.model.foreign.register import Program, program_named
 from harness.model.foreign.result_document import answer_of
-from harness.model.foreign.spawning import whole_address_space
+from harness.model.foreign.spawning import output_of, whole_address_space
 from harness.model.method import Answer, Method, Settings
 from harness.model.reading import json_of, read_json, validate
 from harness.model.run_context import run_folder
@@ -32,7 +32,7 @@ from harness.model.run_context import run_folder
 DESCRIBE_SECONDS = 30.0
 """In which a program must have described itself: the slowest of interpreters start within a few."""
 MOST_WORDS = 1_000_000
-"""Characters of a description."""
+"""Bytes of a description, and of what is printed beside it."""
 FAREST = 1e9
 """Seconds that a program without a limit is given: `{seconds}` is always a number."""
 
@@ -177,28 +177,20 @@ def description_of(program: Program) -> Description:
     source = " ".join(words)
     remedy = "`--describe` prints one JSON object of format describe/1: docs/method-in-another-language.md"
     try:
-        with whole_address_space():
-            done = subprocess.run(
-                words, stdin=subprocess.DEVNULL, capture_output=True, timeout=DESCRIBE_SECONDS, check=False
-            )
+        code, said, errors = output_of(words, DESCRIBE_SECONDS, MOST_WORDS)
     except OSError as error:
         raise InputError(
             f"it cannot be started ({error.strerror or error})", "Check the command", source=source
         ) from None
     except subprocess.TimeoutExpired:
         raise InputError(f"it does not end within {DESCRIBE_SECONDS:g} s", remedy, source=source) from None
-    if done.returncode:
-        said = (
-            visible(done.stderr.decode("utf-8", "replace").strip().splitlines()[-1:][0])[:200]
-            if done.stderr.strip()
-            else ""
-        )
-        raise InputError(
-            f"it ends with exit code {done.returncode}" + (f" ({said})" if said else ""), remedy, source=source
-        )
-    text = done.stdout[: MOST_WORDS + 1].decode("utf-8", "replace")
-    if len(text) > MOST_WORDS:
-        raise InputError("it prints more than a description", remedy, source=source)
+    except OverflowError:
+        raise InputError("it prints more than a description", remedy, source=source) from None
+    if code:
+        lines = errors.decode("utf-8", "replace").strip().splitlines()
+        last = f" ({visible(lines[-1])[:200]})" if lines else ""
+        raise InputError(f"it ends with exit code {code}{last}", remedy, source=source)
+    text = said.decode("utf-8", "replace")
     found = validate(Description, json_of(text, source), source)
     return found
 
