@@ -29,6 +29,8 @@ MARKERS = (
 )
 DASHES = ("", "7 3", "2 3", "9 3 2 3", "4 2", "12 4")
 COLOURS = 6
+ROUNDING = 1e-9
+"""Relative difference of values that are one: an axis of such values is as wide as one of a single value."""
 MOST_POINTS = 300
 
 
@@ -119,7 +121,8 @@ class Axis:
             low, high = low / 1.25, high * 1.25
         else:
             low = min(low, 0.0) if zero else low
-            room = 0.06 * (high - low) or 0.05 * abs(high) or 0.5
+            apart = high - low if high - low > ROUNDING * max(abs(low), abs(high)) else 0.0
+            room = 0.06 * apart or 0.05 * abs(high) or 0.5
             low, high = (low if zero and low == 0.0 else low - room), high + room
         self.low, self.high = low, high
         self.ticks = log_ticks(low, high) if log else ticks(low, high)

