@@ -7,7 +7,7 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
 from tempfile import TemporaryDirectory
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -16,6 +16,9 @@ from PIL import Image
 from PIL.PngImagePlugin import PngInfo
 
 from reports.drawing.looks import COLOURS
+
+if TYPE_CHECKING:
+    from playwright.sync_api import Browser
 
 BLUE, GREY, INK, RUST = (COLOURS[name] for name in ("blue", "grey", "ink", "rust"))
 ARROW = {"arrowstyle": "-|>", "linewidth": 1.4, "shrinkA": 0, "shrinkB": 0}
@@ -187,6 +190,8 @@ def readme_figures(folder: Path) -> None:
 
     `python docs/figures.py` draws them again.
     """
+    from playwright.sync_api import sync_playwright
+
     import drystone
     from reports.drawing.figures import figure
 
@@ -194,29 +199,29 @@ def readme_figures(folder: Path) -> None:
     answers: list[Any] = [drystone.analyse(wall, name) for name in ("fe", "la", "de")]
     figure(wall.case, answers, "comparison", folder / "wall-21.svg")
     figure(wall.case, [answers[1]], "mechanism", folder / "mechanism.svg")
-    words, picture = first_screen()
+    with sync_playwright() as playwright:
+        browser = playwright.chromium.launch(executable_path="/usr/bin/chromium", args=["--no-sandbox"])
+        words, picture = first_screen(browser)
+        browser.close()
     about = PngInfo()
     about.add_text("Description", words)
     Image.open(io.BytesIO(picture)).quantize(128).save(folder / "first-screen.png", pnginfo=about, optimize=True)
 
 
-def first_screen() -> tuple[str, bytes]:
+def first_screen(browser: Browser) -> tuple[str, bytes]:
     """The first screen of the report on the paper's block and wall: its words without those of CPU time, and a PNG."""
-    from playwright.sync_api import sync_playwright
-
     import drystone
 
     walls = [drystone.library_wall(name) for name in ("single-block", "wall-21")]
-    with TemporaryDirectory() as folder, sync_playwright() as playwright:
+    with TemporaryDirectory() as folder:
         path = drystone.compare(walls, ["fe", "la", "la-associated", "de"]).report(Path(folder) / "report.html")
-        browser = playwright.chromium.launch(executable_path="/usr/bin/chromium", args=["--no-sandbox"])
         page = browser.new_page(viewport={"width": 1280, "height": 900})
         page.goto(path.as_uri())
         page.locator("nav, .head p").evaluate_all("all => all.forEach((one) => one.remove())")
         words = page.locator(".glance > div:first-child").inner_text()
         end = page.locator(".glance").evaluate("e => e.getBoundingClientRect().bottom")
         picture = page.screenshot(clip={"x": 0, "y": 0, "width": 1280, "height": end + 12})
-        browser.close()
+        page.close()
     return words, picture
 
 

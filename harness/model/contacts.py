@@ -106,14 +106,19 @@ class Edges:
         reach, vertex, edge = self._seen[-1] if self._seen else (-1.0, np.empty(0, np.int64), np.empty(0, np.int64))
         if distance > reach:
             self._check_number_within(distance)
-            vertex, edge = self._tree.query(self._points, predicate="dwithin", distance=distance)
-            others = self.owner[vertex] != self.owner[edge]
-            vertex, edge = vertex[others], edge[others]
+            low, high = (self.first - distance).T, (self.first + distance).T
+            vertex, edge = self._tree.query(shapely.box(*low, *high))
+            others = self.owner[vertex] != self.owner[edge]  # first: most faces in sight are of the own round block
+            vertex, edge = self._within(distance, vertex[others], edge[others])
             self._seen.append((distance, vertex, edge))
         elif distance < reach:
-            close = shapely.dwithin(self._points[vertex], self._lines[edge], distance)
-            vertex, edge = vertex[close], edge[close]
+            vertex, edge = self._within(distance, vertex, edge)
         return vertex, edge
+
+    def _within(self, distance: float, vertex: IntArray, edge: IntArray) -> tuple[IntArray, IntArray]:
+        """Those of the pairs that are no further apart."""
+        close = shapely.dwithin(self._points[vertex], self._lines[edge], distance)
+        return vertex[close], edge[close]
 
     def _check_number_within(self, distance: float) -> None:
         """Refuse to look so far that every vertex has hundreds of faces around it, by a sample of the vertices.

@@ -278,7 +278,10 @@ def _fault(model: type[BaseModel], data: Any, fault: Any, source: str) -> InputE
     message = str(fault["msg"]).removeprefix("Value error, ").replace("Input should", "it should")
     remedy = ""
     if fault["type"] in PLAIN:
-        message = PLAIN[fault["type"]].format(**fault.get("ctx", {}))
+        told = dict(fault.get("ctx", {}))
+        if told.get("actual_length", 0) is None:  # pydantic does not count the entries of an object
+            told["actual_length"] = len(fault["input"])
+        message = PLAIN[fault["type"]].format(**told)
     if fault["type"] == "extra_forbidden":
         return _unknown_field(model, fault["loc"], place, source)
     if "input" in fault and not isinstance(fault["input"], dict | list):

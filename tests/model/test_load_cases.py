@@ -97,3 +97,9 @@ def test_validate_looks_at_every_load_case():
     assert inspect(parse_wall(wall({"a": good, "b": good}), "")).faults == ()
     (fault,) = inspect(parse_wall(wall({"a": good, "b": bad}), "")).faults
     assert fault.element == "load_cases.b.live.points[0]"
+
+
+def test_more_load_cases_than_are_answered_are_counted():
+    many = {f"c{k}": {"live": {"body": [{"per_weight": [1, 0]}]}} for k in range(501)}
+    with pytest.raises(InputError, match="it has 501 entries, and may have 500 at most"):
+        parse_wall({"format": "wall/1", "friction": 0.5, "load_cases": many}, "wall")
