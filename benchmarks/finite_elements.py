@@ -12,11 +12,12 @@ import sys
 import time
 from collections.abc import Sequence
 
+from benchmarks.walls import arch, running_bond
 from harness.model.assembly import Assembly
 from harness.model.case import read_case, shipped_cases
 from methods.fe.gap_springs import GapSprings
 from methods.fe.settings import GapSpringsSettings
-from methods.springs.patterns import arch, block_on_halves, running_bond
+from methods.springs.patterns import block_on_halves
 
 WALLS: tuple[tuple[int, int, float, float, float], ...] = (
     (21, 3, 0.65, 13 / 23, 0.05),

@@ -11,10 +11,10 @@ import sys
 from collections.abc import Sequence
 from pathlib import Path
 
+from benchmarks.walls import running_bond
 from harness.model.assembly import Assembly
 from methods.fe.gap_springs import GapSprings
 from methods.fe.settings import GapSpringsSettings
-from methods.springs.patterns import running_bond
 
 RATIOS = (0.01, 0.03, 0.1, 0.3, 0.5, 1.0, 3.0, 10.0)
 

@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 from pydantic import ValidationError
 
+from benchmarks.walls import running_bond
 from harness.model.load_steps import STATES
 from methods.fe.load_steps import joint_states
 from methods.fe.settings import ConvexSettings, GapSpringsSettings, NewtonSettings
@@ -20,7 +21,7 @@ from methods.springs.path.continuation import PathFollower
 from methods.springs.path.direction import PathDirection
 from methods.springs.path.path_record import PathEnd, PathRecord
 from methods.springs.path.plateau import check
-from methods.springs.patterns import block_on_halves, running_bond
+from methods.springs.patterns import block_on_halves
 from methods.springs.rest.equilibrium import gravity_state
 
 

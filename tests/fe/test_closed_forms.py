@@ -7,13 +7,13 @@ from typing import Any
 
 import pytest
 
+from benchmarks.walls import arch
 from harness.model.assembly import Assembly
 from harness.model.build import build
 from harness.model.method import Finding
 from harness.model.wall import Wall
 from methods.fe.gap_springs import GapSprings
 from methods.fe.settings import GapSpringsSettings
-from methods.springs.patterns import arch
 
 CLOSED_FORM = 1e-8  # what issue 5 asks of slide, overturn, incline and the arches under acceleration
 POINT_LOAD = 1e-6  # of the arch under a point load, whose reference values have seven digits

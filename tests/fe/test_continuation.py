@@ -10,7 +10,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from benchmarks.walls import irregular_wall, random_wall
+from benchmarks.walls import irregular_wall, random_wall, running_bond
 from harness.engine.isolate import run_isolated
 from harness.engine.judge import answered
 from harness.engine.worker import Task
@@ -26,7 +26,7 @@ from methods.springs.model.gap_law import SLIP_MINUS, SLIP_PLUS
 from methods.springs.model.wall_model import build_model
 from methods.springs.path.continuation import PathFollower
 from methods.springs.path.plateau import check
-from methods.springs.patterns import block_on_halves, running_bond
+from methods.springs.patterns import block_on_halves
 from methods.springs.rest.equilibrium import gravity_state
 from methods.springs.rest.newton import newton
 from tests.walls import assembly, stack, wall_data

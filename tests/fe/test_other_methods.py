@@ -8,13 +8,14 @@ import numpy as np
 import pytest
 
 from benchmarks.sensitivity import main
+from benchmarks.walls import running_bond
 from harness.model.assembly import Assembly
 from harness.model.build import build
 from harness.model.method import Finding, Status
 from harness.model.wall import Wall
 from methods.fe.gap_springs import ConvexSteps, GapSprings, IncrementalNewton
 from methods.fe.settings import ConvexSettings, GapSpringsSettings, NewtonSettings
-from methods.springs.patterns import block_on_halves, running_bond
+from methods.springs.patterns import block_on_halves
 
 
 def test_newton_reaches_the_plateau_of_the_single_block() -> None:

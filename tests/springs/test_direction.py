@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from benchmarks.walls import running_bond
 from harness.model.assembly import FloatArray, IntArray
 from methods.fe.settings import GapSpringsSettings
 from methods.springs.model.factor import DenseFactor, SparseFactor
@@ -12,7 +13,7 @@ from methods.springs.model.gap_law import OPEN, SLIP_PLUS, STICK, neighbour_stat
 from methods.springs.model.options import SoftMotions
 from methods.springs.model.wall_model import WallModel, build_model
 from methods.springs.path.direction import PathDirection
-from methods.springs.patterns import block_on_halves, running_bond
+from methods.springs.patterns import block_on_halves
 
 Kind = type[DenseFactor] | type[SparseFactor]
 EXTENT = 100.0

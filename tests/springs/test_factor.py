@@ -7,12 +7,12 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from benchmarks.walls import running_bond
 from methods.fe.settings import GapSpringsSettings
 from methods.springs.model.factor import DenseFactor, Factor, SingularTangent, SparseFactor, refactor_any
 from methods.springs.model.gap_law import OPEN, STICK, neighbour_states
 from methods.springs.model.options import FactorTuning, SpringOptions
 from methods.springs.model.wall_model import WallModel, build_model
-from methods.springs.patterns import running_bond
 
 
 @pytest.fixture(scope="module")

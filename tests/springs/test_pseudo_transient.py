@@ -7,12 +7,11 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from benchmarks.walls import drawn
+from benchmarks.walls import drawn, running_bond
 from harness.model.assembly import Assembly
 from methods.springs.model.factor import make_factor
 from methods.springs.model.settings import GapSettings
 from methods.springs.model.wall_model import build_model
-from methods.springs.patterns import running_bond
 from methods.springs.rest.newton import newton
 from methods.springs.rest.pseudo_transient import PseudoTransient
 

@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 import pytest
 
+from benchmarks.walls import running_bond
 from harness.model.assembly import Assembly, FloatArray
 from methods.fe.settings import GapSpringsSettings
 from methods.springs.model.exact_rates import add_product, exact_gap_rates
@@ -17,7 +18,7 @@ from methods.springs.model.settings import GapSettings
 from methods.springs.model.wall_model import WallModel, build_model, load_scale
 from methods.springs.path.path_record import PathRecord, PathStep
 from methods.springs.path.plateau import check
-from methods.springs.patterns import block_on_halves, running_bond
+from methods.springs.patterns import block_on_halves
 from tests.known_walls import box, of_blocks
 
 SETTINGS: list[dict[str, Any]] = [

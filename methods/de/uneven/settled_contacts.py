@@ -18,7 +18,6 @@ from methods.de.engines.pymunk_blocks import PymunkBlocks
 from methods.de.holds.loading import raise_until_it_falls, shown_to_fall
 from methods.de.holds.motion import by_travel
 from methods.de.settings import REACH, Faces
-from methods.de.uneven.defects import block_height
 
 
 @dataclass(frozen=True)
@@ -60,6 +59,12 @@ class Settled:
     outlines: tuple[FloatArray, ...]
     settlement: FloatArray
     single_points: int
+
+
+def block_height(assembly: Assembly) -> float:
+    """Median height of the free blocks [length]: the unit of the size of a defect."""
+    heights = [float(np.ptp(assembly.polygons[i][:, 1])) for i in assembly.free]
+    return float(np.median(heights))
 
 
 def uneven_blocks(assembly: Assembly, size: float, faces: Faces = "both", seed: int = 0) -> tuple[FloatArray, ...]:

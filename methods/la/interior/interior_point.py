@@ -55,8 +55,6 @@ class PathSettings:
         residual: scaled equilibrium and compatibility residuals at which it stops.
         max_iterations: Newton steps at most.
         patience: steps without progress after which it gives the best point it had.
-        fade: None, or the relative gap below which dilatancy fades from one in proportion to the gap, to reach
-            zero-dilatancy flow from the well-behaved path of associated flow.
         above: None, or a multiplier at which the path ends if the forces are in equilibrium.
         centring: how its steps are made longer and kept central.
     """
@@ -66,7 +64,6 @@ class PathSettings:
     residual: float = 1e-9
     max_iterations: int = 200
     patience: int = 12
-    fade: float | None = None
     above: float | None = None
     centring: Centring = Centring()
 
@@ -139,15 +136,12 @@ def follow_path(
     history: list[float] = []
     best: PathResult | None = None
     best_merit, best_at = np.inf, 0
-    dilatancy = 1.0 if settings.fade is not None else settings.dilatancy
     for iteration in range(settings.max_iterations + 1):
         problem.deadline.ask()
         product = point.slack * np.where(tight, 0.0, point.rates)
         gap = float(product.sum()) / problem.live_work
-        if settings.fade is not None:
-            dilatancy = min(dilatancy, gap / settings.fade) if gap > 1e-4 * settings.fade else 0.0
         try:
-            step = NewtonStep(problem, newton, point, dilatancy, tight)
+            step = NewtonStep(problem, newton, point, settings.dilatancy, tight)
         except (NumericalFailure, FloatingPointError):
             break
         statics, kinematics = float(abs(step.statics).max()), float(abs(step.kinematics).max())
@@ -163,7 +157,7 @@ def follow_path(
             best_merit = merit
         if not product.any() or merit <= 1.0 or iteration - best_at > settings.patience or not np.isfinite(merit):
             break
-        point = _centred_step(step, point, product, pairs, tight, dilatancy, settings.centring)
+        point = _centred_step(step, point, product, pairs, tight, settings.dilatancy, settings.centring)
     if best is None:
         raise SingularMatrix("the interior point could not factorise its first system")
     return best
