@@ -290,7 +290,7 @@ def suite() -> Iterator[ConformanceCheck]:
         "limits",
         "memory",
         "A run under a limit of 256 MiB answers, or is ended as one without memory.",
-        _keeps_to_limits(20.0, 256, (*ENDED, Status.OUT_OF_MEMORY)),
+        _keeps_to_limits(5.0, 256, (*ENDED, Status.OUT_OF_MEMORY)),
     )
     yield ConformanceCheck("manners", "repeats", "The same wall has the same answer to the last bit.", _repeats)
     yield ConformanceCheck("manners", "leaves-the-wall", "The arrays of the wall are not changed.", _leaves_the_wall)

@@ -337,10 +337,8 @@ class _RunningJob:
         """The answer of a run whose process left none."""
         if self.wrong:
             sentence = self.wrong
-        elif self.ending is Status.TIMEOUT:
-            sentence = f"It was stopped at the limit of {self.task.seconds:g} s."
-        elif self.ending is Status.OUT_OF_MEMORY:
-            sentence = f"It was stopped at the limit of {self.task.memory_bytes / 2**20:.0f} MiB of memory."
+        elif self.ending in (Status.TIMEOUT, Status.OUT_OF_MEMORY):
+            sentence = self.task.stopped(self.ending)
         elif exit_code is not None and exit_code < 0:
             sentence = f"Its process was ended by {signal.Signals(-exit_code).name}.{last_words}"
         else:

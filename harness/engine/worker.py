@@ -81,6 +81,11 @@ class Task:
     processes: int = 1
     program: Program | None = None
 
+    def stopped(self, limit: Status) -> str:
+        """The sentence of a run that reached its limit of time (TIMEOUT) or of memory (OUT_OF_MEMORY)."""
+        reached = f"{self.seconds:g} s" if limit is Status.TIMEOUT else f"{self.memory_bytes / 2**20:.0f} MiB of memory"
+        return f"It was stopped at the limit of {reached}."
+
 
 LOADED, REPLACE = b"loaded", b"replace"
 """What a child says besides its records: the method is loaded and begins; another process must make this run."""
@@ -172,14 +177,14 @@ def _record(task: Task, method: Method | None, failure: Answer | None) -> dict[s
                 answer = solved(method, task, chosen)
             answer = checked(answer, task.assembly)
     except OutOfTime:
-        answer = _failure(Status.TIMEOUT, f"It was stopped at the limit of {task.seconds:g} s.")
+        answer = _failure(Status.TIMEOUT, task.stopped(Status.TIMEOUT))
     except AnswerFault as error:
         answer = _failure(Status.CRASHED, f"{error.problem}.")
     except InputError as error:
         answer = _failure(Status.REFUSED, f"{error}.")
         answer.details = {MISSING_PACKAGE: True} if isinstance(error, MissingPackage) else {}
     except MemoryError:
-        answer = _failure(Status.OUT_OF_MEMORY, "The memory limit was reached.")
+        answer = _failure(Status.OUT_OF_MEMORY, task.stopped(Status.OUT_OF_MEMORY))
     except BaseException as error:  # SystemExit and the like as well: a method ends its run, not ours
         with contextlib.suppress(OSError, ValueError):  # its output may be closed
             traceback.print_exc()

@@ -67,7 +67,7 @@ def test_answer_of_a_run_is_accepted_by_judge_and_a_spoiled_one_is_not(wall: Pat
 
 
 def test_compare_leaves_report_and_store_and_reuses_what_is_there(wall: Path):
-    words = ("compare", wall.name, "--methods", "fe,la,la-associated,de", "--json")
+    words = ("compare", wall.name, "--methods", "fe,la-associated,de", "--json")
     first = drystone(*words, cwd=wall.parent)
     assert first.returncode == 0, first.stderr
     document = json.loads(first.stdout)
@@ -102,7 +102,7 @@ def test_expanded_wall_gives_the_same_answer(tmp_path: Path):
     expanded = drystone("expand", path.name, "-o", "explicit.json", cwd=tmp_path)
     assert expanded.returncode == 0, expanded.stderr
     values = [
-        json.loads(drystone("run", "la", name, "--json", cwd=tmp_path).stdout)["multiplier"]
+        json.loads(drystone("run", "la-associated", name, "--json", cwd=tmp_path).stdout)["multiplier"]
         for name in ("bond.json", "explicit.json")
     ]
     assert values[0] == values[1]
@@ -195,7 +195,7 @@ id = "closed-form"
 type = "exact"
 value = {value}
 tolerance = 1e-9
-applies_to = ["la"]
+applies_to = ["la-associated"]
 gate = true
 source = "statics"
 requirement = "It slides at mu."
@@ -208,7 +208,7 @@ def test_cases_of_a_user_are_compared_and_gated(value: float, code: int, tmp_pat
     folder.mkdir(parents=True)
     (folder / "wall.json").write_text(json.dumps(wall_data(stack(1), 0.25)))
     (folder / "case.toml").write_text(CASE.format(value=value))
-    done = drystone("compare", "--cases", "mine", "--methods", "la", cwd=tmp_path)
+    done = drystone("compare", "--cases", "mine", "--methods", "la-associated", cwd=tmp_path)
     assert done.returncode == code, done.stdout + done.stderr
     assert "my-block" in done.stdout
     assert ("Not met, of" in done.stdout) is bool(code)
@@ -223,8 +223,8 @@ def test_methods_that_a_case_names_and_nobody_has_are_told(tmp_path: Path):
     folder.mkdir(parents=True)
     (folder / "wall.json").write_text(json.dumps(wall_data(stack(1), 0.25)))
     case = CASE.format(value=0.25)
-    (folder / "case.toml").write_text(case.replace('["la"]', '["la", "al"]'))
-    done = drystone("compare", "--cases", "mine", "--methods", "la", cwd=tmp_path)
+    (folder / "case.toml").write_text(case.replace('["la-associated"]', '["la-associated", "al"]'))
+    done = drystone("compare", "--cases", "mine", "--methods", "la-associated", cwd=tmp_path)
     assert done.returncode == 0, done.stderr
     assert 'reference "closed-form" applies to "al"' in done.stderr
     (folder / "case.toml").write_text('methods = ["al"]' + case)

@@ -40,7 +40,7 @@ def looked(child: Child) -> TimedResult | Retry:
 
 
 def test_a_process_that_made_other_runs_before_gives_the_same_bits_as_a_fresh_one():
-    wall = assembly(running_bond(4, 3), 0.7)
+    wall = assembly(running_bond(3, 2), 0.7)
     tasks = [Task(method, wall, {}, 60.0, 2**31) for method in ("fe", "la-associated", "la", "fe-newton", "de")]
     warm = results([*tasks, *reversed(tasks)], 1)
     for each, first, second in zip(tasks, warm[:5], reversed(warm[5:]), strict=True):
@@ -120,7 +120,7 @@ def test_a_run_whose_process_is_killed_from_outside_is_made_once_more():
 
 
 def test_killing_children_under_way_loses_and_doubles_no_run():
-    tasks = [task("la-associated") for _ in range(300)]
+    tasks = [task("la-associated") for _ in range(120)]
     jobs = [Job(number, "made-up", each) for number, each in enumerate(tasks)]
     numbers = []
     before = children()
@@ -128,11 +128,11 @@ def test_killing_children_under_way_loses_and_doubles_no_run():
         for number, measured in ended:
             assert measured.result.status is Status.OK
             numbers.append(number)
-            if len(numbers) in (20, 60, 100):
+            if len(numbers) in (20, 40, 60):
                 for process in started_since(before):
                     with suppress(psutil.Error):
                         process.kill()
-    assert sorted(numbers) == list(range(300))
+    assert sorted(numbers) == list(range(120))
 
 
 def children() -> set[psutil.Process]:

@@ -39,7 +39,7 @@ def test_names_that_only_look_alike_are_numbered(tmp_path: Path):
 
 def test_two_walls_of_one_name_keep_two_rows_two_folders_and_two_names_in_the_csv(tmp_path: Path):
     one, two = wall(tmp_path / "a" / "wall.json", 0.2), wall(tmp_path / "b" / "wall.json", 0.3)
-    done = drystone("compare", one, two, "--methods", "la", "--json", cwd=tmp_path)
+    done = drystone("compare", one, two, "--methods", "la-associated", "--json", cwd=tmp_path)
     assert done.returncode == 0, done.stderr
     compared = json.loads(done.stdout)
     found = {case["id"]: case["results"][0]["multiplier"] for case in compared["cases"]}
@@ -48,7 +48,7 @@ def test_two_walls_of_one_name_keep_two_rows_two_folders_and_two_names_in_the_cs
     rows = list(csv.DictReader((folder / "results.csv").read_text().splitlines()))
     assert {row["case"]: float(row["multiplier"]) for row in rows} == found
     for name, multiplier in found.items():
-        assert json.loads((folder / name / "la.json").read_text())["multiplier"] == pytest.approx(multiplier)
+        assert json.loads((folder / name / "la-associated.json").read_text())["multiplier"] == pytest.approx(multiplier)
     again = drystone("report", cwd=tmp_path)
     assert again.returncode == 0
     assert {row["case"] for row in csv.DictReader((folder / "results.csv").read_text().splitlines())} == set(found)

@@ -269,6 +269,7 @@ def test_fe_990_bricks_end_in_an_exact_collapse_state_on_soft_pieces() -> None:
     assert max(answer.details["residuals"].values()) < 1e-9
 
 
+@pytest.mark.slow
 def test_fe_400_irregular_blocks_come_to_one_plateau_under_three_histories() -> None:
     """They ended 102 % apart, the first after 60,000 breakpoints, while jumps kept the friction history before them."""
     answer = GapSprings().solve(irregular_wall(1, 20, 20, 1.0), THREE)
