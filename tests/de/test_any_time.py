@@ -161,7 +161,9 @@ def test_without_an_answer_of_any_component_the_time_is_over():
         analysed_apart(assembly(None, 0.5, blocks=TWO_STACKS), solve, lambda *_: None)
 
 
-@pytest.mark.parametrize(("courses", "bricks", "seconds"), [(14, 14, 4.0), (14, 28, 8.0)])
+@pytest.mark.parametrize(
+    ("courses", "bricks", "seconds"), [(14, 14, 4.0), pytest.param(14, 28, 8.0, marks=pytest.mark.slow)]
+)
 def test_walls_of_hundreds_of_blocks_have_an_answer_at_a_few_seconds(courses: int, bricks: int, seconds: float):
     """How far it comes in that time is the machine's; that it is told, and proved, is not."""
     wall = {"format": "wall/1", "unit_weight": 20.0, "friction": 0.65, "pattern": running_bond(courses, bricks)}

@@ -23,7 +23,10 @@ def closed(wall, **settings):
     return ClosedContacts().solve(wall, ClosedSettings(**settings))
 
 
-@pytest.mark.parametrize(("size", "seed"), [(0.01, 1), (0.03, 4), (0.05, 2)])
+@pytest.mark.parametrize(
+    ("size", "seed"),
+    [(0.03, 4), pytest.param(0.01, 1, marks=pytest.mark.slow), pytest.param(0.05, 2, marks=pytest.mark.slow)],
+)
 def test_with_gaps_handed_over_finite_elements_bear_what_distinct_elements_bear(size, seed):
     wall = assembly(running_bond(6, 3), 0.75)
     answer = closed(wall, size=size, seed=seed)

@@ -84,6 +84,7 @@ def test_wall_of_21_bricks_agrees_with_the_other_engine(friction):
     assert force_residuals(wall, answer.forces, answer.forces_multiplier)["equilibrium"] < DE_MUJOCO.tolerance
 
 
+@pytest.mark.slow
 @needs_mujoco
 def test_a_wall_of_105_bricks_comes_to_rest_under_its_dead_load():
     # With stiffer contacts its end bricks rocked for ever, and it counted as falling.

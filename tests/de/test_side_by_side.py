@@ -39,6 +39,7 @@ def test_two_processes_give_the_answer_of_one_to_the_bit():
     assert same(answered(wall, 1, orders=5), answered(wall, 3, orders=5))
 
 
+@pytest.mark.slow
 def test_another_tuning_than_the_first_gives_the_same_answer_too(monkeypatch: pytest.MonkeyPatch):
     slow = MassScaling(0.4, 0.999999)  # hardly damped: it does not settle in the work there is
     monkeypatch.setattr("methods.de.answers.tunings", lambda *_: [slow, MassScaling(0.4, 0.95)])

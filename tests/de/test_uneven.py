@@ -41,7 +41,7 @@ def test_uneven_blocks_repeat_with_their_seed_and_lose_area():
 
 
 def test_settled_wall_is_an_assembly_that_stands_on_its_closed_contacts():
-    wall = assembly(running_bond(4, 2), 0.75)
+    wall = assembly(running_bond(3, 2), 0.75)
     settled = settle_uneven(wall, 0.02, seed=3)
     assert settled.at_rest
     imperfect = settled.assembly

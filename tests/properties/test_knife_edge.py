@@ -53,7 +53,7 @@ def test_a_wall_beyond_its_limit_falls_for_every_method(name, method):
 
 
 @pytest.mark.parametrize("method", ["la", "la-associated", "fe", "fe-newton", "de"])
-@pytest.mark.parametrize("name", ["par6-mu0", "par6-in-mu0"])
+@pytest.mark.parametrize("name", [pytest.param("par6-mu0", marks=pytest.mark.slow), "par6-in-mu0"])
 def test_a_frictionless_stack_is_at_its_limit(name, method):
     result, judged = answered(prepared(load_method(method)), wall(name))
     assert (result.finding, result.multiplier) == (Finding.AT_LIMIT, 0.0)

@@ -60,7 +60,7 @@ def panels(draw: st.DrawFn) -> Assembly:
     return assembly(pattern, friction | {"rules": [rule]}, loads=live)
 
 
-@settings(max_examples=25, deadline=None, derandomize=True, suppress_health_check=list(HealthCheck))
+@settings(max_examples=10, deadline=None, derandomize=True, suppress_health_check=list(HealthCheck))
 @given(panels())
 def test_methods_agree_on_panels_of_blocks_of_any_shape(wall: Assembly):
     found = {name: answered(load_method(name), wall) for name in ("la", "fe", "la-associated", "de")}
@@ -80,7 +80,7 @@ def test_methods_agree_on_panels_of_blocks_of_any_shape(wall: Assembly):
         assert value["la"] <= value["fe"] + BOUND * max(1.0, value["fe"])
 
 
-@settings(max_examples=12, deadline=None, derandomize=True, suppress_health_check=list(HealthCheck))
+@settings(max_examples=6, deadline=None, derandomize=True, suppress_health_check=list(HealthCheck))
 @given(coursed_walls())
 def test_least_known_plateau_and_associated_maximum_are_ordered(wall: Assembly):
     found = {name: answered(load_method(name), wall) for name in ("la", "fe", "la-associated")}
