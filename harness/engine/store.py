@@ -20,7 +20,7 @@ from pydantic import ValidationError
 
 from harness.engine.store_faults import OTHER_FILE, WAIT_SECONDS, cause
 from harness.model.errors import InputError
-from harness.model.reading import LARGEST_FILE, MOST_NESTED, json_of, nested_deeper
+from harness.model.json_text import LARGEST_FILE, MOST_NESTED, json_of, nested_deeper
 from harness.model.result import Result
 
 SCHEMA_VERSION = 2
