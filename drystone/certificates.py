@@ -21,9 +21,9 @@ from harness.model.case import Case, read_case, shipped_cases
 from harness.model.comparison import CaseResults, Certified, ComparisonRun, Gate
 from harness.model.content import content_of
 from harness.model.errors import InputError
+from harness.model.json_text import json_of, read_bytes
 from harness.model.library import library
 from harness.model.proof import is_collapse_state
-from harness.model.reading import json_of, read_bytes
 from harness.model.result import Result, Verdict
 from harness.model.writing import write_whole
 from methods.proof.same_wall import require_same_wall

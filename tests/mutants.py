@@ -36,7 +36,7 @@ ROOT = Path(__file__).parents[1]
 KEPT = ROOT / "out" / "mutants"
 PACKAGES = {
     "judge": (
-        "harness/engine/judge.py harness/engine/residuals.py harness/engine/meas*.py",
+        "harness/engine/judge*.py harness/engine/residuals.py harness/engine/meas*.py",
         "tests/engine/test_judge*.py tests/engine/test_measured_motion.py",
     ),
     "proof": (

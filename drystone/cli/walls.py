@@ -34,10 +34,11 @@ from harness.model.case import Case, case_folders, case_of_wall, read_case, ship
 from harness.model.errors import InputError
 from harness.model.foreign.description import Description
 from harness.model.foreign.result_document import ResultDocument, answer_from_file
+from harness.model.json_text import read_json
 from harness.model.library import library
 from harness.model.load_cases import load_cases_of
 from harness.model.method import Finding, Status, listed_methods, load_method
-from harness.model.reading import read_json, read_wall, wall_json
+from harness.model.reading import read_wall, wall_json
 from harness.model.result import Result
 from harness.model.wall import Wall
 from harness.model.writing import write_whole

@@ -16,8 +16,9 @@ from typing import Any
 from pydantic import BaseModel, ConfigDict, Field
 
 from harness.engine.run import Run
+from harness.model.json_text import read_json
 from harness.model.method import Status
-from harness.model.reading import read_json, validate
+from harness.model.reading import validate
 from harness.model.result import Result
 from harness.model.writing import write_whole
 

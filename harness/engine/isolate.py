@@ -28,8 +28,8 @@ from harness.engine.threads import pin
 from harness.engine.worker import Task
 from harness.model.answer_check import checked
 from harness.model.errors import InputError, visible
+from harness.model.json_text import LARGEST_FILE
 from harness.model.method import Answer, Finding, Status
-from harness.model.reading import LARGEST_FILE
 
 LOOK_SECONDS, LOOKS_AT_CHILDREN = 0.05, 10
 """How often memory and time of a run are looked at, and at which look those of what it started as well."""

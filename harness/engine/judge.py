@@ -41,25 +41,23 @@ from typing import Any
 
 import numpy as np
 
-from harness.engine.bar_checks import dissipated_by_bars, tensions_beyond
+from harness.engine.bar_checks import tensions_beyond
+from harness.engine.judge_dead_load import judge_fall, judge_limit
+from harness.engine.judge_decision import COUNTABLE, apart, beyond_prestress, countable, decide, said_of
 from harness.engine.measured_motion import motion_faults
 from harness.engine.residuals import (
     collapse_residuals,
     displaced_fault,
     displaced_residuals,
-    dissipated_by_strength,
     force_residuals,
     moved_far,
-    moving_parts,
-    power,
 )
 from harness.model.answer_check import checked
 from harness.model.assembly import Assembly, FloatArray
-from harness.model.bars import BAR_FORCES, DEAD_BAR_FORCES, Bars
+from harness.model.bars import Bars
 from harness.model.displaced import DisplacedState
-from harness.model.limit import accuracy, gross_power, least_told
 from harness.model.method import Finding, Method, Status, check_takes
-from harness.model.result import Judgement, Result, bracket_is_wide, relative_velocities, residual_of, result_of
+from harness.model.result import Judgement, Result, bracket_is_wide, residual_of, result_of
 
 
 def judge(assembly: Assembly, result: Result, tolerance: float) -> Judgement:
@@ -77,14 +75,14 @@ def judge(assembly: Assembly, result: Result, tolerance: float) -> Judgement:
     numbers: dict[str, Any] = {"forces": forces, "mechanism": mechanism, "bracket": result.bracket}
     numbers |= {"multiplier": result.multiplier, "multiplier of the forces": result.forces_multiplier}
     for name, value in numbers.items():
-        if value is not None and not _countable(value):
-            return _said(tolerance, False, f"Its {name}: not finite, or larger than {COUNTABLE:g}.")
+        if value is not None and not countable(value):
+            return said_of(tolerance, False, f"Its {name}: not finite, or larger than {COUNTABLE:g}.")
     if forces is not None and isinstance(beyond := tensions_beyond(assembly, result.details), str):
-        return _said(tolerance, False, beyond)
-    if forces is not None and beyond is not None and not _countable(beyond):
-        return _said(tolerance, False, f"Its tensions of ties and props: larger than {COUNTABLE:g}.")
+        return said_of(tolerance, False, beyond)
+    if forces is not None and beyond is not None and not countable(beyond):
+        return said_of(tolerance, False, f"Its tensions of ties and props: larger than {COUNTABLE:g}.")
     if fault := _contradiction(assembly, result, tolerance):
-        return _said(tolerance, False, fault)
+        return said_of(tolerance, False, fault)
     said = _judge_finding(assembly, forces, mechanism, result, tolerance)
     if assembly.strong and "without_strength" in result.details:
         said = _with_residual(said, assembly.without_strength, residual_of(result))
@@ -102,13 +100,13 @@ def _judge_finding(
     """What is said of the finding of a result."""
     match result.finding:
         case Finding.FALLS:
-            return _judge_fall(assembly, mechanism, result, tolerance)
+            return judge_fall(assembly, mechanism, result, tolerance)
         case Finding.STANDS:
             return _judge_standing(assembly, forces, result, tolerance)
         case Finding.UNBOUNDED:
             return _judge_unbounded(assembly, forces, result, tolerance)
         case Finding.AT_LIMIT:
-            return _judge_limit(assembly, forces, mechanism, result, tolerance)
+            return judge_limit(assembly, forces, mechanism, result, tolerance)
     if result.flow == "approximate":
         return _judge_bracket(assembly, forces, result, tolerance)
     return _judge_collapse(assembly, forces, mechanism, result, tolerance)
@@ -179,23 +177,8 @@ def answered(method: Method, assembly: Assembly, **settings: Any) -> tuple[Resul
     return result, judge(assembly, result, method.tolerance)
 
 
-def _countable(values: Any) -> bool:
-    """Whether all numbers are finite and no larger than `COUNTABLE`."""
-    return bool((abs(np.asarray(values, dtype=float)) <= COUNTABLE).all())
-
-
-def _said(tolerance: float, accepted: bool | None, sentence: str) -> Judgement:
-    return Judgement(tolerance=tolerance, accepted=accepted, sentence=sentence)
-
-
-IMMENSE = 1e7
-"""Contact forces, in dead loads of the component, that no equilibrium needs.
-
-A fall is proved unless the wall stands by such forces. Falls that methods find leave at least ten times more."""
 WITHOUT_END = 1e-12
 """Largest residual of forces that balance the live load alone: what is violated by more ends, if far away."""
-COUNTABLE = 1e100
-"""Largest number of an answer: sums of products of such numbers are finite, so that no residual is lost in them."""
 GAPS = ("complementarity", "virtual_work", "dilatancy")
 """Residuals that are the distance between what the forces bear and what the mechanism takes."""
 CRUSHING_GAP = 1e-6
@@ -203,20 +186,8 @@ CRUSHING_GAP = 1e-6
 approach it are both admissible, and differ by as much. The error of the multiplier is no more."""
 COARSEST = 1e-2
 """Largest tolerance that shows something: a hundredth of the loads. Ten times the coarsest of the library's methods."""
-MOST_OPEN = 4.0
-"""Largest multiplier that a wall at its limit can have, in load units times the accuracy of its numbers.
-
-A block that turns about its corner leaves three times its weight open; more is a motion beside the point."""
-GAIN = 1e-12
-"""Share of the power that the dead load would have if nothing cancelled, up to which its power is rounding."""
 MOVED_FAR = " Its blocks rest so far from where they were drawn that this shows nothing of the wall as drawn."
 NO_FORCES = "It gives no contact forces, so it cannot be checked."
-
-
-def _beyond(assembly: Assembly, result: Result, name: str = BAR_FORCES) -> FloatArray | None:
-    """The tensions (k,) of bars beyond their prestress, None without bars; `judge` has refused what cannot be read."""
-    found = tensions_beyond(assembly, result.details, name)
-    return None if isinstance(found, str) else found
 
 
 def _judge_collapse(
@@ -225,21 +196,21 @@ def _judge_collapse(
     """Collapse at the multiplier that is reported, by a whole collapse state."""
     multiplier = result.multiplier
     if multiplier is None:
-        return _said(tolerance, False, "It gives no multiplier.")
+        return said_of(tolerance, False, "It gives no multiplier.")
     if forces is None:
-        return _said(tolerance, None, NO_FORCES)
+        return said_of(tolerance, None, NO_FORCES)
     at = multiplier if result.forces_multiplier is None else result.forces_multiplier
-    beyond = _beyond(assembly, result)
+    beyond = beyond_prestress(assembly, result)
     if mechanism is None:
         found = force_residuals(assembly, forces, at, beyond=beyond)
-        said = _decide(found, tolerance, f"The contact forces at multiplier {at:.6g}")
+        said = decide(found, tolerance, f"The contact forces at multiplier {at:.6g}")
         said.accepted = None if said.accepted else said.accepted
         said.sentence += " It gives no mechanism, so that it collapses there is not shown."
         return said
     residuals = collapse_residuals(assembly, forces, at, mechanism, result.flow, beyond)
     residuals["multiplier"] = apart(multiplier, at)
     wider = dict.fromkeys(GAPS, CRUSHING_GAP) if assembly.crushes else None
-    said = _decide(residuals, tolerance, f"The collapse state ({result.flow} flow)", wider=wider)
+    said = decide(residuals, tolerance, f"The collapse state ({result.flow} flow)", wider=wider)
     if said.accepted:
         size = max(assembly.load_unit, abs(multiplier))
         error = abs(multiplier - at) + size * (residuals["complementarity"] + residuals["virtual_work"])
@@ -253,23 +224,23 @@ def _judge_bracket(assembly: Assembly, forces: FloatArray | None, result: Result
     lower = result.multiplier if result.bracket is None else result.bracket[0]
     at = result.multiplier if result.forces_multiplier is None else result.forces_multiplier
     if lower is None or at is None:
-        return _said(tolerance, False, "It gives no multiplier.")
+        return said_of(tolerance, False, "It gives no multiplier.")
     if result.bracket is not None and at > result.bracket[1] + tolerance * abs(at):
-        return _said(tolerance, False, f"Its forces bear {at:.6g}, above the upper end of its bracket.")
+        return said_of(tolerance, False, f"Its forces bear {at:.6g}, above the upper end of its bracket.")
     far = False
     if forces is not None:
-        residuals = force_residuals(assembly, forces, at, beyond=_beyond(assembly, result))
+        residuals = force_residuals(assembly, forces, at, beyond=beyond_prestress(assembly, result))
         what = f"Equilibrium and yield of the contact forces at multiplier {at:.6g}"
     else:
         moved = DisplacedState.of(result.details)
         if moved is None:
-            return _said(tolerance, None, NO_FORCES)
+            return said_of(tolerance, None, NO_FORCES)
         if fault := displaced_fault(assembly, moved):
-            return _said(tolerance, False, f"The state of rest is no proof: {fault}.")
+            return said_of(tolerance, False, f"The state of rest is no proof: {fault}.")
         residuals, far = displaced_residuals(assembly, moved, at), moved_far(assembly, moved)
         what = f"Equilibrium and yield of the contact forces on the displaced blocks, at multiplier {at:.6g},"
     residuals["multiplier"] = apart(lower, at) if lower > at else 0.0
-    said = _decide(residuals, tolerance, what)
+    said = decide(residuals, tolerance, what)
     if said.accepted and far:
         said.accepted, said.sentence = None, said.sentence + MOVED_FAR
     elif said.accepted and result.bracket is None:
@@ -292,17 +263,17 @@ def _judge_standing(assembly: Assembly, forces: FloatArray | None, result: Resul
     """Stands under its dead load, where nothing more was asked."""
     what, far = "Equilibrium and yield of the contact forces under the dead load", False
     if forces is not None:
-        residuals = force_residuals(assembly, forces, 0.0, beyond=_beyond(assembly, result))
+        residuals = force_residuals(assembly, forces, 0.0, beyond=beyond_prestress(assembly, result))
     elif (moved := DisplacedState.of(result.details)) is not None:
         if fault := displaced_fault(assembly, moved):
-            return _said(tolerance, False, f"The state of rest is no proof: {fault}.")
+            return said_of(tolerance, False, f"The state of rest is no proof: {fault}.")
         residuals, far = displaced_residuals(assembly, moved, 0.0), moved_far(assembly, moved)
         what += ", in the displaced position of the blocks,"
     elif assembly.n_free == 0:
-        return _said(tolerance, True, "Every block is fixed: nothing can move.")
+        return said_of(tolerance, True, "Every block is fixed: nothing can move.")
     else:
-        return _said(tolerance, None, NO_FORCES)
-    said = _decide(residuals, tolerance, what)
+        return said_of(tolerance, None, NO_FORCES)
+    said = decide(residuals, tolerance, what)
     if said.accepted and far:
         said.accepted, said.sentence = None, said.sentence + MOVED_FAR
     elif said.accepted and assembly.has_live_load:
@@ -316,13 +287,13 @@ def _judge_unbounded(assembly: Assembly, forces: FloatArray | None, result: Resu
     growth = result.details.get("live_forces")
     if forces is None or result.forces_multiplier or growth is None:
         lacking = "forces that balance the live load alone" if growth is None else "forces under the dead load"
-        return _said(
+        return said_of(
             tolerance, None, f"There is no proof that every live load is borne: the answer gives no {lacking}."
         )
     ray = np.asarray(growth, dtype=float).reshape(-1, 3)
-    if ray.shape != forces.shape or not _countable(ray):
-        return _said(tolerance, False, f"`live_forces` are not {len(forces)} finite triples.")
-    residuals = force_residuals(assembly, forces, 0.0, beyond=_beyond(assembly, result))
+    if ray.shape != forces.shape or not countable(ray):
+        return said_of(tolerance, False, f"`live_forces` are not {len(forces)} finite triples.")
+    residuals = force_residuals(assembly, forces, 0.0, beyond=beyond_prestress(assembly, result))
     none = np.where(np.isinf(assembly.crushing), np.inf, 0.0)  # nor does what crushes bear any more
     alone = replace(
         assembly,
@@ -333,132 +304,4 @@ def _judge_unbounded(assembly: Assembly, forces: FloatArray | None, result: Resu
     )
     residuals |= {f"live_{name}": value for name, value in force_residuals(alone, ray, 1.0).items()}
     what = "Forces under the dead load and forces that balance the live load alone"
-    return _decide(residuals, tolerance, what, dict.fromkeys(("live_equilibrium", "live_yield"), WITHOUT_END))
-
-
-def _judge_limit(
-    assembly: Assembly, forces: FloatArray | None, mechanism: FloatArray | None, result: Result, tolerance: float
-) -> Judgement:
-    """At its limit: forces under the dead load, and a dilatant mechanism whose multiplier is zero as far as told.
-
-    No forces bear a multiplier above that of such a mechanism. Both may be those of statics, beside the forces and the
-    motion of the method: `details["dead_forces"]` and `details["dilatant_mechanism"]`. What is tolerated is what the
-    numbers of the wall leave open, whatever the tolerance of the method; so the forces may be those of the multiplier
-    of the mechanism instead of zero, if it is as small as that.
-    """
-    if result.multiplier != 0.0:
-        return _said(tolerance, False, "A wall at its limit has the multiplier 0.")
-    by_statics = [result.details.get(name) for name in ("dead_forces", "dilatant_mechanism")]
-    forces, mechanism = (
-        own if shown is None else np.asarray(shown, dtype=float).reshape(-1, 3)
-        for own, shown in zip((forces, mechanism), by_statics, strict=True)
-    )
-    if forces is None or mechanism is None:
-        return _said(tolerance, None, "There is no proof of the limit: the answer gives no forces or no mechanism.")
-    sizes = [(assembly.n_interfaces, 3), (assembly.n_blocks, 3)]
-    if [forces.shape, mechanism.shape] != sizes or not (np.isfinite(forces).all() and np.isfinite(mechanism).all()):
-        return _said(tolerance, False, "Its forces or its mechanism are not finite triples of all joints and blocks.")
-    stated = DEAD_BAR_FORCES if by_statics[0] is not None else BAR_FORCES
-    if isinstance(beyond := tensions_beyond(assembly, result.details, stated), str):
-        return _said(tolerance, False, beyond)
-    within, told = accuracy(assembly), least_told(assembly, mechanism)
-    what = "The collapse state (associated flow) under the dead load"
-    residuals = collapse_residuals(assembly, forces, 0.0, mechanism, "associated", beyond)
-    if told > 0.0:
-        residuals["virtual_work"] *= within * assembly.load_unit / told
-    said = _decide(residuals, within, what)
-    at = _multiplier_of(assembly, mechanism)
-    if said.accepted or not 0.0 < abs(at) <= min(told, MOST_OPEN * within * assembly.load_unit):
-        return said
-    return _decide(
-        collapse_residuals(assembly, forces, at, mechanism, "associated", beyond), within, f"{what}, but for {at:.1g}"
-    )
-
-
-def _multiplier_of(assembly: Assembly, mechanism: FloatArray) -> float:
-    """The multiplier of a dilatant mechanism (n, 3) by virtual work; zero without live work.
-
-    Dry joints dissipate nothing then, others by their cohesion and tensile strength.
-    """
-    live = power(assembly.live, mechanism)
-    opening, slip = relative_velocities(assembly, mechanism)
-    taken = dissipated_by_strength(assembly, opening - (assembly.friction * abs(slip))[:, None], slip)
-    taken += dissipated_by_bars(assembly, mechanism)
-    return (taken - power(assembly.dead, mechanism)) / live if live > 0.0 else 0.0
-
-
-def _judge_fall(assembly: Assembly, mechanism: FloatArray | None, result: Result, tolerance: float) -> Judgement:
-    """No equilibrium: a dilatant mechanism of a component, supports at rest, on which the dead load does work.
-
-    A method that measured the motion may hand it over beside it, as `details["dilatant_mechanism"]`.
-    """
-    shown = result.details.get("dilatant_mechanism")
-    if shown is not None:
-        mechanism = np.asarray(shown, dtype=float).reshape(-1, 3)
-        if mechanism.shape != (assembly.n_blocks, 3) or not _countable(mechanism):
-            return _said(tolerance, False, f"`dilatant_mechanism` is not {assembly.n_blocks} finite triples.")
-    elif result.flow == "approximate" or mechanism is None:
-        told = "The motion was measured, which is no proof" if mechanism is not None else "It gives no mechanism"
-        return _said(tolerance, None, f"{told}; there is no proof that no equilibrium exists.")
-    supports, parts = moving_parts(assembly, mechanism)
-    shown_by = [_fall_of(part.assembly, motion, tolerance) for part, motion in parts]
-    proves, gain, closing, work = max(shown_by, default=(False, 0.0, 0.0, 0.0))
-    proved = proves and supports <= tolerance
-    sentence = (
-        "The dead load does positive work on the mechanism, with dilatant flow and supports at rest: no equilibrium "
-        "exists, which proves the fall."
-        if proved
-        else "The mechanism proves no fall: the work of the dead load does not exceed the possible work of its "
-        "closings, or it is not dilatant, or it moves the supports."
-    )
-    residuals = {"supports": supports, "interpenetration": closing, "dead_work": gain, "closing_work": work}
-    return Judgement(residuals=residuals, tolerance=tolerance, accepted=proved, sentence=sentence)
-
-
-def _fall_of(part: Assembly, motion: FloatArray, tolerance: float) -> tuple[bool, float, float, float]:
-    """Whether the motion (n, 3) of a component proves its fall; its gain, its largest closing, and `closing_work`.
-
-    The gain is the dead work less what cohesion and tensile strength take. Were there forces in equilibrium under the
-    dead load, within yield, then gain <= sum of n c over the contact points, n their normal forces and c their closings
-    beyond dilatant flow.
-    So the forces of any equilibrium would have to exceed gain / sum of c. Where that is `IMMENSE` times the dead load
-    there is none. `closing_work` is what forces so large may do on the closings, in dead loads like the gain.
-    """
-    opening, slip = relative_velocities(part, motion)
-    lift = (part.friction * abs(slip))[:, None]
-    closings = np.maximum(0.0, lift - opening)[np.isinf(part.crushing)]  # joints that crush close at a cost, see gain
-    closing = float(closings.max(initial=0.0))
-    taken = dissipated_by_strength(part, opening - lift, slip) + dissipated_by_bars(part, motion)
-    gain = (power(part.dead, motion) - taken) / part.force_scale
-    work = IMMENSE * float(closings.sum())
-    beyond_rounding = gain * part.force_scale > GAIN * gross_power(part, motion)
-    return closing <= tolerance and beyond_rounding and work < gain, gain, closing, work
-
-
-def apart(multiplier: float, other: float) -> float:
-    """The difference of two multipliers, relative to the larger of them."""
-    return abs(multiplier - other) / (max(abs(multiplier), abs(other)) or 1.0)
-
-
-def _decide(
-    residuals: dict[str, float],
-    tolerance: float,
-    what: str,
-    stricter: dict[str, float] | None = None,
-    wider: dict[str, float] | None = None,
-) -> Judgement:
-    """Accepted where every residual is within the tolerance, or within its own where that is stricter or wider."""
-    within = {name: min(tolerance, (stricter or {}).get(name, tolerance)) for name in residuals}
-    within |= {name: max(tolerance, value) for name, value in (wider or {}).items() if name in residuals}
-    failed = [
-        f"{name} {value:.3g}" + (f" (at most {within[name]:.3g})" if within[name] != tolerance else "")
-        for name, value in residuals.items()
-        if name != "live_work" and not value <= within[name]
-    ]
-    if "live_work" in residuals and not residuals["live_work"] > 0.0:
-        failed.append("the live load does no work on the mechanism")
-    sentence = f"{what} was recomputed from the equilibrium of the blocks"
-    sentence += (
-        f"; not within {tolerance:.3g}: {', '.join(failed)}." if failed else f" and holds within {tolerance:.3g}."
-    )
-    return Judgement(residuals=residuals, tolerance=tolerance, accepted=not failed, sentence=sentence)
+    return decide(residuals, tolerance, what, dict.fromkeys(("live_equilibrium", "live_yield"), WITHOUT_END))

@@ -9,7 +9,8 @@ import numpy as np
 
 from harness.engine.judge import answered
 from harness.model.assembly import Assembly
-from harness.model.build import build, typical_block_size
+from harness.model.blocks import typical_block_size
+from harness.model.build import build
 from harness.model.errors import InputError
 from harness.model.inspection import Inspection
 from harness.model.interfaces import DEFAULT_TOLERANCE

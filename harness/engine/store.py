@@ -2,9 +2,7 @@
 
 from __future__ import annotations
 
-import hashlib
 import json
-import re
 import shutil
 import sqlite3
 import stat
@@ -16,11 +14,10 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
-from pydantic import ValidationError
-
 from harness.engine.store_faults import OTHER_FILE, WAIT_SECONDS, cause
+from harness.engine.store_seal import DAMAGE, EDITED, digest_of, opened, sealed, unpacked
 from harness.model.errors import InputError
-from harness.model.reading import LARGEST_FILE, MOST_NESTED, json_of, nested_deeper
+from harness.model.json_text import LARGEST_FILE, MOST_NESTED, json_of, nested_deeper
 from harness.model.result import Result
 
 SCHEMA_VERSION = 2
@@ -64,13 +61,6 @@ ENVIRONMENT = ("versions", "machine", "traits", "limits")
 file 210 MB instead of 140, as two of them filled a page instead of three."""
 SOME_KEYS = 500
 """Up to so many results are looked for one by one; above, the whole table is read."""
-
-
-SEAL = re.compile(r',"seal":"([0-9a-f]{32})([0-9a-f]{32})"\}\Z')
-"""End of a text that is kept: the digest of what lies beside it, and that of both. It tells an edit, not a forger."""
-
-DAMAGE = (ValidationError, ValueError, TypeError, RecursionError, zlib.error)
-"""What reading a result raises where another hand has changed it."""
 
 
 class Store:
@@ -201,10 +191,10 @@ class Store:
         try:
             if size > LARGEST_FILE:
                 raise ValueError(f"{size:,} characters")
-            text = _opened(text, (key, method, case, tolerance, shared), fields)
-            if shared is not None and environment is not None and _digest(environment)[:16] != shared:
+            text = opened(text, (key, method, case, tolerance, shared), fields)
+            if shared is not None and environment is not None and digest_of(environment)[:16] != shared:
                 raise ValueError(EDITED)
-            whole = json.loads(text) | json.loads(environment or "{}") | _unpacked(fields)
+            whole = json.loads(text) | json.loads(environment or "{}") | unpacked(fields)
             if nested_deeper(whole, MOST_NESTED):
                 raise ValueError(f"it is nested more than {MOST_NESTED} deep")
             return Result.model_validate(whole, strict=False), float(tolerance)
@@ -229,7 +219,7 @@ class Store:
         data = result.model_dump(mode="json")
         fields = {name: data.pop(name) for name in FIELDS}
         shared = json.dumps({name: data.pop(name) for name in ENVIRONMENT}, sort_keys=True)
-        environment = _digest(shared)[:16]
+        environment = digest_of(shared)[:16]
         packed = zlib.compress(json.dumps(fields, separators=(",", ":")).encode())
         text = json.dumps(data, ensure_ascii=False, allow_nan=False, separators=(",", ":"))
         with self._told(), self._open:
@@ -238,7 +228,7 @@ class Store:
                 f"INSERT OR REPLACE INTO run ({', '.join(COLUMNS['run'])}) VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)",
                 (
                     *(key, result.case, result.method, result.started, tolerance),
-                    _sealed(text, (key, result.method, result.case, tolerance, environment), packed),
+                    sealed(text, (key, result.method, result.case, tolerance, environment), packed),
                     *(str(result.status), str(result.finding), result.multiplier, result.cpu_seconds, environment),
                     packed,
                 ),
@@ -265,7 +255,7 @@ class Store:
                 try:
                     if shared not in environments:
                         environments[shared] = json.loads(content or "{}")
-                    whole = _opened(text, (key, method, case, tolerance, shared))
+                    whole = opened(text, (key, method, case, tolerance, shared))
                     found[key] = json.loads(whole) | environments[shared]
                 except (ValueError, TypeError, RecursionError) as error:
                     raise self.damaged(f"the result of {method} on {case} in it", error) from None
@@ -312,7 +302,7 @@ class Store:
         with self._told(), self._open:
             self._open.execute(
                 "INSERT INTO comparison (created, content) VALUES (?, ?)",
-                (created, _sealed(json.dumps(content, allow_nan=False), (created,))),
+                (created, sealed(json.dumps(content, allow_nan=False), (created,))),
             )
 
     def last_comparison(self) -> dict[str, Any] | None:
@@ -328,7 +318,7 @@ class Store:
         if not isinstance(row[0], str) or len(row[0]) > LARGEST_FILE:
             raise self.damaged("the last comparison in it", ValueError("it is no text of a usual size"))
         try:
-            text = _opened(row[0], (row[1],))
+            text = opened(row[0], (row[1],))
         except ValueError as error:
             raise self.damaged("the last comparison in it", error) from None
         content = json_of(text, f"{self.path}: the last comparison in it")
@@ -342,56 +332,6 @@ class Store:
             self._connection.close()
         if self._copy is not None:
             self._copy.cleanup()
-
-
-EDITED = "it was changed after it was stored: its digest is another"
-
-
-def _digest(text: str | bytes) -> str:
-    return hashlib.sha256(text if isinstance(text, bytes) else text.encode("utf-8", "replace")).hexdigest()
-
-
-def _sealed(text: str, row: tuple[Any, ...], fields: bytes = b"") -> str:
-    """A JSON object as text with the digests of what lies beside it in its row, and of all."""
-    beside = _digest(fields)[:32]
-    return f'{text[:-1]},"seal":"{beside}{_digest(repr((row, beside, text)))[:32]}"}}'
-
-
-def _opened(text: Any, row: tuple[Any, ...], fields: bytes | None = None) -> str:
-    """The text that was sealed. A text without a seal is of an earlier release.
-
-    Args:
-        text: as it is kept; row: what is beside it; fields: what is kept compressed beside it, where that is read too.
-
-    Raises:
-        ValueError: the text or what is beside it was changed since.
-    """
-    if not isinstance(text, str):
-        raise ValueError("it is no text")
-    seal = SEAL.search(text)
-    if seal is None:
-        return text
-    beside, all_of_it = seal.groups()
-    whole = f"{text[: seal.start()]}}}"
-    if _digest(repr((row, beside, whole)))[:32] != all_of_it or (fields is not None and _digest(fields)[:32] != beside):
-        raise ValueError(EDITED)
-    return whole
-
-
-def _unpacked(fields: bytes | None) -> dict[str, Any]:
-    """Compressed fields as JSON values.
-
-    Raises:
-        ValueError: they are larger than any wall's.
-    """
-    if fields is None:
-        return {}
-    unpacking = zlib.decompressobj()
-    text = unpacking.decompress(fields, LARGEST_FILE)
-    if unpacking.unconsumed_tail:
-        raise ValueError(f"more than {LARGEST_FILE:,} characters")
-    unpacked: dict[str, Any] = json.loads(text)
-    return unpacked
 
 
 def _connect(path: Path, how: str = "") -> sqlite3.Connection:

@@ -16,7 +16,7 @@ import shapely
 from harness.formats.drawing import PLANES, Asked, Drawing, finite, nested
 from harness.model.assembly import FloatArray
 from harness.model.errors import InputError
-from harness.model.reading import read_json
+from harness.model.json_text import read_json
 
 SUPPORT = ("is_support", "is_fixed", "fixed")
 

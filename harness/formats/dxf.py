@@ -19,7 +19,7 @@ from ezdxf.lldxf.const import DXFError
 from harness.formats.drawing import MOST_COPIES, PLANES, Asked, Drawing, finite, nested
 from harness.model.assembly import FloatArray
 from harness.model.errors import InputError
-from harness.model.reading import read_bytes, text_of
+from harness.model.json_text import read_bytes, text_of
 
 UNITS = {"in": 1, "ft": 2, "mm": 4, "cm": 5, "m": 6, "km": 7, "yd": 10, "dm": 14}
 """$INSUNITS of the DXF reference by units of length."""

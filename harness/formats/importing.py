@@ -23,9 +23,11 @@ from harness.formats.registry import format_read
 from harness.model.assembly import FloatArray
 from harness.model.errors import InputError, first_few
 from harness.model.fields import Coefficient, Name, NonNegative, Point, Positive, Strict
-from harness.model.reading import parse_wall, read_text, validate
+from harness.model.friction_fields import FrictionRule
+from harness.model.json_text import read_text
+from harness.model.reading import parse_wall, validate
 from harness.model.units import METRES, LengthUnit
-from harness.model.wall import FrictionRule, Wall
+from harness.model.wall import Wall
 
 FRICTION = 0.6
 UNIT_WEIGHT = 20.0

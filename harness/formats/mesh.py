@@ -11,7 +11,7 @@ import shapely
 
 from harness.formats.drawing import Asked, Drawing, without_comments
 from harness.model.errors import InputError
-from harness.model.reading import read_bytes, read_text
+from harness.model.json_text import read_bytes, read_text
 
 _ENTITY = re.compile(
     r"([A-Za-z][A-Za-z ]{0,40}?)\s*\(\s*(\"[^\"\n]*\"|\d+)\s*(?:,\s*\d+\s*)?\)\s*\+?=\s*\{([^{}]*)\}\s*;"

@@ -13,7 +13,7 @@ import shapely
 from harness.formats.drawing import Asked, Drawing
 from harness.formats.places import reference_system
 from harness.model.errors import InputError
-from harness.model.reading import read_bytes, read_json, read_text
+from harness.model.json_text import read_bytes, read_json, read_text
 from harness.model.writing import uncelled
 
 NAMES = ("id", "name", "block")

@@ -15,7 +15,7 @@ from harness.formats.drawing import Asked, Drawing, nested
 from harness.formats.svg_shown import LABEL, shown
 from harness.model.assembly import FloatArray
 from harness.model.errors import InputError
-from harness.model.reading import read_text
+from harness.model.json_text import read_text
 
 _WIDTH = re.compile(r"\s*([0-9.]+)\s*(mm|cm|in)\s*")
 MOST_CHORDS = 256

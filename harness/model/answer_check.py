@@ -19,7 +19,7 @@ from harness.model.errors import InputError
 from harness.model.method import Answer, Finding, Status
 
 DEEPEST = 33
-"""Depth to which details may be nested. A document that holds a result may have `reading.MOST_NESTED` levels in all."""
+"""Depth to which details may be nested. One that holds a result may have `json_text.MOST_NESTED` levels in all."""
 FLOWS = ("non-associated", "associated", "approximate")
 """Flow rules that an answer may name."""
 MISSING_PACKAGE = "missing_package"

@@ -3,42 +3,32 @@
 from __future__ import annotations
 
 import math
-from collections import Counter
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 from functools import cached_property, partial
 
 import numpy as np
 
 from harness.model import geometry
-from harness.model.assembly import Assembly, BoolArray, FloatArray, IntArray, polygon_area
+from harness.model.assembly import Assembly, FloatArray
 from harness.model.bars import Bars
-from harness.model.errors import MOST_NAMED, InputError, Spot, first_few, of_each, raise_faults
-from harness.model.fields import MOST_BLOCKS
+from harness.model.blocks import blocks_of_wall, polygons_of, support_faults, weight_of
+from harness.model.errors import MOST_NAMED, InputError, first_few, of_each, raise_faults
+from harness.model.friction_rules import JointLaws, laws_of_joints
 from harness.model.input_checks import input_warnings, thickness_of
 from harness.model.interfaces import check_held, faces_of, find_joints, normals_of
-from harness.model.names import faults_of_wall
-from harness.model.pattern import blocks_of, count_of
-from harness.model.pattern_fields import PatternBase
-from harness.model.plausibility import contact_warnings, force_warnings, interface_warnings, near_misses
-from harness.model.pressure import outlines_of, pressure_forces
-from harness.model.rings import hole_faults, ringed
-from harness.model.wall import (
-    Block,
-    BodyForce,
-    Friction,
-    FrictionRule,
-    Inset,
-    Interface,
-    Load,
-    Loads,
-    Wall,
-    coefficient_of,
-    stresses_of,
+from harness.model.load_fields import Load, Loads
+from harness.model.loads import (
+    check_pairs,
+    dead_load,
+    generalised_load,
+    groups_of_blocks,
+    has_pressures,
+    with_pressures,
 )
+from harness.model.plausibility import contact_warnings, force_warnings, interface_warnings, near_misses
+from harness.model.wall import Block, Inset, Interface, Wall
 
-MOST_PAIRS = 20_000_000
-"""Pairs of a load and a block, or a face, that it may act on."""
 SMALLEST = float(np.finfo(float).tiny / np.finfo(float).eps)
 """Least sum of loads, whatever its unit: a share of it as small as rounding still has all its digits."""
 
@@ -87,7 +77,7 @@ def build(wall: Wall, name: str = "wall") -> Built:
     names = tuple(block.id for block in blocks)
     index = {block_id: k for k, block_id in enumerate(names)}
     for load in (wall.loads.dead, wall.loads.live or Load()):
-        _check_pairs(load, blocks)
+        check_pairs(load, blocks)
     polygons = tuple(polygons_of(blocks))
     fixed = np.array([block.fixed for block in blocks], dtype=bool)
     raise_faults(support_faults(fixed))
@@ -105,7 +95,7 @@ def build(wall: Wall, name: str = "wall") -> Built:
     across, up = np.abs((face2 - face1) @ _level_and_upright(wall.loads).T).T
     inclined = np.where(across >= up, "bed", "head").tolist()
     joints = tuple(interface.joint or name for interface, name in zip(interfaces, inclined, strict=True))
-    laws = _laws(wall, interfaces, joints, blocks, index)
+    laws = laws_of_joints(wall, interfaces, joints, blocks, index)
     end1, end2 = _set_in(interfaces, wall.contact_inset, face1, face2)
     assembly = Assembly(
         name=name,
@@ -124,11 +114,11 @@ def build(wall: Wall, name: str = "wall") -> Built:
         friction=laws.friction,
         dilatancy=laws.dilatancy,
         joint=joints,
-        dead=_dead_load(wall.loads, blocks, index, weight, centroids, fixed),
-        live=_load(wall.loads.live or Load(), blocks, index, weight, centroids, fixed),
+        dead=dead_load(wall.loads, blocks, index, weight, centroids, fixed),
+        live=generalised_load(wall.loads.live or Load(), blocks, index, weight, centroids, fixed),
     )
-    if _has_pressures(wall.loads):
-        assembly = _with_pressures(wall, blocks, assembly, size)
+    if has_pressures(wall.loads):
+        assembly = with_pressures(wall, blocks, assembly, size)
     if wall.settlements:
         assembly = replace(assembly, support_motion=_support_motion(wall, blocks, assembly))
     if wall.ties or wall.props:
@@ -208,177 +198,6 @@ def _level_and_upright(loads: Loads) -> FloatArray:
     return np.array([[-y, x], [x, y]])
 
 
-def typical_block_size(wall: Wall) -> float:
-    """The length that tolerances are measured by: the median over the free blocks of the square root of the area.
-
-    Raises:
-        InputError: a block is no polygon, or none is free.
-    """
-    blocks = blocks_of_wall(wall)
-    raise_faults(support_faults(np.array([block.fixed for block in blocks], dtype=bool)))
-    free = polygons_of([block for block in blocks if not block.fixed])
-    return geometry.typical_size(geometry.shapes_of(free))
-
-
-def blocks_of_wall(wall: Wall) -> list[Block]:
-    """All blocks of a wall, those of its patterns first.
-
-    Raises:
-        InputError: there are none, too many, or names are wrong.
-    """
-    blocks = written_out(wall)
-    raise_faults(faults_of_wall(wall, blocks))
-    return blocks
-
-
-def written_out(wall: Wall) -> list[Block]:
-    """All blocks of a wall, those of its patterns first, whatever their names.
-
-    Raises:
-        InputError: there are none, or too many.
-    """
-    patterns: list[PatternBase] = (
-        [] if wall.pattern is None else list(wall.pattern) if isinstance(wall.pattern, list) else [wall.pattern]
-    )
-    expected = sum(count_of(pattern) for pattern in patterns) + len(wall.blocks)
-    if expected > MOST_BLOCKS:
-        raise InputError(
-            f"the wall has {expected:,} blocks, and at most {MOST_BLOCKS:,} are built",
-            "Analyse a part of it",
-            "pattern" if patterns else "blocks",
-        )
-    blocks = [block for pattern in patterns for block in blocks_of(pattern)] + list(wall.blocks)
-    if not blocks:
-        raise InputError("the wall has no blocks", 'Give "blocks" or a "pattern"', "blocks")
-    return blocks
-
-
-def polygons_of(blocks: Sequence[Block]) -> list[FloatArray]:
-    """The outlines (k, 2) of blocks, counter-clockwise [length]; one with holes goes along a cut to each and back.
-
-    Raises:
-        InputError: some are no polygons; all of them are told.
-    """
-    polygons = [np.array(block.polygon, dtype=float) for block in blocks]
-    holes = {k: [np.array(hole, dtype=float) for hole in block.holes] for k, block in enumerate(blocks) if block.holes}
-    elements = [f'block "{block.id}"' for block in blocks]
-    raise_faults(geometry.polygon_faults(polygons, elements))
-    raise_faults([fault for k, within in holes.items() for fault in hole_faults(polygons[k], within, elements[k])])
-    return [
-        ringed(polygon, holes[k]) if k in holes else geometry.counter_clockwise(polygon)
-        for k, polygon in enumerate(polygons)
-    ]
-
-
-def support_faults(fixed: BoolArray) -> list[InputError]:
-    """What is wrong where no block is fixed, or every one."""
-    if not fixed.any():
-        return [InputError("no block is fixed", 'Mark the supports with "fixed": true', "blocks")]
-    return [InputError("every block is fixed", "Leave at least one block free to move", "blocks")] * bool(fixed.all())
-
-
-def weight_of(block: Block, wall: Wall) -> float:
-    """The weight of a block of a wall [force].
-
-    Raises:
-        InputError: nothing says it.
-    """
-    if block.weight is not None:
-        return block.weight
-    unit_weight = block.unit_weight if block.unit_weight is not None else wall.unit_weight
-    if unit_weight is None:
-        if block.fixed:
-            return 0.0
-        raise InputError(
-            "it has no weight",
-            'Give it "weight", or "unit_weight" for it or for the wall',
-            f'block "{block.id}"',
-            spot=Spot((block.id,)),
-        )
-    area = polygon_area(np.array(block.polygon, dtype=float))
-    area -= sum(polygon_area(np.array(hole, dtype=float)) for hole in block.holes)
-    per_area = float(unit_weight) * area * thickness_of(block, wall)
-    return per_area if wall.units.unit_weight is None else per_area * wall.units.unit_weight_factor
-
-
-@dataclass(frozen=True, eq=False)
-class _Laws:
-    """(m, 5) of the joints: friction, dilatancy, cohesion, tensile and compressive strength [force/length^2]."""
-
-    given: FloatArray
-
-    @property
-    def friction(self) -> FloatArray:
-        """(m,) coefficients of friction."""
-        return np.ascontiguousarray(self.given[:, 0])
-
-    @property
-    def dilatancy(self) -> FloatArray:
-        """(m,) coefficients by which a slip lifts."""
-        return np.ascontiguousarray(self.given[:, 1])
-
-    @property
-    def strong(self) -> bool:
-        """Whether any joint has cohesion, tensile or compressive strength."""
-        return bool(self.given[:, 2:4].any() or np.isfinite(self.given[:, 4]).any())
-
-    def constant(self, area: FloatArray) -> FloatArray:
-        """(m, 4) constant parts T/2, T/2, c A, c A of the yield slacks of joints with areas A (m,), T = f_t A."""
-        cohesion, tension = area * self.given[:, 2], area * self.given[:, 3]
-        return np.column_stack([0.5 * tension, 0.5 * tension, cohesion, cohesion])
-
-    def crushing(self, area: FloatArray) -> FloatArray:
-        """(m,) forces f_c A at which joints with areas A (m,) crush, infinite where they do not."""
-        finite = np.isfinite(self.given[:, 4])
-        return np.where(finite, area * np.where(finite, self.given[:, 4], 0.0), np.inf)
-
-
-def _laws(
-    wall: Wall, interfaces: list[Interface], joints: tuple[str, ...], blocks: list[Block], index: dict[str, int]
-) -> _Laws:
-    """Friction, dilatancy and strength of the interfaces."""
-    rules = _rules_by_selector(wall.friction.rules) if isinstance(wall.friction, Friction) else {}
-    given = [
-        _law(wall, interface, joint, blocks, index, rules) for interface, joint in zip(interfaces, joints, strict=True)
-    ]
-    return _Laws(np.array(given, dtype=float).reshape(-1, 5))
-
-
-def _rules_by_selector(rules: Sequence[FrictionRule]) -> dict[tuple[str, ...], FrictionRule]:
-    """Rules by what they hold for: of several for the same, the last."""
-    found: dict[tuple[str, ...], FrictionRule] = {}
-    for rule in rules:
-        if rule.between is not None:
-            found["between", *sorted(rule.between)] = rule
-        elif rule.joint is not None:
-            found["joint", rule.joint] = rule
-        elif rule.materials is not None:
-            found["materials", *sorted(rule.materials)] = rule
-    return found
-
-
-def _law(
-    wall: Wall,
-    interface: Interface,
-    joint: str,
-    blocks: list[Block],
-    index: dict[str, int],
-    rules: dict[tuple[str, ...], FrictionRule],
-) -> tuple[float, float, float, float, float]:
-    """Friction, dilatancy, cohesion, tensile and compressive strength, all from the most particular that holds."""
-    if interface.friction is not None or interface.friction_angle is not None:
-        friction = coefficient_of(interface.friction, interface.friction_angle)
-        return friction, interface.dilatancy or 0.0, *stresses_of(interface)
-    if not isinstance(wall.friction, Friction):
-        return float(coefficient_of(wall.friction, wall.friction_angle)), 0.0, *stresses_of(wall)
-    materials = sorted(blocks[index[block_id]].material for block_id in interface.between)
-    for selector in (("between", *sorted(interface.between)), ("joint", joint), ("materials", *materials)):
-        if selector in rules:
-            rule = rules[selector]
-            return rule.coefficient, rule.dilatancy or 0.0, *stresses_of(rule)
-    return float(wall.friction.coefficient), wall.friction.dilatancy or 0.0, *stresses_of(wall.friction)
-
-
 def _support_motion(wall: Wall, blocks: list[Block], assembly: Assembly) -> FloatArray:
     """(n, 3) motions of the supports, those of several settlements of a block added up.
 
@@ -387,7 +206,7 @@ def _support_motion(wall: Wall, blocks: list[Block], assembly: Assembly) -> Floa
     """
     motion = np.zeros((len(blocks), 3))
     index = {block.id: k for k, block in enumerate(blocks)}
-    groups = _groups(blocks)
+    groups = groups_of_blocks(blocks)
     for number, settlement in enumerate(wall.settlements):
         place = f"settlements[{number}]"
         named = {index[name] for name in settlement.blocks or ()}
@@ -457,137 +276,13 @@ def _set_in(
     return face1 + step, face2 - step
 
 
-def _dead_load(
-    loads: Loads,
-    blocks: list[Block],
-    index: dict[str, int],
-    weight: FloatArray,
-    centroids: FloatArray,
-    fixed: np.ndarray,
-) -> FloatArray:
-    """Gravity and what is dead besides it; a file of the time when a dead load stood for gravity is refused.
-
-    Raises:
-        InputError: the dead load presses every block down by a multiple of its weight and gravity is not spoken of.
-    """
-    gravity = BodyForce(per_weight=loads.gravity_per_weight)
-    if loads.gravity is None and loads.dead.body:
-        multiples = _load(Load(body=loads.dead.body), blocks, index, np.ones(len(blocks)), centroids, fixed)
-        if bool(np.all(multiples[~fixed, 1] < 0.0)):
-            raise InputError(
-                "the dead load presses every block down by a multiple of its weight, and gravity acts besides",
-                'Leave it out; or say in loads "gravity": false if it stands for gravity, or true if it does not',
-                "loads.dead.body",
-            )
-    whole = Load(body=[gravity, *loads.dead.body], points=loads.dead.points)
-    return _load(whole, blocks, index, weight, centroids, fixed)
-
-
-def _load(
-    load: Load,
-    blocks: list[Block],
-    index: dict[str, int],
-    weight: FloatArray,
-    centroids: FloatArray,
-    fixed: np.ndarray,
-) -> FloatArray:
-    """Generalised forces (n, 3) of a load whose names are known to be of the wall."""
-    generalised = np.zeros((len(blocks), 3))
-    groups, everything = _groups(blocks), np.arange(len(blocks))
-    for body in load.body:
-        if body.group is not None:
-            chosen = groups[body.group]
-        elif body.blocks is not None:
-            chosen = np.array(sorted({index[block_id] for block_id in body.blocks}), dtype=np.int64)
-        else:
-            chosen = everything
-        generalised[chosen, :2] += weight[chosen, None] * np.array(body.per_weight)
-    if load.points:
-        k = np.array([index[point.block] for point in load.points])
-        arm = np.array([point.at for point in load.points]) - centroids[k]
-        force = np.array([point.force for point in load.points])
-        moment = arm[:, 0] * force[:, 1] - arm[:, 1] * force[:, 0]
-        np.add.at(generalised, k, np.column_stack([force, moment]))
-    generalised[fixed] = 0.0
-    return generalised
-
-
-def _check_pairs(load: Load, blocks: Sequence[Block]) -> None:
-    """Refuse loads that act on so many blocks each, or are sought among so many faces, that their sum takes minutes.
-
-    Raises:
-        InputError: how many there are.
-    """
-    members = Counter(group for block in blocks for group in block.groups)
-    pairs = sum(
-        members[body.group] if body.group is not None else len(blocks if body.blocks is None else body.blocks)
-        for body in load.body
-    )
-    faces = len(load.pressures) * sum(len(block.polygon) for block in blocks)
-    for count, what, remedy in (
-        (pairs, f"{len(load.body):,} body forces act on {pairs:,} blocks in all", "Add up those on the same blocks"),
-        (faces, f"{len(load.pressures):,} pressures are sought among {faces:,} faces in all", "Give longer segments"),
-    ):
-        if count > MOST_PAIRS:
-            raise InputError(f"{what}, and at most {MOST_PAIRS:,} are summed up", remedy, "loads")
-
-
-def _groups(blocks: Sequence[Block]) -> dict[str, IntArray]:
-    """Numbers of the blocks of every group."""
-    groups: dict[str, list[int]] = {}
-    for k, block in enumerate(blocks):
-        for group in block.groups:
-            groups.setdefault(group, []).append(k)
-    return {group: np.array(members) for group, members in groups.items()}
-
-
-def _has_pressures(loads: Loads) -> bool:
-    return bool(loads.dead.pressures or (loads.live is not None and loads.live.pressures))
-
-
-def _with_pressures(wall: Wall, blocks: list[Block], assembly: Assembly, size: float) -> Assembly:
-    """The assembly with the pressures of the wall added to its loads.
-
-    Raises:
-        InputError: part of a pressure lies on no face, or on faces of two blocks.
-    """
-    thickness = [thickness_of(block, wall) for block in blocks]
-    outlines, index, groups = (
-        outlines_of(assembly.polygons),
-        {block.id: k for k, block in enumerate(blocks)},
-        _groups(blocks),
-    )
-    sums = {}
-    for kind, load in (("dead", wall.loads.dead), ("live", wall.loads.live or Load())):
-        total = getattr(assembly, kind).copy()
-        for number, pressure in enumerate(load.pressures):
-            chosen = ~assembly.fixed
-            if pressure.blocks is not None or pressure.group is not None:
-                named = np.zeros(len(blocks), dtype=bool)
-                named[[index[name] for name in pressure.blocks or ()]] = True
-                named[groups.get(pressure.group or "", [])] = True
-                chosen &= named
-            total += pressure_forces(
-                pressure,
-                chosen,
-                outlines,
-                assembly.centroid,
-                thickness,
-                wall.units.unit_weight_factor,
-                size,
-                f"loads.{kind}.pressures[{number}]",
-            )
-        sums[kind] = total
-    return replace(assembly, **sums)
-
-
 def _explicit(
     wall: Wall,
     blocks: list[Block],
     weight: FloatArray,
     interfaces: list[Interface],
     joints: tuple[str, ...],
-    laws: _Laws,
+    laws: JointLaws,
 ) -> Wall:
     return wall.model_copy(
         update={

@@ -16,8 +16,9 @@ from harness.model.build import Built, build
 from harness.model.content import hash_of
 from harness.model.errors import InputError
 from harness.model.fields import Strict
+from harness.model.json_text import read_json, read_text
 from harness.model.method import method_names
-from harness.model.reading import parse_wall, read_document, read_json, read_text, validate
+from harness.model.reading import parse_wall, read_document, validate
 from harness.model.wall import Wall
 
 LARGEST_CASE_FILE = 2**20

@@ -24,3 +24,10 @@ class Strict(BaseModel):
     """Base of the format: unknown fields, NaN and infinities are refused."""
 
     model_config = ConfigDict(defer_build=True, extra="forbid", allow_inf_nan=False, frozen=True, populate_by_name=True)
+
+
+TAGS = ONE, MANY, OBJECT, OTHER = "(one)", "(many)", "(object)", "(other)"
+"""Alternatives of a field, told apart by what is given, so that only the faults of the one meant are found.
+
+Parentheses keep them apart from names of fields.
+"""

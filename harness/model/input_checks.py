@@ -9,8 +9,9 @@ import numpy as np
 
 from harness.model.assembly import Assembly
 from harness.model.errors import did_you_mean, first_few
+from harness.model.friction_fields import Friction
 from harness.model.units import KILONEWTONS, METRES, unit_weight_in_kn_m3
-from harness.model.wall import Block, Friction, Wall
+from harness.model.wall import Block, Wall
 
 GREATEST_FRICTION = 2.0
 """Coefficient beyond which an angle in degrees is likelier: stone on stone has .4 to .8, 2 is a face of 63 degrees."""

@@ -15,7 +15,8 @@ import shapely
 
 from harness.model import geometry
 from harness.model.assembly import BoolArray, FloatArray, IntArray
-from harness.model.build import Built, build, polygons_of, support_faults, weight_of, written_out
+from harness.model.blocks import polygons_of, support_faults, weight_of, written_out
+from harness.model.build import Built, build
 from harness.model.contacts import check_gap
 from harness.model.errors import MOST_WORDED, InputError, Spot, sorted_out
 from harness.model.input_checks import unknown_in_rules

@@ -76,6 +76,10 @@ class JointLaw:
         """(m,) shear mu N that friction bears at compressions N (m,)."""
         return np.asarray(self.friction * compression)
 
+    def part_by_friction(self, share: FloatArray, compression: FloatArray) -> FloatArray:
+        """(m,) shears that are shares (m,) of what friction bears at compressions N (m,), as those frozen in."""
+        return np.asarray(share * self.friction * compression)
+
     def shear_range(self, forces: FloatArray) -> tuple[FloatArray, FloatArray]:
         """(m,) least and (m,) greatest shear that the normal forces of (m, 3) leave each interface."""
         borne = self.by_friction(forces[:, 0] + forces[:, 1])

@@ -10,7 +10,8 @@ from pydantic import Field
 
 from harness.model.case import shipped_cases
 from harness.model.fields import Strict
-from harness.model.reading import read_text, validate
+from harness.model.json_text import read_text
+from harness.model.reading import validate
 
 LARGEST_FILE = 2**16
 """Bytes at most of a file of words that comes with Drystone."""

@@ -10,8 +10,8 @@ import numpy as np
 from harness.model.assembly import FloatArray
 from harness.model.case import Case
 from harness.model.errors import InputError
-from harness.model.load_sums import times
-from harness.model.wall import BodyForce, Load
+from harness.model.load_fields import BodyForce, Load
+from harness.model.loads import times
 
 LEVEL = 1e-9
 """Part of the greatest live force below which a component is rounding."""

@@ -9,13 +9,14 @@ from itertools import product
 from pathlib import Path
 from typing import Any
 
-from harness.model.build import Built, blocks_of_wall, build, polygons_of
+from harness.model.blocks import blocks_of_wall, polygons_of
+from harness.model.build import Built, build
 from harness.model.case import Case
 from harness.model.errors import MOST_NAMED, InputError, did_you_mean, first_few, raise_faults
-from harness.model.load_case_fields import DEAD
-from harness.model.load_sums import times, together
+from harness.model.load_fields import DEAD, Loads
+from harness.model.loads import times, together
 from harness.model.travelling import travelling_loads
-from harness.model.wall import Loads, Wall
+from harness.model.wall import Wall
 
 
 @dataclass(frozen=True)

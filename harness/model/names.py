@@ -6,7 +6,9 @@ from collections.abc import Iterable, Iterator
 from typing import Any
 
 from harness.model.errors import MOST_NAMED, InputError, Spot, did_you_mean, first_few
-from harness.model.wall import Block, Detection, Friction, Load, Wall
+from harness.model.friction_fields import Friction
+from harness.model.load_fields import Load
+from harness.model.wall import Block, Detection, Wall
 
 MOST_COMPARED = 2000
 """Ids that an unknown one is compared with, in the search for the one that was meant."""

@@ -9,7 +9,7 @@ import numpy as np
 from harness.model.assembly import Assembly, FloatArray, IntArray
 from harness.model.errors import InputError, first_few
 from harness.model.geometry import distances
-from harness.model.wall import Load, Loads
+from harness.model.load_fields import Load, Loads
 
 BESIDE = 0.05
 """Distance from its block, in typical block sizes, beyond which a point force or an interface is worth a warning."""

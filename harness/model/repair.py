@@ -13,7 +13,7 @@ import shapely
 
 from harness.model import geometry
 from harness.model.assembly import FloatArray, IntArray
-from harness.model.build import blocks_of_wall, polygons_of
+from harness.model.blocks import blocks_of_wall, polygons_of
 from harness.model.errors import InputError
 from harness.model.groups import groups_of
 from harness.model.rings import rings_of

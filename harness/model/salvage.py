@@ -7,8 +7,9 @@ from typing import Any
 from pydantic import ValidationError
 
 from harness.model.errors import InputError
+from harness.model.fields import TAGS
 from harness.model.reading import parse_wall
-from harness.model.wall import TAGS, Wall
+from harness.model.wall import Wall
 
 
 def salvaged(data: Any, source: str) -> tuple[Wall | None, tuple[InputError, ...]]:

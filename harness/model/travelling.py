@@ -12,8 +12,8 @@ from harness.model.assembly import FloatArray
 from harness.model.errors import InputError
 from harness.model.fields import Point
 from harness.model.geometry import following
-from harness.model.load_case_fields import Travelling
-from harness.model.wall import Block, Load, Loads, PointForce
+from harness.model.load_fields import Load, Loads, PointForce, Travelling
+from harness.model.wall import Block
 
 SHARE = 1e-3
 """Of the size of a block: faces as near as this touch, as in `harness.model.pressure`, and shorter ones are none."""

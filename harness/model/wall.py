@@ -6,17 +6,39 @@ loads, dead and live apart. `harness.model.reading` reads it, `harness.model.bui
 
 from __future__ import annotations
 
-import math
 import re
-from typing import Annotated, Any, Literal, Protocol
+from typing import Annotated, Any, Literal
 
-from pydantic import BaseModel, Discriminator, Field, StrictBool, Tag, model_validator
+from pydantic import BaseModel, Discriminator, Field, Tag, model_validator
 
 from harness.model.bar_fields import Prop, Tie
-from harness.model.fields import Angle, Coefficient, Name, NonNegative, Number, Point, Positive, Strict
-from harness.model.load_case_fields import DEAD, Combination, Travelling
+from harness.model.fields import (
+    MANY,
+    OBJECT,
+    ONE,
+    OTHER,
+    Angle,
+    Coefficient,
+    Name,
+    NonNegative,
+    Number,
+    Point,
+    Positive,
+    Strict,
+)
+from harness.model.friction_fields import (
+    Cohesion,
+    CompressiveStrength,
+    Dilatancy,
+    Friction,
+    TensileStrength,
+    check_dilatancy,
+    check_strength,
+    coefficient_of,
+    gives_strength,
+)
+from harness.model.load_fields import DEAD, Combination, Loads, Travelling
 from harness.model.pattern_fields import Pattern
-from harness.model.pressure_fields import Pressure
 from harness.model.units import DIMENSIONLESS, KILONEWTONS, METRES, ForceUnit, LengthUnit, unit_weight_in_kn_m3
 
 MOST_VERTICES = 5_000
@@ -25,11 +47,6 @@ MOST_LOAD_CASES = 500
 """Each is built, and answered, as a wall of its own."""
 LOAD_CASE_NAME = r"[a-z0-9][a-z0-9-]{0,59}"
 """A load case is part of the id of a case, which users type."""
-TAGS = ONE, MANY, OBJECT, OTHER = "(one)", "(many)", "(object)", "(other)"
-"""Alternatives of a field, told apart by what is given, so that only the faults of the one meant are found.
-
-Parentheses keep them apart from names of fields.
-"""
 
 
 def _one_or_many(value: Any) -> str:
@@ -105,126 +122,6 @@ class Block(Strict):
         return self
 
 
-def coefficient_of(value: float | None, angle: float | None) -> float:
-    """A coefficient of friction from whichever is given, itself or the angle phi [degrees]."""
-    return value if value is not None else math.tan(math.radians(angle or 0.0))
-
-
-Dilatancy = Annotated[
-    Coefficient | None, Field(description="by which a slip lifts, from 0 (absent) to the friction: associated flow")
-]
-Cohesion = Annotated[
-    NonNegative | None, Field(description="shear strength without compression [force/length^2 of the file]; else none")
-]
-TensileStrength = Annotated[
-    NonNegative | None, Field(description="[force/length^2 of the file], from 0 (absent) to cohesion / friction")
-]
-CompressiveStrength = Annotated[
-    Positive | None,
-    Field(description="stress at which a joint crushes [force/length^2 of the file]; else it never does"),
-]
-
-
-class JointStrength(Protocol):
-    """Whatever gives the strength of joints beside their friction: a wall, friction, a rule, an interface."""
-
-    @property
-    def cohesion(self) -> float | None:
-        """Shear strength without compression [force/length^2]."""
-
-    @property
-    def tensile_strength(self) -> float | None:
-        """Tensile strength [force/length^2]."""
-
-    @property
-    def compressive_strength(self) -> float | None:
-        """Compressive strength [force/length^2]."""
-
-
-def stresses_of(given: JointStrength) -> tuple[float, float, float]:
-    """Cohesion, tensile, compressive strength [force/length^2]: zero, and the last infinite, where none is given."""
-    crushing = given.compressive_strength
-    return given.cohesion or 0.0, given.tensile_strength or 0.0, math.inf if crushing is None else crushing
-
-
-def _gives_strength(given: JointStrength) -> bool:
-    """Whether any strength is given."""
-    strengths = given.cohesion, given.tensile_strength, given.compressive_strength
-    return any(value is not None for value in strengths)
-
-
-def _check_strength(given: JointStrength, friction: float) -> None:
-    """A joint bears no tension at which its shear strength would be used up already, but for rounding."""
-    cohesion, tension, _ = stresses_of(given)
-    if friction * tension > cohesion * (1.0 + 1e-9):
-        raise ValueError(
-            f"the tensile strength {tension:g} is above cohesion / friction = {cohesion / friction:.6g}, where no "
-            "shear strength is left: give one from 0 to that, or more cohesion"
-        )
-
-
-def _check_dilatancy(dilatancy: float | None, friction: float) -> None:
-    if dilatancy is not None and dilatancy > friction:
-        raise ValueError(f"the dilatancy {dilatancy:g} is above the friction {friction:g}: give one from 0 to that")
-
-
-class FrictionRule(Strict):
-    """Friction of some interfaces: those between two materials, of a named joint, or between two blocks."""
-
-    value: Coefficient | None = Field(None, description="coefficient of friction, tan(phi)")
-    friction_angle: Angle | None = Field(None, description="phi [degrees], instead of `value`")
-    dilatancy: Dilatancy = None
-    cohesion: Cohesion = None
-    tensile_strength: TensileStrength = None
-    compressive_strength: CompressiveStrength = None
-    materials: tuple[str, str] | None = None
-    joint: str | None = Field(None, description='"bed", "head", or a name given in `interfaces`')
-    between: tuple[str, str] | None = Field(None, description="ids of the two blocks")
-
-    @model_validator(mode="after")
-    def _one_selector(self) -> FrictionRule:
-        if sum(item is not None for item in (self.materials, self.joint, self.between)) != 1:
-            raise ValueError("a friction rule names exactly one of materials, joint, between")
-        if (self.value is None) == (self.friction_angle is None):
-            raise ValueError("a friction rule gives either value or friction_angle")
-        _check_dilatancy(self.dilatancy, self.coefficient)
-        _check_strength(self, self.coefficient)
-        return self
-
-    @property
-    def coefficient(self) -> float:
-        """Coefficient of friction, tan(phi)."""
-        return coefficient_of(self.value, self.friction_angle)
-
-
-class Friction(Strict):
-    """Friction by rules, with what joints have beside it where none holds.
-
-    The most particular rule holds: interface, then between, then joint, then materials.
-    """
-
-    default: Coefficient | None = Field(None, description="coefficient of friction, tan(phi)")
-    friction_angle: Angle | None = Field(None, description="phi [degrees], instead of `default`")
-    dilatancy: Dilatancy = None
-    cohesion: Cohesion = None
-    tensile_strength: TensileStrength = None
-    compressive_strength: CompressiveStrength = None
-    rules: list[FrictionRule] = Field(default_factory=list)
-
-    @model_validator(mode="after")
-    def _one_default(self) -> Friction:
-        if (self.default is None) == (self.friction_angle is None):
-            raise ValueError("friction by rules gives either default or friction_angle")
-        _check_dilatancy(self.dilatancy, self.coefficient)
-        _check_strength(self, self.coefficient)
-        return self
-
-    @property
-    def coefficient(self) -> float:
-        """Coefficient of friction where no rule holds."""
-        return coefficient_of(self.default, self.friction_angle)
-
-
 class Inset(Strict):
     """Contact points set in from both ends of an interface, by a length or by a fraction of the interface."""
 
@@ -259,11 +156,11 @@ class Interface(Strict):
             raise ValueError("an interface gives either friction or friction_angle")
         if self.friction is not None or self.friction_angle is not None:
             friction = coefficient_of(self.friction, self.friction_angle)
-            _check_dilatancy(self.dilatancy, friction)
-            _check_strength(self, friction)
+            check_dilatancy(self.dilatancy, friction)
+            check_strength(self, friction)
         elif self.dilatancy is not None:
             raise ValueError("an interface gives dilatancy beside a friction of its own")
-        elif _gives_strength(self):
+        elif gives_strength(self):
             raise ValueError(
                 "an interface gives cohesion, tensile and compressive strength beside a friction of its own"
             )
@@ -297,36 +194,6 @@ class Detection(Strict):
     removed: list[tuple[Name, Name]] = Field(default_factory=list, description="pairs of blocks without a joint")
 
 
-class BodyForce(Strict):
-    """A force on blocks as a multiple of their weight, at their centroids."""
-
-    per_weight: Point = Field(description="(x, y) multiple of the weight; gravity is [0, -1]")
-    blocks: list[Name] | None = Field(None, description="ids; all free blocks if neither blocks nor group is given")
-    group: Name | None = None
-
-    @model_validator(mode="after")
-    def _one_choice(self) -> BodyForce:
-        if self.blocks is not None and self.group is not None:
-            raise ValueError("a body force names either blocks or group, not both")
-        return self
-
-
-class PointForce(Strict):
-    """A force at a point of a block."""
-
-    block: Name
-    at: Point
-    force: Point = Field(description="(x, y) [force]")
-
-
-class Load(Strict):
-    """A set of forces that act together."""
-
-    body: list[BodyForce] = Field(default_factory=list)
-    points: list[PointForce] = Field(default_factory=list)
-    pressures: list[Pressure] = Field(default_factory=list)
-
-
 class Settlement(Strict):
     """A prescribed motion of fixed blocks, by which the reaction along it is asked for."""
 
@@ -343,30 +210,6 @@ class Settlement(Strict):
         if self.translation == (0.0, 0.0) and self.rotation == 0.0:
             raise ValueError("a settlement that moves nothing: give a translation or a rotation")
         return self
-
-
-def _vector_or_switch(value: Any) -> str:
-    return MANY if isinstance(value, list | tuple) else OTHER
-
-
-Gravity = Annotated[Annotated[Point, Tag(MANY)] | Annotated[StrictBool, Tag(OTHER)], Discriminator(_vector_or_switch)]
-
-
-class Loads(Strict):
-    """Gravity, dead load (both present at every multiplier) and live load (multiplied)."""
-
-    gravity: Gravity | None = Field(
-        None, description="on every block; absent or true: [0, -1] times its weight; false: none; [x, y]: so much of it"
-    )
-    dead: Load = Field(default_factory=Load, description="on top of gravity")
-    live: Load | None = Field(None, description="absent: only whether the wall stands is decided")
-
-    @property
-    def gravity_per_weight(self) -> Point:
-        """Gravity as a multiple (x, y) of the weight of every block."""
-        if isinstance(self.gravity, tuple):
-            return self.gravity
-        return (0.0, 0.0) if self.gravity is False else (0.0, -1.0)
 
 
 Patterns = Annotated[Annotated[Pattern, Tag(ONE)] | Annotated[list[Pattern], Tag(MANY)], Discriminator(_one_or_many)]
@@ -427,13 +270,13 @@ class Wall(Strict):
         if self.friction is not None and self.friction_angle is not None:
             raise ValueError("a wall gives either friction or friction_angle")
         if isinstance(self.friction, Friction):
-            if _gives_strength(self):
+            if gives_strength(self):
                 raise ValueError(
                     "friction by rules holds the cohesion, tensile and compressive strength too: give them beside "
                     '"default" or in a rule'
                 )
         else:
-            _check_strength(self, coefficient_of(self.friction, self.friction_angle))
+            check_strength(self, coefficient_of(self.friction, self.friction_angle))
         return self
 
     @model_validator(mode="after")

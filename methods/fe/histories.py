@@ -278,4 +278,4 @@ def with_initial_shear(model: WallModel, gravity: Equilibrium, share: float, see
     """The model with shears frozen in before the live load: a random share of what friction holds under gravity."""
     normal, _ = model.forces(gravity.u, gravity.history, gravity.state)
     noise = np.random.default_rng(seed).uniform(-share, share, model.n_points)
-    return replace(model, history=noise * model.mu * normal)
+    return replace(model, history=model.law.part_by_friction(noise, normal))

@@ -12,8 +12,8 @@ import numpy as np
 
 from harness.model.answer_check import DEEPEST
 from harness.model.assembly import Assembly
+from harness.model.json_text import nested_deeper
 from harness.model.method import Answer, Finding, Status
-from harness.model.reading import nested_deeper
 from methods.la.certify.tree_certificate import certificate
 from methods.la.certify.window_certificate import certified_bracket
 from methods.la.core.problem import Problem

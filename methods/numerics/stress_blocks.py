@@ -216,15 +216,15 @@ def block_dissipation(full: FloatArray, opening: FloatArray) -> FloatArray:
 
 def kinematic_multiplier(assembly: Assembly, motion: FloatArray, dead: FloatArray, live: FloatArray) -> float:
     """The multiplier of a mechanism (n, 3) by virtual work with the exact law; infinite where the live load idles."""
-    rates = (assembly.kinematic_matrix @ motion[assembly.free].ravel()).reshape(-1, 3)
-    opening, slip = rates[:, :2] - (assembly.friction * abs(rates[:, 2]))[:, None], rates[:, 2]
+    strains = (assembly.kinematic_matrix @ motion[assembly.free].ravel()).reshape(-1, 3)
+    rates = assembly.law.associated.rates(strains)
+    opening, slips = rates[:, :2], rates[:, 2:]
     taken = assembly.constant[:, :2] * opening
     joints, full = crushing_force(assembly)
     dry = np.ones(len(opening), dtype=bool)
     dry[joints] = False
     taken[dry] = assembly.constant[dry, :2] * np.maximum(opening[dry], 0.0)
-    ways = np.maximum(np.column_stack([slip, -slip]), 0.0)
-    work = float(taken.sum() + (assembly.constant[:, 2:] * ways).sum()) + float(
+    work = float(taken.sum() + (assembly.constant[:, 2:] * slips).sum()) + float(
         block_dissipation(full, opening[joints]).sum()
     )
     power = float((live * motion).sum())

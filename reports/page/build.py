@@ -38,6 +38,7 @@ from reports.page import paper, tables
 from reports.page.export import export
 from reports.page.glance import glance
 from reports.page.page_drawings import PageDrawings, fields_drawn
+from reports.page.reference_tables import reference_rows
 from reports.page.sections import CaseSection, case_section
 from reports.page.summary import run_in_order, summary
 
@@ -102,7 +103,7 @@ def render(run: ComparisonRun, *, data_folder: str, listed: Sequence[ResultColum
         rows=[row for case_rows in rows for row in case_rows],
         failures=tables.failures(row for case_rows in rows for row in case_rows),
         failed_runs=sum(row.failed or row.judged == "rejected" for case_rows in rows for row in case_rows),
-        references=tables.reference_rows(run),
+        references=reference_rows(run),
         compared=COMPARED,
         purposes=labels.PURPOSE,
         load_cases=by_wall(envelopes(run.cases)),

@@ -28,8 +28,8 @@ from reports.charts.studies import studies
 from reports.geometry import shapes
 from reports.labels import labels
 from reports.page import vectors
+from reports.page.reference_tables import compared_rows
 from reports.page.summary import run_in_order
-from reports.page.tables import compared_rows
 
 if TYPE_CHECKING:
     import pandas as pd

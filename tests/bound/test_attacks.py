@@ -25,8 +25,8 @@ from harness.model.case import read_case, shipped_cases
 from harness.model.content import content_of
 from harness.model.errors import InputError
 from harness.model.wall import Wall
-from methods.la.certify.tree_certificate import wall_document
 from methods.proof.same_wall import require_same_wall
+from methods.proof.tree.certificate import wall_document
 from methods.proof.verify import document as documents
 from methods.proof.verify.checker import main, verify
 from methods.proof.verify.document import digest

@@ -17,9 +17,9 @@ from drystone.cli.terminal import comparison_json, print_comparison, print_resul
 from drystone.walls import Wall
 from harness.model.answer_check import DEEPEST, checked
 from harness.model.comparison import CaseResults, ComparisonRun
+from harness.model.json_text import MOST_NESTED, nested_deeper
 from harness.model.method import Answer, Finding, Status
 from harness.model.proof import Standing, proof_of
-from harness.model.reading import MOST_NESTED, nested_deeper
 from harness.model.result import Result
 from methods.la.bounded import BoundedLimitAnalysis
 from methods.la.certify.tree_certificate import certificate

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from scipy.optimize import linprog
 
-from cases import closed_forms, families, matera, useful
+from cases import closed_forms, families, joint_strength, matera, useful
 from cases.generate import ROOT, generated_files, main, stale_files
 from cases.sources import FILE, sources_text
 from cases.writing import wall_text, write_files
@@ -70,7 +70,9 @@ def test_sources_are_those_of_the_cases() -> None:
     assert (ROOT / FILE).read_text(encoding="utf-8") == sources_text(ROOT)
 
 
-@pytest.mark.parametrize("recipe", list(closed_forms.recipes()), ids=lambda recipe: recipe.file.id)
+@pytest.mark.parametrize(
+    "recipe", [*closed_forms.recipes(), *joint_strength.recipes()], ids=lambda recipe: recipe.file.id
+)
 def test_closed_form_is_the_associated_maximum(recipe: closed_forms.Recipe) -> None:
     wall = build(recipe.wall).assembly
     if (

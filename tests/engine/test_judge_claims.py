@@ -16,9 +16,10 @@ from harness.model.assembly import Assembly
 from harness.model.build import build
 from harness.model.errors import InputError
 from harness.model.foreign.result_document import answer_from_file
+from harness.model.json_text import read_json
 from harness.model.method import Answer, Finding, Status, load_method
 from harness.model.proof import Proof
-from harness.model.reading import read_json, read_wall
+from harness.model.reading import read_wall
 from harness.model.result import Result, result_of
 from harness.model.wall import Wall
 from methods.numerics.statics import admissible_forces

@@ -8,7 +8,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from harness.engine.judge import IMMENSE, judge
+from harness.engine.judge import judge
+from harness.engine.judge_dead_load import IMMENSE
 from harness.engine.measures import Measures, exact_sum
 from harness.engine.residuals import block_sums, displaced_fault, displaced_residuals, force_residuals
 from harness.model.assembly import Assembly

@@ -7,7 +7,9 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from harness.engine.judge import IMMENSE, apart, judge
+from harness.engine.judge import judge
+from harness.engine.judge_dead_load import IMMENSE
+from harness.engine.judge_decision import apart
 from harness.engine.measured_motion import TOLERANCE, TOLERANCE_ALONE, motion_faults, motion_residuals
 from harness.engine.measures import UNLOADED, Measures, between, magnitudes
 from harness.engine.residuals import (

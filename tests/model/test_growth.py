@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 import shapely
 
-from harness.model.build import blocks_of_wall, polygons_of
+from harness.model.blocks import blocks_of_wall, polygons_of
 from harness.model.contacts import edges_of
 from harness.model.geometry import centroids
 from harness.model.wall import Wall

@@ -10,7 +10,8 @@ from typing import Any
 import pytest
 
 from harness.model.errors import InputError, InputFaults, did_you_mean, visible
-from harness.model.reading import MOST_NESTED, json_of, parse_wall, read_bytes, read_json, read_text
+from harness.model.json_text import MOST_NESTED, json_of, read_bytes, read_json, read_text
+from harness.model.reading import parse_wall
 
 MANY: dict[str, Any] = {
     "format": "wall/1",

@@ -12,9 +12,10 @@ import pytest
 import drystone
 from harness.model.errors import InputError
 from harness.model.load_cases import named_loads
+from harness.model.load_fields import Load
 from harness.model.reading import parse_wall
 from harness.model.travelling import upward_faces
-from harness.model.wall import Load, Wall
+from harness.model.wall import Wall
 from tests.commands import drystone as command
 from tests.walls import running_bond, stack, wall_data
 

@@ -11,7 +11,8 @@ import pytest
 
 from harness.model.build import build
 from harness.model.errors import InputError
-from harness.model.reading import parse_wall, read_json, read_wall, wall_json
+from harness.model.json_text import read_json
+from harness.model.reading import parse_wall, read_wall, wall_json
 from harness.model.wall import Wall
 
 BOND: dict[str, Any] = {

@@ -12,7 +12,8 @@ from pydantic import Discriminator, Field, Tag, model_validator
 
 from harness.model.errors import InputError
 from harness.model.fields import Strict
-from harness.model.reading import read_text, validate
+from harness.model.json_text import read_text
+from harness.model.reading import validate
 
 MOST_RUNS = 1_000_000
 """Runs a study may expand to."""

@@ -15,7 +15,7 @@ from harness.model.answer_check import AnswerFault
 from harness.model.errors import InputError, visible
 from harness.model.foreign.register import Program
 from harness.model.foreign.spawning import whole_address_space
-from harness.model.reading import LARGEST_FILE, json_of
+from harness.model.json_text import LARGEST_FILE, json_of
 
 
 class Conversation:

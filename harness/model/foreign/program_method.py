@@ -25,8 +25,9 @@ from harness.model.foreign.explicit import explicit_document, write_arrays
 from harness.model.foreign.register import Program, program_named
 from harness.model.foreign.result_document import answer_of
 from harness.model.foreign.spawning import output_of, whole_address_space
+from harness.model.json_text import json_of, read_json
 from harness.model.method import Answer, Method, Settings
-from harness.model.reading import json_of, read_json, validate
+from harness.model.reading import validate
 from harness.model.run_context import run_folder
 
 DESCRIBE_SECONDS = 30.0

@@ -20,8 +20,9 @@ from pydantic import BaseModel, ConfigDict, Field, ValidationInfo, field_validat
 
 from harness.model.errors import InputError
 from harness.model.foreign.description import NAME, About
+from harness.model.json_text import read_text
 from harness.model.method import method_points
-from harness.model.reading import read_text, validate
+from harness.model.reading import validate
 from harness.model.writing import write_whole
 
 METHODS_FILE = "methods.toml"

@@ -8,7 +8,6 @@ from typing import Any
 import numpy as np
 
 from harness.model.assembly import FloatArray
-from methods.la.certify.tree_certificate import Fractions, exact_state, wall_document
 from methods.la.core.problem import Problem
 from methods.la.core.state import moving_contacts
 from methods.proof.search.bracket import bracket
@@ -16,6 +15,7 @@ from methods.proof.search.certifier import Certifier
 from methods.proof.search.equations import Equations
 from methods.proof.search.window_document import Scales
 from methods.proof.search.window_search import Bracket
+from methods.proof.tree.certificate import Fractions, exact_state, wall_document
 from methods.proof.verify.checker import check_state
 from methods.proof.verify.document import digest
 from methods.proof.verify.exact_wall import CertificateError, ExactWall

@@ -22,7 +22,8 @@ from methods.numerics.block_lu import BlockFactor, BlockPattern
 from methods.numerics.compiled import compiled
 from methods.numerics.failures import SingularMatrix, sparse_lu
 from methods.numerics.vectors import largest
-from methods.springs.model.wall_model import WallModel, add_tangent
+from methods.springs.model.point_loops import add_tangent
+from methods.springs.model.wall_model import WallModel
 
 Change = tuple[int, int, int]
 """A point, its state and the state that it turns to."""

@@ -23,6 +23,12 @@ OPEN, STICK, SLIP_PLUS, SLIP_MINUS = 0, 1, 2, 3
 
 
 @compiled
+def shear_limit(mu: float, normal: float) -> float:
+    """Shear mu N that friction bears at the compression N: `JointLaw.by_friction` in compiled loops."""
+    return mu * normal
+
+
+@compiled
 def classify(
     opening: FloatArray, trial: FloatArray, kn: FloatArray, mu: FloatArray, state: IntArray, virgin: bool
 ) -> None:
@@ -46,7 +52,8 @@ def point_forces(opening: float, trial: float, kn: float, mu: float, state: int)
     normal = -kn * opening
     if state == STICK:
         return normal, trial
-    return normal, mu * normal if state == SLIP_PLUS else -mu * normal
+    limit = shear_limit(mu, normal)
+    return normal, limit if state == SLIP_PLUS else -limit
 
 
 @compiled

@@ -29,7 +29,7 @@ def with_strength(model: WallModel) -> WallModel:
     constant = assembly.law.constant / model.force
     tension = 2.0 * constant[:, 0]
     friction = model.mu[np.searchsorted(model.interface, np.arange(m))]
-    shear = np.maximum(constant[:, 2] - friction * tension, 0.0)
+    shear = np.maximum(constant[:, 2] - assembly.law.with_friction(friction).by_friction(tension), 0.0)
     joint = np.flatnonzero(shear)
     stiffness = np.bincount(model.interface, model.kn, m)
     tangential = np.bincount(model.interface, model.kt, m)

@@ -13,7 +13,7 @@ import numpy as np
 from harness.model.assembly import FloatArray, IntArray
 from methods.numerics.compiled import compiled
 from methods.numerics.vectors import largest
-from methods.springs.model.gap_law import OPEN, SLIP_MINUS, SLIP_PLUS, STICK
+from methods.springs.model.gap_law import OPEN, SLIP_MINUS, SLIP_PLUS, STICK, shear_limit
 
 
 @compiled
@@ -24,18 +24,14 @@ def breakpoint_functions(
     if state == OPEN:
         return kn * opening, kn * opening_rate, 1.0, 1.0
     normal, normal_rate = -kn * opening, -kn * opening_rate
+    limit, limit_rate = shear_limit(mu, normal), shear_limit(mu, normal_rate)
     if state == STICK:
-        return (
-            mu * normal - trial,
-            mu * normal_rate - trial_rate,
-            mu * normal + trial,
-            mu * normal_rate + trial_rate,
-        )
+        return limit - trial, limit_rate - trial_rate, limit + trial, limit_rate + trial_rate
     if mu == 0.0:
         return normal, normal_rate, 1.0, 1.0
     if state == SLIP_PLUS:
-        return normal, normal_rate, trial - mu * normal, trial_rate - mu * normal_rate
-    return normal, normal_rate, -trial - mu * normal, -trial_rate - mu * normal_rate
+        return normal, normal_rate, trial - limit, trial_rate - limit_rate
+    return normal, normal_rate, -trial - limit, -trial_rate - limit_rate
 
 
 @compiled

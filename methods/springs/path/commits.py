@@ -13,7 +13,8 @@ from methods.numerics.block_kernels import COLUMNS
 from methods.numerics.vectors import largest
 from methods.springs.model.factor import Change, Factor, SingularTangent, refactor_any
 from methods.springs.model.gap_law import OPEN, SLIP_MINUS, SLIP_PLUS, STICK, classify, same_forces
-from methods.springs.model.wall_model import WallModel, point_strains
+from methods.springs.model.point_loops import point_strains
+from methods.springs.model.wall_model import WallModel
 from methods.springs.path.continuation import PathFollower
 
 

@@ -15,7 +15,7 @@ from harness.model.assembly import FloatArray, IntArray
 from methods.numerics.block_kernels import COLUMNS
 from methods.numerics.vectors import largest
 from methods.springs.model.factor import Change, Factor, SingularTangent
-from methods.springs.model.gap_law import OPEN, SLIP_PLUS, STICK, gap_forces
+from methods.springs.model.gap_law import OPEN, SLIP_PLUS, STICK, gap_forces, shear_limit
 from methods.springs.model.wall_model import WallModel, load_scale
 from methods.springs.path.breakpoints import advance, coming_breakpoints, live_rate, next_breakpoint, strain_rates
 from methods.springs.path.direction import PathDirection
@@ -296,4 +296,5 @@ class PathFollower:
         if OPEN in (old, new):
             return float(pressed)
         slip = new if old == STICK else old
-        return float(way.trial_rate[point] + (1.0 if slip == SLIP_PLUS else -1.0) * model.mu[point] * pressed)
+        limit = shear_limit(model.mu[point], pressed)
+        return float(way.trial_rate[point] + (limit if slip == SLIP_PLUS else -limit))

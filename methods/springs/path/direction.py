@@ -23,7 +23,8 @@ from harness.model.assembly import FloatArray, IntArray
 from methods.numerics.vectors import combine, largest
 from methods.springs.model.exact_rates import exact_gap_rates
 from methods.springs.model.factor import Change, Factor, SingularTangent, refactor_any
-from methods.springs.model.wall_model import WallModel, point_strains
+from methods.springs.model.point_loops import point_strains
+from methods.springs.model.wall_model import WallModel
 
 
 @dataclass

@@ -18,7 +18,8 @@ from harness.model.assembly import Assembly, BoolArray, FloatArray, IntArray
 from methods.numerics.failures import SingularMatrix, sparse_lu
 from methods.springs.model.factor import SingularTangent
 from methods.springs.model.gap_law import STICK, classify, gap_forces
-from methods.springs.model.wall_model import WallModel, point_strains
+from methods.springs.model.point_loops import point_strains
+from methods.springs.model.wall_model import WallModel
 from methods.springs.path.path_record import PathSnapshot
 
 IDLE = 1e-12

@@ -26,7 +26,8 @@ from harness.model.assembly import FloatArray
 from methods.numerics.vectors import largest
 from methods.springs.model.factor import Factor, SingularTangent, make_factor, refactor_any
 from methods.springs.model.gap_law import STICK
-from methods.springs.model.wall_model import WallModel, load_scale, point_strains
+from methods.springs.model.point_loops import point_strains
+from methods.springs.model.wall_model import WallModel, load_scale
 from methods.springs.rest.newton import Equilibrium, newton
 
 

@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 from harness.model.errors import InputError
-from harness.model.reading import json_of, read_json
+from harness.model.json_text import json_of, read_json
 
 BROKEN = {
     "": "it is empty",

@@ -1,0 +1,173 @@
+"""Cases of joints with cohesion, tensile and compressive strength: elementary statics, and programmes of other code."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import cases.recipe as r
+from cases.closed_forms import STATICS
+from cases.recipe import Recipe, Remarks, exact, push, recipe, wall
+from harness.model.case import Reference
+
+BONDED = (
+    "A. Orduna, P. B. Lourenco, Cap model for limit analysis and strengthening of masonry structures, Journal of "
+    "Structural Engineering 129 (2003) 1367-1375"
+)
+
+
+def bonded_blocks() -> Iterator[Recipe]:
+    """One block with cohesion slides at mu + c A / W, one with tensile strength topples at (b / h)(1 + T / W)."""
+    unit = 20.0
+    for name, width, height, friction, cohesion, tension, formula in (
+        ("bonded-block-slides", 1.0, 0.2, 0.5, 1.0, 0.0, "mu + c A / W"),
+        ("bonded-block-topples", 0.4, 2.0, 1.0, 8.0, 4.0, "(b / h)(1 + T / W)"),
+    ):
+        weight = unit * width * height
+        slides, topples = friction + cohesion * width / weight, width / height * (1.0 + tension * width / weight)
+        value = round(min(slides, topples), 14)
+        does = "slides" if slides < topples else "topples"
+        content = wall(
+            f"A block {width} x {height} m on a joint with cohesion {cohesion:g} and tensile strength {tension:g} kPa",
+            unit_weight=unit,
+            friction=friction,
+            cohesion=cohesion,
+            **({"tensile_strength": tension} if tension else {}),
+            pattern={"type": "stack", "width": width, "height": height, "count": 1},
+            loads=push(),
+        )
+        source = f"{STATICS}: lambda = {formula}, A = b t, T = f_t A, t = 1 m"
+        references = exact(value, source, f"The block {does} at {formula} = {value:g}.")
+        summary = f"Pushed by a multiple of its weight, it {does} at {formula}; without strength it would at less."
+        remarks = Remarks(BONDED, summary, ("strength",))
+        yield recipe(name, content, references, remarks)
+
+
+def bonded_wall() -> Iterator[Recipe]:
+    """The 21-brick wall with a cohesion of a twentieth of unit weight times brick length in all joints."""
+    content = wall(
+        "The 21-brick wall with a little cohesion in all joints",
+        unit_weight=20.0,
+        friction=0.65,
+        cohesion=0.4,
+        pattern={"type": "running_bond", "block_length": 0.4, "block_height": 0.2, "count": 6, "bricks": 3},
+        loads=push(),
+    )
+    references = [
+        r.reference(
+            "la-associated",
+            "exact",
+            0.6222348805,
+            ["la-associated"],
+            "a linear programme of other code: max lambda under equilibrium and yield with cohesion",
+            "The associated maximum with c = 0.05 of unit weight times brick length is 0.6222349.",
+            tolerance=1e-9,
+            tolerance_reason="ten digits recorded",
+            gate=True,
+        ),
+        r.reference(
+            "la-least-known",
+            "regression",
+            0.6022028,
+            ["la"],
+            "Drystone, first release with strength of joints: exact collapse state, accepted by the judge",
+            "LA finds a collapse state at least as low as 0.6022028.",
+            relation="at_most",
+            tolerance=1e-6,
+            tolerance_reason="seven digits recorded",
+            gate=True,
+        ),
+    ]
+    summary = (
+        "Dry, the wall collapses at 0.5579978 (least known) and 0.584461 (associated). Cohesion as large as the weight "
+        "of a twentieth of a brick length adds 8 and 6 %; real joints are brittle, so rely on the dry values."
+    )
+    remarks = Remarks(BONDED, summary, ("strength",))
+    yield recipe("bonded-wall-21", content, references, remarks)
+
+
+def crushing_piers() -> Iterator[Recipe]:
+    """Piers on a joint that crushes at its toe overturn at b / h - gamma b / f_c; one has tensile strength besides."""
+    unit, width, strength = 20.0, 0.4, 200.0
+    for name, height, more in (
+        ("crushing-pier-2", 2.0, {}),
+        ("crushing-pier-8", 8.0, {}),
+        ("crushing-pier-bonded", 2.0, {"cohesion": 8.0, "tensile_strength": 4.0}),
+    ):
+        tension = more.get("tensile_strength", 0.0)
+        weight = unit * width * height
+        force = weight + tension * width
+        value = (force * width - force**2 / (strength + tension)) / (weight * height)
+        formula = "lambda = b / h - gamma b / f_c"
+        if tension:
+            formula = "lambda = (F b - F^2 / (f_c + f_t)) / (W h), F = W + f_t b"
+        bonded = f", tensile strength {tension:g} kPa" if tension else ""
+        content = wall(
+            f"A pier {width} x {height} m whose joint crushes at {strength:g} kPa{bonded}",
+            unit_weight=unit,
+            friction=1.0,
+            compressive_strength=strength,
+            **more,
+            pattern={"type": "stack", "width": width, "height": height, "count": 1},
+            loads=push(),
+        )
+        references = _by_associated(
+            round(value, 14), f"{STATICS}: {formula}, t = 1 m", f"The pier overturns at {value:.7g}.", r.ROUND_OFF
+        )
+        summary = (
+            "It turns about the inner edge of the strip that is crushed, not about its corner: less than b / h by "
+            "gamma b / f_c."
+        )
+        yield recipe(name, content, references, Remarks(BONDED, summary, ("strength",), methods=ASSOCIATED))
+
+
+def crushing_walls() -> Iterator[Recipe]:
+    """The 21-brick wall and a semicircular arch whose joints crush: second-order cone programmes of other code."""
+    bond = {"type": "running_bond", "block_length": 0.4, "block_height": 0.2, "count": 6, "bricks": 3}
+    ring = {"type": "ring", "inner_radius": 0.9, "outer_radius": 1.1, "count": 20}
+    for name, title, friction, pattern, length, ratio, value, digits in (
+        ("crushing-wall-21", "The 21-brick wall", 0.65, bond, 0.4, 20.0, 0.51801, 5e-6),
+        ("crushing-arch-20", "A semicircular arch of 20 voussoirs", 1000.0, ring, 1.0, 20.0, 0.2530433, 5e-8),
+    ):
+        content = wall(
+            f"{title} whose joints crush",
+            unit_weight=20.0,
+            friction=friction,
+            compressive_strength=20.0 * length * ratio,
+            pattern=pattern,
+            loads=push(),
+        )
+        references = _by_associated(
+            value,
+            f"a second-order cone programme of other code, f_c = {ratio:g} unit weight times {length:g} m",
+            f"The associated maximum is {value:g}.",
+            digits,
+        )
+        summary = "Crushing at the hinges of the mechanism lowers the associated maximum."
+        yield recipe(name, content, references, Remarks(BONDED, summary, ("strength",), methods=ASSOCIATED))
+
+
+ASSOCIATED = ("la-associated", "la-associated-cvxpy")
+
+
+def _by_associated(value: float, source: str, requirement: str, tolerance: float) -> list[Reference]:
+    """An exact value for the methods that take joints which crush."""
+    reason = r.ROUND_OFF_REASON if tolerance == r.ROUND_OFF else "half a unit of the last digit recorded"
+    return [
+        r.reference(
+            "associated",
+            "exact",
+            value,
+            list(ASSOCIATED),
+            source,
+            requirement,
+            tolerance=tolerance,
+            tolerance_reason=reason,
+            gate=True,
+        )
+    ]
+
+
+def recipes() -> Iterator[Recipe]:
+    """Every case of joints with strength."""
+    for family in (bonded_blocks, bonded_wall, crushing_piers, crushing_walls):
+        yield from family()

@@ -1,0 +1,171 @@
+"""Loads of a wall as generalised forces of its blocks, added and multiplied."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Sequence
+from dataclasses import replace
+
+import numpy as np
+
+from harness.model.assembly import Assembly, FloatArray, IntArray
+from harness.model.errors import InputError
+from harness.model.fields import Point
+from harness.model.input_checks import thickness_of
+from harness.model.load_fields import BodyForce, Load, Loads
+from harness.model.pressure import outlines_of, pressure_forces
+from harness.model.wall import Block, Wall
+
+MOST_PAIRS = 20_000_000
+"""Pairs of a load and a block, or a face, that it may act on."""
+
+
+def dead_load(
+    loads: Loads,
+    blocks: list[Block],
+    index: dict[str, int],
+    weight: FloatArray,
+    centroids: FloatArray,
+    fixed: np.ndarray,
+) -> FloatArray:
+    """Gravity and what is dead besides it; a file of the time when a dead load stood for gravity is refused.
+
+    Raises:
+        InputError: the dead load presses every block down by a multiple of its weight and gravity is not spoken of.
+    """
+    gravity = BodyForce(per_weight=loads.gravity_per_weight)
+    if loads.gravity is None and loads.dead.body:
+        multiples = generalised_load(Load(body=loads.dead.body), blocks, index, np.ones(len(blocks)), centroids, fixed)
+        if bool(np.all(multiples[~fixed, 1] < 0.0)):
+            raise InputError(
+                "the dead load presses every block down by a multiple of its weight, and gravity acts besides",
+                'Leave it out; or say in loads "gravity": false if it stands for gravity, or true if it does not',
+                "loads.dead.body",
+            )
+    whole = Load(body=[gravity, *loads.dead.body], points=loads.dead.points)
+    return generalised_load(whole, blocks, index, weight, centroids, fixed)
+
+
+def generalised_load(
+    load: Load,
+    blocks: list[Block],
+    index: dict[str, int],
+    weight: FloatArray,
+    centroids: FloatArray,
+    fixed: np.ndarray,
+) -> FloatArray:
+    """Generalised forces (n, 3) of a load whose names are known to be of the wall."""
+    generalised = np.zeros((len(blocks), 3))
+    groups, everything = groups_of_blocks(blocks), np.arange(len(blocks))
+    for body in load.body:
+        if body.group is not None:
+            chosen = groups[body.group]
+        elif body.blocks is not None:
+            chosen = np.array(sorted({index[block_id] for block_id in body.blocks}), dtype=np.int64)
+        else:
+            chosen = everything
+        generalised[chosen, :2] += weight[chosen, None] * np.array(body.per_weight)
+    if load.points:
+        k = np.array([index[point.block] for point in load.points])
+        arm = np.array([point.at for point in load.points]) - centroids[k]
+        force = np.array([point.force for point in load.points])
+        moment = arm[:, 0] * force[:, 1] - arm[:, 1] * force[:, 0]
+        np.add.at(generalised, k, np.column_stack([force, moment]))
+    generalised[fixed] = 0.0
+    return generalised
+
+
+def check_pairs(load: Load, blocks: Sequence[Block]) -> None:
+    """Refuse loads that act on so many blocks each, or are sought among so many faces, that their sum takes minutes.
+
+    Raises:
+        InputError: how many there are.
+    """
+    members = Counter(group for block in blocks for group in block.groups)
+    pairs = sum(
+        members[body.group] if body.group is not None else len(blocks if body.blocks is None else body.blocks)
+        for body in load.body
+    )
+    faces = len(load.pressures) * sum(len(block.polygon) for block in blocks)
+    for count, what, remedy in (
+        (pairs, f"{len(load.body):,} body forces act on {pairs:,} blocks in all", "Add up those on the same blocks"),
+        (faces, f"{len(load.pressures):,} pressures are sought among {faces:,} faces in all", "Give longer segments"),
+    ):
+        if count > MOST_PAIRS:
+            raise InputError(f"{what}, and at most {MOST_PAIRS:,} are summed up", remedy, "loads")
+
+
+def groups_of_blocks(blocks: Sequence[Block]) -> dict[str, IntArray]:
+    """Numbers of the blocks of every group."""
+    groups: dict[str, list[int]] = {}
+    for k, block in enumerate(blocks):
+        for group in block.groups:
+            groups.setdefault(group, []).append(k)
+    return {group: np.array(members) for group, members in groups.items()}
+
+
+def has_pressures(loads: Loads) -> bool:
+    """Whether any load presses on faces."""
+    return bool(loads.dead.pressures or (loads.live is not None and loads.live.pressures))
+
+
+def with_pressures(wall: Wall, blocks: list[Block], assembly: Assembly, size: float) -> Assembly:
+    """The assembly with the pressures of the wall added to its loads.
+
+    Raises:
+        InputError: part of a pressure lies on no face, or on faces of two blocks.
+    """
+    thickness = [thickness_of(block, wall) for block in blocks]
+    outlines, index, groups = (
+        outlines_of(assembly.polygons),
+        {block.id: k for k, block in enumerate(blocks)},
+        groups_of_blocks(blocks),
+    )
+    sums = {}
+    for kind, load in (("dead", wall.loads.dead), ("live", wall.loads.live or Load())):
+        total = getattr(assembly, kind).copy()
+        for number, pressure in enumerate(load.pressures):
+            chosen = ~assembly.fixed
+            if pressure.blocks is not None or pressure.group is not None:
+                named = np.zeros(len(blocks), dtype=bool)
+                named[[index[name] for name in pressure.blocks or ()]] = True
+                named[groups.get(pressure.group or "", [])] = True
+                chosen &= named
+            total += pressure_forces(
+                pressure,
+                chosen,
+                outlines,
+                assembly.centroid,
+                thickness,
+                wall.units.unit_weight_factor,
+                size,
+                f"loads.{kind}.pressures[{number}]",
+            )
+        sums[kind] = total
+    return replace(assembly, **sums)
+
+
+def times(load: Load, factor: float) -> Load:
+    """A load multiplied by a factor."""
+    if factor == 1.0:
+        return load
+    return load.model_copy(
+        update={
+            "body": [each.model_copy(update={"per_weight": _scaled(each.per_weight, factor)}) for each in load.body],
+            "points": [each.model_copy(update={"force": _scaled(each.force, factor)}) for each in load.points],
+            "pressures": [each.model_copy(update={"factor": factor * each.factor}) for each in load.pressures],
+        }
+    )
+
+
+def together(*loads: Load) -> Load:
+    """All of some loads at once."""
+    return Load(
+        body=[each for load in loads for each in load.body],
+        points=[each for load in loads for each in load.points],
+        pressures=[each for load in loads for each in load.pressures],
+    )
+
+
+def _scaled(vector: Point, factor: float) -> Point:
+    return factor * vector[0], factor * vector[1]

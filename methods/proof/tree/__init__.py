@@ -1,0 +1,1 @@
+"""Certificates of a tree in fractions, from the leaves that a search has given up."""
