@@ -113,6 +113,24 @@ def test_mujoco_starting_again_by_itself_is_not_taken_for_rest():
         engine.advance(100)
 
 
+@needs_mujoco
+def test_a_block_at_rest_has_sunk_as_far_as_the_stiffness_and_impedance_of_its_contacts_say():
+    """MuJoCo bears a force f a unit mass by d (d k) r = (1 - d) f: penetration r, impedance d, stiffness k."""
+    wall = assembly(stack(1, 0.4, 0.2), 0.7)
+
+    def penetration(impedance: float) -> float:
+        tuning = MujocoTuning().uniform
+        engine = MujocoWall(wall, wall.free, np.arange(wall.n_interfaces), 100, tuning, impedance, 1e3)
+        engine.advance(1500)
+        engine.velocity()
+        engine.advance(10)
+        assert engine.unbalance(engine.velocity()) < 1e-6  # of the weight
+        return SoftContacts().overlap - float(engine.save()[1])
+
+    # Rest is reached to the 1e-6 above.
+    assert penetration(0.5) / penetration(0.8) == pytest.approx((0.5 / 0.5**2) / (0.2 / 0.8**2), rel=1e-6)
+
+
 def test_without_the_extra_the_user_is_told_what_to_install(monkeypatch):
     monkeypatch.setitem(sys.modules, "mujoco", None)
     with pytest.raises(InputError, match=r"Install drystone\[mujoco\]"):

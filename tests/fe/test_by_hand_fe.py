@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import replace
 
 import numpy as np
@@ -20,9 +21,10 @@ from methods.springs.model.wall_model import WallModel, build_model
 from methods.springs.path.continuation import PathFollower
 from methods.springs.path.direction import PathDirection
 from methods.springs.path.path_record import PathEnd, PathRecord
-from methods.springs.path.plateau import check
+from methods.springs.path.plateau import PlateauState, _of_many_mechanisms, _solve_last_piece, check
 from methods.springs.patterns import block_on_halves
 from methods.springs.rest.equilibrium import gravity_state
+from tests.known_walls import box, of_blocks
 
 
 def at_rest(model: WallModel, factor: Factor) -> PathFollower:
@@ -101,6 +103,55 @@ def test_a_wall_that_does_not_move_is_no_collapse_state() -> None:
     assert state.residuals["work"] == 1.0
     assert state.residuals["complementarity"] == np.inf
     assert state.work_multiplier == np.inf
+
+
+def test_a_rising_block_is_no_collapse_state_under_a_horizontal_load() -> None:
+    """The block rises under a horizontal live load, at any speed."""
+    wall = block_on_halves((0.6, 0.4))
+    forces = np.array([[0.5, 0.0, 0.0], [0.0, 0.5, 0.0]])
+    for speed in (1.0, 3.0):
+        state = check(wall, 0.25, forces, np.array([[0.0, 0.0, 0.0], [0.0, speed, 0.0]]))
+        # Half a weight presses an end that opens at the speed of the block; nothing closes.
+        assert (state.residuals["both"], state.residuals["dilatancy"]) == (0.5, 0.0)
+        assert state.residuals["work"] == 1.0
+        assert state.residuals["complementarity"] == np.inf
+        assert state.work_multiplier == np.inf
+
+
+def test_a_mechanism_on_which_the_live_load_does_no_work_is_no_collapse_of_a_path() -> None:
+    """Two blocks slide side by side at their friction; a live load on neither would not drive them."""
+    model = build_model(of_blocks([box("a", 0.0, 0.0), box("b", 4.0, 0.0)]), GapSpringsSettings())
+    follower = at_rest(model, make_factor(model))
+    assert follower.run(PathRecord(), 5000) == PathEnd.PLATEAU
+    assert follower.multiplier == pytest.approx(0.5)
+    without_end = 1e20
+    assert follower._is_collapse(without_end)
+    follower.model = replace(model, live=np.zeros_like(model.live))
+    assert not follower._is_collapse(without_end)
+
+
+@pytest.mark.parametrize("solve", [_solve_last_piece, _of_many_mechanisms])
+def test_a_state_beside_the_plateau_is_brought_to_it(solve: Callable[..., PlateauState]) -> None:
+    """Two blocks twice as high as wide topple at .5; springs along joints are .4 times as stiff as across."""
+    wall = of_blocks([box("a", 0.0, 0.0, 1.0, 2.0), box("b", 4.0, 0.0, 1.0, 2.0)], 0.9)
+    model = build_model(wall, GapSpringsSettings(stiffness_ratio=0.4))
+    follower = at_rest(model, make_factor(model))
+    assert follower.run(PathRecord(), 5000) == PathEnd.PLATEAU
+    opening, slip = model.strains(1e-3 * np.random.default_rng(1).normal(size=model.n_unknowns))
+    there = follower.present()
+    beside = replace(
+        there,
+        multiplier=there.multiplier + 0.01,
+        opening=there.opening + opening,
+        trial=there.trial + model.kt * slip,
+    )
+    state = solve(model, beside)
+    assert state.multiplier == pytest.approx(0.5, abs=1e-12)
+    assert state.worst <= 1e-12
+    # Toppling about their right corners, which bear the weight and, by friction, the live load.
+    pressed, sheared = state.forces[:, :2].max(axis=1), abs(state.forces[:, 2])
+    assert pressed == pytest.approx(wall.weight[wall.free])
+    assert sheared == pytest.approx(0.5 * wall.weight[wall.free])
 
 
 @pytest.mark.parametrize(

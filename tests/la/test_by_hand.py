@@ -11,21 +11,26 @@ import pytest
 from harness.model.method import Answer, Finding, Status
 from methods.la.answers import moving_blocks
 from methods.la.bounds import bounded, certified, with_bound
+from methods.la.certify.proof import TreeProof
 from methods.la.certify.tree_certificate import certificate
-from methods.la.core.exact import exact_forces
+from methods.la.core.exact import close_tight, exact_forces
 from methods.la.core.newton_matrix import NewtonMatrix
 from methods.la.core.problem import Problem, make_problem
 from methods.la.core.state import CollapseState, friction_work, local_residuals, residuals
-from methods.la.core.vertex_programmes import ForceProgramme, row_scaling
+from methods.la.core.vertex_programmes import ForceProgramme, RowScaling, row_scaling
+from methods.la.interior.arc import ArcPath, Stepping
 from methods.la.interior.associated import EndOfPath, _by_interior_point, solve_associated
-from methods.la.interior.interior_point import PathResult
+from methods.la.interior.interior_point import PathResult, start_point
 from methods.la.interior.newton_step import Direction, Point
+from methods.la.interior.phase_one import phase_one_forces
 from methods.la.interior.region import in_whole, moving_region
+from methods.la.least import _chosen, _of_uneven, confirmed
 from methods.la.search import LimitAnalysis
 from methods.la.settings import BoundSettings, SearchSettings
+from methods.la.sources.search import Search
 from methods.proof.search.window_search import Bracket, Stop
-from tests.known_walls import box, of_blocks
-from tests.la.bodies import block_on_halves, running_bond
+from tests.known_walls import box, of_blocks, three
+from tests.la.bodies import block_on_halves, running_bond, with_friction
 
 
 @pytest.fixture(scope="module")
@@ -223,3 +228,126 @@ def test_the_central_path_alone_ends_at_the_associated_maximum_of_the_simplex_me
     assert ended.state is not None
     assert least.state is not None
     assert ended.state.multiplier == pytest.approx(least.state.multiplier, rel=1e-9)
+
+
+def test_an_end_of_the_central_path_that_is_not_exact_enough_is_left_to_the_simplex_method() -> None:
+    """No state of this bond is exact to the last digit; to rounding it is, by contacts or beside the path's motion."""
+    problem = make_problem(running_bond(2, 2, 0.2, 0.7))
+    newton = NewtonMatrix(problem)
+    never = EndOfPath(exact=0.0)
+    assert _by_interior_point(problem, newton, never) is None
+    least, instead = (solve_associated(problem, newton, *how) for how in (("highs",), ("interior", never)))
+    assert least.state is not None
+    assert instead.state is not None
+    assert instead.state.multiplier == pytest.approx(least.state.multiplier, rel=1e-12)
+    for one_way in (EndOfPath(held=()), EndOfPath(biases=())):
+        ended = _by_interior_point(problem, newton, one_way)
+        assert ended is not None
+        assert ended.state is not None
+        assert ended.state.multiplier == pytest.approx(least.state.multiplier, rel=1e-9)
+
+
+def test_forces_show_that_a_wall_stands_only_if_they_are_balanced_to_the_limit_asked_for() -> None:
+    """Forces of the first phase are within yield; rounding leaves them out of balance by some 1e-16 weights."""
+    problem = make_problem(running_bond(3, 2, 0.2, 0.3))
+    newton = NewtonMatrix(problem)
+    forces = phase_one_forces(problem, newton)
+    assert forces is not None
+    assert problem.slacks(forces).min() > 0.0
+    left = float(abs(problem.imbalance(forces, 0.0)).max())
+    assert 0.0 < left < 1e-12
+    assert phase_one_forces(problem, newton, imbalance=left) is not None
+    assert phase_one_forces(problem, newton, imbalance=0.5 * left) is None
+
+
+def test_a_joint_without_friction_bears_no_shear_either_way() -> None:
+    """So both its shear limits are tight from the start, and its ends are not."""
+    smooth = make_problem(with_friction(block_on_halves(), np.array([0.6, 0.0])))
+    assert close_tight(smooth).tolist() == [[False] * 4, [False, False, True, True]]
+
+
+SLIDING = np.array([[False, False, True, False]] * 2)
+"""Contacts of the block that slide, both to one side."""
+OPENING = np.ones((2, 4), dtype=bool)
+"""All its contacts move, so that none bears it: no state has these."""
+
+
+def test_states_are_confirmed_from_the_lowest_on_until_one_is_known_below_the_next(problem: Problem) -> None:
+    """Sliding is confirmed at 2/5, the least multiplier of forces at the friction of both halves."""
+    claims = [(0.5, SLIDING), (0.3, SLIDING), (0.1, OPENING), (0.35, SLIDING)]
+    states = [replace(state(problem, NONE, at, [3.0, 0.0, 0.0]), moving=moving) for at, moving in claims]
+    found = confirmed(problem, NewtonMatrix(problem), None, states)
+    assert len(found) == 2  # of the claims at .3 and .35; at .1 nothing bears the block, and .5 is above 2/5
+    for exact in found:
+        assert exact.multiplier == pytest.approx(0.4, abs=1e-12)
+        assert abs(problem.imbalance(exact.forces, exact.multiplier)).max() < 1e-12
+        assert exact.velocities == pytest.approx([problem.live_work / problem.live[0], 0.0, 0.0], abs=1e-12)
+
+
+def test_of_states_of_an_uneven_wall_the_least_that_forces_confirm_is_chosen() -> None:
+    """Blocks of 1, 1e6 and 1e12: the lightest slides at its friction .3; at .1 nothing would bear it."""
+    wall = three((1.0, 1e6, 1e12))
+    problem = make_problem(wall)
+    search = Search(problem, NewtonMatrix(problem))
+    slides, lifts = np.zeros((3, 4), dtype=bool), np.zeros((3, 4), dtype=bool)
+    slides[0, 3] = lifts[0] = True
+    motion = np.array([1.0, *[0.0] * 8])
+    claimed = CollapseState(np.zeros((3, 3)), 0.1, motion, lifts)
+    with search.record.trying("by hand", search.budget.spent) as tried:
+        tried.states.append(claimed)
+        assert _chosen(search) is None
+        tried.states.append(replace(claimed, multiplier=0.3, moving=slides))
+    chosen = _chosen(search)
+    assert chosen is not None
+    least = chosen[0]
+    assert problem.to_multiplier(least.multiplier) == pytest.approx(0.3, rel=1e-12)
+    weight = wall.weight[wall.free] / problem.unit_force
+    assert least.forces[:, :2].sum(axis=1) / weight == pytest.approx(np.ones(3), rel=1e-12)
+    assert least.forces[:, 2] / weight == pytest.approx(np.full(3, 0.3), rel=1e-12)
+
+
+def test_a_tree_proves_nothing_of_an_uneven_wall_if_its_own_state_is_not_confirmed(problem: Problem) -> None:
+    """Its bound holds for a state as low as its own; a state that no forces confirm is none."""
+    newton, units = NewtonMatrix(problem), RowScaling(np.full(2, 0.5), np.ones(1))
+    sliding = replace(state(problem, NONE, 0.4, [1.0, 0.0, 0.0]), moving=SLIDING)
+    opening = replace(sliding, multiplier=0.1, moving=OPENING)
+    best, proof = _of_uneven(problem, newton, units, [sliding], TreeProof(sliding, 0.4, 7))
+    assert best.multiplier == pytest.approx(0.4, abs=1e-12)
+    assert (proof.state, proof.lower_bound, proof.nodes) == (best, 0.4, 7)
+    best, proof = _of_uneven(problem, newton, units, [sliding], TreeProof(opening, 0.1, 7))
+    assert best.multiplier == pytest.approx(0.4, abs=1e-12)
+    assert (proof.state, proof.lower_bound, proof.nodes) == (best, 0.0, 7)
+    best, proof = _of_uneven(problem, newton, units, [opening], TreeProof(opening, 0.1, 7))
+    assert best is opening
+    assert proof.lower_bound == 0.1
+
+
+def test_a_path_that_is_taken_up_again_goes_on_with_half_the_stride_and_lengthens_it_later() -> None:
+    """Were the stride doubled at once, the path would meet the fold that it could not pass as before."""
+    problem = make_problem(running_bond(3, 2, 0.2, 0.65))
+    newton = NewtonMatrix(problem)
+    path = ArcPath(problem, newton, start_point(problem))
+    path.follow(0.0, 10)
+    longest = Stepping().stride
+    assert path._stride == longest
+    assert path._take_up_again()
+    path.follow(0.0, 0)  # one step
+    assert path._stride == 0.5 * longest
+    path.follow(0.0, 10)
+    assert path._stride == longest
+
+
+def test_the_associated_maximum_is_found_by_the_solver_asked_for_or_by_size() -> None:
+    problem = make_problem(running_bond(2, 2, 0.2, 0.7))
+    newton = NewtonMatrix(problem)
+    ended = _by_interior_point(problem, newton, EndOfPath())
+    assert ended is not None
+    size = problem.n_interfaces
+    for solver, above, by_path in (
+        ("highs", 0, False),
+        ("interior", size, True),
+        ("auto", size, False),
+        ("auto", size - 1, True),
+    ):
+        found = solve_associated(problem, newton, solver, EndOfPath(above=above))
+        assert (found.iterations == ended.iterations) is by_path, (solver, above)

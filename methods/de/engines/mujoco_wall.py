@@ -27,7 +27,9 @@ from methods.numerics.optional import optional
 
 @dataclass(frozen=True)
 class SoftContacts:
-    """How a contact is pulled back: acceleration -(damping v + stiffness r / time_step) / time_step, r the penetration.
+    """How a contact is pulled back: acceleration -(damping v + d stiffness r / time_step) / time_step.
+
+    Of the penetration r and its rate v, with MuJoCo's constraint impedance d.
 
     Overdamped: contacts that rebound keep the head joints of a wall chattering.
 
