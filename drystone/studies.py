@@ -24,6 +24,7 @@ from harness.engine.sweep.running import sweep as running
 from harness.engine.sweep.study import Study, read_study
 from harness.model.case import shipped_cases
 from harness.model.errors import InputError
+from harness.model.method import load_method
 from harness.model.reading import wall_json
 
 if TYPE_CHECKING:
@@ -90,9 +91,10 @@ class Sweep:
         Args:
             path: of the page.
             command: how to repeat it, told on the page.
-            data: names of files that the page points to.
+            data: paths of files, from the folder of the page, to which it has links.
         """
         from harness.engine.sweep.summary import grid_of
+        from reports.charts.styles import mark_named
         from reports.page.study_page import StudyPage, write_page
 
         created = datetime.now(UTC).isoformat(timespec="seconds")
@@ -100,7 +102,8 @@ class Sweep:
         about = (study.title, study.question, command, created, self._table, grid_of(study))
         target = Path(path)
         target.parent.mkdir(parents=True, exist_ok=True)
-        write_page(StudyPage(*about, summary.tables, summary.remarks, list(data)), target)
+        marks = {name: mark_named(name, load_method(name).traits) for name in study.methods}
+        write_page(StudyPage(*about, summary.tables, summary.remarks, list(data), marks), target)
         return target
 
     def _repr_html_(self) -> str:

@@ -20,7 +20,7 @@ from harness.model.case import Case
 from harness.model.columns import PRINTED, ResultColumn, ResultRow
 from harness.model.comparison import CaseResults, ComparisonRun
 from harness.model.difference import Difference, Kind
-from harness.model.envelope import Envelope, by_wall, envelopes
+from harness.model.envelope import Envelope, by_wall, envelopes, ranked_text
 from harness.model.errors import first_few, visible
 from harness.model.joint_margins import JOINTS, joint_rows
 from harness.model.live_load import direction_in_words
@@ -130,7 +130,7 @@ def print_envelopes(found: Sequence[Envelope]) -> None:
         print(visible(f"Load cases of {wall}:"))
         print_rows(
             [
-                {"load case": name} | {each.method: answer_text(each.results[k]) for each in mine}
+                {"load case": name} | {each.method: ranked_text(each.results[k]) for each in mine}
                 for k, name in enumerate(mine[0].names)
             ]
         )

@@ -1,4 +1,8 @@
-"""Which of several load cases of one wall governs: the one with the lowest multiplier, for every method by itself."""
+"""Which of several load cases of one wall governs: the one with the lowest multiplier, for every method by itself.
+
+Of joints with cohesion or tensile strength it is the residual multiplier, that of the wall without them: mortar is
+brittle, so a load case that is safe by its strength alone is not safe.
+"""
 
 from __future__ import annotations
 
@@ -10,22 +14,39 @@ from typing import Any
 from harness.model.case import Case
 from harness.model.comparison import CaseResults
 from harness.model.method import Finding, Status
-from harness.model.result import Result
+from harness.model.result import Result, residual_of
 from harness.model.result_texts import answer_text
 
 EQUAL = 1e-9
 """Relative difference of two multipliers that is rounding: the judge's own tolerance."""
 
 
-def _size(result: Result) -> float | None:
-    """What a load case is ordered by: its multiplier, 0 if the wall falls before; None without an accepted answer."""
-    if result.status is not Status.OK or result.judge.accepted is False:
+def size_of(result: Result, *, residual: bool) -> float | None:
+    """What a load case is ordered by: 0 if the wall falls, infinite if nothing makes it collapse, else a multiplier.
+
+    Args:
+        result: the answer to it.
+        residual: whether that without the cohesion and tensile strength of the joints counts.
+
+    Returns:
+        the multiplier; None without an accepted answer.
+    """
+    answer = residual_of(result) if residual else result
+    if answer is None or result.judge.accepted is False or {result.status, answer.status} != {Status.OK}:
         return None
-    if result.finding is Finding.FALLS:
+    if answer.finding is Finding.FALLS:
         return 0.0
-    if result.finding in (Finding.UNBOUNDED, Finding.STANDS):
+    if answer.finding in (Finding.UNBOUNDED, Finding.STANDS):
         return math.inf
-    return result.multiplier if result.finding.has_multiplier else None
+    return answer.multiplier if answer.finding.has_multiplier else None
+
+
+def ranked_text(result: Result) -> str:
+    """The answer by which a load case is ranked, with that of the whole strength behind a residual one."""
+    residual = residual_of(result)
+    if residual is None or result.status is not Status.OK:
+        return answer_text(result)
+    return f"{answer_text(residual)} residual ({answer_text(result)} with the strength of its joints)"
 
 
 @dataclass(frozen=True)
@@ -47,7 +68,7 @@ class Envelope:
     @property
     def governing(self) -> tuple[str, ...]:
         """The load cases of the lowest multiplier, several if equal to rounding; none unless all are answered."""
-        sizes = [_size(result) for result in self.results]
+        sizes = self._sizes
         known = [size for size in sizes if size is not None]
         if len(known) < len(sizes) or min(known) == math.inf:
             return ()
@@ -55,17 +76,25 @@ class Envelope:
         return tuple(name for name, size in zip(self.names, known, strict=True) if size <= least * (1.0 + EQUAL))
 
     @property
+    def by_residual(self) -> bool:
+        """Whether residual multipliers decide, because the joints have cohesion or tensile strength."""
+        return any("without_strength" in result.details for result in self.results)
+
+    @property
+    def _sizes(self) -> list[float | None]:
+        return [size_of(result, residual=self.by_residual) for result in self.results]
+
+    @property
     def verdict(self) -> str:
         """Which load case governs, or why none does."""
-        missing = [f'"{name}"' for name, result in zip(self.names, self.results, strict=True) if _size(result) is None]
+        missing = [f'"{name}"' for name, size in zip(self.names, self._sizes, strict=True) if size is None]
         if missing:
-            verdict = (
-                f"which load case governs is not known, because there is no accepted answer to {' and '.join(missing)}"
-            )
+            kind = "accepted residual answer" if self.by_residual else "accepted answer"
+            verdict = f"which load case governs is not known, because there is no {kind} to {' and '.join(missing)}"
         elif not self.governing:
             verdict = "no load case makes the wall collapse"
         else:
-            lowest = answer_text(self.results[self.names.index(self.governing[0])])
+            lowest = ranked_text(self.results[self.names.index(self.governing[0])])
             named = " and ".join(f'"{name}"' for name in self.governing)
             alike = len(self.governing) > 1
             verdict = f"load case{'s' * alike} {named} govern{'s' * (not alike)}, {lowest}"
@@ -74,18 +103,20 @@ class Envelope:
     @property
     def sentence(self) -> str:
         """The answers, and which of them governs or why none does."""
-        answers = [f'"{name}" {answer_text(result)}' for name, result in zip(self.names, self.results, strict=True)]
+        answers = [f'"{name}" {ranked_text(result)}' for name, result in zip(self.names, self.results, strict=True)]
         return f"{self.verdict} Answers: {', '.join(answers)}."
 
     def as_json(self) -> dict[str, Any]:
-        """JSON values: wall, method, answers by load case, and the governing ones."""
+        """JSON values: wall, method, answers by load case, what they are ranked by, and the governing ones."""
         return {
             "wall": self.wall,
             "method": self.method,
             "load_cases": [
                 {"load_case": name, "finding": str(result.finding), "multiplier": result.multiplier}
+                | ({} if (residual := residual_of(result)) is None else {"residual_multiplier": residual.multiplier})
                 for name, result in zip(self.names, self.results, strict=True)
             ],
+            "ranked_by": "residual_multiplier" if self.by_residual else "multiplier",
             "governing": list(self.governing),
             "sentence": self.sentence,
         }

@@ -18,6 +18,9 @@ from harness.model.loads import times, together
 from harness.model.travelling import travelling_loads
 from harness.model.wall import Wall
 
+_TITLE_JOINT = ", load case "
+"""Between the title of a wall and the name of a load case."""
+
 
 @dataclass(frozen=True)
 class NamedLoads:
@@ -178,11 +181,17 @@ def load_cases_of(case: Case, name: str | None = None) -> list[Case]:
         raise
 
 
+def title_of_wall(case: Case) -> str:
+    """The title of a wall of which a case is a load case, without the name of that."""
+    title, _, name = case.file.title.rpartition(_TITLE_JOINT)
+    return title if title and case.load_case.startswith(name) else case.file.title
+
+
 def _one(case: Case, name: str, known: dict[str, NamedLoads]) -> Case:
     wall = under_load_case(case.wall, name, known)
     update: dict[str, Any] = {
         "id": f"{case.id}-{name}",
-        "title": f"{case.file.title}, load case {name}",
+        "title": f"{case.file.title}{_TITLE_JOINT}{name}",
         "kind": "multiplier" if wall.loads.live is not None else "stability",
         "references": [],
     }

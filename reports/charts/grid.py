@@ -14,12 +14,10 @@ from harness.model.comparison import CaseResults, ComparisonRun
 from harness.model.method import Traits
 from harness.model.ranges import Range, differences, range_of
 from reports.charts.families import StudyCurves, friction_of, proportion_of, same_but_both, solved
+from reports.charts.heat import WITHIN, legend, shade
 from reports.environment import environment
 from reports.geometry import shapes, thrust_lines
 from reports.labels import labels, numbers
-
-WITHIN = 0.01
-"""Methods whose multipliers lie within a hundredth of the lowest agree, as in the other sentences of the report."""
 
 
 @dataclass(frozen=True)
@@ -60,6 +58,11 @@ class GridCell:
     def differ(self) -> bool:
         """Whether all answered and two of them are more than 1 % apart, wherever in its bracket each of them lies."""
         return self.spread is not None and self.spread[0] > WITHIN
+
+    @property
+    def shade(self) -> str:
+        """The name of its shade."""
+        return shade(*(self.spread or (math.nan, math.nan)))
 
     @property
     def text(self) -> str:
@@ -172,6 +175,7 @@ def _study(kind: str, cells: list[GridCell]) -> StudyCurves:
                 (numbers.given(proportion, 3), [at.get((proportion, friction)) for friction in frictions])
                 for proportion in proportions
             ],
+            legend=legend({cell.shade for cell in cells}),
         )
     )
     return StudyCurves(

@@ -30,7 +30,8 @@ def studies(run: ComparisonRun) -> list[StudyCurves]:
     found = [study for study in (cost_against_size(run), performance_profile(run)) if study is not None]
     found = [*grids(run), *families(run), *found]
     given = run.provenance.get("studies", [])
-    return found + [_given(item) for item in given if isinstance(item, dict)]
+    marks = {result.method: mark_of(result) for item in run.cases for result in item.results if solved(result)}
+    return found + [_given(item, marks) for item in given if isinstance(item, dict)]
 
 
 def cost_against_size(run: ComparisonRun) -> StudyCurves | None:
@@ -176,8 +177,8 @@ def performance_profile(run: ComparisonRun) -> StudyCurves | None:
     )
 
 
-def _given(item: dict[str, Any]) -> StudyCurves:
-    """A study the comparison brought with it."""
+def _given(item: dict[str, Any], marks: dict[str, Mark]) -> StudyCurves:
+    """A study the comparison brought with it; a line that bears the name of a method has its mark."""
     series = [
         charts.Series(
             str(line.get("name", "")),
@@ -185,6 +186,7 @@ def _given(item: dict[str, Any]) -> StudyCurves:
             [math.nan if value is None else float(value) for value in line.get("y", [])],
             low=[float(value) for value in line.get("low", [])],
             high=[float(value) for value in line.get("high", [])],
+            mark=marks.get(str(line.get("name", ""))),
         )
         for line in item.get("series", [])
     ]

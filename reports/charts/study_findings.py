@@ -15,7 +15,7 @@ MOST_GROUPS = 6
 
 
 def findings(tables: Mapping[str, pd.DataFrame], grid: Sequence[str]) -> list[str]:
-    """The sentences that open the page of a study.
+    """The sentences of a study behind its answer.
 
     Args:
         tables: statistics by name, as `harness.engine.sweep.summary` makes them.
@@ -23,23 +23,23 @@ def findings(tables: Mapping[str, pd.DataFrame], grid: Sequence[str]) -> list[st
     """
     return [
         *_levels(tables["quantiles"], grid),
-        *_agreements(tables.get("agreement")),
         *_failures(tables.get("failure"), grid),
         *_matters(tables, grid),
     ]
 
 
-def _agreements(table: pd.DataFrame | None) -> Iterator[str]:
-    """On how many walls the families agree, differ, or cannot be told apart."""
+def answer(tables: Mapping[str, pd.DataFrame]) -> str:
+    """On how many walls the families agree, differ, or cannot be told apart; empty where it is known of none."""
+    table = tables.get("agreement")
     if table is None or not len(table):
-        return
+        return ""
     number = {word: int((table["agree"] == word).sum()) for word in ("yes", "no", "open", "")}
     said = f"The families agree within 1 % on {number['yes']} of {numbers.count(len(table), 'wall')}"
     if number["no"]:
         greatest = float(table.loc[table["agree"] == "no", "most_percent"].max())
         said += f" and differ on {number['no']}" + (f", by up to {greatest:.1f} %" if math.isfinite(greatest) else "")
     said += f"; on {number['open']} brackets do not decide" if number["open"] else ""
-    yield said + (f"; {number['']} lack the answer of a family." if number[""] else ".")
+    return said + (f"; {number['']} lack the answer of a family." if number[""] else ".")
 
 
 def _levels(spread: pd.DataFrame, grid: Sequence[str]) -> Iterator[str]:

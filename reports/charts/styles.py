@@ -6,6 +6,7 @@ import math
 import zlib
 from dataclasses import dataclass
 
+from harness.model.method import Traits
 from harness.model.result import Result
 
 _COLOURS = ("#14202b", "#6d2077", "#7a5c00", "#00666b", "#8c1d40", "#4a4a8a")
@@ -70,11 +71,16 @@ class Mark:
 
 
 def mark_of(result: Result) -> Mark:
-    """How the method of a result is drawn, the same in every chart of every report.
+    """How the method of a result is drawn, the same in every chart of every report."""
+    return mark_named(result.method, result.traits)
+
+
+def mark_named(method: str, traits: Traits) -> Mark:
+    """How a method is drawn.
 
     What its traits leave open is taken from its name, so that it does not depend on which other methods were run.
     """
-    traits, number = result.traits, zlib.crc32(result.method.encode())
+    number = zlib.crc32(method.encode())
     markers, lines = list(SHAPES), list(_DASHES)
     known = traits.marker in SHAPES
     marker = traits.marker if known else markers[number % len(markers)]

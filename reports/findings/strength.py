@@ -8,8 +8,9 @@ import numpy as np
 
 from harness.model.assembly import Assembly, BoolArray, FloatArray
 from harness.model.comparison import CaseResults
+from harness.model.envelope import size_of
 from harness.model.method import Status
-from harness.model.result import residual_of
+from harness.model.result import Result, residual_of
 from reports.labels import numbers
 from reports.labels.wall_summary import value_in_words
 
@@ -34,6 +35,21 @@ def strength_rows(item: CaseResults) -> list[StrengthRow]:
         shown = value_in_words(residual) if residual.status is Status.OK else numbers.NOTHING
         rows.append(StrengthRow(result.method, value_in_words(result), shown, result.traits.bounds_above))
     return rows
+
+
+def least_residual(item: CaseResults) -> tuple[float, Result] | None:
+    """The least multiplier of a wall without the cohesion and tensile strength of its joints, and who found it.
+
+    Of the main methods of families that neither give upper bounds nor measure; 0 if it falls. None of dry joints, and
+    where no such answer was accepted; infinite where nothing makes the wall collapse.
+    """
+    found = [
+        (size, result)
+        for result in item.mains
+        if not (result.traits.bounds_above or result.traits.brackets)
+        and (size := size_of(result, residual=True)) is not None
+    ]
+    return min(found, key=lambda pair: pair[0], default=None)
 
 
 def strength_text(assembly: Assembly, unit: str) -> str:

@@ -16,8 +16,8 @@ from markupsafe import Markup
 from harness.model.case import Case
 from harness.model.columns import COMPARED, LISTED, REPEATED, ResultColumn
 from harness.model.comparison import ComparisonRun
-from harness.model.envelope import by_wall, envelopes
-from harness.model.result_texts import answer_text, settings_text
+from harness.model.envelope import by_wall, envelopes, ranked_text
+from harness.model.result_texts import settings_text
 from harness.model.units import DIMENSIONLESS
 from harness.model.writing import write_whole
 from reports.charts import dots
@@ -107,7 +107,7 @@ def render(run: ComparisonRun, *, data_folder: str, listed: Sequence[ResultColum
         compared=COMPARED,
         purposes=labels.PURPOSE,
         load_cases=by_wall(envelopes(run.cases)),
-        answer_text=answer_text,
+        ranked_text=ranked_text,
         gates=[(number, item.case.id, gate) for number, item in enumerate(run.cases) for gate in item.gates],
         paper=paper.paper_comparison(run),
         errata=[(number, item.case) for number, item in enumerate(run.cases) if item.case.file.errata],

@@ -13,6 +13,7 @@ from markupsafe import Markup
 from harness.model.comparison import CaseResults, ComparisonRun
 from harness.model.library import library
 from harness.model.live_load import is_horizontal
+from harness.model.load_cases import title_of_wall
 from harness.model.method import Status
 from harness.model.proof import least_known, proof_of
 from harness.model.ranges import range_of
@@ -160,9 +161,10 @@ def headline(run: ComparisonRun) -> str:
     known = library().families
     names = sorted(found, key=lambda name: found[name])
     families = [known[name][0].lower() + known[name][1:] if name in known else name for name in names]
-    walls = {item.case.wall_id or item.case.id: item.case.file.title for item in run.cases}
+    walls = {item.case.wall_id or item.case.id for item in run.cases}
     if len(walls) == 1:
-        return next(iter(walls.values()))
+        first = run.cases[0].case
+        return first.file.title if len(run.cases) == 1 else title_of_wall(first)
     who = labels.and_(families) if families else "no method"
     return f"{who[0].upper()}{who[1:]} on {numbers.count(len(walls), 'wall')}"
 

@@ -12,9 +12,10 @@ from harness.model.joint_margins import JOINTS, JointColumn, JointRow, joint_row
 from harness.model.live_load import direction_in_words
 from harness.model.method import Finding, Status
 from harness.model.proof import least_known, proof_of
-from harness.model.result import Result
+from harness.model.result import Result, residual_of
 from harness.model.support_reactions import SupportReaction, out_of_balance, reactions_of
 from harness.model.table import in_units
+from reports.findings.strength import least_residual
 from reports.labels import labels, numbers
 
 _CRITICAL = tuple(
@@ -33,13 +34,15 @@ class Way:
         name: in words.
         value: the least multiplier with its method, or what was found instead.
         proved: what is proved of it.
-        governs: whether no other has a lower one.
+        governs: whether no other has a lower one, or a lower residual one where the joints have strength.
+        residual: the least multiplier without that strength; empty of dry joints.
     """
 
     name: str
     value: str
     proved: str
     governs: bool
+    residual: str = ""
 
 
 @dataclass(frozen=True)
@@ -47,7 +50,7 @@ class Governing:
     """What governs one wall.
 
     Attributes:
-        item: the load case with the lowest multiplier.
+        item: the load case with the lowest multiplier, the lowest residual one where the joints have strength.
         ways: all load cases.
         shown: the state that is drawn and whose forces stand in the tables; None without one.
         reactions: of the supports in that state.
@@ -63,6 +66,11 @@ class Governing:
     balance: float | None
     joints: list[JointRow]
     joint_columns: tuple[JointColumn, ...]
+
+    @property
+    def by_residual(self) -> bool:
+        """Whether residual multipliers decide which load case governs."""
+        return any(way.residual for way in self.ways)
 
 
 def governing(items: Sequence[CaseResults], joints: int = 8) -> Governing:
@@ -91,7 +99,10 @@ def governing(items: Sequence[CaseResults], joints: int = 8) -> Governing:
 
 
 def _collapse(item: CaseResults) -> float:
-    """The multiplier by which a load case governs: none is known where nothing collapses."""
+    """The multiplier by which a load case governs: of joints with strength the residual one; infinite without any."""
+    if item.case.assembly.strong:
+        found = least_residual(item)
+        return math.inf if found is None else found[0]
     least = least_known(item)
     if least is not None and least.multiplier is not None:
         return least.multiplier
@@ -104,7 +115,20 @@ def _way(item: CaseResults, *, governs: bool) -> Way:
     answers = dict.fromkeys(labels.FINDING[result.finding] for result in item.mains)
     value = ", ".join(answers) if least is None else f"{numbers.multiplier(least.multiplier)} ({least.method})"
     proved = "" if least is None else proof_of(item, least).label
-    return Way(item.case.load_case or direction_in_words(item.case), value, proved, governs)
+    name = item.case.load_case or direction_in_words(item.case)
+    return Way(name, value, proved, governs, _residual(item) if item.case.assembly.strong else "")
+
+
+def _residual(item: CaseResults) -> str:
+    """The least residual multiplier and who found it, or what was found instead."""
+    found = least_residual(item)
+    if found is None:
+        return "no accepted answer"
+    value, result = found
+    residual = residual_of(result)
+    if residual is not None and not residual.finding.has_multiplier:
+        return f"{labels.FINDING[residual.finding]} ({result.method})"
+    return f"{numbers.multiplier(value)} ({result.method})"
 
 
 def _shown(item: CaseResults) -> Result | None:

@@ -14,17 +14,19 @@ from markupsafe import Markup
 from harness.model.ranges import percent_text
 from harness.model.writing import write_whole
 from reports.charts import charts
-from reports.charts.study_findings import findings
+from reports.charts.heat import legend, shade
+from reports.charts.study_findings import answer, findings
+from reports.charts.styles import Mark
 from reports.environment import environment
+from reports.labels import numbers
 
 MOST_SERIES, MOST_CHARTS, MOST_ROWS, FOLDED = 12, 40, 400, 20
 """Lines in one chart, charts over one quantity and rows in one table of the page, the files beside it hold all; a
 longer table is folded."""
+MAP_COLUMNS, MAP_ROWS = 16, 40
+"""Largest map of where families agree that is seen at a glance."""
 
 READ = {
-    "agreement": "A row is a point of the grid, a column a value of the quantity on the axis. “agree”: the multipliers "
-    "of all families lie within 1 % of the lowest. Otherwise the cell gives the difference of highest and lowest; two "
-    "numbers are the least and the greatest difference that brackets allow. “open”: the brackets do not decide.",
     "failure": "Share of walls that collapse at or below a multiplier, with Wilson's score interval at 95 %. A wall "
     "whose wide bracket holds the multiplier counts in `probability_at_most` only.",
     "sensitivity": "Borgonovo's delta: 0 for a quantity without influence, 1 for the only one with influence; and "
@@ -50,7 +52,8 @@ class StudyPage:
         grid: names of the quantities on the grid.
         tables: statistics by name.
         remarks: sentences for the reader.
-        data: names of the files beside the page.
+        data: paths of files, from the folder of the page.
+        marks: how methods are drawn; the place in a chart chooses for others.
     """
 
     title: str
@@ -62,6 +65,42 @@ class StudyPage:
     tables: dict[str, pd.DataFrame]
     remarks: list[str] = field(default_factory=list)
     data: list[str] = field(default_factory=list)
+    marks: Mapping[str, Mark] = field(default_factory=dict)
+
+
+@dataclass(frozen=True)
+class StudyCharts:
+    """Charts of one kind, side by side.
+
+    Attributes:
+        title, read: heading, and how to read them.
+        drawn: captions and drawings; the caption of an only one is empty.
+        left: what is not drawn, in words; empty where all is.
+    """
+
+    title: str
+    read: str
+    drawn: list[tuple[str, Markup]]
+    left: str
+
+
+@dataclass(frozen=True)
+class AgreementMap:
+    """Where the families agree: a row a point of the other quantities, a column a value of the axis.
+
+    Attributes:
+        axis: the quantity across.
+        columns: its values.
+        rows: names of rows with the shade and the text of each cell; None where there is no wall.
+        legend: what the shades mean.
+        left: what is left out, in words; empty where all is shown.
+    """
+
+    axis: str
+    columns: list[str]
+    rows: list[tuple[str, list[tuple[str, str] | None]]]
+    legend: Markup
+    left: str
 
 
 def write_page(page: StudyPage, path: Path) -> None:
@@ -79,8 +118,10 @@ def render(page: StudyPage) -> str:
             page=page,
             style=Markup(files("reports").joinpath("static/report.css").read_text(encoding="utf-8")),
             statuses=[(str(name), int(count)) for name, count in counts.items()],
-            seconds=float(page.rows["cpu_seconds"].sum()),
-            charts=[(title, Markup(charts.svg(chart)), left) for title, chart, left in _charts(page)],
+            seconds=numbers.seconds(float(page.rows["cpu_seconds"].sum())),
+            charts=list(_charts(page)),
+            map=_agreement_map(page),
+            answer=answer(page.tables),
             found=findings(page.tables, page.grid),
             tables=[(name, READ[name], *_cells(shown)) for name, shown in _shown(page) if len(shown)],
             folded=FOLDED,
@@ -89,34 +130,45 @@ def render(page: StudyPage) -> str:
 
 
 def _shown(page: StudyPage) -> Iterator[tuple[str, pd.DataFrame]]:
-    """The tables of the page, in its order; that of agreement with its axis across."""
+    """The tables of the page, in its order; where families agree is a map of its own."""
     for name in READ:
         table = page.tables.get(name)
         if table is not None:
-            yield name, _across(table, page.grid) if name == "agreement" else table
+            yield name, table
 
 
-def _across(table: pd.DataFrame, grid: Sequence[str]) -> pd.DataFrame:
-    """Where families agree, one row for the other quantities and one column for a value of the main axis."""
-    axis = _main_axis(table, grid)
-    said = table.assign(said=[_agreement(row) for row in table.to_dict("records")])
-    others = [name for name in ("case", *grid) if name != axis and table[name].nunique(dropna=False) > 1]
-    if axis is None:
-        return said[[*others, "said"]]
-    wide = said.pivot_table(
-        index=others or ["case"], columns=axis, values="said", aggfunc=", ".join, fill_value="", sort=False
+def _agreement_map(page: StudyPage) -> AgreementMap | None:
+    """Where families agree; None where it is known of fewer than two walls."""
+    table = page.tables.get("agreement")
+    if table is None or not len(table):
+        return None
+    axis = _main_axis(table, page.grid)
+    others = _others(table, ("case", *page.grid), axis)
+    values = [] if axis is None else sorted(table[axis].dropna().unique())
+    rows: list[tuple[str, list[tuple[str, str] | None]]] = []
+    for name, group in _groups(table, others) if others else [("", table)]:
+        if axis is None:
+            rows.extend((name, [_agreement(row)]) for row in group.to_dict("records"))
+            continue
+        at = {row[axis]: _agreement(row) for row in group.to_dict("records")}
+        rows.append((name, [at.get(value) for value in values[:MAP_COLUMNS]]))
+    cut = max(0, len(rows) - MAP_ROWS), max(0, len(values) - MAP_COLUMNS)
+    left = [numbers.count(number, what) for number, what in zip(cut, ("row", "column"), strict=True) if number]
+    return AgreementMap(
+        axis or "",
+        [_cell(value) for value in values[:MAP_COLUMNS]],
+        rows[:MAP_ROWS],
+        legend({cell[0] for _, cells in rows for cell in cells if cell is not None}),
+        f"{' and '.join(left)} more are in agreement.csv." if left else "",
     )
-    wide.columns = [f"{axis} {value:g}" for value in wide.columns]
-    return wide.reset_index()
 
 
-def _agreement(row: Mapping[Hashable, Any]) -> str:
+def _agreement(row: Mapping[Hashable, Any]) -> tuple[str, str]:
+    """The shade of a wall and its text: nothing where all agree, otherwise by how much they differ."""
     if row["agree"] == "":
-        return "no answer of all"
-    if row["agree"] == "yes":
-        return "agree"
-    apart = percent_text(0.01 * row["least_percent"], 0.01 * row["most_percent"])
-    return f"open, {apart}" if row["agree"] == "open" else apart
+        return "lost", "–"
+    least, most = 0.01 * float(row["least_percent"]), 0.01 * float(row["most_percent"])
+    return shade(least, most), "" if row["agree"] == "yes" else percent_text(least, most)
 
 
 def _cells(table: pd.DataFrame) -> tuple[list[str], list[list[str]], int]:
@@ -135,20 +187,52 @@ def _cell(value: Any) -> str:
     return "" if value is None or value is pd.NA else str(value)
 
 
-def _charts(page: StudyPage) -> Iterator[tuple[str, charts.Chart, int]]:
-    """Titles and charts, with the number of lines that were not drawn for want of room."""
+POINTS = (
+    "Points are medians; bars, where there are any, reach from the 5 % to the 95 % quantile over seeds and draws, as "
+    "low and as high as measured brackets allow. A bar without a point is a bracket."
+)
+COUNTED = (
+    "Points are counted, one a wall; the line is the lognormal curve fitted to them, in its band of 95 %. Where a wall "
+    "falls under its dead load there is no such curve, and the share counted is a staircase with its interval."
+)
+
+
+def _charts(page: StudyPage) -> Iterator[StudyCharts]:
+    """Multipliers over the main axis, then fragility curves."""
     spread = page.tables["quantiles"]
     axis = _main_axis(spread, page.grid)
     if axis is not None:
-        drawn = [_over_axis(spread, axis, page.grid)]
-        others = [name for name in ("case", *page.grid) if name != axis and spread[name].nunique(dropna=False) > 1]
-        if drawn[0][1] and others:  # too many lines for one chart: one for each of the other quantities' values
-            drawn = [_over_axis(part, axis, page.grid, name) for name, part in _groups(spread, others)][:MOST_CHARTS]
-        for chart, left in drawn:
-            yield chart.title, chart, left
+        others = _others(spread, ("case", *page.grid), axis)
+        parts = [("", spread)]
+        if others and (spread["method"].nunique() > 1 or _over_axis(spread, axis, page)[1]):
+            parts = list(_groups(spread, others))  # one chart for each of the other quantities' values
+        drawn = [(name, *_over_axis(part, axis, page, name)) for name, part in parts[:MOST_CHARTS]]
+        yield StudyCharts(
+            f"Multiplier over {axis}",
+            POINTS,
+            [(name, charts.svg(chart)) for name, chart, _ in drawn],
+            _left(sum(left for _, _, left in drawn), len(parts) - len(drawn)),
+        )
     curves = page.tables.get("fragility")
     if curves is not None and len(curves):
-        yield "Fragility", *_fragility(curves, ["case", "method", *page.grid])
+        chart, left = _fragility(curves, page)
+        yield StudyCharts("Fragility", COUNTED, [("", charts.svg(chart))], _left(left, 0))
+
+
+def _left(lines: int, whole: int) -> str:
+    """What is not drawn, in words."""
+    counts = [numbers.count(number, what) for number, what in ((lines, "line"), (whole, "chart")) if number]
+    if not counts:
+        return ""
+    return f"{' and '.join(counts)} more {'is' if lines + whole == 1 else 'are'} not drawn; the files have them."
+
+
+def _others(table: pd.DataFrame, names: Sequence[str], axis: str | None) -> list[str]:
+    """The quantities that vary beside an axis, those left out that go along with it."""
+    varied = [name for name in names if name != axis and table[name].nunique(dropna=False) > 1]
+    if axis is None:
+        return varied
+    return [name for name in varied if table.groupby(axis)[name].nunique(dropna=False).max() > 1]
 
 
 def _main_axis(table: pd.DataFrame, grid: Sequence[str]) -> str | None:
@@ -157,11 +241,11 @@ def _main_axis(table: pd.DataFrame, grid: Sequence[str]) -> str | None:
     return max(numeric, key=lambda name: table[name].nunique(), default=None)
 
 
-def _over_axis(table: pd.DataFrame, axis: str, grid: Sequence[str], of: str = "") -> tuple[charts.Chart, int]:
+def _over_axis(table: pd.DataFrame, axis: str, page: StudyPage, of: str = "") -> tuple[charts.Chart, int]:
     """Medians and quantiles over a quantity, and how many lines are left out; wide brackets are bars alone."""
     series = []
-    others = [name for name in grid if name != axis]
-    for name, group in _groups(table[table[axis].notna()], ["case", "method", *others]):
+    table = _by_method(table[table[axis].notna()], page)
+    for name, group in _groups(table, ["method", *_others(table, ("case", *page.grid), axis)]):
         line = group[group["answered"] > 0].sort_values(axis)
         barred = bool((line["q05_low"] < line["q95_high"]).any())
         exact = line["q50_low"] == line["q50_high"]
@@ -172,6 +256,7 @@ def _over_axis(table: pd.DataFrame, axis: str, grid: Sequence[str], of: str = ""
                 line["q50_low"].where(exact).astype(float).tolist(),
                 low=line["q05_low"].astype(float).tolist() if barred else [],
                 high=line["q95_high"].astype(float).tolist() if barred else [],
+                mark=page.marks.get(name),
             )
         )
     series = [line for line in series if line.x]
@@ -179,17 +264,24 @@ def _over_axis(table: pd.DataFrame, axis: str, grid: Sequence[str], of: str = ""
     return charts.Chart(title, axis, "collapse multiplier", series[:MOST_SERIES]), max(0, len(series) - MOST_SERIES)
 
 
-def _fragility(table: pd.DataFrame, by: Sequence[str]) -> tuple[charts.Chart, int]:
+def _by_method(table: pd.DataFrame, page: StudyPage) -> pd.DataFrame:
+    """Rows in the order of the methods of the study."""
+    places = {name: number for number, name in enumerate(page.marks)}
+    return table.sort_values("method", key=lambda names: names.map(lambda name: places.get(name, 0)), kind="stable")
+
+
+def _fragility(table: pd.DataFrame, page: StudyPage) -> tuple[charts.Chart, int]:
     series = []
-    for name, group in _groups(table, by):
+    for name, group in _groups(_by_method(table, page), ["case", "method", *page.grid]):
+        mark = page.marks.get(name)
         x, counted = group["multiplier"].tolist(), group["probability"].tolist()
         if group["lognormal"].notna().all():
             low, high = group["lognormal_low"].tolist(), group["lognormal_high"].tolist()
-            series.append(charts.Series(name, x, counted, low, high, curve=group["lognormal"].tolist()))
+            series.append(charts.Series(name, x, counted, low, high, curve=group["lognormal"].tolist(), mark=mark))
         else:  # a wall that falls under its dead load has no logarithm, and a wide bracket no place
             low = group["low"].fillna(group["probability"]).tolist()
             high = group["high"].fillna(group["probability_at_most"]).tolist()
-            series.append(charts.Series(name, x, counted, low, high, marks=False, step=True))
+            series.append(charts.Series(name, x, counted, low, high, marks=False, step=True, mark=mark))
     chart = charts.Chart("Fragility", "multiplier", "probability of collapse", series[:MOST_SERIES], zero_y=True)
     return chart, max(0, len(series) - MOST_SERIES)
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -9,16 +10,17 @@ import numpy as np
 from harness.model.comparison import CaseResults, ComparisonRun
 from harness.model.errors import first_few
 from harness.model.live_load import direction_in_words
-from harness.model.method import Finding, Status
+from harness.model.method import Status
 from harness.model.proof import least_known, proof_of
 from harness.model.ranges import percent_text
-from harness.model.result import Result, Verdict, residual_of
+from harness.model.result import Result, Verdict
 from reports.charts.overview import AGREE
 from reports.drawing.display_list import DisplayList
 from reports.drawing.mechanism_drawing import mechanism_drawing, overlay_drawing
 from reports.findings.agreement import agreement, mains, spread
 from reports.findings.joints import joints_in_words, motion
 from reports.findings.reasons import SAME_MOTION, mechanism_in_words
+from reports.findings.strength import least_residual
 from reports.geometry import shapes
 from reports.labels import labels, numbers
 from reports.labels.wall_summary import friction_text, value_in_words
@@ -236,20 +238,12 @@ def which_number(item: CaseResults) -> str:
 
 def _without_strength(item: CaseResults) -> str:
     """The number to use for joints with cohesion or tensile strength, which are brittle in mortar; empty for others."""
-    found = [
-        (0.0 if residual.finding is Finding.FALLS else residual.multiplier, r.method)
-        for r in mains(item)
-        if not (r.traits.bounds_above or r.traits.brackets or r.judge.accepted is False)
-        and (residual := residual_of(r)) is not None
-        and (residual.finding is Finding.FALLS or residual.finding.has_multiplier)
-    ]
-    known = [(value, method) for value, method in found if value is not None]
-    if not known:
+    found = least_residual(item)
+    if found is None or not math.isfinite(found[0]):
         return ""
-    value, method = min(known)
     return (
-        f"For safety use {numbers.multiplier(value)} ({method}), the residual multiplier: mortar is brittle, and this "
-        "is the wall without its cohesion and tensile strength."
+        f"For safety use {numbers.multiplier(found[0])} ({found[1].method}), the residual multiplier: mortar is "
+        "brittle, and this is the wall without its cohesion and tensile strength."
     )
 
 

@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import re
+from dataclasses import replace
+from pathlib import Path
 from typing import Any
 
 import pytest
@@ -68,3 +71,60 @@ def test_envelopes_are_by_wall_and_method_and_walls_of_one_load_case_have_none()
     alone = drystone.library_wall("single-block").case
     rows = [CaseResults(case, [result]) for case, result in zip([*cases, alone], [*results, results[0]], strict=True)]
     assert envelopes(rows) == [Envelope("leaning", "la-associated", ("to the right", "to the left"), tuple(results))]
+
+
+FRICTION, COHESION, WEIGHT, ADDED, PUSHED = 0.5, 5.0, 1.0, 1.0, 1.5
+"""Of a bonded block, the dead load that its second load case adds, and the live load of that."""
+
+
+def bonded() -> drystone.Wall:
+    """A block that its cohesion holds best in one load case, and its friction in the other."""
+    blocks = [
+        {"id": "g", "fixed": True, "polygon": [[0, -1], [1, -1], [1, 0], [0, 0]]},
+        {"id": "a", "polygon": [[0, 0], [1, 0], [1, 0.2], [0, 0.2]]},
+    ]
+    added = {"points": [{"block": "a", "at": [0.5, 0.2], "force": [0, -ADDED]}]}
+    cases = {
+        "light": {"live": {"body": [{"per_weight": [1, 0]}]}},
+        "heavy": {"dead": added, "live": {"body": [{"per_weight": [PUSHED, 0]}]}},
+    }
+    joints = {"friction": FRICTION, "cohesion": COHESION, "tensile_strength": 8.0}
+    return drystone.build_wall(
+        {"format": "wall/1", "unit_weight": 5.0, "blocks": blocks, "load_cases": cases, **joints}, "bonded"
+    )
+
+
+def test_the_residual_multiplier_decides_where_joints_have_strength():
+    """Sliding: (friction N + cohesion A) / H with the strength, friction N / H without it."""
+    compared = drystone.compare(bonded(), ["la"], isolated=False)
+    plastic = [FRICTION * WEIGHT + COHESION, (FRICTION * (WEIGHT + ADDED) + COHESION) / PUSHED]
+    residual = [FRICTION * WEIGHT, FRICTION * (WEIGHT + ADDED) / PUSHED]
+    assert plastic[1] < plastic[0], "by its strength alone the heavy case would govern"
+    assert residual[0] < residual[1]
+    (found,) = envelopes(compared.run.cases)
+    assert [result.multiplier for result in found.results] == pytest.approx(plastic, rel=1e-9)
+    assert found.governing == ("light",)
+    assert found.verdict == (
+        'la: load case "light" governs, 0.5000000 residual (5.5000000 with the strength of its joints).'
+    )
+    data = found.as_json()
+    assert data["ranked_by"] == "residual_multiplier"
+    assert [case["residual_multiplier"] for case in data["load_cases"]] == pytest.approx(residual, rel=1e-9)
+    lost = found.results[0].model_copy(
+        update={"details": {"without_strength": {"status": "timeout", "finding": "none"}}}
+    )
+    unknown = replace(found, results=(lost, found.results[1]))
+    assert unknown.governing == ()
+    assert 'no accepted residual answer to "light"' in unknown.verdict
+    assert envelope(*answers()).as_json()["ranked_by"] == "multiplier"
+
+
+def test_first_screen_ranks_by_the_residual_multiplier_and_says_so(tmp_path: Path):
+    page = drystone.compare(bonded(), ["la"], isolated=False).report(tmp_path / "report.html").read_text("utf-8")
+    assert "The load case with the least residual multiplier governs" in page
+    rows = re.findall(r'<tr><th scope="row">(light|heavy)</th>((?:<td>[^<]*</td>){4})</tr>', page)
+    assert rows == [
+        ("light", "<td>0.50000 (la)</td><td>5.5000 (la)</td><td>least, to rounding</td><td>yes</td>"),
+        ("heavy", "<td>0.66667 (la)</td><td>4.0000 (la)</td><td>least, to rounding</td><td></td>"),
+    ]
+    assert "For safety use 0.50000 (la), the residual multiplier" in page

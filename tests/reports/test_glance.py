@@ -9,7 +9,10 @@ from typing import Any
 import numpy as np
 import pytest
 
+import drystone
 from harness.model.comparison import CaseResults, Certified, ComparisonRun
+from harness.model.live_load import both_signs
+from harness.model.load_cases import load_cases_of
 from harness.model.method import Finding
 from harness.model.result import Result
 from reports.charts import curves, dots
@@ -21,6 +24,7 @@ from reports.labels import numbers
 from reports.page.glance import glance, headline, largest_walls, mechanisms_compared, pictures
 from reports.page.governing import governing
 from tests.reports import samples
+from tests.walls import stack, wall_data
 
 CASE = samples.bond("wall-21")
 
@@ -39,6 +43,20 @@ def test_the_headline_says_what_was_compared():
     assert headline(run_of(*walls)) == "Finite elements and limit analysis on 3 walls"
     assert headline(run_of(*walls[1:])) == "Limit analysis on 2 walls"
     assert headline(run_of(walls[0])) == "A small wall"
+
+
+def test_the_headline_of_load_cases_is_the_title_of_their_wall():
+    loads = {"live": {"body": [{"per_weight": [1, 0]}]}}
+    title, named = "A pier, load case by load case", {"wind": loads, "quake": loads}
+    data = wall_data(stack(2), 0.5, title=title, loads={}, load_cases=named)
+    wall = drystone.build_wall(data, "pier")
+    chosen = load_cases_of(wall.case)
+    assert headline(run_of(*(CaseResults(each, []) for each in chosen))) == title
+    both = [each for one in chosen for each in both_signs(one)]
+    assert headline(run_of(*(CaseResults(each, []) for each in both))) == title
+    assert headline(run_of(CaseResults(chosen[1], []))) == f"{title}, load case quake"
+    ways = [CaseResults(each, []) for each in both_signs(samples.bond("mine"))]
+    assert headline(run_of(*ways)) == "A small wall"
 
 
 def test_the_most_similar_mechanisms_are_named_with_their_cosine_and_the_least_state_by_its_gap():

@@ -9,7 +9,10 @@ import pandas as pd
 
 from harness.engine.sweep import statistics
 from harness.engine.sweep.frame import tidy
-from reports.charts.study_findings import findings
+from harness.model.method import Traits, load_method
+from reports.charts.heat import shade
+from reports.charts.study_findings import answer, findings
+from reports.charts.styles import mark_named
 from reports.page.study_page import StudyPage, render
 
 
@@ -85,28 +88,63 @@ def families_over_friction(lines: int) -> pd.DataFrame:
 def test_a_grid_has_a_table_of_where_the_families_agree():
     rows, grid = families_over_friction(2), ["friction", "proportion"]
     tables = tables_of(rows, *grid) | {"agreement": statistics.agreement(rows, ["case", *grid])}
-    said = " ".join(findings(tables, grid))
-    assert "The families agree within 1 % on 2 of 4 walls and differ on 2, by up to 20.0 %." in said
-    page = render(StudyPage("A study", "", "drystone sweep", "now", rows, grid, tables))
-    assert '<th scope="col">friction 0.3</th><th scope="col">friction 0.9</th>' in page
-    assert "<td>1:1</td><td>agree</td><td>20.0 %</td>" in page
+    said = answer(tables)
+    assert said == "The families agree within 1 % on 2 of 4 walls and differ on 2, by up to 20.0 %."
+    page = render(StudyPage("A study", "Where?", "drystone sweep", "now", rows, grid, tables))
+    assert page.index("Where?") < page.index(said) < page.index('<table class="grid">') < page.index("<svg")
+    assert '<th scope="colgroup" colspan="2">friction</th>' in page
+    assert '<th scope="col">0.3</th><th scope="col">0.9</th>' in page
+    agree, differ = '<td class="agree"><span class="sr">agree</span></td>', '<td class="differ-2">20.0 %</td>'
+    assert f'<tr><th scope="row">proportion 1:1</th>{agree}{differ}</tr>' in page
+    assert "differ by more than 1 %" not in page, "the legend has the shades of the map alone"
+
+
+def test_shades_say_what_is_certain():
+    found = [shade(*ends) for ends in ((0.0, 0.01), (0.01, 0.3), (0.011, 0.3), (0.051, 0.3), (0.201, 0.3))]
+    assert found == ["agree", "open", "differ-1", "differ-2", "differ-3"]
+    assert shade(np.nan, np.nan) == "lost"
+
+
+def test_methods_are_drawn_as_in_the_report_and_in_the_order_of_the_study():
+    rows, grid = families_over_friction(1), ["friction"]
+    marks = {name: mark_named(name, load_method(name).traits) for name in ("la", "fe")}
+    page = render(StudyPage("A study", "", "c", "now", rows, grid, tables_of(rows, *grid), marks=marks))
+    legend = re.findall(r'class="line" style="stroke:(#\w+)" stroke-dasharray="[^"]*" d="M\d+ \d+h26"/>', page)
+    assert legend == [marks["la"].colour, marks["fe"].colour]
+    assert mark_named("x", Traits(colour="#123456", marker="s")).shape != mark_named("x", Traits(marker="o")).shape
+
+
+def test_quantities_that_vary_as_one_make_one_line():
+    parts = [walls([0.3, 0.5, 0.6], name, friction=[0.3, 0.6, 0.9], courses=[1.0, 2.0, 3.0]) for name in ("fe", "la")]
+    rows, grid = pd.concat(parts, ignore_index=True), ["friction", "courses"]
+    page = render(StudyPage("A study", "", "c", "now", rows, grid, tables_of(rows, *grid)))
+    assert page.count("<svg") == 1
+    assert page.count("<title>fe: ") == 3
+
+
+def test_charts_that_are_left_out_are_counted_and_files_are_linked():
+    rows, grid = families_over_friction(43), ["friction", "proportion"]
+    page = render(StudyPage("A study", "", "c", "now", rows, grid, tables_of(rows, *grid), data=["a b/runs.csv"]))
+    assert page.count("<svg") == 40
+    assert "3 charts more are not drawn; the files have them." in page
+    assert '<li><a href="a%20b/runs.csv">a b/runs.csv</a></li>' in page
 
 
 def test_lines_that_one_chart_does_not_hold_have_charts_of_their_own():
     rows, grid = families_over_friction(7), ["friction", "proportion"]
     page = render(StudyPage("A study", "", "drystone sweep", "now", rows, grid, tables_of(rows, *grid)))
-    assert page.count("<h2>Multiplier over friction: proportion") == 7
+    assert page.count("<figcaption>proportion ") == 7
     assert "not drawn" not in page
-    few = families_over_friction(6)
-    page = render(StudyPage("A study", "", "drystone sweep", "now", few, grid, tables_of(few, *grid)))
-    assert page.count("<h2>Multiplier over friction</h2>") == 1
+    few = walls([0.3, 0.6] * 6, friction=[0.3, 0.9] * 6, proportion=[float(k) for k in range(6) for _ in range(2)])
+    page = render(StudyPage("A study", "", "drystone sweep", "now", few, grid[::-1], tables_of(few, *grid[::-1])))
+    assert page.count("<svg") == 1
 
 
 def test_lines_that_are_left_out_are_counted():
     parts = [walls([0.3, 0.5], f"m{k}", friction=[0.3, 0.9]) for k in range(15)]
     rows = pd.concat(parts, ignore_index=True)
     page = render(StudyPage("A study", "", "c", "now", rows, ["friction"], tables_of(rows, "friction")))
-    assert "3 more lines are not drawn; the files have them." in page
+    assert "3 lines more are not drawn; the files have them." in page
 
 
 def test_equal_multipliers_over_a_grid_have_no_ends_and_a_bracket_about_all_others_is_both():
