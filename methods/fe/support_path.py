@@ -95,7 +95,7 @@ class _ImposedMotion:
 def support_path(
     assembly: Assembly,
     gives_way: bool,
-    settings: GapSpringsSettings = GapSpringsSettings(),
+    settings: GapSpringsSettings,
     steps: SupportSteps = SupportSteps(),
 ) -> SupportPath | str:
     """Impose the motion of the supports from rest under the dead load until the reaction is constant.
@@ -117,7 +117,7 @@ def support_path(
     if not gravity.found:
         return "The gap springs find no equilibrium under the dead load."
     imposed = _ImposedMotion.of(model, 1.0 if gives_way else -1.0)
-    points = [_Point(0.0, model, gravity)]
+    points = [_ImposedPoint(0.0, model, gravity)]
     step, reason = steps.first, f"The reaction still changes after {steps.most} steps."
     for _ in range(steps.most):
         point = _imposed(imposed, factor, gravity, points[-1], step)
@@ -134,7 +134,7 @@ def support_path(
 
 
 @dataclass(frozen=True, eq=False)
-class _Point:
+class _ImposedPoint:
     """The wall with its supports displaced (dimensionless), in equilibrium."""
 
     displacement: float
@@ -148,24 +148,26 @@ class _Point:
         return self.model.end_forces(*self.model.forces(rest.u, rest.history, rest.state))
 
 
-def _imposed(imposed: _ImposedMotion, factor: Factor, gravity: Equilibrium, last: _Point, step: float) -> _Point:
+def _imposed(
+    imposed: _ImposedMotion, factor: Factor, gravity: Equilibrium, last: _ImposedPoint, step: float
+) -> _ImposedPoint:
     """The point one step further, which may not be in equilibrium."""
     displacement = last.displacement + step
     moved, history = imposed.at(displacement), imposed.history(gravity.history, displacement)
-    return _Point(displacement, moved, equilibrium(moved, factor, last.rest.u, 0.0, history))
+    return _ImposedPoint(displacement, moved, equilibrium(moved, factor, last.rest.u, 0.0, history))
 
 
 @dataclass(frozen=True, eq=False)
 class _Piece:
     """A straight piece of the path: gaps (P,), their rates by the displacement, and the velocity (N,) of the wall."""
 
-    point: _Point
+    point: _ImposedPoint
     gaps: tuple[FloatArray, FloatArray]
     rates: tuple[FloatArray, FloatArray]
     velocity: FloatArray
 
     @classmethod
-    def at(cls, imposed: _ImposedMotion, factor: Factor, point: _Point) -> _Piece | None:
+    def at(cls, imposed: _ImposedMotion, factor: Factor, point: _ImposedPoint) -> _Piece | None:
         """The piece on which a point lies, None where the wall moves on it while the supports rest."""
         model, rest = point.model, point.rest
         pull = model.out_of_balance(imposed.opening, imposed.trial, rest.state, 0.0, dead=0.0)
@@ -209,7 +211,9 @@ class _Piece:
         return motion + (prescribed if gives_way else -prescribed)
 
 
-def _path(points: list[_Point], mechanism: FloatArray | None, constant_from: float | None, reason: str) -> SupportPath:
+def _path(
+    points: list[_ImposedPoint], mechanism: FloatArray | None, constant_from: float | None, reason: str
+) -> SupportPath:
     """The path through some points, the last of which is its end."""
     model, forces = points[0].model, [point.forces for point in points]
     strains, states = model.assembly.support_strains, [point.rest.state for point in points]

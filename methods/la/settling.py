@@ -58,7 +58,7 @@ class SettlingSteps:
 
 
 @dataclass(frozen=True, eq=False)
-class Settled:
+class StandingState:
     """A wall that its supports have moved, and the least reaction there.
 
     Attributes:
@@ -80,7 +80,7 @@ class SettledUntil:
         reason: why the wall was followed no further; empty where it falls.
     """
 
-    points: tuple[Settled, ...]
+    points: tuple[StandingState, ...]
     fall: MovedWall | None
     mechanism: FloatArray | None
     reason: str
@@ -136,17 +136,17 @@ class _Failure:
 
     kind: str
     wall: MovedWall
-    start: Settled
+    start: StandingState
     step: float
 
 
-def _state_of(wall: MovedWall) -> Settled | str:
+def _state_of(wall: MovedWall) -> StandingState | str:
     """The least reaction of a wall as it stands, or how the programme ended."""
     found = extreme_reaction(wall.assembly, greatest=False, parted=~wall.closed)
-    return found if isinstance(found, str) else Settled(wall, found)
+    return found if isinstance(found, str) else StandingState(wall, found)
 
 
-def _held(now: Settled, moves: float) -> tuple[BoolArray, str]:
+def _held(now: StandingState, moves: float) -> tuple[BoolArray, str]:
     """(m, 2) ends of joints that go on to meet, and the blocks of one that slides under force or touching, if any."""
     assembly, mechanism = now.wall.assembly, now.state.mechanism
     rates = (assembly.kinematic_matrix @ mechanism[assembly.free].ravel()).reshape(-1, 3) + assembly.support_strains
@@ -160,7 +160,7 @@ def _held(now: Settled, moves: float) -> tuple[BoolArray, str]:
     return held, " and ".join(assembly.block_ids[side[joint]] for side in (assembly.block_a, assembly.block_b))
 
 
-def _tried(now: Settled, step: float, held: BoolArray, closure: ClosureTolerances) -> Settled | _Failure:
+def _tried(now: StandingState, step: float, held: BoolArray, closure: ClosureTolerances) -> StandingState | _Failure:
     """The wall after a step, or why the step is too long."""
     wall = now.wall.moved(now.state.mechanism, step, held, closure)
     if wall is None:
@@ -172,23 +172,23 @@ def _tried(now: Settled, step: float, held: BoolArray, closure: ClosureTolerance
 
 
 def _advanced(
-    now: Settled, step: float, held: BoolArray, width: float, closure: ClosureTolerances
-) -> tuple[Settled, _Failure | None]:
+    now: StandingState, step: float, held: BoolArray, width: float, closure: ClosureTolerances
+) -> tuple[StandingState, _Failure | None]:
     """The wall after a step; or, where that is too long, after the longest that is not, with why it is the longest."""
     found = _tried(now, step, held, closure)
-    if isinstance(found, Settled):
+    if isinstance(found, StandingState):
         return found, None
     best, low, high = now, 0.0, found
     while high.step - low > width:
         middle = _tried(now, 0.5 * (low + high.step), held, closure)
-        if isinstance(middle, Settled):
+        if isinstance(middle, StandingState):
             best, low = middle, middle.wall.displacement - now.wall.displacement
         else:
             high = middle
     return best, high
 
 
-def _fallen(points: list[Settled], failure: _Failure, held: BoolArray, steps: SettlingSteps) -> SettledUntil:
+def _fallen(points: list[StandingState], failure: _Failure, held: BoolArray, steps: SettlingSteps) -> SettledUntil:
     """The end of a wall that falls, at the least displacement beyond its last at which a mechanism proves it.
 
     The programme may find no forces a hair before a mechanism does work beyond rounding.

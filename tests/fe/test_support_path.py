@@ -14,6 +14,7 @@ from drystone.reactions import reactions
 from drystone.support_paths import ReactionPath, paths_as_csv, reaction_paths
 from harness.engine.reaction_judge import judge_plateau
 from harness.model.errors import InputError
+from methods.fe.settings import GapSpringsSettings
 from methods.fe.support_path import SupportPath, SupportSteps, support_path
 from tests.commands import drystone as command
 from tests.la.test_reaction_command import DOWN, WEIGHT, data
@@ -132,7 +133,7 @@ def test_what_fe_does_not_take_is_refused():
 
 
 def test_a_path_without_an_end_has_no_plateau():
-    path = support_path(bricks(0.65).assembly, True, steps=SupportSteps(most=3))
+    path = support_path(bricks(0.65).assembly, True, GapSpringsSettings(), SupportSteps(most=3))
     assert isinstance(path, SupportPath)
     assert (path.mechanism, path.constant_from) == (None, None)
     assert path.reason == "The reaction still changes after 3 steps."
@@ -171,7 +172,7 @@ def test_judge_rejects_what_is_no_plateau():
     assert not accepted(mechanism=2.0 * gives.mechanism)
     assert not accepted(mechanism=np.where(wall.assembly.fixed[:, None], gives.mechanism, 0.0))
     assert not accepted(extremes=(right["reaction"] + 0.01, 9.0))
-    elastic = support_path(wall.assembly, True, steps=SupportSteps(most=3))
+    elastic = support_path(wall.assembly, True, GapSpringsSettings(), SupportSteps(most=3))
     assert isinstance(elastic, SupportPath)
     assert not accepted(forces=elastic.forces, reaction=float(elastic.reaction[-1]))
 
