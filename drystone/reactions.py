@@ -64,12 +64,7 @@ def reactions(wall: Wall, tolerance: float = 1e-9) -> tuple[Reaction, Reaction] 
     from methods.la.core.reaction import extreme_reaction
 
     assembly = wall.assembly
-    if not np.any(with_bars_as_joints(assembly).support_strains):
-        remedy = 'Give "settlements": [{"blocks": [...], "translation": [0, -1]}]'
-        raise InputError("no support with a joint, a tie or a prop moves", remedy, "settlements")
-    if assembly.crushes:
-        remedy = "Leave compressive strength out: the programmes of reactions are linear"
-        raise InputError("some joints have compressive strength", remedy, "settlements")
+    check_reactions(assembly)
     found: list[Reaction] = []
     for greatest in (False, True):
         answer = extreme_reaction(assembly, greatest)
@@ -79,7 +74,7 @@ def reactions(wall: Wall, tolerance: float = 1e-9) -> tuple[Reaction, Reaction] 
                     "No equilibrium within yield exists under the dead load: the wall falls, wherever its supports go."
                 )
             return f"The linear programme of the {'greatest' if greatest else 'least'} reaction is {answer}."
-        names = _moving(assembly, answer.mechanism)
+        names = moving_blocks(assembly, answer.mechanism)
         said = judge_reaction(
             assembly,
             answer.reaction,
@@ -93,7 +88,21 @@ def reactions(wall: Wall, tolerance: float = 1e-9) -> tuple[Reaction, Reaction] 
     return found[0], found[1]
 
 
-def _moving(assembly: Assembly, mechanism: FloatArray) -> tuple[str, ...]:
+def check_reactions(assembly: Assembly) -> None:
+    """Refuse a wall whose reactions are not asked by linear programmes.
+
+    Raises:
+        InputError: no support with a joint, a tie or a prop moves, or joints crush.
+    """
+    if not np.any(with_bars_as_joints(assembly).support_strains):
+        remedy = 'Give "settlements": [{"blocks": [...], "translation": [0, -1]}]'
+        raise InputError("no support with a joint, a tie or a prop moves", remedy, "settlements")
+    if assembly.crushes:
+        remedy = "Leave compressive strength out: the programmes of reactions are linear"
+        raise InputError("some joints have compressive strength", remedy, "settlements")
+
+
+def moving_blocks(assembly: Assembly, mechanism: FloatArray) -> tuple[str, ...]:
     """Names of the free blocks that move in a mechanism (n, 3)."""
     speed = abs(mechanism * [1.0, 1.0, assembly.length_scale]).max(axis=1)
     moves = ~assembly.fixed & (speed > 1e-9 * speed.max())
@@ -142,7 +151,7 @@ def least_known_reactions(
                 np.asarray(result.forces, dtype=float),
                 tensions[: len(assembly.bars)],
                 mechanism,
-                _moving(assembly, mechanism),
+                moving_blocks(assembly, mechanism),
                 judgement,
             )
         )

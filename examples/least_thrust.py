@@ -1,8 +1,8 @@
 """What is the least horizontal thrust of an arch?
 
-Supports do not move yet. So one springing of the wall in `data/thrust-min.json` lies on a smooth plane, held by a dead
-force, and the live load is a force along the plane that lets go. The reference 0.3680362 was computed by a linear
-programme independent of Drystone.
+`drystone reaction` asks it of a support that moves. Here it is a multiplier: one springing of the wall in
+`data/thrust-min.json` lies on a smooth plane, held by a dead force, and the live load along the plane lets go. The
+reference 0.3680362 was computed by a linear programme independent of Drystone.
 
 Expected:
 

@@ -3,15 +3,21 @@
 from __future__ import annotations
 
 import sys
+from collections.abc import Callable
 from pathlib import Path
+from typing import TYPE_CHECKING, NoReturn
 
 import click
 
-from drystone.cli.options import cases_option, catching, json_flag, print_json, say, warn
+from drystone.cli.options import OUTPUT, cases_option, catching, json_flag, print_json, say, warn
 from drystone.reactions import least_known_reactions, reactions
 from drystone.walls import Wall
 from harness.engine.plan import find_cases
-from harness.model.errors import first_few
+from harness.model.errors import InputError, first_few
+from harness.model.writing import replacing
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
 
 SAID = {
     "least": "least reaction",
@@ -28,10 +34,27 @@ SAID = {
     is_flag=True,
     help="The reactions at which the wall collapses without dilatancy, as far as `la` knows, in place of the extremes.",
 )
+@click.option(
+    "--path", "as_path", is_flag=True, help="The reaction against the imposed displacement, by the gap springs of `fe`."
+)
+@click.option(
+    "--until-collapse", is_flag=True, help="How far the supports can move before the wall falls, on updated geometry."
+)
+@click.option(
+    "-o", "--output", type=OUTPUT, help="Also draw or list the path or the way to collapse: .pdf, .svg, .png or .csv."
+)
 @json_flag
 @cases_option
 @catching
-def reaction(case: str, without_dilatancy: bool, as_json: bool, folders: tuple[Path, ...]) -> None:
+def reaction(
+    case: str,
+    without_dilatancy: bool,
+    as_path: bool,
+    until_collapse: bool,
+    output: Path | None,
+    as_json: bool,
+    folders: tuple[Path, ...],
+) -> None:
     """Print the least and the greatest reaction of supports of CASE (an id, a case folder or a WALL.json) that move.
 
     The wall gives "settlements". The reaction is along them, under the dead load, with associated flow: the least where
@@ -39,16 +62,27 @@ def reaction(case: str, without_dilatancy: bool, as_json: bool, folders: tuple[P
     are the greatest reaction known at which a support gives way, and the least known at which one pushes back. Exit
     code 1: there is none, or the judge rejects one.
     """
+    if without_dilatancy + as_path + until_collapse > 1:
+        raise InputError("they are different questions", "Give one of --without-dilatancy, --path, --until-collapse")
+    if output is not None and not (as_path or until_collapse):
+        raise InputError("two numbers are no curve", "Give --path or --until-collapse with it", "--output")
     (found,) = find_cases([case], None, folders)
     warn(found)
-    answer = least_known_reactions(Wall(found)) if without_dilatancy else reactions(Wall(found))
+    wall = Wall(found)
+    if as_path:
+        _print_paths(wall, output, as_json)
+    elif until_collapse:
+        _print_collapse(wall, output, as_json)
+    else:
+        _print_reactions(wall, without_dilatancy, as_json)
+
+
+def _print_reactions(wall: Wall, without_dilatancy: bool, as_json: bool) -> None:
+    """Two reactions, each with the blocks that move."""
+    answer = least_known_reactions(wall) if without_dilatancy else reactions(wall)
     names = ("giving_way", "pushing") if without_dilatancy else ("least", "greatest")
     if isinstance(answer, str):
-        if as_json:
-            print_json(dict.fromkeys(names) | {"reason": answer})
-        else:
-            say(answer)
-        sys.exit(1)
+        _print_none(answer, names, as_json)
     if as_json:
         print_json({name: each.as_json() for name, each in zip(names, answer, strict=True)})
     else:
@@ -56,3 +90,60 @@ def reaction(case: str, without_dilatancy: bool, as_json: bool, folders: tuple[P
             moving = first_few(each.moving, 8) if each.moving else "no free block"
             say(f"The {SAID[name]} is {each.value:.7g}; in its mechanism move: {moving}. {each.judgement.sentence}")
     sys.exit(0 if all(each.judgement.accepted for each in answer) else 1)
+
+
+def _print_paths(wall: Wall, output: Path | None, as_json: bool) -> None:
+    """The paths of a support that gives way and of one that pushes."""
+    from drystone.support_paths import paths_as_csv, paths_figure, reaction_paths
+
+    answer = reaction_paths(wall)
+    names = ("giving_way", "pushing")
+    if isinstance(answer, str):
+        _print_none(answer, names, as_json)
+    _write(output, lambda: paths_as_csv(answer), lambda: paths_figure(answer, wall.title))
+    if as_json:
+        print_json({name: each.as_json() for name, each in zip(names, answer, strict=True)})
+    else:
+        for each in answer:
+            say(each.sentence)
+            say(f"{'displacement':>14} {'reaction':>14}")
+            for x, y in zip(each.displacement.tolist(), each.reaction.tolist(), strict=True):
+                say(f"{x:14.7g} {y:14.7g}")
+    sys.exit(0 if all(each.accepted for each in answer) else 1)
+
+
+def _print_collapse(wall: Wall, output: Path | None, as_json: bool) -> None:
+    """The displacement at collapse."""
+    from drystone.settling import settled_until_collapse
+
+    answer = settled_until_collapse(wall)
+    if isinstance(answer, str):
+        _print_none(answer, ("stands", "falls"), as_json)
+    _write(output, answer.as_csv, answer.plot)
+    if as_json:
+        print_json(answer.as_json())
+    else:
+        say(answer.sentence)
+    sys.exit(0 if answer.accepted else 1)
+
+
+def _print_none(reason: str, names: tuple[str, ...], as_json: bool) -> NoReturn:
+    """Say why there is no answer, and end."""
+    if as_json:
+        print_json(dict.fromkeys(names) | {"reason": reason})
+    else:
+        say(reason)
+    sys.exit(1)
+
+
+def _write(output: Path | None, table: Callable[[], str], figure: Callable[[], Figure]) -> None:
+    """Write a table or a figure, as the ending of the file says."""
+    if output is None:
+        return
+    if output.suffix.lower() == ".csv":
+        with replacing(output) as draft:
+            draft.write_text(table(), encoding="utf-8")
+        return
+    from reports.drawing.figures import save
+
+    save(figure, output)

@@ -57,10 +57,55 @@ def judge_reaction(
         "reaction": abs(shown - reaction) / max(work, abs(reaction)),
         "virtual_work": abs(bound - reaction) / max(work, abs(reaction)),
     }
-    failed = [f"{name} {value:.3g}" for name, value in residuals.items() if not value <= tolerance]
     what = "greatest" if greatest else "least"
-    sentence = f"Forces and mechanism of the {what} reaction were checked from block sums"
-    sentence += (
-        f"; not within {tolerance:.3g}: {', '.join(failed)}." if failed else f" and hold within {tolerance:.3g}."
-    )
+    return held(residuals, tolerance, f"Forces and mechanism of the {what} reaction were")
+
+
+def judge_plateau(
+    assembly: Assembly,
+    reaction: float,
+    forces: FloatArray,
+    mechanism: FloatArray,
+    *,
+    gives_way: bool,
+    tolerance: float,
+    extremes: tuple[float, float],
+) -> Judgement:
+    """Whether a constant reaction belongs to a mechanism without dilatancy that moving supports drive.
+
+    Forces and mechanism are held to equilibrium, yield, and the work of each other: where no joint closes and no force
+    exceeds yield, the prescribed motion does the work R of the dead load less friction and strength only if nothing
+    opens under force or slips below its strength. So no motion beside the mechanism changes R.
+
+    Args:
+        assembly: the wall with its `support_motion`, without ties and props.
+        reaction: work R on the motion of the supports; extremes: least and greatest R of associated flow.
+        forces: (m, 3) contact forces [force]; mechanism: (n, 3) motion of all blocks.
+        gives_way: whether the supports move as prescribed; else backwards.
+        tolerance: the largest residual that is acceptable.
+    """
+    sense = 1.0 if gives_way else -1.0
+    supports = np.where(assembly.fixed[:, None], mechanism - sense * assembly.support_motion, 0.0)
+    speed = fastest_vertex(assembly, assembly.support_motion) or 1.0
+    fastest = max(fastest_vertex(assembly, mechanism), speed)
+    work = max(assembly.force_scale * speed, abs(reaction))
+    opening, slip = relative_velocities(assembly, mechanism)
+    friction = float((assembly.friction * forces[:, :2].sum(axis=1) * abs(slip)).sum())
+    taken = friction + dissipated_by_strength(assembly, opening, slip)
+    low, high = extremes
+    residuals = force_residuals(assembly, forces, 0.0) | {
+        "supports": fastest_vertex(assembly, supports) / speed,
+        "interpenetration": max(0.0, float((-opening).max(initial=0.0))) / fastest,
+        "reaction": abs(power(block_sums(assembly, forces), assembly.support_motion) - reaction) / work,
+        "virtual_work": abs(sense * (power(assembly.dead, mechanism) - taken) - reaction) / work,
+        "extremes": max(0.0, low - reaction, reaction - high) / work,
+    }
+    return held(residuals, tolerance, "Forces and mechanism of the constant reaction were")
+
+
+def held(residuals: dict[str, float], tolerance: float, what: str) -> Judgement:
+    """Accepted where every residual is within the tolerance; what was checked stands before the verb."""
+    failed = [f"{name} {value:.3g}" for name, value in residuals.items() if not value <= tolerance]
+    said = f"; not within {tolerance:.3g}: {', '.join(failed)}." if failed else f" and hold within {tolerance:.3g}."
+    sentence = f"{what} checked from block sums{said}"
     return Judgement(residuals=residuals, tolerance=tolerance, accepted=not failed, sentence=sentence)

@@ -16,7 +16,7 @@ _OUTSIDE = {
         "young", "youngs_modulus", "young_modulus", "elastic_modulus", "modulus", "poisson", "poisson_ratio",
         "shear_modulus", "stiffness", "normal_stiffness", "shear_stiffness", "kn", "ks", "creep",
     ),
-    "displacements that grow (settlements are a field, for reactions alone)": (
+    "prescribed displacements (settlements of supports are a field, for `drystone reaction`)": (
         "displacement", "displacements", "prescribed_displacement", "support_movement",
         "spread", "spreading", "rotation",
     ),

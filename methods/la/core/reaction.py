@@ -18,7 +18,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from harness.model.assembly import Assembly, FloatArray
+from harness.model.assembly import Assembly, BoolArray, FloatArray
 from harness.model.bars import tensions, with_bars_as_joints
 from methods.la.core.problem import make_problem
 from methods.la.core.vertex_programmes import force_programme
@@ -40,8 +40,12 @@ class ExtremeReaction:
     mechanism: FloatArray
 
 
-def extreme_reaction(assembly: Assembly, greatest: bool) -> ExtremeReaction | str:
+def extreme_reaction(assembly: Assembly, greatest: bool, parted: BoolArray | None = None) -> ExtremeReaction | str:
     """The greatest or least reaction of the moving supports under dead load, or how the programme ended without one.
+
+    Args:
+        assembly: with `support_motion`; greatest: which of the two.
+        parted: (m, 2) ends of joints that bear nothing and may close, of a wall without bars; None: all bear.
 
     Raises:
         ValueError: no support with a joint, a tie or a prop moves.
@@ -52,7 +56,7 @@ def extreme_reaction(assembly: Assembly, greatest: bool) -> ExtremeReaction | st
     if not np.any(strains):
         raise ValueError("no support with a joint, a tie or a prop moves: support_motion is zero there")
     problem = make_problem(assembly)
-    found = force_programme(problem).extreme_work(strains, greatest)
+    found = force_programme(problem).extreme_work(strains, greatest, parted)
     if isinstance(found, str):
         return found
     forces = problem.to_forces(found[0])

@@ -120,16 +120,21 @@ class ForceProgramme:
             KinematicSolution(scale * velocities, scale * rates),
         )
 
-    def extreme_work(self, strains: FloatArray, greatest: bool) -> tuple[FloatArray, FloatArray] | str:
+    def extreme_work(
+        self, strains: FloatArray, greatest: bool, parted: BoolArray | None = None
+    ) -> tuple[FloatArray, FloatArray] | str:
         """The forces (m, 3) that do the greatest or least work on strains (m, 3) without live load, or how it ended.
 
         Beside them stand the velocities (3n,) of the mechanism dual to them, which has these strains besides those of
-        its velocities; for the greatest work, the opposite strains.
+        its velocities; for the greatest work, the opposite strains. Ends of joints `parted` (m, 2) bear nothing.
         """
         sense = -1.0 if greatest else 1.0
         scale = COST / float(abs(strains).max())
         cost = np.append(sense * scale * strains.ravel() * self._columns, np.zeros(self._loads))
-        column, limits = self._within_yield(np.zeros((self.problem.n_interfaces, 4), dtype=bool))
+        tight = np.zeros((self.problem.n_interfaces, 4), dtype=bool)
+        if parted is not None:
+            tight[:, :2] = parted
+        column, limits = self._within_yield(tight)
         solved = self._solved(column, limits, cost, (0.0, 0.0), "auto")
         if isinstance(solved, str):
             return solved

@@ -1,0 +1,169 @@
+"""The reaction of supports against the displacement that is imposed on them, by gap springs, judged at its end."""
+
+from __future__ import annotations
+
+import csv
+import io
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from drystone.reactions import moving_blocks, reactions
+from drystone.walls import Wall
+from harness.engine.reaction_judge import judge_plateau
+from harness.model.assembly import FloatArray
+from harness.model.method import check_takes, load_method
+from harness.model.result import Judgement
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+
+@dataclass(frozen=True, eq=False)
+class ReactionPath:
+    """The reaction along one path, from rest under the dead load. k points.
+
+    Attributes:
+        gives_way: whether the supports move as prescribed; else they push, backwards.
+        displacement: (k,) of the fastest vertex of the supports [length]; it scales with the compliance of the springs.
+        reaction: (k,) work of the contact forces on the prescribed motion: a force where that is a translation by one.
+        slipping, opened: (k,) numbers of gap points.
+        constant_from: displacement from which the reaction is constant [length], or None.
+        forces: (m, 3) contact forces at the end [force].
+        mechanism: (n, 3) motion of all blocks at the end, or None.
+        moving: names of the free blocks that move in it.
+        extremes: least and greatest reaction of associated flow.
+        judgement: of the constant reaction, or None where there is none.
+        reason: why there is none; empty where there is one.
+    """
+
+    gives_way: bool
+    displacement: FloatArray
+    reaction: FloatArray
+    slipping: tuple[int, ...]
+    opened: tuple[int, ...]
+    constant_from: float | None
+    forces: FloatArray
+    mechanism: FloatArray | None
+    moving: tuple[str, ...]
+    extremes: tuple[float, float]
+    judgement: Judgement | None
+    reason: str
+
+    @property
+    def value(self) -> float | None:
+        """The constant reaction, None where there is none."""
+        return float(self.reaction[-1]) if self.judgement is not None else None
+
+    @property
+    def accepted(self) -> bool:
+        """Whether there is a constant reaction that the judge accepts."""
+        return bool(self.judgement is not None and self.judgement.accepted)
+
+    @property
+    def sentence(self) -> str:
+        """What was found, and what the judge says."""
+        what = "gives way" if self.gives_way else "pushes back"
+        begins = f"The support {what}: its reaction goes from {self.reaction[0]:.7g} to {self.reaction[-1]:.7g}"
+        if self.judgement is None:
+            return f"{begins}. {self.reason}"
+        low, high = self.extremes
+        return (
+            f"{begins}, where it is constant from the displacement {self.constant_from:.4g} on; no equilibrium lies "
+            f"outside {low:.7g} to {high:.7g}. {self.judgement.sentence}"
+        )
+
+    def as_json(self) -> dict[str, Any]:
+        """JSON values."""
+        return {
+            "value": self.value,
+            "constant_from": self.constant_from,
+            "extremes": list(self.extremes),
+            "displacement": self.displacement.tolist(),
+            "reaction": self.reaction.tolist(),
+            "slipping_points": list(self.slipping),
+            "open_points": list(self.opened),
+            "moving": list(self.moving),
+            "judge": None if self.judgement is None else self.judgement.model_dump(mode="json"),
+            "forces": self.forces.tolist(),
+            "mechanism": None if self.mechanism is None else self.mechanism.tolist(),
+            "reason": self.reason,
+        }
+
+
+def reaction_paths(wall: Wall, **settings: Any) -> tuple[ReactionPath, ReactionPath] | str:
+    """The paths of supports that give way and of supports that push, by the gap springs of `fe`; or why there are none.
+
+    Args:
+        wall: with settlements; its live load does not act.
+        settings: of the springs, as of `fe`.
+
+    Raises:
+        InputError: no support with a joint moves, or the wall has joints or bars that `fe` does not take.
+    """
+    from methods.fe.settings import GapSpringsSettings
+    from methods.fe.support_path import support_path
+
+    assembly, method = wall.assembly, load_method("fe")
+    check_takes(method, replace(assembly, support_motion=np.zeros_like(assembly.support_motion)))
+    extremes = reactions(wall)
+    if isinstance(extremes, str):
+        return extremes
+    low, high = (each.value for each in extremes)
+    found: list[ReactionPath] = []
+    for gives_way in (True, False):
+        path = support_path(assembly, gives_way, GapSpringsSettings(**settings))
+        if isinstance(path, str):
+            return path
+        said = None
+        if path.mechanism is not None:
+            said = judge_plateau(
+                assembly,
+                float(path.reaction[-1]),
+                path.forces,
+                path.mechanism,
+                gives_way=gives_way,
+                tolerance=method.tolerance,
+                extremes=(low, high),
+            )
+        found.append(
+            ReactionPath(
+                gives_way,
+                path.displacement,
+                path.reaction,
+                path.slipping,
+                path.opened,
+                path.constant_from,
+                path.forces,
+                path.mechanism,
+                () if path.mechanism is None else moving_blocks(assembly, path.mechanism),
+                (low, high),
+                said,
+                path.reason,
+            )
+        )
+    return found[0], found[1]
+
+
+def paths_as_csv(paths: tuple[ReactionPath, ...]) -> str:
+    """One row a point of each path."""
+    text = io.StringIO()
+    out = csv.writer(text, lineterminator="\n")
+    out.writerow(["support", "displacement", "reaction", "slipping_points", "open_points"])
+    for path in paths:
+        name = "gives way" if path.gives_way else "pushes"
+        points = zip(path.displacement.tolist(), path.reaction.tolist(), path.slipping, path.opened, strict=True)
+        out.writerows([name, *point] for point in points)
+    return text.getvalue()
+
+
+def paths_figure(paths: tuple[ReactionPath, ...], head: str) -> Figure:
+    """Reaction against displacement of each path, between the extremes of associated flow."""
+    from reports.drawing.settling import reaction_figure
+
+    curves = [
+        ("gives way" if path.gives_way else "pushes", path.displacement, path.reaction, path.constant_from)
+        for path in paths
+    ]
+    return reaction_figure(curves, paths[0].extremes, head)

@@ -1,0 +1,184 @@
+"""The judge of walls whose supports have moved far: that one still stands, and that it falls a hair further.
+
+The wall is put together from the places of its blocks by complex numbers, apart from the methods. The ends of each
+joint are points of both its blocks; where they meet they are a contact, and an end that has parted bears nothing.
+Forces at the contacts in equilibrium with the dead load, within yield, show that the wall can stand there. A dilatant
+mechanism with the supports at rest on which the dead load does work shows that no forces exist. Residuals are relative:
+lengths to the size of a block, velocities to the fastest vertex.
+
+supports           distance of a support from the place to which its prescribed motion leads by finite rotations
+interpenetration   depth by which blocks share area, or by which a joint has closed beyond touching
+parted             normal force at an end that has parted, beside the mean weight of a block
+sliding            distance along a joint of the two points of a contact
+closings           closing velocity at a contact, beyond dilatant flow
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+import shapely
+from numpy.typing import NDArray
+
+from harness.engine.judge import GAIN, IMMENSE
+from harness.engine.reaction_judge import held
+from harness.engine.residuals import block_sums, force_residuals, power
+from harness.model.assembly import Assembly, BoolArray, FloatArray
+from harness.model.geometry import shapes_of
+from harness.model.limit import gross_power
+from harness.model.result import Judgement, fastest_vertex, relative_velocities
+
+MEETS = 1e-9
+"""Distance, in sizes of a block, up to which the two points of an end meet: pins are closed to 1e-13."""
+DEPTH = 1e-9
+"""Depth of a common area, in sizes of a block, that is rounding of places."""
+
+
+@dataclass(frozen=True, eq=False)
+class _Moved:
+    """A wall put together at the places of its blocks.
+
+    Attributes:
+        assembly: of it, an end that has parted on the line of its joint; meets: (m, 2) ends that are contacts.
+        residuals: of its places: supports, interpenetration, sliding.
+    """
+
+    assembly: Assembly
+    meets: BoolArray
+    residuals: dict[str, float]
+
+
+def judge_settled(
+    assembly: Assembly, displacement: float, places: FloatArray, reaction: float, forces: FloatArray, tolerance: float
+) -> Judgement:
+    """Whether a wall can stand where the supports have moved by a multiple of their prescribed motion.
+
+    Args:
+        assembly: the wall as drawn with its `support_motion`; dry joints, no bars, dead loads through the centroids.
+        displacement: that multiple.
+        places: (n, 3) displacements of the centroids [length] and rotations [rad].
+        reaction: work of the contact forces on the present motion of the supports.
+        forces: (m, 3) contact forces, along the joints as they have turned [force].
+        tolerance: the largest residual that is acceptable.
+    """
+    moved = _put_together(assembly, displacement, places)
+    wall = moved.assembly
+    parted = float(abs(np.where(moved.meets, 0.0, forces[:, :2])).max(initial=0.0))
+    work = max(assembly.force_scale * (fastest_vertex(wall, wall.support_motion) or 1.0), abs(reaction))
+    shown = power(block_sums(wall, forces), wall.support_motion)
+    residuals = moved.residuals | force_residuals(wall, forces, 0.0)
+    residuals |= {
+        "parted": parted * assembly.n_free / assembly.force_scale,
+        "reaction": abs(shown - reaction) / work,
+    }
+    return held(residuals, tolerance, "Places and forces where the wall last stands were")
+
+
+def judge_settled_fall(
+    assembly: Assembly, displacement: float, places: FloatArray, mechanism: FloatArray, tolerance: float
+) -> Judgement:
+    """Whether a wall falls where the supports have moved by a multiple of their prescribed motion and rest.
+
+    Args:
+        assembly, displacement, places, tolerance: as for `judge_settled`.
+        mechanism: (n, 3) motion of all blocks.
+    """
+    moved = _put_together(assembly, displacement, places)
+    wall = moved.assembly
+    speed = fastest_vertex(wall, mechanism) or 1.0
+    motion = mechanism / speed
+    opening, slip = relative_velocities(wall, motion)
+    beyond = np.where(moved.meets, opening - (wall.friction * abs(slip))[:, None], 0.0)
+    closings = np.maximum(0.0, -beyond)
+    gain = power(wall.dead, motion)
+    enough = max(GAIN * gross_power(wall, motion), IMMENSE * wall.force_scale * float(closings.sum()))
+    residuals = moved.residuals | {
+        "moving_supports": fastest_vertex(wall, np.where(wall.fixed[:, None], motion, 0.0)),
+        "closings": float(closings.max(initial=0.0)),
+        "no_work": 0.0 if gain > enough else 1.0,
+    }
+    return held(residuals, tolerance, "Places and mechanism where the wall falls were")
+
+
+def _put_together(assembly: Assembly, displacement: float, places: FloatArray) -> _Moved:
+    """The wall at these places."""
+    size = assembly.length_scale
+    turn = np.exp(1j * places[:, 2])
+    was, centre = _complex(assembly.centroid), _complex(assembly.centroid + places[:, :2])
+
+    def of(block: NDArray[np.int64], points: FloatArray) -> NDArray[np.complex128]:
+        return np.asarray(centre[block] + turn[block] * (_complex(points) - was[block]))
+
+    half = np.exp(0.5j * (places[assembly.block_a, 2] + places[assembly.block_b, 2]))
+    normal, tangent = half * _complex(assembly.normal), half * _complex(assembly.tangent)
+    pairs = [[of(side, end) for side in (assembly.block_a, assembly.block_b)] for end in (assembly.end1, assembly.end2)]
+    apart = np.column_stack([b - a for a, b in pairs])
+    gap, shift = ((apart * axis.conj()[:, None]).real for axis in (normal, tangent))
+    meets = gap <= MEETS * size
+    middle = [0.5 * (a + b) for a, b in pairs]
+    along = assembly.length * tangent
+    first = np.where(~meets[:, 0] & meets[:, 1], middle[1] - along, middle[0])
+    second = np.where(meets[:, 0] & ~meets[:, 1], middle[0] + along, middle[1])
+    second = np.where(meets.any(axis=1), second, first + along)
+    parts = [_pairs(centre[k] + turn[k] * (_complex(polygon) - was[k])) for k, polygon in enumerate(assembly.polygons)]
+    velocity = _complex(assembly.support_motion) * np.exp(1j * displacement * assembly.support_motion[:, 2])
+    end1, end2 = _pairs(first), _pairs(second)
+    wall = replace(
+        assembly,
+        polygons=tuple(parts),
+        centroid=_pairs(centre),
+        normal=_pairs(normal),
+        end1=end1,
+        end2=end2,
+        face1=end1,
+        face2=end2,
+        support_motion=np.column_stack([_pairs(velocity), assembly.support_motion[:, 2]]),
+    )
+    closed = max(0.0, float((-gap).max(initial=0.0)))
+    residuals = {
+        "supports": _off_their_way(assembly, displacement, places) / size,
+        "interpenetration": max(closed, _depth(parts, assembly.fixed, DEPTH * size)) / size,
+        "sliding": float(abs(np.where(meets, shift, 0.0)).max(initial=0.0)) / size,
+    }
+    return _Moved(wall, meets, residuals)
+
+
+def _off_their_way(assembly: Assembly, displacement: float, places: FloatArray) -> float:
+    """Largest distance of a vertex of a support from where its motion leads [length].
+
+    A motion (v, omega) turns about the pole at v i / omega from the centroid; a translation has none.
+    """
+    worst = 0.0
+    for k in np.flatnonzero(assembly.fixed).tolist():
+        x, y, omega = assembly.support_motion[k]
+        points = _complex(assembly.polygons[k] - assembly.centroid[k])
+        there = complex(*places[k, :2]) + np.exp(1j * places[k, 2]) * points
+        if omega:
+            pole = 1j * complex(x, y) / omega
+            wanted = pole + np.exp(1j * displacement * omega) * (points - pole)
+        else:
+            wanted = points + displacement * complex(x, y)
+        worst = max(worst, float(abs(there - wanted).max()))
+    return worst
+
+
+def _depth(polygons: list[FloatArray], fixed: BoolArray, rounding: float) -> float:
+    """Largest common area of two blocks, not both supports, over the shorter outline [length]; 0 for rounding."""
+    shapes = shapes_of(polygons)
+    i, j = shapely.STRtree(shapes).query(shapes, predicate="intersects")
+    pairs = (i < j) & ~(fixed[i] & fixed[j])
+    i, j = i[pairs], j[pairs]
+    outline = shapely.length(shapes)
+    depth = shapely.area(shapely.intersection(shapes[i], shapes[j])) / np.minimum(outline[i], outline[j])
+    deepest = float(depth.max(initial=0.0))
+    return deepest if deepest > rounding else 0.0
+
+
+def _complex(vectors: FloatArray) -> NDArray[np.complex128]:
+    """x + i y of vectors (..., 2 or more)."""
+    return np.asarray(vectors[..., 0] + 1j * vectors[..., 1])
+
+
+def _pairs(points: NDArray[np.complex128]) -> FloatArray:
+    return np.stack([points.real, points.imag], axis=-1)

@@ -1,0 +1,229 @@
+"""The path of a wall whose supports move: the reaction against a displacement that is imposed step by step.
+
+The displacement d of the supports strains the joints on them by d q while the free blocks rest, so it enters the gaps
+of their points: g = C u + d q, and K v = -(internal forces of q) along a piece of the path. The law of the gaps is that
+of `fe` without updates of the plastic slip, so that a state of equilibrium depends on d alone and not on the steps to
+it. In small displacements the wall becomes a mechanism that the supports drive; from there on no force changes, and the
+reaction is that of the support that gives way, or that pushes where the displacement is imposed backwards.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from harness.model.assembly import Assembly, FloatArray
+from harness.model.result import fastest_vertex
+from methods.fe.settings import GapSpringsSettings
+from methods.springs.model.factor import Factor, SingularTangent, make_factor, refactor_any
+from methods.springs.model.gap_law import OPEN, SLIP_PLUS
+from methods.springs.model.wall_model import WallModel, build_model, load_scale, point_strains
+from methods.springs.path.breakpoints import next_breakpoint, strain_rates
+from methods.springs.rest.equilibrium import equilibrium, gravity_state
+from methods.springs.rest.newton import Equilibrium
+
+
+@dataclass(frozen=True)
+class SupportSteps:
+    """Steps of the imposed displacement.
+
+    Attributes:
+        first: step, in displacements of a gap spring under the mean weight of a block: the wall is still elastic then.
+        longer: factor on the next; most: number of steps. A plateau that is not reached at longer^most first steps,
+            some 1e9 times the elastic displacement, is beyond the digits of the gaps.
+        noise: gap rates below this share of the speed of the supports count as zero on the plateau, as do rates of
+            breakpoint functions below this share of the fastest gap rate: the tangent is solved to 1e-12 or so of them.
+    """
+
+    first: float = 0.05
+    longer: float = 1.3
+    most: int = 80
+    noise: float = 1e-9
+
+
+@dataclass(frozen=True, eq=False)
+class SupportPath:
+    """The reaction against the displacement of the supports, and the state at its end. k points.
+
+    Attributes:
+        displacement: (k,) of the fastest vertex of the supports [length]; it scales with 1 / normal_stiffness.
+        reaction: (k,) work on the prescribed motion [force where that is a translation by one].
+        slipping, opened: (k,) numbers of gap points.
+        forces: (m, 3) contact forces at the last point [force].
+        mechanism: (n, 3) motion of all blocks on the plateau, with the supports as prescribed; None without a plateau.
+        constant_from: displacement from which the reaction is constant [length]; None without a plateau.
+        reason: why there is no plateau; empty where there is one.
+    """
+
+    displacement: FloatArray
+    reaction: FloatArray
+    slipping: tuple[int, ...]
+    opened: tuple[int, ...]
+    forces: FloatArray
+    mechanism: FloatArray | None
+    constant_from: float | None
+    reason: str
+
+
+@dataclass(frozen=True, eq=False)
+class _ImposedMotion:
+    """What a unit displacement of the supports does to the gaps (P,): openings, and slips times kt."""
+
+    model: WallModel
+    opening: FloatArray
+    trial: FloatArray
+
+    @classmethod
+    def of(cls, model: WallModel, sense: float) -> _ImposedMotion:
+        assembly = model.assembly
+        strains = sense * assembly.support_strains / fastest_vertex(assembly, assembly.support_motion)
+        joint, along = model.interface[: model.n_contacts], model.position[: model.n_contacts]
+        opening = (1.0 - along) * strains[joint, 0] + along * strains[joint, 1]
+        slip = np.concatenate([strains[joint, 2], strains[model.cohesive, 2]])
+        return cls(model, np.concatenate([opening, np.zeros(len(model.cohesive))]), model.kt * slip)
+
+    def at(self, displacement: float) -> WallModel:
+        """The wall with its supports displaced."""
+        return replace(self.model, initial_opening=self.model.initial_opening + displacement * self.opening)
+
+    def history(self, start: FloatArray, displacement: float) -> FloatArray:
+        """The history h (P,) with which the slips of the supports count."""
+        return start + displacement * self.trial
+
+
+def support_path(
+    assembly: Assembly,
+    gives_way: bool,
+    settings: GapSpringsSettings,
+    steps: SupportSteps = SupportSteps(),
+) -> SupportPath | str:
+    """Impose the motion of the supports from rest under the dead load until the reaction is constant.
+
+    Args:
+        assembly: with `support_motion`, without ties, props and compressive strength.
+        gives_way: whether the supports move as prescribed; else backwards.
+        settings: of the springs; steps: of the displacement.
+
+    Returns:
+        The path, or why there is none.
+
+    Raises:
+        ValueError: no block can move.
+    """
+    model = build_model(assembly, settings)
+    factor = make_factor(model)
+    gravity = gravity_state(model, factor)
+    if not gravity.found:
+        return "The gap springs find no equilibrium under the dead load."
+    imposed = _ImposedMotion.of(model, 1.0 if gives_way else -1.0)
+    points = [_ImposedPoint(0.0, model, gravity)]
+    step, reason = steps.first, f"The reaction still changes after {steps.most} steps."
+    for _ in range(steps.most):
+        point = _imposed(imposed, factor, gravity, points[-1], step)
+        if not point.rest.found:
+            reason = f"No equilibrium was found at the displacement {point.displacement * model.displacement:.6g}."
+            break
+        points.append(point)
+        piece = _Piece.at(imposed, factor, point)
+        if piece is not None and piece.is_plateau(steps.noise):
+            mechanism = piece.mechanism(gives_way)
+            return _path(points, mechanism, point.displacement - piece.length_behind(steps.noise), "")
+        step *= steps.longer
+    return _path(points, None, None, reason)
+
+
+@dataclass(frozen=True, eq=False)
+class _ImposedPoint:
+    """The wall with its supports displaced (dimensionless), in equilibrium."""
+
+    displacement: float
+    model: WallModel
+    rest: Equilibrium
+
+    @property
+    def forces(self) -> FloatArray:
+        """(m, 3) contact forces [force]."""
+        rest = self.rest
+        return self.model.end_forces(*self.model.forces(rest.u, rest.history, rest.state))
+
+
+def _imposed(
+    imposed: _ImposedMotion, factor: Factor, gravity: Equilibrium, last: _ImposedPoint, step: float
+) -> _ImposedPoint:
+    """The point one step further, which may not be in equilibrium."""
+    displacement = last.displacement + step
+    moved, history = imposed.at(displacement), imposed.history(gravity.history, displacement)
+    return _ImposedPoint(displacement, moved, equilibrium(moved, factor, last.rest.u, 0.0, history))
+
+
+@dataclass(frozen=True, eq=False)
+class _Piece:
+    """A straight piece of the path: gaps (P,), their rates by the displacement, and the velocity (N,) of the wall."""
+
+    point: _ImposedPoint
+    gaps: tuple[FloatArray, FloatArray]
+    rates: tuple[FloatArray, FloatArray]
+    velocity: FloatArray
+
+    @classmethod
+    def at(cls, imposed: _ImposedMotion, factor: Factor, point: _ImposedPoint) -> _Piece | None:
+        """The piece on which a point lies, None where the wall moves on it while the supports rest."""
+        model, rest = point.model, point.rest
+        pull = model.out_of_balance(imposed.opening, imposed.trial, rest.state, 0.0, dead=0.0)
+        try:
+            refactor_any(factor, rest.state)
+            velocity = factor.solve(pull)
+        except SingularTangent:
+            return None
+        opening_rate, slip_rate = np.empty(model.n_points), np.empty(model.n_points)
+        point_strains(model.unknown, model.rows, model.interface, model.position, velocity, opening_rate, slip_rate)
+        rates = opening_rate + imposed.opening, model.kt * slip_rate + imposed.trial
+        opening, slip = model.strains(rest.u)
+        return cls(point, (opening, model.kt * slip + rest.history), rates, velocity)
+
+    def is_plateau(self, noise: float) -> bool:
+        """Whether no force changes along it and no gap changes its state ahead."""
+        model, state = self.point.model, self.point.rest.state
+        strain, elastic = strain_rates(*self.rates, model.kt, state)
+        fastest = max(strain, 1.0)  # the speed of the supports: where the wall goes with them nothing strains
+        return elastic <= model.options.mechanism.elastic * fastest and self._length(1.0, noise) == np.inf
+
+    def length_behind(self, noise: float) -> float:
+        """How far the piece reaches back, not beyond the point of rest under the dead load."""
+        return min(self._length(-1.0, noise), self.point.displacement)
+
+    def _length(self, way: float, noise: float) -> float:
+        """Displacement up to the next breakpoint ahead (1) or behind (-1)."""
+        model, state = self.point.model, self.point.rest.state
+        opening_rate, trial_rate = (np.where(abs(rate) > noise, way * rate, 0.0) for rate in self.rates)
+        near = model.options.breakpoints.force * load_scale(model, 0.0)
+        return next_breakpoint(
+            *self.gaps, opening_rate, trial_rate, model.kn, model.mu, state, near, noise, np.inf, -1, OPEN
+        )[0]
+
+    def mechanism(self, gives_way: bool) -> FloatArray:
+        """(n, 3) motion of all blocks along it, with the supports as prescribed or backwards."""
+        model = self.point.model
+        prescribed = model.assembly.support_motion
+        motion = model.block_displacements(self.velocity)
+        motion *= fastest_vertex(model.assembly, prescribed) / model.displacement
+        return motion + (prescribed if gives_way else -prescribed)
+
+
+def _path(
+    points: list[_ImposedPoint], mechanism: FloatArray | None, constant_from: float | None, reason: str
+) -> SupportPath:
+    """The path through some points, the last of which is its end."""
+    model, forces = points[0].model, [point.forces for point in points]
+    strains, states = model.assembly.support_strains, [point.rest.state for point in points]
+    return SupportPath(
+        displacement=np.array([point.displacement for point in points]) * model.displacement,
+        reaction=np.array([float((strains * each).sum()) for each in forces]),
+        slipping=tuple(int(np.count_nonzero(state >= SLIP_PLUS)) for state in states),
+        opened=tuple(int(np.count_nonzero(state == OPEN)) for state in states),
+        forces=forces[-1],
+        mechanism=mechanism,
+        constant_from=None if constant_from is None else constant_from * model.displacement,
+        reason=reason,
+    )

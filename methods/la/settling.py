@@ -1,0 +1,232 @@
+"""Supports that move until no admissible state is left: limit analysis on updated geometry.
+
+At every displacement d of the supports the least reaction and the mechanism dual to it are found (`core/reaction`) in
+the wall as it stands then, whose opened joints are pins. The wall follows that mechanism by finite rotations about its
+pins; it is the wall's own linkage, so the points that meet are brought together exactly after each step. Where the
+forces that the pins leave no longer lie within yield, no admissible state is left: the wall falls, and a dilatant
+mechanism with the supports at rest proves it. A joint that closes again bears again. A mechanism that slides is not
+followed: dilatant slip, which the programme has, would lift a wall that really does not lift.
+
+Sources: Portioli and Cascini (2017); Iannuzzo et al. (2020).
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+import scipy.sparse as sp
+
+from harness.model.assembly import BoolArray, FloatArray
+from harness.model.deadline import Deadline
+from harness.model.result import fastest_vertex
+from methods.la.core.problem import make_problem
+from methods.la.core.reaction import ExtremeReaction, extreme_reaction
+from methods.la.moved_wall import ClosureTolerances, MovedWall
+from methods.numerics.linear_programme import INFINITY, Programme
+
+FALLS, CLOSES, PARTS = "falls", "closes", "parts"
+
+
+@dataclass(frozen=True)
+class SettlingSteps:
+    """Steps of the displacement. Lengths are in sizes of a block, moved by the fastest vertex of the supports.
+
+    Attributes:
+        first, longest: step; longer: factor on the next. Between two steps nothing changes but by the linkage, so that
+            they only space the points of the curve.
+        width: to which the largest displacement with an admissible state is bisected: forces are exact to 1e-12.
+        proofs: powers of ten of the width beyond it, at most, at which a mechanism is looked for that proves the fall;
+            immense: forces, in dead loads of the wall, that it would need to stand in spite of that. Rounding leaves
+            each contact half a unit in the last place to close by, so the proof takes a displacement of about 1e-7.
+        moves: rates below this share of the fastest vertex are none: those of a vertex are exact to 1e-12.
+        far: displacement after which the supports are followed no further.
+        most: steps.
+        closure: how exactly pins are closed.
+    """
+
+    first: float = 0.02
+    longer: float = 1.5
+    longest: float = 0.1
+    width: float = 1e-9
+    proofs: int = 6
+    immense: float = 1e7
+    moves: float = 1e-8
+    far: float = 1e3
+    most: int = 20_000
+    closure: ClosureTolerances = ClosureTolerances()
+
+
+@dataclass(frozen=True, eq=False)
+class StandingState:
+    """A wall that its supports have moved, and the least reaction there.
+
+    Attributes:
+        wall: where its blocks are; state: reaction, forces and the mechanism by which it would move on.
+    """
+
+    wall: MovedWall
+    state: ExtremeReaction
+
+
+@dataclass(frozen=True, eq=False)
+class SettledUntil:
+    """How far supports can move. k points.
+
+    Attributes:
+        points: (k,) states on the way, the last with the largest displacement at which the wall stands.
+        fall: the wall at a displacement a hair larger, at which it falls, or None.
+        mechanism: (n, 3) dilatant motion that proves the fall, supports at rest; None without one.
+        reason: why the wall was followed no further; empty where it falls.
+    """
+
+    points: tuple[StandingState, ...]
+    fall: MovedWall | None
+    mechanism: FloatArray | None
+    reason: str
+
+
+def settle(start: MovedWall, steps: SettlingSteps = SettlingSteps()) -> SettledUntil | str:
+    """Move the supports as prescribed until the wall falls; or how the first programme ended without a solution.
+
+    Args:
+        start: where the wall begins, as `MovedWall.at_rest` of an assembly with `support_motion` that strains joints;
+            dry joints, no bars, dead loads through the centroids.
+        steps: of the displacement.
+    """
+    now, assembly = _state_of(start), start.drawn
+    if isinstance(now, str):
+        return now
+    size = assembly.length_scale / fastest_vertex(assembly, assembly.support_motion)
+    deadline, step, points = Deadline.of_run(), steps.first * size, [now]
+    for _ in range(steps.most):
+        deadline.ask()
+        held, sliding = _held(now, steps.moves)
+        if sliding:
+            return SettledUntil(
+                tuple(points), None, None, f"From there on the joint between {sliding} slides, which is not followed."
+            )
+        if now.wall.displacement - start.displacement > steps.far * size:
+            return SettledUntil(tuple(points), None, None, "It stands as far as it was followed.")
+        now, failure = _advanced(now, step, held, steps.width * size, steps.closure)
+        if now.wall.displacement > points[-1].wall.displacement:
+            points.append(now)
+        if failure is None:
+            step = min(steps.longer * step, steps.longest * size)
+        elif failure.kind == CLOSES:
+            again = _state_of(replace(now.wall, closed=now.wall.closed | (failure.wall.gaps < 0.0)))
+            if isinstance(again, str):
+                return SettledUntil(tuple(points), None, None, f"Where a joint closes the programme is {again}.")
+            now = again
+        elif failure.kind == FALLS:
+            return _fallen(points, failure, held, steps)
+        else:
+            return SettledUntil(tuple(points), None, None, "From there on its joints cannot all meet without sliding.")
+    return SettledUntil(tuple(points), None, None, f"It stands after {steps.most} steps.")
+
+
+@dataclass(frozen=True, eq=False)
+class _Failure:
+    """Why a step is too long: no admissible state is left, a joint has closed, or pins cannot meet.
+
+    Attributes:
+        kind: of these three; wall: after the step, before it where pins cannot meet.
+        start: where the step begins; step: its length.
+    """
+
+    kind: str
+    wall: MovedWall
+    start: StandingState
+    step: float
+
+
+def _state_of(wall: MovedWall) -> StandingState | str:
+    """The least reaction of a wall as it stands, or how the programme ended."""
+    found = extreme_reaction(wall.assembly, greatest=False, parted=~wall.closed)
+    return found if isinstance(found, str) else StandingState(wall, found)
+
+
+def _held(now: StandingState, moves: float) -> tuple[BoolArray, str]:
+    """(m, 2) ends of joints that go on to meet, and the blocks of one that slides under force or touching, if any."""
+    assembly, mechanism = now.wall.assembly, now.state.mechanism
+    rates = (assembly.kinematic_matrix @ mechanism[assembly.free].ravel()).reshape(-1, 3) + assembly.support_strains
+    least = moves * fastest_vertex(assembly, mechanism)
+    held = now.wall.closed & (rates[:, :2] <= least)
+    pressed = now.state.forces[:, :2].sum(axis=1) > moves * assembly.force_scale / assembly.n_free
+    slides = np.flatnonzero((pressed | held.any(axis=1)) & (abs(rates[:, 2]) > least))
+    if not len(slides):
+        return held, ""
+    joint = slides[np.argmax(abs(rates[slides, 2]))]
+    return held, " and ".join(assembly.block_ids[side[joint]] for side in (assembly.block_a, assembly.block_b))
+
+
+def _tried(now: StandingState, step: float, held: BoolArray, closure: ClosureTolerances) -> StandingState | _Failure:
+    """The wall after a step, or why the step is too long."""
+    wall = now.wall.moved(now.state.mechanism, step, held, closure)
+    if wall is None:
+        return _Failure(PARTS, now.wall, now, step)
+    if bool((wall.gaps[~held] < 0.0).any()):
+        return _Failure(CLOSES, wall, now, step)
+    found = _state_of(wall)
+    return _Failure(FALLS, wall, now, step) if isinstance(found, str) else found
+
+
+def _advanced(
+    now: StandingState, step: float, held: BoolArray, width: float, closure: ClosureTolerances
+) -> tuple[StandingState, _Failure | None]:
+    """The wall after a step; or, where that is too long, after the longest that is not, with why it is the longest."""
+    found = _tried(now, step, held, closure)
+    if isinstance(found, StandingState):
+        return found, None
+    best, low, high = now, 0.0, found
+    while high.step - low > width:
+        middle = _tried(now, 0.5 * (low + high.step), held, closure)
+        if isinstance(middle, StandingState):
+            best, low = middle, middle.wall.displacement - now.wall.displacement
+        else:
+            high = middle
+    return best, high
+
+
+def _fallen(points: list[StandingState], failure: _Failure, held: BoolArray, steps: SettlingSteps) -> SettledUntil:
+    """The end of a wall that falls, at the least displacement beyond its last at which a mechanism proves it.
+
+    The programme may find no forces a hair before a mechanism does work beyond rounding.
+    """
+    width = steps.width * failure.start.wall.drawn.length_scale
+    for further in (0.0, *(width * 10.0**k for k in range(steps.proofs))):
+        wall = failure.start.wall.moved(failure.start.state.mechanism, failure.step + further, held, steps.closure)
+        mechanism = None if wall is None else _falling(wall, steps.immense)
+        if mechanism is not None:
+            return SettledUntil(tuple(points), wall, mechanism, "")
+    return SettledUntil(tuple(points), None, None, "From there on no forces are found, and no mechanism proves a fall.")
+
+
+def _falling(wall: MovedWall, immense: float) -> FloatArray | None:
+    """(n, 3) dilatant mechanism on which the dead load does most work while the supports rest, or None.
+
+    Speeds lie between -1 and 1. Rounding leaves closings, on which forces would have to be immense to undo the work.
+    """
+    assembly = wall.assembly
+    problem = make_problem(assembly)
+    strains = problem.kinematic.tocsr()
+    slip = sp.diags(assembly.friction) @ strains[2::3]
+    ends = [strains[k::3][wall.closed[:, k]] + way * slip[wall.closed[:, k]] for k in (0, 1) for way in (1.0, -1.0)]
+    flow = sp.vstack(ends).tocsc()
+    count, rows = flow.shape[1], flow.shape[0]
+    programme = Programme(
+        flow, -problem.dead, (np.full(count, -1.0), np.ones(count)), (np.zeros(rows), np.full(rows, INFINITY))
+    )
+    if programme.run()[0] != "optimal":
+        return None
+    vertex = programme.vertex()
+    if vertex is None:
+        return None
+    velocities = vertex.value[:count]
+    closings = -float(np.minimum(flow @ velocities, 0.0).sum())
+    rounding = float(np.finfo(float).eps * (wall.closed.sum(axis=1) * np.maximum(assembly.friction, 1.0)).sum())
+    if not float(problem.dead @ velocities) > immense * assembly.n_free * max(closings, 0.5 * rounding):
+        return None
+    mechanism = np.zeros((assembly.n_blocks, 3))
+    mechanism[assembly.free] = problem.velocities_of_blocks(velocities)
+    return mechanism

@@ -1,0 +1,74 @@
+"""Figures of supports that move: the reaction against the displacement, and the wall that they have carried along."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+from matplotlib.figure import Figure
+from matplotlib.patches import Polygon
+
+from harness.model.assembly import Assembly, FloatArray
+from harness.model.displaced import carried
+from reports.drawing.figures import COLUMN, PAGE, style
+from reports.drawing.looks import COLOURS
+
+BEYOND = 1.5
+"""Multiple of the displacement from which the last reaction is constant, up to which paths are drawn."""
+
+Curve = tuple[str, FloatArray, FloatArray, float | None]
+"""A name, displacements (k,), reactions (k,), and the displacement from which the reaction is constant."""
+
+
+def reaction_figure(curves: Sequence[Curve], extremes: tuple[float, float], head: str) -> Figure:
+    """Reactions against displacements [length] of supports, between the extremes of associated flow.
+
+    Args:
+        curves: one or more.
+        extremes: least and greatest reaction.
+        head: the line above.
+    """
+    with style():
+        page = Figure(figsize=(COLUMN, 0.8 * COLUMN), layout="constrained")
+        ax = page.subplots()
+        ends = [float(x[-1]) if constant is None else constant for _, x, _, constant in curves]
+        furthest = BEYOND * max(ends) or 1.0
+        for (name, displacement, reaction, _), line in zip(curves, ("-", "--"), strict=False):
+            drawn = np.append(displacement, max(furthest, float(displacement[-1])))
+            ax.plot(drawn, np.append(reaction, reaction[-1]), line, color=COLOURS["ink"], linewidth=0.9, label=name)
+        for value in extremes:
+            ax.axhline(value, color=COLOURS["ink"], linewidth=0.5, linestyle=":")
+        ax.set_xlim(0.0, furthest)
+        ax.set_xlabel("displacement of the support")
+        ax.set_ylabel("reaction")
+        ax.set_title(head)
+        ax.legend(frameon=False)
+        ax.grid(linewidth=0.3)
+    return page
+
+
+def settled_figure(
+    assembly: Assembly, places: FloatArray, displacement: FloatArray, reaction: FloatArray, stands: float
+) -> Figure:
+    """The least reaction against the displacement, and the wall where it last stands.
+
+    Args:
+        assembly: the wall as drawn; places: (n, 3) displacements [length] and rotations of its blocks.
+        displacement, reaction: (k,) on the way; stands: the last displacement.
+    """
+    with style():
+        page = Figure(figsize=(PAGE, 0.4 * PAGE), layout="constrained")
+        curve, wall = page.subplots(1, 2)
+        curve.plot(displacement, reaction, color=COLOURS["ink"], linewidth=0.9)
+        curve.plot(displacement[-1:], reaction[-1:], "o", color=COLOURS["ink"], markersize=3)
+        curve.set_xlabel("displacement, in prescribed motions")
+        curve.set_ylabel("least reaction")
+        curve.grid(linewidth=0.3)
+        for polygon, fixed in zip(carried(assembly, places), assembly.fixed, strict=True):
+            shade = 0.35 if fixed else 0.08
+            wall.add_patch(Polygon(polygon, facecolor=(0, 0, 0, shade), edgecolor=COLOURS["ink"], linewidth=0.5))
+        wall.autoscale_view()
+        wall.set_aspect("equal")
+        wall.set_axis_off()
+        wall.set_title(f"the wall at {stands:.5g}")
+    return page

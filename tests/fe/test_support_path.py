@@ -1,0 +1,205 @@
+"""The reaction of supports against an imposed displacement, by gap springs: plateaus between the extremes, judged."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+import drystone
+from drystone.reactions import reactions
+from drystone.support_paths import ReactionPath, paths_as_csv, reaction_paths
+from harness.engine.reaction_judge import judge_plateau
+from harness.model.errors import InputError
+from methods.fe.settings import GapSpringsSettings
+from methods.fe.support_path import SupportPath, SupportSteps, support_path
+from tests.commands import drystone as command
+from tests.la.test_reaction_command import DOWN, WEIGHT, data
+from tests.moving_supports import bricks, semicircle, weight
+
+EXACT = 1e-8
+"""Relative accuracy that `fe` declares of a plateau."""
+DIGITS = 2e-7
+"""Of thrusts over the weight by another programme, exact to the 1e-7 that its solver is."""
+
+
+def both(found: tuple[ReactionPath, ReactionPath] | str) -> tuple[ReactionPath, ReactionPath]:
+    assert not isinstance(found, str), found
+    for each in found:
+        assert each.accepted, each.sentence
+        assert each.displacement[0] == 0.0
+        assert np.all(np.diff(each.displacement) > 0.0)
+    return found
+
+
+def values(found: tuple[ReactionPath, ReactionPath]) -> list[float]:
+    return [float(each.reaction[-1]) for each in found]
+
+
+def test_block_on_a_base_that_settles():
+    """2/7 of its weight as the base gives way, all of it as the base pushes (Portioli and Cascini 2016)."""
+    wall = drystone.build_wall(data(DOWN))
+    found = both(reaction_paths(wall))
+    assert values(found) == pytest.approx([2.0 / 7.0 * WEIGHT, WEIGHT], rel=EXACT)
+    assert found[0].reaction[0] == found[1].reaction[0]
+    assert all(each.moving == ("block",) for each in found)
+
+
+@pytest.mark.parametrize(
+    ("thickness", "thrusts"),
+    [(0.12, (0.1912256, 0.2079935)), (0.15, (0.1756349, 0.2277179)), (0.2, (0.1542448, 0.2553107))],
+)
+def test_thrusts_of_an_arch_that_does_not_slide(thickness: float, thrusts: tuple[float, float]):
+    wall = semicircle(thickness, 20, 50.0)
+    found = both(reaction_paths(wall))
+    assert [value / weight(wall) for value in values(found)] == pytest.approx(thrusts, abs=DIGITS)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(("friction", "greatest"), [(0.4, 0.2), (0.5, 0.25), (0.7, 0.2545831)])
+def test_thrusts_of_an_arch_with_friction(friction: float, greatest: float):
+    """Where it slides at its springings the greatest is half the friction; the least is .1540326."""
+    wall = semicircle(0.2, 100, friction)
+    found = both(reaction_paths(wall))
+    assert [value / weight(wall) for value in values(found)] == pytest.approx([0.1540326, greatest], abs=DIGITS)
+
+
+def test_bricks_end_between_the_extremes():
+    """By associated flow 1.0544815 to 7.9455185 (another programme); bricks that slide without dilatancy end inside."""
+    low, high = (1.0544815, 7.9455185)
+    found = both(reaction_paths(bricks(0.65)))
+    assert found[0].extremes == pytest.approx((low, high), abs=1e-7)
+    gives, pushes = values(found)
+    assert low + 0.1 < gives < pushes < high - 0.1
+    assert gives + pushes == pytest.approx(9.0, rel=EXACT)  # the wall is its own mirror image
+
+
+def test_reaction_is_constant_from_the_displacement_given():
+    for each in both(reaction_paths(bricks(0.65))):
+        assert each.constant_from is not None
+        beyond = each.displacement > each.constant_from * (1.0 + 1e-9)
+        assert 0 < beyond.sum() < len(beyond)
+        assert each.reaction[beyond] == pytest.approx(float(each.reaction[-1]), rel=EXACT)
+        before = each.reaction[each.displacement < 0.5 * each.constant_from]
+        assert abs(before - each.reaction[-1]).min() > 1e-3 * weight(bricks(0.65))
+
+
+def test_stiffness_scales_displacements_and_no_reaction():
+    wall = drystone.build_wall(data(DOWN))
+    soft, stiff = (both(reaction_paths(wall, normal_stiffness=k)) for k in (1e3, 1e5))
+    for one, other in zip(soft, stiff, strict=True):
+        np.testing.assert_allclose(one.displacement, 100.0 * other.displacement, rtol=1e-9)
+        np.testing.assert_allclose(one.reaction, other.reaction, rtol=1e-9)
+
+
+@pytest.mark.parametrize(
+    "settlements",
+    [
+        [{"blocks": ["right"], "rotation": -1.0, "about": [0.3, 0.0]}],
+        [DOWN, {"blocks": ["left"], "translation": [0.5, 0]}],
+        [{"group": "ground", "translation": [0, -1]}],
+    ],
+)
+def test_any_motion_of_the_supports(settlements: list[dict[str, Any]]):
+    """Rotations, and supports that are no one rigid body; all together they leave the reaction as it is."""
+    wall = drystone.build_wall(data(*settlements))
+    low, high = (each.value for each in reactions(wall))  # type: ignore[union-attr]
+    gives, pushes = values(both(reaction_paths(wall)))
+    assert low - EXACT * WEIGHT <= gives <= pushes + EXACT * WEIGHT
+    assert pushes <= high + EXACT * WEIGHT
+
+
+def test_joints_with_strength():
+    """The joint of the block with what rests bears T = 0.3 f_t in tension, spread by its two ends."""
+    wall = drystone.build_wall(data(DOWN, cohesion=20.0, tensile_strength=2.0))
+    low, high = (each.value for each in reactions(wall))  # type: ignore[union-attr]
+    found = both(reaction_paths(wall))
+    dry = values(both(reaction_paths(drystone.build_wall(data(DOWN)))))
+    assert values(found)[0] < dry[0] - 0.1
+    assert values(found) == pytest.approx([low, high], rel=EXACT)
+
+
+def test_what_fe_does_not_take_is_refused():
+    with pytest.raises(InputError, match="takes no dilatancy"):
+        reaction_paths(drystone.build_wall(data(DOWN, friction={"default": 0.5, "dilatancy": 0.2})))
+    with pytest.raises(InputError, match="no support with a joint"):
+        reaction_paths(drystone.build_wall(data()))
+    tie = {"from": {"block": "left", "at": [0.1, 0]}, "to": {"block": "block", "at": [0.1, 0.2]}, "yield_force": 1}
+    with pytest.raises(InputError, match="takes no ties and props"):
+        reaction_paths(drystone.build_wall(data(DOWN, ties=[tie])))
+
+
+def test_a_path_without_an_end_has_no_plateau():
+    path = support_path(bricks(0.65).assembly, True, GapSpringsSettings(), SupportSteps(most=3))
+    assert isinstance(path, SupportPath)
+    assert (path.mechanism, path.constant_from) == (None, None)
+    assert path.reason == "The reaction still changes after 3 steps."
+    assert len(path.reaction) == 4
+
+
+def test_a_wall_that_falls_has_no_path():
+    said = reaction_paths(drystone.build_wall(data(DOWN, loads={"gravity": [1, -1]})))
+    assert isinstance(said, str)
+    assert "No equilibrium within yield exists" in said
+
+
+def test_judge_rejects_what_is_no_plateau():
+    wall = bricks(0.65)
+    gives, pushes = both(reaction_paths(wall))
+    assert gives.mechanism is not None
+    assert pushes.mechanism is not None
+    right: dict[str, Any] = {
+        "reaction": float(gives.reaction[-1]),
+        "forces": gives.forces,
+        "mechanism": gives.mechanism,
+        "gives_way": True,
+        "tolerance": EXACT,
+        "extremes": gives.extremes,
+    }
+
+    def accepted(**other: Any) -> bool | None:
+        return judge_plateau(wall.assembly, **(right | other)).accepted
+
+    assert accepted()
+    assert not accepted(reaction=right["reaction"] * 1.001)
+    assert not accepted(forces=pushes.forces)
+    assert not accepted(forces=gives.forces * 1.001)
+    assert not accepted(mechanism=pushes.mechanism)
+    assert not accepted(mechanism=-gives.mechanism, gives_way=False)
+    assert not accepted(mechanism=2.0 * gives.mechanism)
+    assert not accepted(mechanism=np.where(wall.assembly.fixed[:, None], gives.mechanism, 0.0))
+    assert not accepted(extremes=(right["reaction"] + 0.01, 9.0))
+    elastic = support_path(wall.assembly, True, GapSpringsSettings(), SupportSteps(most=3))
+    assert isinstance(elastic, SupportPath)
+    assert not accepted(forces=elastic.forces, reaction=float(elastic.reaction[-1]))
+
+
+def test_command(tmp_path: Path):
+    path = tmp_path / "wall.json"
+    path.write_text(json.dumps(data(DOWN)), encoding="utf-8")
+    table, chart = tmp_path / "path.csv", tmp_path / "path.svg"
+    done = command("reaction", path, "--path", "-o", table)
+    assert done.returncode == 0, done.stderr
+    assert "The support gives way: its reaction goes from" in done.stdout
+    found = both(reaction_paths(drystone.build_wall(data(DOWN))))
+    assert table.read_text(encoding="utf-8") == paths_as_csv(found)
+    done = command("reaction", path, "--path", "--json", "-o", chart)
+    listed = json.loads(done.stdout)
+    assert listed["giving_way"]["value"] == pytest.approx(2.0 / 7.0 * WEIGHT, rel=EXACT)
+    assert listed["pushing"]["reaction"] == found[1].reaction.tolist()
+    assert chart.read_text(encoding="utf-8").lstrip().startswith("<?xml")
+
+
+@pytest.mark.parametrize(
+    ("options", "words"),
+    [(("--path", "--until-collapse"), "different questions"), (("-o", "x.svg"), "two numbers are no curve")],
+)
+def test_command_refuses_what_does_not_fit_together(tmp_path: Path, options: tuple[str, ...], words: str):
+    path = tmp_path / "wall.json"
+    path.write_text(json.dumps(data(DOWN)), encoding="utf-8")
+    done = command("reaction", path, *options)
+    assert (done.returncode, done.stdout) == (2, "")
+    assert words in done.stderr

@@ -1,0 +1,60 @@
+"""Walls whose supports move, of which closed forms or values of other programmes are known."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+import drystone
+
+
+def semicircle(thickness: float, voussoirs: int, friction: float) -> drystone.Wall:
+    """A semicircular arch of radius 1 and unit weight 1, whose right springing spreads by 1."""
+    angle = np.radians(np.linspace(180.0, 0.0, voussoirs + 1))
+    ring = np.column_stack([np.cos(angle), np.sin(angle)])
+    ring[[0, -1], 1] = 0.0
+    inner, outer = 1.0 - 0.5 * thickness, 1.0 + 0.5 * thickness
+    blocks: list[dict[str, Any]] = [
+        {
+            "id": f"v{k}",
+            "polygon": [
+                [r * x, r * y]
+                for r, (x, y) in zip((inner, outer, outer, inner), ring[[k, k, k + 1, k + 1]], strict=True)
+            ],
+        }
+        for k in range(voussoirs)
+    ]
+    for name, sign in (("left", -1.0), ("right", 1.0)):
+        x, y = sorted([sign * inner, sign * outer])
+        blocks.append({"id": name, "polygon": [[x, -0.2], [y, -0.2], [y, 0.0], [x, 0.0]], "fixed": True})
+    spread = [{"blocks": ["right"], "translation": [1, 0]}]
+    return drystone.build_wall(
+        {"format": "wall/1", "unit_weight": 1.0, "friction": friction, "blocks": blocks, "settlements": spread}
+    )
+
+
+def bricks(friction: float) -> drystone.Wall:
+    """The 21-brick wall of unit weight 1 and weight 9, whose support beyond x = 1.5 goes down by 1."""
+    pattern = {"type": "running_bond", "block_length": 1.0, "block_height": 0.5, "count": 6, "bricks": 3, "base": False}
+    supports = [
+        {"id": name, "polygon": [[left, -0.5], [right, -0.5], [right, 0], [left, 0]], "fixed": True}
+        for name, left, right in (("left", 0.0, 1.5), ("right", 1.5, 3.0))
+    ]
+    down = [{"blocks": ["right"], "translation": [0, -1]}]
+    content = {"format": "wall/1", "unit_weight": 1.0, "friction": friction, "pattern": pattern}
+    return drystone.build_wall(content | {"blocks": supports, "settlements": down})
+
+
+def tilted(width: float, height: float, friction: float) -> drystone.Wall:
+    """A block on a base that turns by 1 rad clockwise about its right corner."""
+    base = {"id": "base", "polygon": [[-1, -1], [3, -1], [3, 0], [-1, 0]], "fixed": True}
+    block = {"id": "block", "polygon": [[0, 0], [width, 0], [width, height], [0, height]]}
+    turn = [{"blocks": ["base"], "rotation": -1.0, "about": [3.0, 0.0]}]
+    content = {"format": "wall/1", "unit_weight": 20.0, "friction": friction, "blocks": [base, block]}
+    return drystone.build_wall(content | {"settlements": turn})
+
+
+def weight(wall: drystone.Wall) -> float:
+    """Of the free blocks."""
+    return float(wall.assembly.weight[wall.assembly.free].sum())
