@@ -25,7 +25,13 @@ A wall with ties or props comes with their tensions in the detail `bar_forces`; 
 work of all claims are those with them (`harness.engine.bar_checks`). A live load without end is borne by joints alone.
 
 A wall with strength of its joints may come with the answer for the same wall without, in the detail
-`without_strength`; it is judged on that wall by the same rules, and where it is rejected the whole answer is.
+`without_strength`; it is judged on that wall by the same rules, and where it is rejected the whole answer is. In a wall
+with brittle joints that is the wall without the strength of these.
+
+A wall with brittle joints is judged with those dry that the answer calls broken (`harness.engine.brittle_checks`). It
+collapses at lambda, too, by joints that break there: forces in equilibrium within yield, in which they are at their
+strength, and a dilatant mechanism, on which without it dead + lambda x live does more work than the joints take. The
+detail `with_strength` is judged as the answer for joints that keep their strength.
 
 No multiplier that is claimed lies below zero, and none is claimed beside a finding that has none or outside its
 bracket. A tolerance above `COARSEST` shows nothing. What proves nothing either way is not judged
@@ -42,6 +48,7 @@ from typing import Any
 import numpy as np
 
 from harness.engine.bar_checks import dissipated_by_bars, tensions_beyond
+from harness.engine.brittle_checks import BREAKING, BROKEN, dried, listed, motion_of_whole, unused_strength
 from harness.engine.measured_motion import motion_faults
 from harness.engine.residuals import (
     collapse_residuals,
@@ -59,7 +66,15 @@ from harness.model.bars import BAR_FORCES, DEAD_BAR_FORCES, Bars
 from harness.model.displaced import DisplacedState
 from harness.model.limit import accuracy, gross_power, least_told
 from harness.model.method import Finding, Method, Status, check_takes
-from harness.model.result import Judgement, Result, bracket_is_wide, relative_velocities, residual_of, result_of
+from harness.model.result import (
+    Judgement,
+    Result,
+    bracket_is_wide,
+    plastic_of,
+    relative_velocities,
+    residual_of,
+    result_of,
+)
 
 
 def judge(assembly: Assembly, result: Result, tolerance: float) -> Judgement:
@@ -85,9 +100,14 @@ def judge(assembly: Assembly, result: Result, tolerance: float) -> Judgement:
         return _said(tolerance, False, f"Its tensions of ties and props: larger than {COUNTABLE:g}.")
     if fault := _contradiction(assembly, result, tolerance):
         return _said(tolerance, False, fault)
-    said = _judge_finding(assembly, forces, mechanism, result, tolerance)
+    said_of = _judge_brittle if assembly.breaks else _judge_finding
+    said = said_of(assembly, forces, mechanism, result, tolerance)
     if assembly.strong and "without_strength" in result.details:
-        said = _with_residual(said, assembly.without_strength, residual_of(result))
+        lost = assembly.brittle if assembly.breaks else np.ones(assembly.n_interfaces, dtype=bool)
+        said = _with_other(said, dried(assembly, lost), residual_of(result), "Without cohesion and tensile strength")
+    if assembly.breaks and "with_strength" in result.details:
+        plastic = replace(assembly, brittle=np.zeros_like(assembly.brittle))
+        said = _with_other(said, plastic, plastic_of(result), "With plastic strength")
     if said.accepted and tolerance > COARSEST:
         said.accepted = None
         said.sentence += f" A tolerance above {COARSEST:g} shows nothing."
@@ -114,21 +134,90 @@ def _judge_finding(
     return _judge_collapse(assembly, forces, mechanism, result, tolerance)
 
 
-def _with_residual(said: Judgement, dry: Assembly, residual: Result | None) -> Judgement:
-    """The judgement of a wall with its strength, no better than that of the same wall without, if that claims a thing.
+def _judge_brittle(
+    assembly: Assembly, forces: FloatArray | None, mechanism: FloatArray | None, result: Result, tolerance: float
+) -> Judgement:
+    """What is said of the finding on a wall with brittle joints, those that the answer calls broken being dry."""
+    broken = listed(assembly, result.details, BROKEN)
+    if isinstance(broken, str):
+        return _said(tolerance, False, broken)
+    wall = dried(assembly, broken)
+    if result.finding is Finding.COLLAPSES and BREAKING in result.details:
+        return _judge_breaking(wall, forces, mechanism, result, tolerance)
+    said = _judge_finding(wall, forces, mechanism, result, tolerance)
+    if broken.any():
+        said.sentence += f" {int(broken.sum())} of {int(assembly.brittle.sum())} brittle joints are taken as broken."
+    if result.finding is not Finding.COLLAPSES or mechanism is None or len(mechanism) != assembly.n_blocks:
+        return said
+    moves = motion_of_whole(wall, mechanism)
+    if moves <= tolerance:
+        return said
+    if result.flow == "associated":
+        said.sentence += " Brittle joints that are whole move in it: the multiplier is an upper bound."
+        return said
+    said.residuals = said.residuals | {"whole": moves}
+    said.accepted = False
+    said.sentence += " A brittle joint that it calls whole moves."
+    return said
+
+
+def _judge_breaking(
+    wall: Assembly, forces: FloatArray | None, mechanism: FloatArray | None, result: Result, tolerance: float
+) -> Judgement:
+    """Collapse at the multiplier at which joints of the wall break: what it bears before, and no longer after."""
+    breaking, multiplier = listed(wall, result.details, BREAKING), result.multiplier
+    if isinstance(breaking, str):
+        return _said(tolerance, False, breaking)
+    if multiplier is None or not breaking.any():
+        return _said(tolerance, False, "It gives no multiplier, or no joint that breaks there.")
+    if forces is None:
+        return _said(tolerance, None, NO_FORCES)
+    at = multiplier if result.forces_multiplier is None else result.forces_multiplier
+    residuals = force_residuals(wall, forces, at, beyond=_beyond(wall, result))
+    residuals["breaking"] = unused_strength(wall, forces, at, breaking)
+    residuals["multiplier"] = apart(multiplier, at)
+    said = _decide(
+        residuals, tolerance, f"The forces at multiplier {at:.6g}, with the joints that break at their strength,"
+    )
+    if not said.accepted:
+        return said
+    if mechanism is None or mechanism.shape != (wall.n_blocks, 3):
+        said.accepted = None
+        said.sentence += " It gives no mechanism, so that nothing bears this once they have broken is not shown."
+        return said
+    alone = dried(wall, breaking)
+    alone = replace(alone, dead=alone.dead + multiplier * alone.live)
+    supports, parts = moving_parts(alone, mechanism)
+    shown = [_fall_of(part.assembly, motion, tolerance) for part, motion in parts]
+    proves, gain, closing, _ = max(shown, default=(False, 0.0, 0.0, 0.0))
+    said.residuals = said.residuals | {"supports": supports, "interpenetration": closing, "loads_work": gain}
+    if proves and supports <= tolerance:
+        said.sentence += (
+            " Without that strength the loads do positive work on the mechanism, with dilatant flow: no equilibrium is "
+            "left. That loading breaks these joints depends on their stiffness and is not judged."
+        )
+        return said
+    said.accepted = False
+    said.sentence += " The mechanism does not show that no equilibrium is left without that strength."
+    return said
+
+
+def _with_other(said: Judgement, wall: Assembly, other: Result | None, words: str) -> Judgement:
+    """The judgement of an answer, no better than that of the answer that comes with it, if that claims a thing.
 
     Args:
-        said: of the wall with its strength; dry: the wall without; residual: what is claimed of it, None if unreadable.
+        said: of the answer; wall: the same with other strength; other: what is claimed of it, None if unreadable.
+        words: what strength that is.
     """
-    sizes = {"forces": dry.n_interfaces, "mechanism": dry.n_blocks}
-    own = Judgement(accepted=False, sentence="The residual answer is none of this wall.")
-    if residual is not None and all(len(getattr(residual, name) or [()] * n) == n for name, n in sizes.items()):
-        if residual.status is not Status.OK:
+    sizes = {"forces": wall.n_interfaces, "mechanism": wall.n_blocks}
+    own = Judgement(accepted=False, sentence="The answer is none of this wall.")
+    if other is not None and all(len(getattr(other, name) or [()] * n) == n for name, n in sizes.items()):
+        if other.status is not Status.OK:
             return said
-        own = judge(dry, residual, said.tolerance)
+        own = judge(wall, other, said.tolerance)
     both = (said.accepted, own.accepted)
     accepted = False if False in both else None if None in both else True
-    sentence = f"{said.sentence} Without cohesion and tensile strength: {own.sentence}"
+    sentence = f"{said.sentence} {words}: {own.sentence}"
     return said.model_copy(update={"accepted": accepted, "sentence": sentence})
 
 

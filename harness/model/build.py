@@ -34,6 +34,7 @@ from harness.model.wall import (
     Loads,
     Wall,
     coefficient_of,
+    is_brittle,
     stresses_of,
 )
 
@@ -138,7 +139,7 @@ def build(wall: Wall, name: str = "wall") -> Built:
     if laws.strong:
         faces = np.linalg.norm(assembly.face2 - assembly.face1, axis=1)
         area = np.asarray(faces * _joint_thickness(wall, blocks, assembly))
-        assembly = replace(assembly, constant=laws.constant(area), crushing=laws.crushing(area))
+        assembly = replace(assembly, constant=laws.constant(area), crushing=laws.crushing(area), brittle=laws.brittle)
     if wall.loads.live is not None and not assembly.has_live_load:
         raise InputError(
             "the live load puts no force on any free block",
@@ -303,7 +304,7 @@ def weight_of(block: Block, wall: Wall) -> float:
 
 @dataclass(frozen=True, eq=False)
 class _Laws:
-    """(m, 5) of the joints: friction, dilatancy, cohesion, tensile and compressive strength [force/length^2]."""
+    """(m, 6) of the joints: friction, dilatancy, cohesion, tensile, compressive strength [force/length^2], brittle."""
 
     given: FloatArray
 
@@ -321,6 +322,11 @@ class _Laws:
     def strong(self) -> bool:
         """Whether any joint has cohesion, tensile or compressive strength."""
         return bool(self.given[:, 2:4].any() or np.isfinite(self.given[:, 4]).any())
+
+    @property
+    def brittle(self) -> BoolArray:
+        """(m,) joints with a cohesion or tensile strength that they lose."""
+        return np.asarray((self.given[:, 5] != 0.0) & self.given[:, 2:4].any(axis=1))
 
     def constant(self, area: FloatArray) -> FloatArray:
         """(m, 4) constant parts T/2, T/2, c A, c A of the yield slacks of joints with areas A (m,), T = f_t A."""
@@ -341,7 +347,7 @@ def _laws(
     given = [
         _law(wall, interface, joint, blocks, index, rules) for interface, joint in zip(interfaces, joints, strict=True)
     ]
-    return _Laws(np.array(given, dtype=float).reshape(-1, 5))
+    return _Laws(np.array(given, dtype=float).reshape(-1, 6))
 
 
 def _rules_by_selector(rules: Sequence[FrictionRule]) -> dict[tuple[str, ...], FrictionRule]:
@@ -364,19 +370,20 @@ def _law(
     blocks: list[Block],
     index: dict[str, int],
     rules: dict[tuple[str, ...], FrictionRule],
-) -> tuple[float, float, float, float, float]:
-    """Friction, dilatancy, cohesion, tensile and compressive strength, all from the most particular that holds."""
+) -> tuple[float, float, float, float, float, bool]:
+    """Friction, dilatancy, strengths, whether these are brittle: all from the most particular that holds."""
     if interface.friction is not None or interface.friction_angle is not None:
         friction = coefficient_of(interface.friction, interface.friction_angle)
-        return friction, interface.dilatancy or 0.0, *stresses_of(interface)
+        return friction, interface.dilatancy or 0.0, *stresses_of(interface), is_brittle(interface)
     if not isinstance(wall.friction, Friction):
-        return float(coefficient_of(wall.friction, wall.friction_angle)), 0.0, *stresses_of(wall)
+        return float(coefficient_of(wall.friction, wall.friction_angle)), 0.0, *stresses_of(wall), is_brittle(wall)
     materials = sorted(blocks[index[block_id]].material for block_id in interface.between)
     for selector in (("between", *sorted(interface.between)), ("joint", joint), ("materials", *materials)):
         if selector in rules:
             rule = rules[selector]
-            return rule.coefficient, rule.dilatancy or 0.0, *stresses_of(rule)
-    return float(wall.friction.coefficient), wall.friction.dilatancy or 0.0, *stresses_of(wall.friction)
+            return rule.coefficient, rule.dilatancy or 0.0, *stresses_of(rule), is_brittle(rule)
+    general = wall.friction
+    return float(general.coefficient), general.dilatancy or 0.0, *stresses_of(general), is_brittle(general)
 
 
 def _support_motion(wall: Wall, blocks: list[Block], assembly: Assembly) -> FloatArray:
@@ -606,9 +613,10 @@ def _explicit(
                         "cohesion": cohesion or None,
                         "tensile_strength": tension or None,
                         "compressive_strength": crushing if math.isfinite(crushing) else None,
+                        "after": "residual" if brittle and (cohesion or tension) else None,
                     }
                 )
-                for interface, joint, (mu, psi, cohesion, tension, crushing) in zip(
+                for interface, joint, (mu, psi, cohesion, tension, crushing, brittle) in zip(
                     interfaces, joints, laws.given.tolist(), strict=True
                 )
             ],

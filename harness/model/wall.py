@@ -125,6 +125,15 @@ CompressiveStrength = Annotated[
 ]
 
 
+After = Annotated[
+    Literal["plastic", "residual"] | None,
+    Field(
+        description='of cohesion and tensile strength once a joint has opened or slipped: "plastic" (absent): it keeps '
+        'them; "residual": it is brittle and loses both'
+    ),
+]
+
+
 class JointStrength(Protocol):
     """Whatever gives the strength of joints beside their friction: a wall, friction, a rule, an interface."""
 
@@ -140,6 +149,10 @@ class JointStrength(Protocol):
     def compressive_strength(self) -> float | None:
         """Compressive strength [force/length^2]."""
 
+    @property
+    def after(self) -> Literal["plastic", "residual"] | None:
+        """What is left of cohesion and tensile strength in a joint that has opened or slipped."""
+
 
 def stresses_of(given: JointStrength) -> tuple[float, float, float]:
     """Cohesion, tensile, compressive strength [force/length^2]: zero, and the last infinite, where none is given."""
@@ -147,15 +160,24 @@ def stresses_of(given: JointStrength) -> tuple[float, float, float]:
     return given.cohesion or 0.0, given.tensile_strength or 0.0, math.inf if crushing is None else crushing
 
 
+def is_brittle(given: JointStrength) -> bool:
+    """Whether joints lose their cohesion and tensile strength once they have opened or slipped."""
+    return given.after == "residual"
+
+
 def _gives_strength(given: JointStrength) -> bool:
     """Whether any strength is given."""
-    strengths = given.cohesion, given.tensile_strength, given.compressive_strength
+    strengths = given.cohesion, given.tensile_strength, given.compressive_strength, given.after
     return any(value is not None for value in strengths)
 
 
 def _check_strength(given: JointStrength, friction: float) -> None:
     """A joint bears no tension at which its shear strength would be used up already, but for rounding."""
     cohesion, tension, _ = stresses_of(given)
+    if is_brittle(given) and cohesion == tension == 0.0:
+        raise ValueError(
+            'after "residual" beside neither cohesion nor tensile strength: there is nothing that a joint could lose'
+        )
     if friction * tension > cohesion * (1.0 + 1e-9):
         raise ValueError(
             f"the tensile strength {tension:g} is above cohesion / friction = {cohesion / friction:.6g}, where no "
@@ -177,6 +199,7 @@ class FrictionRule(Strict):
     cohesion: Cohesion = None
     tensile_strength: TensileStrength = None
     compressive_strength: CompressiveStrength = None
+    after: After = None
     materials: tuple[str, str] | None = None
     joint: str | None = Field(None, description='"bed", "head", or a name given in `interfaces`')
     between: tuple[str, str] | None = Field(None, description="ids of the two blocks")
@@ -209,6 +232,7 @@ class Friction(Strict):
     cohesion: Cohesion = None
     tensile_strength: TensileStrength = None
     compressive_strength: CompressiveStrength = None
+    after: After = None
     rules: list[FrictionRule] = Field(default_factory=list)
 
     @model_validator(mode="after")
@@ -250,6 +274,7 @@ class Interface(Strict):
     cohesion: Cohesion = None
     tensile_strength: TensileStrength = None
     compressive_strength: CompressiveStrength = None
+    after: After = None
     joint: str | None = Field(None, description='a name for friction rules; "bed" or "head" by inclination if absent')
     inset: Inset | None = None
 
@@ -398,6 +423,7 @@ class Wall(Strict):
     cohesion: Cohesion = None
     tensile_strength: TensileStrength = None
     compressive_strength: CompressiveStrength = None
+    after: After = None
     pattern: Patterns | None = None
     blocks: list[Block] = Field(default_factory=list)
     interfaces: Interfaces = Field(default_factory=Detection)
