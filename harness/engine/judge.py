@@ -190,7 +190,7 @@ def _judge_breaking(
     supports, parts = moving_parts(alone, mechanism)
     shown = [_fall_of(part.assembly, motion, tolerance) for part, motion in parts]
     proves, gain, closing, _ = max(shown, default=(False, 0.0, 0.0, 0.0))
-    said.residuals = said.residuals | {"supports": supports, "interpenetration": closing, "loads_work": gain}
+    said.residuals = said.residuals | {"supports": supports, "interpenetration": closing, "dead_work": gain}
     if proves and supports <= tolerance:
         said.sentence += (
             " Without that strength the loads do positive work on the mechanism, with dilatant flow: no equilibrium is "
