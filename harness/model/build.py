@@ -15,6 +15,7 @@ from harness.model.assembly import Assembly, BoolArray, FloatArray, IntArray, po
 from harness.model.bars import Bars
 from harness.model.errors import MOST_NAMED, InputError, Spot, first_few, of_each, raise_faults
 from harness.model.fields import MOST_BLOCKS
+from harness.model.fill import fill_forces
 from harness.model.input_checks import input_warnings, thickness_of
 from harness.model.interfaces import check_held, faces_of, find_joints, normals_of
 from harness.model.names import faults_of_wall
@@ -22,6 +23,7 @@ from harness.model.pattern import blocks_of, count_of
 from harness.model.pattern_fields import PatternBase
 from harness.model.plausibility import contact_warnings, force_warnings, interface_warnings, near_misses
 from harness.model.pressure import outlines_of, pressure_forces
+from harness.model.pressure_fields import Fill, Pressure
 from harness.model.rings import hole_faults, ringed
 from harness.model.wall import (
     Block,
@@ -530,10 +532,19 @@ def _check_pairs(load: Load, blocks: Sequence[Block]) -> None:
         members[body.group] if body.group is not None else len(blocks if body.blocks is None else body.blocks)
         for body in load.body
     )
-    faces = len(load.pressures) * sum(len(block.polygon) for block in blocks)
+    on_faces = len(load.pressures) + len(load.fills)
+    faces = on_faces * sum(len(block.polygon) for block in blocks)
     for count, what, remedy in (
         (pairs, f"{len(load.body):,} body forces act on {pairs:,} blocks in all", "Add up those on the same blocks"),
-        (faces, f"{len(load.pressures):,} pressures are sought among {faces:,} faces in all", "Give longer segments"),
+        (
+            faces,
+            (
+                faces,
+                f"{on_faces:,} pressures and fills are sought among {faces:,} faces in all",
+                "Give longer segments",
+            ),
+            "Give longer segments",
+        ),
     ):
         if count > MOST_PAIRS:
             raise InputError(f"{what}, and at most {MOST_PAIRS:,} are summed up", remedy, "loads")
@@ -549,14 +560,14 @@ def _groups(blocks: Sequence[Block]) -> dict[str, IntArray]:
 
 
 def _has_pressures(loads: Loads) -> bool:
-    return bool(loads.dead.pressures or (loads.live is not None and loads.live.pressures))
+    return any(load.pressures or load.fills for load in (loads.dead, loads.live or Load()))
 
 
 def _with_pressures(wall: Wall, blocks: list[Block], assembly: Assembly, size: float) -> Assembly:
-    """The assembly with the pressures of the wall added to its loads.
+    """The assembly with the pressures and fills of the wall added to its loads.
 
     Raises:
-        InputError: part of a pressure lies on no face, or on faces of two blocks.
+        InputError: part of a pressure lies on no face, or on faces of two blocks; or a fill loads none.
     """
     thickness = [thickness_of(block, wall) for block in blocks]
     outlines, index, groups = (
@@ -564,25 +575,39 @@ def _with_pressures(wall: Wall, blocks: list[Block], assembly: Assembly, size: f
         {block.id: k for k, block in enumerate(blocks)},
         _groups(blocks),
     )
+
+    def chosen(load: Pressure | Fill) -> BoolArray:
+        """(n,) blocks that a load on faces may act on."""
+        if load.blocks is None and load.group is None:
+            return ~assembly.fixed
+        named = np.zeros(len(blocks), dtype=bool)
+        named[[index[name] for name in load.blocks or ()]] = True
+        named[groups.get(load.group or "", [])] = True
+        return named & ~assembly.fixed
+
     sums = {}
     for kind, load in (("dead", wall.loads.dead), ("live", wall.loads.live or Load())):
         total = getattr(assembly, kind).copy()
         for number, pressure in enumerate(load.pressures):
-            chosen = ~assembly.fixed
-            if pressure.blocks is not None or pressure.group is not None:
-                named = np.zeros(len(blocks), dtype=bool)
-                named[[index[name] for name in pressure.blocks or ()]] = True
-                named[groups.get(pressure.group or "", [])] = True
-                chosen &= named
             total += pressure_forces(
                 pressure,
-                chosen,
+                chosen(pressure),
                 outlines,
                 assembly.centroid,
                 thickness,
                 wall.units.unit_weight_factor,
                 size,
                 f"loads.{kind}.pressures[{number}]",
+            )
+        for number, fill in enumerate(load.fills):
+            total += fill_forces(
+                fill,
+                chosen(fill),
+                outlines,
+                assembly.centroid,
+                thickness,
+                wall.units.unit_weight_factor,
+                f"loads.{kind}.fills[{number}]",
             )
         sums[kind] = total
     return replace(assembly, **sums)

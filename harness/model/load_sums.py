@@ -15,6 +15,7 @@ def times(load: Load, factor: float) -> Load:
             "body": [each.model_copy(update={"per_weight": _scaled(each.per_weight, factor)}) for each in load.body],
             "points": [each.model_copy(update={"force": _scaled(each.force, factor)}) for each in load.points],
             "pressures": [each.model_copy(update={"factor": factor * each.factor}) for each in load.pressures],
+            "fills": [each.model_copy(update={"factor": factor * each.factor}) for each in load.fills],
         }
     )
 
@@ -25,6 +26,7 @@ def together(*loads: Load) -> Load:
         body=[each for load in loads for each in load.body],
         points=[each for load in loads for each in load.points],
         pressures=[each for load in loads for each in load.pressures],
+        fills=[each for load in loads for each in load.fills],
     )
 
 

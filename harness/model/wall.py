@@ -16,7 +16,7 @@ from harness.model.bar_fields import Prop, Tie
 from harness.model.fields import Angle, Coefficient, Name, NonNegative, Number, Point, Positive, Strict
 from harness.model.load_case_fields import DEAD, Combination, Travelling
 from harness.model.pattern_fields import Pattern
-from harness.model.pressure_fields import Pressure
+from harness.model.pressure_fields import Fill, Pressure
 from harness.model.units import DIMENSIONLESS, KILONEWTONS, METRES, ForceUnit, LengthUnit, unit_weight_in_kn_m3
 
 MOST_VERTICES = 5_000
@@ -350,6 +350,7 @@ class Load(Strict):
     body: list[BodyForce] = Field(default_factory=list)
     points: list[PointForce] = Field(default_factory=list)
     pressures: list[Pressure] = Field(default_factory=list)
+    fills: list[Fill] = Field(default_factory=list)
 
 
 class Settlement(Strict):

@@ -37,6 +37,7 @@ FEATURES: dict[str, tuple[dict[str, Any], ...]] = {
     "ties, props": ({"ties": [ENDS]}, {"props": [ENDS]}),
     "settlements": ({"settlements": [{"blocks": ["ground"], "translation": [0, -1]}]},),
     "pressures": ({"loads": {"live": {"pressures": [FACE]}}},),
+    "fills": ({"loads": {"dead": {"fills": [{"level": 2, "unit_weight": 18}]}, **PUSH}},),
     "load cases, combinations": ({"load_cases": {"push": PUSH}, "combinations": {"sum": {"dead": 1.35, "push": 1.5}}},),
     "travelling loads": ({"travelling": {"axle": {"force": [0, -10]}}},),
 }
