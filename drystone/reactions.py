@@ -59,7 +59,7 @@ def reactions(wall: Wall, tolerance: float = 1e-9) -> tuple[Reaction, Reaction] 
         tolerance: the largest residual that the judge accepts.
 
     Raises:
-        InputError: no support with a joint moves, or joints crush.
+        InputError: no support with a joint moves, or joints crush or are brittle.
     """
     from methods.la.core.reaction import extreme_reaction
 
@@ -70,6 +70,11 @@ def reactions(wall: Wall, tolerance: float = 1e-9) -> tuple[Reaction, Reaction] 
     if assembly.crushes:
         remedy = "Leave compressive strength out: the programmes of reactions are linear"
         raise InputError("some joints have compressive strength", remedy, "settlements")
+    if assembly.breaks:
+        remedy = (
+            'Leave out "after" to ask of a wall whose joints stay whole, their strength of one whose joints are broken'
+        )
+        raise InputError("some joints are brittle, and a reaction depends on which have broken", remedy, "settlements")
     found: list[Reaction] = []
     for greatest in (False, True):
         answer = extreme_reaction(assembly, greatest)

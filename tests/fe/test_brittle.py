@@ -12,6 +12,8 @@ from typing import Any
 import numpy as np
 import pytest
 
+import drystone
+from drystone.reactions import reactions
 from harness.engine.judge import answered
 from harness.model.assembly import Assembly
 from harness.model.build import build
@@ -171,3 +173,19 @@ def test_methods_that_do_not_follow_breaking_refuse_the_wall_by_name(name: str):
     wall = assembly(stack(1, 1.0, 0.2), 0.5, cohesion=1.0, after="residual")
     with pytest.raises(InputError, match=rf"{name} takes joints that keep their strength.*brittle"):
         answered(load_method(name), wall)
+
+
+def test_reactions_of_brittle_joints_are_refused():
+    wall = drystone.build_wall(
+        {
+            "format": "wall/1",
+            "unit_weight": 20,
+            "friction": 0.5,
+            "cohesion": 1,
+            "after": "residual",
+            "pattern": {"type": "stack", "width": 1, "height": 0.5, "count": 1},
+            "settlements": [{"blocks": ["base"], "translation": [0, -1]}],
+        }
+    )
+    with pytest.raises(InputError, match="some joints are brittle"):
+        reactions(wall)
