@@ -10,10 +10,12 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field, replace
 from functools import partial
+from typing import Any
 
 import numpy as np
 
 from harness.model.assembly import Assembly, FloatArray, IntArray
+from harness.model.components import analysed_apart, joints_of
 from harness.model.deadline import STOPPED, best_so_far
 from harness.model.errors import first_few
 from harness.model.method import Answer, Finding, Status
@@ -21,7 +23,7 @@ from methods.fe.answers import compact, gravity_failure, single_state_answer, st
 from methods.fe.histories import SENTENCES, HistoryTuning
 from methods.fe.settings import GapSpringsSettings
 from methods.numerics.claims import at_limit, with_proof
-from methods.numerics.statics import dilatant_mechanism, greatest_multiplier
+from methods.numerics.statics import admissible_forces, dilatant_mechanism, greatest_multiplier
 from methods.springs.model.breaking import broken_model, joints_at_strength
 from methods.springs.model.factor import SingularTangent, make_factor
 from methods.springs.model.wall_model import WallModel, build_model, load_scale
@@ -60,7 +62,7 @@ class BrittlePath:
         """The wall as it is now, its broken joints dry."""
         return self.model.assembly
 
-    def details(self, status: str) -> dict[str, object]:
+    def details(self, status: str) -> dict[str, Any]:
         """What of the path goes into the details of every answer."""
         return {
             "broken": list(self.broken),
@@ -139,16 +141,56 @@ def brittle_answer(
     """The answer for a wall with brittle joints, by one friction history without updates.
 
     Args:
-        assembly: the wall, in one piece: its components break in the order of their loads.
+        assembly: the wall; its components are followed apart.
         settings: of `fe`; scale: a multiplier of the order of collapse; max_events: as `BrittlePath` has it.
         tuning: initial shears that are tried in turn where ties lead the path astray.
     """
-    answer = Answer(Status.NOT_CONVERGED, Finding.NONE, SENTENCES[PathEnd.BREAKDOWN])
-    for disturbance in (0.0, *tuning.disturbances):
-        answer = _traced(assembly, settings, scale, max_events, disturbance, tuning.seed)
-        if answer.status is Status.OK or answer.details.get("stopped_by_limit"):
-            break
-    return answer
+    solved: list[tuple[Assembly, Answer]] = []
+
+    def solve(part: Assembly) -> Answer:
+        answer = Answer(Status.NOT_CONVERGED, Finding.NONE, SENTENCES[PathEnd.BREAKDOWN])
+        for disturbance in (0.0, *tuning.disturbances):
+            answer = _traced(part, settings, scale, max_events, disturbance, tuning.seed)
+            if answer.status is Status.OK or answer.details.get("stopped_by_limit"):
+                break
+        solved.append((part, answer))
+        return answer
+
+    answer = analysed_apart(assembly, solve, _borne)
+    joints = _joints_of_wall(assembly, answer, solved)
+    broken = np.zeros(assembly.n_interfaces, dtype=bool)
+    broken[joints["broken"]] = True
+    return with_proof(assembly.with_broken(broken), replace(answer, details=answer.details | joints))
+
+
+def _borne(part: Assembly, answer: Answer, multiplier: float) -> FloatArray | None:
+    """Forces (m, 3) of a component at a multiplier up to its own, its joints that had broken by then dry."""
+    broken = np.zeros(part.n_interfaces, dtype=bool)
+    broken[[p for p, at in _breaks(answer) if at <= multiplier]] = True
+    return admissible_forces(part.with_broken(broken), part.dead + multiplier * part.live)
+
+
+def _breaks(answer: Answer) -> list[tuple[int, float]]:
+    """The joints that broke in the answer for a component, and the multiplier at which each did."""
+    return list(zip(answer.details.get("broken", []), answer.details.get("broken_at", []), strict=True))
+
+
+def _joints_of_wall(assembly: Assembly, answer: Answer, solved: list[tuple[Assembly, Answer]]) -> dict[str, Any]:
+    """Broken joints of the wall at the multiplier of its answer, and those that break there, from its components."""
+    own = answer.details.get("broken", [])
+    at = np.inf if answer.multiplier is None else answer.multiplier
+    found: list[tuple[float, int]] = []
+    breaking: list[int] = []
+    for part, each in solved:
+        index = joints_of(part, assembly)
+        decides = each.details.get("broken") is own
+        found += [(when, int(index[p])) for p, when in _breaks(each) if decides or when <= at]
+        if decides:
+            breaking = [int(index[p]) for p in each.details.get("breaking", [])]
+    if len(solved) > 1:
+        found.sort()
+    listed: dict[str, Any] = {"broken": [p for _, p in found], "broken_at": [t for t, _ in found]}
+    return listed | ({"breaking": breaking} if breaking else {})
 
 
 def _traced(
@@ -161,7 +203,7 @@ def _traced(
         model = replace(model, history=noise)
     gravity = gravity_state(model, make_factor(model))
     if not gravity.found:
-        return with_proof(assembly, gravity_failure(model, gravity))
+        return gravity_failure(model, gravity)
     path = BrittlePath(assembly, settings, scale, max_events, model, gravity)
     return best_so_far(partial(_followed, path), partial(_stopped, path))
 
@@ -202,7 +244,7 @@ def _at_the_end(path: BrittlePath, way: LoadPath) -> Answer:
         answer = replace(answer, details=path.details("unbounded"))
     else:
         return _lost(path, SENTENCES[way.end])
-    return with_proof(path.wall, at_limit(path.wall, answer))
+    return at_limit(path.wall, answer)
 
 
 def _collapse_by_breaking(path: BrittlePath, joints: IntArray) -> Answer:
@@ -221,7 +263,7 @@ def _collapse_by_breaking(path: BrittlePath, joints: IntArray) -> Answer:
     before = f"; before, {_order(path)}" if path.broken else ""
     details = path.details("break")
     if multiplier == 0.0:
-        details["broken"] = [*path.broken, *joints.tolist()]
+        details |= {"broken": [*path.broken, *joints.tolist()], "broken_at": [*path.at, *[0.0] * len(joints)]}
         sentence = f"the wall falls under its dead load by the break of {names}: no equilibrium is left{before}"
         flow, finding = "associated", Finding.FALLS
         return Answer(Status.OK, finding, sentence, mechanism=mechanism, flow=flow, details=details)

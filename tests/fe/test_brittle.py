@@ -6,6 +6,7 @@ a load by their stiffness until the brittle one breaks.
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import replace
 from typing import Any
 
@@ -15,6 +16,7 @@ import pytest
 import drystone
 from drystone.reactions import reactions
 from harness.engine.judge import answered
+from harness.engine.symmetry import VIEWS, beside
 from harness.model.assembly import Assembly
 from harness.model.build import build
 from harness.model.errors import InputError
@@ -189,3 +191,37 @@ def test_reactions_of_brittle_joints_are_refused():
     )
     with pytest.raises(InputError, match="some joints are brittle"):
         reactions(wall)
+
+
+@pytest.mark.parametrize("view", [*VIEWS.values(), lambda wall: beside(wall, 3.0)], ids=[*VIEWS, "beside"])
+def test_no_view_of_a_wall_changes_how_it_breaks(view: Callable[[Assembly], Assembly]):
+    """Nor does an independent block beside it, whose weight is no part of the wall."""
+    wall = assembly(BOND, 0.65, unit_weight=1.0, cohesion=1.0, tensile_strength=0.5, after="residual")
+    own, seen = found(wall), found(view(wall))
+    assert own.multiplier is not None
+    assert seen.multiplier == pytest.approx(own.multiplier, rel=ROUND_OFF)
+    assert seen.details["broken_at"] == pytest.approx(own.details["broken_at"], rel=1e-8)
+    assert len(seen.details["breaking"]) == len(own.details["breaking"])
+
+
+def test_joints_of_every_component_are_listed_as_they_are_at_its_collapse():
+    """Three blocks of 4: a plain one that slides at 2, brittle ones that break at .5 + 1/4 and .5 + 2/4."""
+    names = ("weak", "middle", "strong")
+    blocks: list[dict[str, Any]] = []
+    rules = []
+    for k, (name, cohesion) in enumerate(zip(names, (0.0, 1.0, 2.0), strict=True)):
+        x = 3.0 * k
+        square = [[x, 0], [x + 1, 0], [x + 1, 0.2], [x, 0.2]]
+        below = [[x, -1], [x + 1, -1], [x + 1, 0], [x, 0]]
+        blocks += [{"id": name, "polygon": square}, {"id": f"under {name}", "polygon": below, "fixed": True}]
+        if cohesion:
+            pair = {"between": [name, f"under {name}"], "value": 0.5, "cohesion": cohesion}
+            rules.append(pair | {"after": "residual"})
+    rules.append({"between": ["weak", "under weak"], "value": 2.0})
+    wall = {"format": "wall/1", "unit_weight": 20, "friction": {"default": 0.5, "rules": rules}, "blocks": blocks}
+    built = build(Wall.model_validate(wall | {"loads": {"live": {"body": [{"per_weight": [1, 0]}]}}})).assembly
+    result = found(built)
+    assert result.multiplier == pytest.approx(0.75, rel=ROUND_OFF)
+    assert result.details["broken"] == []
+    joint = result.details["breaking"][0]
+    assert {built.block_ids[built.block_a[joint]], built.block_ids[built.block_b[joint]]} == {"middle", "under middle"}
