@@ -59,7 +59,7 @@ def reactions(wall: Wall, tolerance: float = 1e-9) -> tuple[Reaction, Reaction] 
         tolerance: the largest residual that the judge accepts.
 
     Raises:
-        InputError: no support with a joint moves, or joints crush.
+        InputError: no support with a joint moves, or joints crush or are brittle.
     """
     from methods.la.core.reaction import extreme_reaction
 
@@ -92,7 +92,7 @@ def check_reactions(assembly: Assembly) -> None:
     """Refuse a wall whose reactions are not asked by linear programmes.
 
     Raises:
-        InputError: no support with a joint, a tie or a prop moves, or joints crush.
+        InputError: no support with a joint, a tie or a prop moves, or joints crush or break.
     """
     if not np.any(with_bars_as_joints(assembly).support_strains):
         remedy = 'Give "settlements": [{"blocks": [...], "translation": [0, -1]}]'
@@ -100,6 +100,11 @@ def check_reactions(assembly: Assembly) -> None:
     if assembly.crushes:
         remedy = "Leave compressive strength out: the programmes of reactions are linear"
         raise InputError("some joints have compressive strength", remedy, "settlements")
+    if assembly.breaks:
+        remedy = (
+            'Leave out "after" to ask of a wall whose joints stay whole, their strength of one whose joints are broken'
+        )
+        raise InputError("some joints are brittle, and a reaction depends on which have broken", remedy, "settlements")
 
 
 def moving_blocks(assembly: Assembly, mechanism: FloatArray) -> tuple[str, ...]:

@@ -26,7 +26,7 @@ from harness.model.joint_margins import JOINTS, joint_rows
 from harness.model.live_load import direction_in_words
 from harness.model.method import Finding, Status
 from harness.model.proof import LABELS, Proof, Standing, least_known, proof_of
-from harness.model.result import Judgement, Result, Verdict, residual_of
+from harness.model.result import Judgement, Result, Verdict, plastic_and_residual_of, plastic_of, residual_of
 from harness.model.result_texts import PROVED, VERDICT_TEXTS, answer_text
 from harness.model.support_reactions import REACTIONS, reactions_of
 from harness.model.table import in_units, values
@@ -142,10 +142,11 @@ def _strength(case: CaseResults) -> Iterator[str]:
     """Plastic and residual values of a wall whose joints have cohesion or tension, and which of them is safe."""
     found = []
     for result in case.results:
-        residual = residual_of(result)
-        if residual is not None and result.status is Status.OK:
+        pair = plastic_and_residual_of(result)
+        if pair is not None and result.status is Status.OK:
             bound = ", an upper bound" if result.traits.bounds_above else ""
-            found.append(f"{result.method} {answer_text(result)} plastic, {answer_text(residual)} residual{bound}")
+            plastic, residual = map(answer_text, pair)
+            found.append(f"{result.method} {plastic} plastic, {residual} residual{bound}")
     if found:
         yield (
             f"{case.case.id}, strength of joints: {'; '.join(found)}. Joints of mortar are brittle: rely on the "
@@ -271,6 +272,8 @@ def print_result(result: Result, case: Case, proof: Proof) -> None:
     ]
     if (residual := residual_of(result)) is not None:
         rows.append(("residual", f"{answer_text(residual)}, without cohesion and tensile strength"))
+    if (plastic := plastic_of(result)) is not None:
+        rows.append(("plastic", f"{answer_text(plastic)}, if all joints kept their strength"))
     if result.bracket is not None:
         rows.append(("bracket", f"[{result.bracket[0]:.7g}, {result.bracket[1]:.7g}] {result.bracket_meaning}"))
     if proof.sentence:

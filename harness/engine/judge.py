@@ -25,7 +25,13 @@ A wall with ties or props comes with their tensions in the detail `bar_forces`; 
 work of all claims are those with them (`harness.engine.bar_checks`). A live load without end is borne by joints alone.
 
 A wall with strength of its joints may come with the answer for the same wall without, in the detail
-`without_strength`; it is judged on that wall by the same rules, and where it is rejected the whole answer is.
+`without_strength`; it is judged on that wall by the same rules, and where it is rejected the whole answer is. In a wall
+with brittle joints that is the wall without the strength of these.
+
+A wall with brittle joints is judged with those dry that the answer calls broken (`harness.engine.brittle_checks`). It
+collapses at lambda, too, by joints that break there: forces in equilibrium within yield, in which they are at their
+strength, and a dilatant mechanism, on which without it dead + lambda x live does more work than the joints take. The
+detail `with_strength` is judged as the answer for joints that keep their strength.
 
 No multiplier that is claimed lies below zero, and none is claimed beside a finding that has none or outside its
 bracket. A tolerance above `COARSEST` shows nothing. What proves nothing either way is not judged
@@ -42,8 +48,10 @@ from typing import Any
 import numpy as np
 
 from harness.engine.bar_checks import tensions_beyond
+from harness.engine.brittle_checks import BREAKING, BROKEN, dried, listed, motion_of_whole
+from harness.engine.judge_breaking import judge_breaking
 from harness.engine.judge_dead_load import judge_fall, judge_limit
-from harness.engine.judge_decision import COUNTABLE, apart, beyond_prestress, countable, decide, said_of
+from harness.engine.judge_decision import COUNTABLE, NO_FORCES, apart, beyond_prestress, countable, decide, said_of
 from harness.engine.measured_motion import motion_faults
 from harness.engine.residuals import (
     collapse_residuals,
@@ -57,7 +65,7 @@ from harness.model.assembly import Assembly, FloatArray
 from harness.model.bars import Bars
 from harness.model.displaced import DisplacedState
 from harness.model.method import Finding, Method, Status, check_takes
-from harness.model.result import Judgement, Result, bracket_is_wide, residual_of, result_of
+from harness.model.result import Judgement, Result, bracket_is_wide, plastic_of, residual_of, result_of
 
 
 def judge(assembly: Assembly, result: Result, tolerance: float) -> Judgement:
@@ -83,9 +91,14 @@ def judge(assembly: Assembly, result: Result, tolerance: float) -> Judgement:
         return said_of(tolerance, False, f"Its tensions of ties and props: larger than {COUNTABLE:g}.")
     if fault := _contradiction(assembly, result, tolerance):
         return said_of(tolerance, False, fault)
-    said = _judge_finding(assembly, forces, mechanism, result, tolerance)
+    judged = _judge_brittle if assembly.breaks else _judge_finding
+    said = judged(assembly, forces, mechanism, result, tolerance)
     if assembly.strong and "without_strength" in result.details:
-        said = _with_residual(said, assembly.without_strength, residual_of(result))
+        lost = assembly.brittle if assembly.breaks else np.ones(assembly.n_interfaces, dtype=bool)
+        said = _with_other(said, dried(assembly, lost), residual_of(result), "Without cohesion and tensile strength")
+    if assembly.breaks and "with_strength" in result.details:
+        plastic = replace(assembly, brittle=np.zeros_like(assembly.brittle))
+        said = _with_other(said, plastic, plastic_of(result), "With plastic strength")
     if said.accepted and tolerance > COARSEST:
         said.accepted = None
         said.sentence += f" A tolerance above {COARSEST:g} shows nothing."
@@ -112,21 +125,49 @@ def _judge_finding(
     return _judge_collapse(assembly, forces, mechanism, result, tolerance)
 
 
-def _with_residual(said: Judgement, dry: Assembly, residual: Result | None) -> Judgement:
-    """The judgement of a wall with its strength, no better than that of the same wall without, if that claims a thing.
+def _judge_brittle(
+    assembly: Assembly, forces: FloatArray | None, mechanism: FloatArray | None, result: Result, tolerance: float
+) -> Judgement:
+    """What is said of the finding on a wall with brittle joints, those that the answer calls broken being dry."""
+    broken = listed(assembly, result.details, BROKEN)
+    if isinstance(broken, str):
+        return said_of(tolerance, False, broken)
+    wall = dried(assembly, broken)
+    if result.finding is Finding.COLLAPSES and BREAKING in result.details:
+        return judge_breaking(wall, forces, mechanism, result, tolerance)
+    said = _judge_finding(wall, forces, mechanism, result, tolerance)
+    if broken.any():
+        said.sentence += f" {int(broken.sum())} of {int(assembly.brittle.sum())} brittle joints are taken as broken."
+    if result.finding is not Finding.COLLAPSES or mechanism is None or len(mechanism) != assembly.n_blocks:
+        return said
+    moves = motion_of_whole(wall, mechanism)
+    if moves <= tolerance:
+        return said
+    if result.flow == "associated":
+        said.sentence += " Brittle joints that are whole move in it: the multiplier is an upper bound."
+        return said
+    said.residuals = said.residuals | {"whole": moves}
+    said.accepted = False
+    said.sentence += " A brittle joint that it calls whole moves."
+    return said
+
+
+def _with_other(said: Judgement, wall: Assembly, other: Result | None, words: str) -> Judgement:
+    """The judgement of an answer, no better than that of the answer that comes with it, if that claims a thing.
 
     Args:
-        said: of the wall with its strength; dry: the wall without; residual: what is claimed of it, None if unreadable.
+        said: of the answer; wall: the same with other strength; other: what is claimed of it, None if unreadable.
+        words: what strength that is.
     """
-    sizes = {"forces": dry.n_interfaces, "mechanism": dry.n_blocks}
-    own = Judgement(accepted=False, sentence="The residual answer is none of this wall.")
-    if residual is not None and all(len(getattr(residual, name) or [()] * n) == n for name, n in sizes.items()):
-        if residual.status is not Status.OK:
+    sizes = {"forces": wall.n_interfaces, "mechanism": wall.n_blocks}
+    own = Judgement(accepted=False, sentence="The answer is none of this wall.")
+    if other is not None and all(len(getattr(other, name) or [()] * n) == n for name, n in sizes.items()):
+        if other.status is not Status.OK:
             return said
-        own = judge(dry, residual, said.tolerance)
+        own = judge(wall, other, said.tolerance)
     both = (said.accepted, own.accepted)
     accepted = False if False in both else None if None in both else True
-    sentence = f"{said.sentence} Without cohesion and tensile strength: {own.sentence}"
+    sentence = f"{said.sentence} {words}: {own.sentence}"
     return said.model_copy(update={"accepted": accepted, "sentence": sentence})
 
 
@@ -187,7 +228,6 @@ approach it are both admissible, and differ by as much. The error of the multipl
 COARSEST = 1e-2
 """Largest tolerance that shows something: a hundredth of the loads. Ten times the coarsest of the library's methods."""
 MOVED_FAR = " Its blocks rest so far from where they were drawn that this shows nothing of the wall as drawn."
-NO_FORCES = "It gives no contact forces, so it cannot be checked."
 
 
 def _judge_collapse(

@@ -93,7 +93,7 @@ def judge_fall(assembly: Assembly, mechanism: FloatArray | None, result: Result,
         told = "The motion was measured, which is no proof" if mechanism is not None else "It gives no mechanism"
         return said_of(tolerance, None, f"{told}; there is no proof that no equilibrium exists.")
     supports, parts = moving_parts(assembly, mechanism)
-    shown_by = [_fall_of(part.assembly, motion, tolerance) for part, motion in parts]
+    shown_by = [fall_of(part.assembly, motion, tolerance) for part, motion in parts]
     proves, gain, closing, work = max(shown_by, default=(False, 0.0, 0.0, 0.0))
     proved = proves and supports <= tolerance
     sentence = (
@@ -107,7 +107,7 @@ def judge_fall(assembly: Assembly, mechanism: FloatArray | None, result: Result,
     return Judgement(residuals=residuals, tolerance=tolerance, accepted=proved, sentence=sentence)
 
 
-def _fall_of(part: Assembly, motion: FloatArray, tolerance: float) -> tuple[bool, float, float, float]:
+def fall_of(part: Assembly, motion: FloatArray, tolerance: float) -> tuple[bool, float, float, float]:
     """Whether the motion (n, 3) of a component proves its fall; its gain, its largest closing, and `closing_work`.
 
     The gain is the dead work less what cohesion and tensile strength take. Were there forces in equilibrium under the

@@ -13,6 +13,7 @@ from harness.model.result import Judgement, Result
 
 COUNTABLE = 1e100
 """Largest number of an answer: sums of products of such numbers are finite, so that no residual is lost in them."""
+NO_FORCES = "It gives no contact forces, so it cannot be checked."
 
 
 def countable(values: Any) -> bool:

@@ -21,7 +21,7 @@ import numpy as np
 import shapely
 from numpy.typing import NDArray
 
-from harness.engine.judge import GAIN, IMMENSE
+from harness.engine.judge_dead_load import GAIN, IMMENSE
 from harness.engine.reaction_judge import held
 from harness.engine.residuals import block_sums, force_residuals, power
 from harness.model.assembly import Assembly, BoolArray, FloatArray

@@ -103,6 +103,7 @@ def renumbered(assembly: Assembly, seed: int = 1) -> Assembly:
         dilatancy=assembly.dilatancy[joints],
         constant=np.where(swap[:, None], assembly.constant[joints][:, [0, 1, 3, 2]], assembly.constant[joints]),
         crushing=assembly.crushing[joints],
+        brittle=assembly.brittle[joints],
         joint=tuple(assembly.joint[k] for k in joints),
         bars=assembly.bars.chosen(rng.permutation(len(assembly.bars)), place),
     )
@@ -143,6 +144,7 @@ def beside(assembly: Assembly, share: float) -> Assembly:
         dilatancy=np.append(assembly.dilatancy, 0.0),
         constant=np.vstack([assembly.constant, np.zeros(4)]),
         crushing=np.append(assembly.crushing, np.inf),
+        brittle=np.append(assembly.brittle, False),
         joint=(*assembly.joint, "bed"),
     )
 

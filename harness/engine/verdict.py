@@ -150,7 +150,8 @@ def theory_gates(results: CaseResults) -> list[Gate]:
             statement = "the search for the least collapse state finds none above another method's"
             below(f"{least.method}-below-{method}", statement, least, result, of_search=True)
     gates += [gate for gate in (_moves_no_lower(results, usable, usable[name]) for name in sorted(usable)) if gate]
-    no_equilibrium = bounding or least
+    # one that takes brittle joints as broken says nothing of the wall as it stands
+    no_equilibrium = bounding or (None if least is not None and least.details.get("broken") else least)
     if no_equilibrium is not None and no_equilibrium.finding is Finding.FALLS:
         for method, result in usable.items():
             if result.finding is Finding.FALLS:

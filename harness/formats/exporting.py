@@ -130,6 +130,8 @@ def write_geojson(built: Built, result: Result | None, path: Path) -> None:
         if assembly.strong:
             joint["tension"] = 2.0 * float(assembly.constant[number, 0])
             joint["cohesion"] = float(assembly.constant[number, 2])
+        if assembly.brittle[number]:
+            joint["brittle"] = True
         if np.isfinite(assembly.crushing[number]):
             joint["crushing"] = float(assembly.crushing[number])
         if result is not None and result.forces is not None:
@@ -231,6 +233,8 @@ def matrices(built: Built, result: Result | None) -> dict[str, Any]:
     }
     if assembly.strong:
         arrays["constant"] = assembly.constant
+    if assembly.breaks:
+        arrays["brittle"] = assembly.brittle
     if assembly.crushes:
         arrays["crushing"] = assembly.crushing
     if len(assembly.bars):

@@ -68,7 +68,7 @@ class _Order(BaseModel, defer_build=True):
 
 
 class _Residual(BaseModel, defer_build=True):
-    """The answer for the wall without cohesion and tensile strength, as `Answer` has it."""
+    """The answer for the wall without cohesion and tensile strength, or with it, as `Answer` has it."""
 
     model_config = ConfigDict(extra="forbid")
     status: Status
@@ -102,6 +102,9 @@ class _KnownDetails(BaseModel, defer_build=True):
     load_steps: _Steps | None = None
     release: _Release | None = None
     without_strength: _Residual | None = None
+    with_strength: _Residual | None = None
+    broken: list[int] | None = None
+    breaking: list[int] | None = None
     bar_forces: list[float] | None = None
     dead_bar_forces: list[float] | None = None
 

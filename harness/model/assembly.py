@@ -46,6 +46,7 @@ OF_JOINTS = (
     "dilatancy",
     "constant",
     "crushing",
+    "brittle",
 )
 
 
@@ -71,6 +72,7 @@ class Assembly:
         constant: (m, 4) constant parts of the yield slacks [force], as `joint_law` has them; zero for dry joints.
         crushing: (m,) compression f_c A at which a joint crushes, pressed evenly and without tension [force]; infinite
             where it does not.
+        brittle: (m,) whether a joint loses its constant part once it has opened at an end or slipped.
         support_motion: (n, 3) prescribed motion (ux, uy, omega) of fixed blocks; zero where supports rest, and on free
             blocks.
         bars: ties and props between blocks; their prestress is part of the dead load.
@@ -96,6 +98,7 @@ class Assembly:
     live: FloatArray
     constant: FloatArray = field(default_factory=partial(np.zeros, (0, 4)))
     crushing: FloatArray = field(default_factory=partial(np.zeros, 0))
+    brittle: BoolArray = field(default_factory=lambda: np.zeros(0, dtype=bool))
     support_motion: FloatArray = field(default_factory=partial(np.zeros, (0, 3)))
     bars: Bars = field(default_factory=Bars)
 
@@ -109,6 +112,8 @@ class Assembly:
             object.__setattr__(self, "constant", np.zeros((len(self.joint), 4)))
         if not len(self.crushing):
             object.__setattr__(self, "crushing", np.full(len(self.joint), np.inf))
+        if not len(self.brittle):
+            object.__setattr__(self, "brittle", np.zeros(len(self.joint), dtype=bool))
         if not len(self.support_motion):
             object.__setattr__(self, "support_motion", np.zeros((len(self.block_ids), 3)))
         for names, count in ((OF_BLOCKS, len(self.block_ids)), (OF_JOINTS, len(self.joint))):
@@ -151,10 +156,25 @@ class Assembly:
         """Whether any joint has a compressive strength."""
         return bool(np.isfinite(self.crushing).any())
 
+    @cached_property
+    def breaks(self) -> bool:
+        """Whether any joint is brittle."""
+        return bool(self.brittle.any())
+
     @property
     def without_strength(self) -> Assembly:
-        """The same wall without cohesion and tensile strength: what is left of brittle joints that have moved."""
-        return replace(self, constant=np.zeros_like(self.constant))
+        """The same wall without cohesion and tensile strength."""
+        return self.with_broken(np.ones(self.n_interfaces, dtype=bool))
+
+    @property
+    def residual(self) -> Assembly:
+        """The wall with what is left once its brittle joints have moved: without strength, where none is said to be."""
+        return self.with_broken(self.brittle) if self.breaks else self.without_strength
+
+    def with_broken(self, broken: BoolArray) -> Assembly:
+        """The same wall whose joints `broken` (m,) have lost cohesion and tensile strength."""
+        constant = np.where(broken[:, None], 0.0, self.constant)
+        return replace(self, constant=constant, brittle=self.brittle & ~broken)
 
     @property
     def n_blocks(self) -> int:

@@ -129,6 +129,7 @@ def with_bars_as_joints(assembly: Assembly) -> Assembly:
         "dilatancy": minus,
         "constant": np.column_stack([nothing, bars.greatest, 0.0 - bars.least]),
         "crushing": np.full(k, np.inf),
+        "brittle": np.zeros(k, dtype=bool),
     }
     arrays: dict[str, Any] = {name: np.concatenate([getattr(assembly, name), more]) for name, more in further.items()}
     return replace(assembly, joint=(*assembly.joint, *bars.kinds), bars=Bars(), **arrays)

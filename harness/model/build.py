@@ -128,7 +128,7 @@ def build(wall: Wall, name: str = "wall") -> Built:
     if laws.strong:
         faces = np.linalg.norm(assembly.face2 - assembly.face1, axis=1)
         area = np.asarray(faces * _joint_thickness(wall, blocks, assembly))
-        assembly = replace(assembly, constant=laws.constant(area), crushing=laws.crushing(area))
+        assembly = replace(assembly, constant=laws.constant(area), crushing=laws.crushing(area), brittle=laws.brittle)
     if wall.loads.live is not None and not assembly.has_live_load:
         raise InputError(
             "the live load puts no force on any free block",
@@ -301,9 +301,10 @@ def _explicit(
                         "cohesion": cohesion or None,
                         "tensile_strength": tension or None,
                         "compressive_strength": crushing if math.isfinite(crushing) else None,
+                        "after": "residual" if brittle and (cohesion or tension) else None,
                     }
                 )
-                for interface, joint, (mu, psi, cohesion, tension, crushing) in zip(
+                for interface, joint, (mu, psi, cohesion, tension, crushing, brittle) in zip(
                     interfaces, joints, laws.given.tolist(), strict=True
                 )
             ],

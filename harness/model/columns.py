@@ -10,7 +10,7 @@ from typing import Any
 
 from harness.model.case import Reference
 from harness.model.proof import Proof
-from harness.model.result import Comparison, Result, residual_of
+from harness.model.result import Comparison, Result, plastic_and_residual_of
 from harness.model.result_texts import VERDICT_TEXTS, multiplier_text, references_text, residual_text, settings_text
 from harness.model.table import TableColumn
 
@@ -97,12 +97,12 @@ RESULTS: tuple[ResultColumn, ...] = (
         "Float64",
         "1",
         "of the same wall without cohesion and tensile strength",
-        lambda row: None if (residual := residual_of(row.result)) is None else residual.multiplier,
+        lambda row: None if (pair := plastic_and_residual_of(row.result)) is None else pair[1].multiplier,
     ),
     _text(
         "residual_finding",
         "finding on the wall without cohesion and tensile strength",
-        lambda row: None if (residual := residual_of(row.result)) is None else str(residual.finding),
+        lambda row: None if (pair := plastic_and_residual_of(row.result)) is None else str(pair[1].finding),
     ),
     _text(
         "proof",

@@ -36,6 +36,8 @@ def content_of(assembly: Assembly) -> str:
     besides = [(assembly.constant, load)] if assembly.strong else []
     if assembly.crushes:
         besides.append((np.where(np.isinf(assembly.crushing), -load, assembly.crushing), load))
+    if assembly.breaks:
+        besides.append((assembly.brittle.astype(float), 1.0))
     if np.any(assembly.support_motion):
         besides.append((assembly.support_motion, float(abs(assembly.support_motion).max())))
     bars = assembly.bars

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from typing import Annotated, Protocol
+from typing import Annotated, Literal, Protocol
 
 from pydantic import Field, model_validator
 
@@ -36,6 +36,15 @@ CompressiveStrength = Annotated[
 ]
 
 
+After = Annotated[
+    Literal["plastic", "residual"] | None,
+    Field(
+        description='of cohesion and tensile strength once a joint has opened or slipped: "plastic" (absent): it keeps '
+        'them; "residual": it is brittle and loses both'
+    ),
+]
+
+
 class JointStrength(Protocol):
     """Whatever gives the strength of joints beside their friction: a wall, friction, a rule, an interface."""
 
@@ -51,6 +60,10 @@ class JointStrength(Protocol):
     def compressive_strength(self) -> float | None:
         """Compressive strength [force/length^2]."""
 
+    @property
+    def after(self) -> Literal["plastic", "residual"] | None:
+        """What is left of cohesion and tensile strength in a joint that has opened or slipped."""
+
 
 def stresses_of(given: JointStrength) -> tuple[float, float, float]:
     """Cohesion, tensile, compressive strength [force/length^2]: zero, and the last infinite, where none is given."""
@@ -58,15 +71,24 @@ def stresses_of(given: JointStrength) -> tuple[float, float, float]:
     return given.cohesion or 0.0, given.tensile_strength or 0.0, math.inf if crushing is None else crushing
 
 
+def is_brittle(given: JointStrength) -> bool:
+    """Whether joints lose their cohesion and tensile strength once they have opened or slipped."""
+    return given.after == "residual"
+
+
 def gives_strength(given: JointStrength) -> bool:
     """Whether any strength is given."""
-    strengths = given.cohesion, given.tensile_strength, given.compressive_strength
+    strengths = given.cohesion, given.tensile_strength, given.compressive_strength, given.after
     return any(value is not None for value in strengths)
 
 
 def check_strength(given: JointStrength, friction: float) -> None:
     """A joint bears no tension at which its shear strength would be used up already, but for rounding."""
     cohesion, tension, _ = stresses_of(given)
+    if is_brittle(given) and cohesion == tension == 0.0:
+        raise ValueError(
+            'after "residual" beside neither cohesion nor tensile strength: there is nothing that a joint could lose'
+        )
     if friction * tension > cohesion * (1.0 + 1e-9):
         raise ValueError(
             f"the tensile strength {tension:g} is above cohesion / friction = {cohesion / friction:.6g}, where no "
@@ -89,6 +111,7 @@ class FrictionRule(Strict):
     cohesion: Cohesion = None
     tensile_strength: TensileStrength = None
     compressive_strength: CompressiveStrength = None
+    after: After = None
     materials: tuple[str, str] | None = None
     joint: str | None = Field(None, description='"bed", "head", or a name given in `interfaces`')
     between: tuple[str, str] | None = Field(None, description="ids of the two blocks")
@@ -121,6 +144,7 @@ class Friction(Strict):
     cohesion: Cohesion = None
     tensile_strength: TensileStrength = None
     compressive_strength: CompressiveStrength = None
+    after: After = None
     rules: list[FrictionRule] = Field(default_factory=list)
 
     @model_validator(mode="after")

@@ -7,14 +7,14 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from harness.model.assembly import FloatArray
-from harness.model.friction_fields import Friction, FrictionRule, coefficient_of, stresses_of
+from harness.model.assembly import BoolArray, FloatArray
+from harness.model.friction_fields import Friction, FrictionRule, coefficient_of, is_brittle, stresses_of
 from harness.model.wall import Block, Interface, Wall
 
 
 @dataclass(frozen=True, eq=False)
 class JointLaws:
-    """(m, 5) of the joints: friction, dilatancy, cohesion, tensile and compressive strength [force/length^2]."""
+    """(m, 6) of the joints: friction, dilatancy, cohesion, tensile, compressive strength [force/length^2], brittle."""
 
     given: FloatArray
 
@@ -32,6 +32,11 @@ class JointLaws:
     def strong(self) -> bool:
         """Whether any joint has cohesion, tensile or compressive strength."""
         return bool(self.given[:, 2:4].any() or np.isfinite(self.given[:, 4]).any())
+
+    @property
+    def brittle(self) -> BoolArray:
+        """(m,) joints with a cohesion or tensile strength that they lose."""
+        return np.asarray((self.given[:, 5] != 0.0) & self.given[:, 2:4].any(axis=1))
 
     def constant(self, area: FloatArray) -> FloatArray:
         """(m, 4) constant parts T/2, T/2, c A, c A of the yield slacks of joints with areas A (m,), T = f_t A."""
@@ -52,7 +57,7 @@ def laws_of_joints(
     given = [
         _law(wall, interface, joint, blocks, index, rules) for interface, joint in zip(interfaces, joints, strict=True)
     ]
-    return JointLaws(np.array(given, dtype=float).reshape(-1, 5))
+    return JointLaws(np.array(given, dtype=float).reshape(-1, 6))
 
 
 def _rules_by_selector(rules: Sequence[FrictionRule]) -> dict[tuple[str, ...], FrictionRule]:
@@ -75,16 +80,17 @@ def _law(
     blocks: list[Block],
     index: dict[str, int],
     rules: dict[tuple[str, ...], FrictionRule],
-) -> tuple[float, float, float, float, float]:
-    """Friction, dilatancy, cohesion, tensile and compressive strength, all from the most particular that holds."""
+) -> tuple[float, float, float, float, float, bool]:
+    """Friction, dilatancy, strengths, whether these are brittle: all from the most particular that holds."""
     if interface.friction is not None or interface.friction_angle is not None:
         friction = coefficient_of(interface.friction, interface.friction_angle)
-        return friction, interface.dilatancy or 0.0, *stresses_of(interface)
+        return friction, interface.dilatancy or 0.0, *stresses_of(interface), is_brittle(interface)
     if not isinstance(wall.friction, Friction):
-        return float(coefficient_of(wall.friction, wall.friction_angle)), 0.0, *stresses_of(wall)
+        return float(coefficient_of(wall.friction, wall.friction_angle)), 0.0, *stresses_of(wall), is_brittle(wall)
     materials = sorted(blocks[index[block_id]].material for block_id in interface.between)
     for selector in (("between", *sorted(interface.between)), ("joint", joint), ("materials", *materials)):
         if selector in rules:
             rule = rules[selector]
-            return rule.coefficient, rule.dilatancy or 0.0, *stresses_of(rule)
-    return float(wall.friction.coefficient), wall.friction.dilatancy or 0.0, *stresses_of(wall.friction)
+            return rule.coefficient, rule.dilatancy or 0.0, *stresses_of(rule), is_brittle(rule)
+    general = wall.friction
+    return float(general.coefficient), general.dilatancy or 0.0, *stresses_of(general), is_brittle(general)

@@ -7,7 +7,7 @@ from typing import Annotated, Any, Literal
 from pydantic import Discriminator, Field, StrictBool, Tag, model_validator
 
 from harness.model.fields import MANY, OTHER, Name, Number, Point, Strict
-from harness.model.pressure_fields import Pressure
+from harness.model.pressure_fields import Fill, Pressure
 
 
 class BodyForce(Strict):
@@ -38,6 +38,7 @@ class Load(Strict):
     body: list[BodyForce] = Field(default_factory=list)
     points: list[PointForce] = Field(default_factory=list)
     pressures: list[Pressure] = Field(default_factory=list)
+    fills: list[Fill] = Field(default_factory=list)
 
 
 def _vector_or_switch(value: Any) -> str:

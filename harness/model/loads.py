@@ -8,12 +8,14 @@ from dataclasses import replace
 
 import numpy as np
 
-from harness.model.assembly import Assembly, FloatArray, IntArray
+from harness.model.assembly import Assembly, BoolArray, FloatArray, IntArray
 from harness.model.errors import InputError
 from harness.model.fields import Point
+from harness.model.fill import fill_forces
 from harness.model.input_checks import thickness_of
 from harness.model.load_fields import BodyForce, Load, Loads
 from harness.model.pressure import outlines_of, pressure_forces
+from harness.model.pressure_fields import Fill, Pressure
 from harness.model.wall import Block, Wall
 
 MOST_PAIRS = 20_000_000
@@ -86,10 +88,15 @@ def check_pairs(load: Load, blocks: Sequence[Block]) -> None:
         members[body.group] if body.group is not None else len(blocks if body.blocks is None else body.blocks)
         for body in load.body
     )
-    faces = len(load.pressures) * sum(len(block.polygon) for block in blocks)
+    on_faces = len(load.pressures) + len(load.fills)
+    faces = on_faces * sum(len(block.polygon) for block in blocks)
     for count, what, remedy in (
         (pairs, f"{len(load.body):,} body forces act on {pairs:,} blocks in all", "Add up those on the same blocks"),
-        (faces, f"{len(load.pressures):,} pressures are sought among {faces:,} faces in all", "Give longer segments"),
+        (
+            faces,
+            f"{on_faces:,} pressures and fills are sought among {faces:,} faces in all",
+            "Give longer segments",
+        ),
     ):
         if count > MOST_PAIRS:
             raise InputError(f"{what}, and at most {MOST_PAIRS:,} are summed up", remedy, "loads")
@@ -106,14 +113,14 @@ def groups_of_blocks(blocks: Sequence[Block]) -> dict[str, IntArray]:
 
 def has_pressures(loads: Loads) -> bool:
     """Whether any load presses on faces."""
-    return bool(loads.dead.pressures or (loads.live is not None and loads.live.pressures))
+    return any(load.pressures or load.fills for load in (loads.dead, loads.live or Load()))
 
 
 def with_pressures(wall: Wall, blocks: list[Block], assembly: Assembly, size: float) -> Assembly:
-    """The assembly with the pressures of the wall added to its loads.
+    """The assembly with the pressures and fills of the wall added to its loads.
 
     Raises:
-        InputError: part of a pressure lies on no face, or on faces of two blocks.
+        InputError: part of a pressure lies on no face, or on faces of two blocks; or a fill loads none.
     """
     thickness = [thickness_of(block, wall) for block in blocks]
     outlines, index, groups = (
@@ -121,25 +128,39 @@ def with_pressures(wall: Wall, blocks: list[Block], assembly: Assembly, size: fl
         {block.id: k for k, block in enumerate(blocks)},
         groups_of_blocks(blocks),
     )
+
+    def chosen(load: Pressure | Fill) -> BoolArray:
+        """(n,) blocks that a load on faces may act on."""
+        if load.blocks is None and load.group is None:
+            return ~assembly.fixed
+        named = np.zeros(len(blocks), dtype=bool)
+        named[[index[name] for name in load.blocks or ()]] = True
+        named[groups.get(load.group or "", [])] = True
+        return named & ~assembly.fixed
+
     sums = {}
     for kind, load in (("dead", wall.loads.dead), ("live", wall.loads.live or Load())):
         total = getattr(assembly, kind).copy()
         for number, pressure in enumerate(load.pressures):
-            chosen = ~assembly.fixed
-            if pressure.blocks is not None or pressure.group is not None:
-                named = np.zeros(len(blocks), dtype=bool)
-                named[[index[name] for name in pressure.blocks or ()]] = True
-                named[groups.get(pressure.group or "", [])] = True
-                chosen &= named
             total += pressure_forces(
                 pressure,
-                chosen,
+                chosen(pressure),
                 outlines,
                 assembly.centroid,
                 thickness,
                 wall.units.unit_weight_factor,
                 size,
                 f"loads.{kind}.pressures[{number}]",
+            )
+        for number, fill in enumerate(load.fills):
+            total += fill_forces(
+                fill,
+                chosen(fill),
+                outlines,
+                assembly.centroid,
+                thickness,
+                wall.units.unit_weight_factor,
+                f"loads.{kind}.fills[{number}]",
             )
         sums[kind] = total
     return replace(assembly, **sums)
@@ -154,6 +175,7 @@ def times(load: Load, factor: float) -> Load:
             "body": [each.model_copy(update={"per_weight": _scaled(each.per_weight, factor)}) for each in load.body],
             "points": [each.model_copy(update={"force": _scaled(each.force, factor)}) for each in load.points],
             "pressures": [each.model_copy(update={"factor": factor * each.factor}) for each in load.pressures],
+            "fills": [each.model_copy(update={"factor": factor * each.factor}) for each in load.fills],
         }
     )
 
@@ -164,6 +186,7 @@ def together(*loads: Load) -> Load:
         body=[each for load in loads for each in load.body],
         points=[each for load in loads for each in load.points],
         pressures=[each for load in loads for each in load.pressures],
+        fills=[each for load in loads for each in load.fills],
     )
 
 

@@ -122,6 +122,7 @@ class Traits(BaseModel):
         any_self_stress: it lets joints carry any self-stress that statics and friction allow; others start without.
         any_dilatancy: it follows the dilatancy that a wall gives its joints; other methods refuse such a wall.
         any_strength: it takes joints with cohesion and tensile strength; other methods refuse such a wall.
+        any_brittle: it takes joints that lose their strength once they have moved; other methods refuse such a wall.
         any_bars: it takes ties and props; other methods refuse such a wall.
         any_crushing: it takes joints with compressive strength; other methods refuse such a wall.
         moves_no_lower: it measures when rigid blocks on even faces move (`details["lowest_moving"]`): where theory
@@ -143,6 +144,7 @@ class Traits(BaseModel):
     any_self_stress: bool = False
     any_dilatancy: bool = False
     any_strength: bool = False
+    any_brittle: bool = False
     any_bars: bool = False
     any_crushing: bool = False
     moves_no_lower: bool = False
@@ -280,6 +282,13 @@ def check_takes(method: Method, assembly: Assembly) -> None:
             f"Take a method that knows the strength of joints ({', '.join(methods_with('any_strength'))}), or leave "
             "cohesion and tensile strength out",
         )
+    if assembly.breaks and not method.traits.any_brittle:
+        raise InputError(
+            f"{method.name} takes joints that keep their strength; that between "
+            f"{between(int(np.argmax(assembly.brittle)))} is brittle",
+            f"Take a method that follows brittle joints ({', '.join(methods_with('any_brittle'))}), or leave out "
+            '"after": "residual"',
+        )
     if len(assembly.bars) and not method.traits.any_bars:
         raise InputError(
             f"{method.name} takes no ties and props; the wall has {first_few(assembly.bars.names, 4)}",
@@ -289,7 +298,8 @@ def check_takes(method: Method, assembly: Assembly) -> None:
         raise InputError(
             f"{method.name} takes joints that do not crush; that between {between(int(np.argmin(assembly.crushing)))} "
             "has a compressive strength",
-            f"Take a method that takes it ({', '.join(methods_with('any_crushing'))}), or leave it out",
+            f"Take a method that takes it ({', '.join(methods_with('any_crushing'))}), as by --method la-associated, "
+            "or leave it out",
         )
     if np.any(assembly.support_motion):
         block = int(np.argmax(np.any(assembly.support_motion, axis=1)))

@@ -8,6 +8,7 @@ from typing import Any
 from harness.model.errors import MOST_NAMED, InputError, Spot, did_you_mean, first_few
 from harness.model.friction_fields import Friction
 from harness.model.load_fields import Load
+from harness.model.pressure_fields import Fill, Pressure
 from harness.model.wall import Block, Detection, Wall
 
 MOST_COMPARED = 2000
@@ -49,16 +50,20 @@ def _groups_and_supports(wall: Wall, blocks: list[Block]) -> list[InputError]:
     faults = []
     for where, load in (("loads.dead", wall.loads.dead), ("loads.live", wall.loads.live or Load())):
         grouped = [(f"{where}.body[{number}]", body.group) for number, body in enumerate(load.body)]
-        grouped += [(f"{where}.pressures[{number}]", pressure.group) for number, pressure in enumerate(load.pressures)]
+        on_faces: list[tuple[str, Pressure | Fill]] = [
+            *((f"{where}.pressures[{number}]", pressure) for number, pressure in enumerate(load.pressures)),
+            *((f"{where}.fills[{number}]", fill) for number, fill in enumerate(load.fills)),
+        ]
+        grouped += [(place, each.group) for place, each in on_faces]
         for place, group in grouped:
             if group is not None and group not in groups:
                 known = sorted(groups)[:MOST_COMPARED]
                 there = first_few(known, MOST_NAMED) or "none"
                 remedy = f"{did_you_mean(group, known)} Groups of this wall: {there}"
                 faults.append(InputError(f'no block is in a group "{group}"', remedy.strip(), place))
-        for number, pressure in enumerate(load.pressures):
-            for name in sorted(fixed.intersection(pressure.blocks or ())):
-                problem, place = f'block "{name}" is fixed', f"{where}.pressures[{number}]"
+        for place, each in on_faces:
+            for name in sorted(fixed.intersection(each.blocks or ())):
+                problem = f'block "{name}" is fixed'
                 faults.append(InputError(problem, "Load a block that is free to move", place, spot=Spot((name,))))
         for number, point in enumerate(load.points):
             if point.block in fixed:
@@ -96,6 +101,9 @@ def _named(wall: Wall) -> Iterator[tuple[str, str]]:
         for number, pressure in enumerate(load.pressures):
             for name in pressure.blocks or ():
                 yield f"{where}.pressures[{number}]", name
+        for number, fill in enumerate(load.fills):
+            for name in fill.blocks or ():
+                yield f"{where}.fills[{number}]", name
     for kind, bars in (("ties", wall.ties), ("props", wall.props)):
         for number, bar in enumerate(bars):
             yield from ((f"{kind}[{number}].{end}", at.block) for end, at in (("from", bar.start), ("to", bar.end)))

@@ -1,4 +1,4 @@
-"""Pressure on faces of blocks as a wall file gives it: uniform, linear, of water or of earth; and line loads."""
+"""Pressure on faces of blocks as a wall file gives it: uniform, linear, of water or of earth; line loads; fill."""
 
 from __future__ import annotations
 
@@ -35,6 +35,27 @@ class Earth(Strict):
             raise ValueError("earth gives either coefficient, or friction_angle and state")
         if self.coefficient is None and not all(by_angle):
             raise ValueError('earth gives friction_angle and state ("active" or "at_rest"), or coefficient')
+        return self
+
+
+class Fill(Strict):
+    """Fill up to a level: its weight on the faces that look up below it and have no block above them."""
+
+    level: Number = Field(description="height y of its horizontal surface [length]")
+    unit_weight: NonNegative = Field(description="of the fill [force/length^3], or in the unit of unit weights")
+    between: tuple[Number, Number] | None = Field(
+        None, description="x of its left and right end [length]; the whole wall if absent"
+    )
+    blocks: list[Name] | None = Field(None, description="ids; all free blocks if neither blocks nor group is given")
+    group: Name | None = None
+    factor: Number = Field(1.0, description="multiple of it that acts")
+
+    @model_validator(mode="after")
+    def _one_place(self) -> Fill:
+        if self.blocks is not None and self.group is not None:
+            raise ValueError("a fill names either blocks or group, not both")
+        if self.between is not None and not self.between[0] < self.between[1]:
+            raise ValueError("a fill lies between two x, of which the first is the smaller")
         return self
 
 

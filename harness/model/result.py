@@ -146,7 +146,25 @@ def residual_of(result: Result) -> Result | None:
 
     None where none comes, or where what comes is no answer.
     """
-    own = result.details.get("without_strength")
+    return _beside(result, "without_strength")
+
+
+def plastic_of(result: Result) -> Result | None:
+    """The answer that comes with that for a wall with broken joints: as if all kept their strength. None as above."""
+    return _beside(result, "with_strength")
+
+
+def plastic_and_residual_of(result: Result) -> tuple[Result, Result] | None:
+    """The answers with plastic strength and without it, of which one is the result; None where it is alone."""
+    if (plastic := plastic_of(result)) is not None:
+        return plastic, result
+    residual = residual_of(result)
+    return None if residual is None else (result, residual)
+
+
+def _beside(result: Result, name: str) -> Result | None:
+    """The answer under a name in the details of a result, as a result."""
+    own = result.details.get(name)
     if not isinstance(own, dict):
         return None
     kept = {name: getattr(result, name) for name in ("case", "method", "family", "blocks", "interfaces", "traits")}

@@ -27,6 +27,7 @@ from harness.model.fields import (
     Strict,
 )
 from harness.model.friction_fields import (
+    After,
     Cohesion,
     CompressiveStrength,
     Dilatancy,
@@ -147,6 +148,7 @@ class Interface(Strict):
     cohesion: Cohesion = None
     tensile_strength: TensileStrength = None
     compressive_strength: CompressiveStrength = None
+    after: After = None
     joint: str | None = Field(None, description='a name for friction rules; "bed" or "head" by inclination if absent')
     inset: Inset | None = None
 
@@ -241,6 +243,7 @@ class Wall(Strict):
     cohesion: Cohesion = None
     tensile_strength: TensileStrength = None
     compressive_strength: CompressiveStrength = None
+    after: After = None
     pattern: Patterns | None = None
     blocks: list[Block] = Field(default_factory=list)
     interfaces: Interfaces = Field(default_factory=Detection)

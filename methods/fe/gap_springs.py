@@ -22,6 +22,7 @@ from methods.fe.answers import (
     standing_answer,
     stands,
 )
+from methods.fe.brittle import brittle_answer
 from methods.fe.convex_steps import bracket_collapse
 from methods.fe.histories import HistoryPlan, HistoryResult, HistoryTuning, trace_history, with_initial_shear
 from methods.fe.incremental import IncrementalResult, march
@@ -77,6 +78,10 @@ class GapSprings(Solver):
 
     def solve(self, assembly: Assembly, settings: Any) -> Answer:
         """Gravity first, then the live load to the plateau under every history asked for."""
+        if assembly.breaks:
+            events = self._limits.fewest + self._limits.first * settings.points * assembly.n_interfaces
+            most = settings.max_events or events
+            return brittle_answer(assembly, settings, _unit(assembly), most, self._histories)
         return plastic_and_residual(
             assembly, lambda wall: analysed(wall, lambda part: self._of_component(part, settings))
         )

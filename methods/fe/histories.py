@@ -59,6 +59,7 @@ SENTENCES = {
     PathEnd.BREAKDOWN: "the path was lost",
     PathEnd.TARGET: "the path reached its target",
     PathEnd.TURNED_DOWN: "the path turned down",
+    PathEnd.BROKEN: "a brittle joint has reached its strength",
     PathEnd.TIME: f"the path was {STOPPED}",
 }
 BELOW_ZERO = "the path has a peak but runs down below zero: past its peak the wall falls under its dead load alone"

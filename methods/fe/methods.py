@@ -16,6 +16,7 @@ FE = Listed(
         caption="plateau of the traced path",
         elastic=True,
         any_strength=True,
+        any_brittle=True,
         colour="#1f4e79",
         marker="o",
     ),

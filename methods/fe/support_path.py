@@ -18,7 +18,8 @@ from harness.model.result import fastest_vertex
 from methods.fe.settings import GapSpringsSettings
 from methods.springs.model.factor import Factor, SingularTangent, make_factor, refactor_any
 from methods.springs.model.gap_law import OPEN, SLIP_PLUS
-from methods.springs.model.wall_model import WallModel, build_model, load_scale, point_strains
+from methods.springs.model.point_loops import point_strains
+from methods.springs.model.wall_model import WallModel, build_model, load_scale
 from methods.springs.path.breakpoints import next_breakpoint, strain_rates
 from methods.springs.rest.equilibrium import equilibrium, gravity_state
 from methods.springs.rest.newton import Equilibrium

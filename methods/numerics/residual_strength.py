@@ -4,6 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import replace
+from typing import Any
+
+import numpy as np
 
 from harness.model.assembly import Assembly
 from harness.model.bars import BAR_FORCES, DEAD_BAR_FORCES
@@ -21,10 +24,8 @@ def plastic_and_residual(assembly: Assembly, solve: Callable[[Assembly], Answer]
     if not assembly.strong or plastic.status is not Status.OK:
         return plastic
     said = "The time was over before the wall without strength was solved."
-    residual = best_so_far(
-        lambda: solve(assembly.without_strength), lambda: Answer(Status.NOT_CONVERGED, Finding.NONE, said)
-    )
-    return with_residual(plastic, residual)
+    residual = best_so_far(lambda: solve(assembly.residual), lambda: Answer(Status.NOT_CONVERGED, Finding.NONE, said))
+    return between(assembly, plastic, residual) if assembly.breaks else with_residual(plastic, residual)
 
 
 def with_residual(plastic: Answer, residual: Answer) -> Answer:
@@ -33,34 +34,75 @@ def with_residual(plastic: Answer, residual: Answer) -> Answer:
     Joints of mortar are brittle: what is left of them once they have moved is friction, the residual strength. Its
     whole answer goes along as `details["without_strength"]`, so that the judge can tell whether it is right.
     """
-    own = {
-        "status": str(residual.status),
-        "finding": str(residual.finding),
-        "sentence": residual.sentence,
-        "multiplier": residual.multiplier,
-        "bracket": None if residual.bracket is None else list(residual.bracket),
-        "bracket_meaning": residual.bracket_meaning,
-        "forces": None if residual.forces is None else residual.forces.tolist(),
-        "forces_multiplier": residual.forces_multiplier,
-        "mechanism": None if residual.mechanism is None else residual.mechanism.tolist(),
-        "flow": residual.flow,
-        "details": {
-            name: residual.details[name]
-            for name in ("live_forces", "dilatant_mechanism", "dead_forces", MOVING_FORCES, BAR_FORCES, DEAD_BAR_FORCES)
-            if name in residual.details
-        },
-    }
-    if residual.status is not Status.OK:
-        said = "what it bears without cohesion and tensile strength was not found"
-    elif residual.multiplier is not None:
-        said = f"without cohesion and tensile strength it is {residual.multiplier:.7g}, the residual multiplier"
-    else:
-        said = f"without cohesion and tensile strength the answer is: {residual.finding}"
     rely = "Rely on the residual answer"
     if residual.flow == "associated" and residual.finding is not Finding.FALLS:
         rely = "Both are upper bounds: rely on the least residual multiplier (`la`)"
+    said = _residual_in_words(residual, "cohesion and tensile strength")
     sentence = (
         f"{plastic.sentence} That is with plastic strength of the joints; {said}. {rely}, because joints of mortar are "
         "brittle."
     )
-    return replace(plastic, sentence=sentence, details=plastic.details | {"without_strength": own})
+    return replace(plastic, sentence=sentence, details=plastic.details | {"without_strength": _as_detail(residual)})
+
+
+def between(assembly: Assembly, plastic: Answer, residual: Answer) -> Answer:
+    """One of the two answers for a wall with brittle joints, with the other: a safe and an upper estimate.
+
+    An associated maximum is an upper bound if its joints keep their strength, so that is the one returned, with
+    `details["without_strength"]`. The least collapse state known is one in which all brittle joints are broken:
+    `details["broken"]` lists them, and the plastic answer is `details["with_strength"]`. Proofs that no state of the
+    broken wall lies lower say nothing of states in which joints are whole, and are left out.
+    """
+    number = int(assembly.brittle.sum())
+    joints = f"{number} of the joints {'is' if number == 1 else 'are'} brittle"
+    if plastic.flow == "associated" or residual.status is not Status.OK:
+        said = _residual_in_words(residual, "the strength of brittle joints")
+        sentence = (
+            f"{plastic.sentence} That is as if all joints kept their strength, an upper estimate; {said}. Because "
+            f"{joints}, the multiplier of the wall lies between the least residual one (`la`) and this; `fe` follows "
+            "how they break."
+        )
+        return replace(plastic, sentence=sentence, details=plastic.details | {"without_strength": _as_detail(residual)})
+    kept = {name: value for name, value in residual.details.items() if name not in OF_PROOFS}
+    upper = f"{plastic.multiplier:.7g}" if plastic.multiplier is not None else f'the answer "{plastic.finding}"'
+    sentence = (
+        f"{residual.sentence} That is with all brittle joints broken, a safe estimate; if all joints kept their "
+        f"strength, the least known would be {upper}. Because {joints}, the multiplier of the wall lies between this "
+        "and the maximum of `la-associated`; `fe` follows how they break."
+    )
+    own = {"broken": np.flatnonzero(assembly.brittle).tolist(), "with_strength": _as_detail(plastic)}
+    return replace(residual, sentence=sentence, details=kept | own)
+
+
+OF_PROOFS = ("proved_least", "lower_bound", "certificate", "certified_bound")
+"""Details that prove no state to lie lower."""
+
+
+def _residual_in_words(residual: Answer, without: str) -> str:
+    """The residual multiplier or finding, in the middle of a sentence."""
+    if residual.status is not Status.OK:
+        return f"what it bears without {without} was not found"
+    if residual.multiplier is not None:
+        return f"without {without} it is {residual.multiplier:.7g}, the residual multiplier"
+    return f"without {without} the answer is: {residual.finding}"
+
+
+def _as_detail(answer: Answer) -> dict[str, Any]:
+    """An answer as JSON values in the details of another, with what its proof needs."""
+    return {
+        "status": str(answer.status),
+        "finding": str(answer.finding),
+        "sentence": answer.sentence,
+        "multiplier": answer.multiplier,
+        "bracket": None if answer.bracket is None else list(answer.bracket),
+        "bracket_meaning": answer.bracket_meaning,
+        "forces": None if answer.forces is None else answer.forces.tolist(),
+        "forces_multiplier": answer.forces_multiplier,
+        "mechanism": None if answer.mechanism is None else answer.mechanism.tolist(),
+        "flow": answer.flow,
+        "details": {
+            name: answer.details[name]
+            for name in ("live_forces", "dilatant_mechanism", "dead_forces", MOVING_FORCES, BAR_FORCES, DEAD_BAR_FORCES)
+            if name in answer.details
+        },
+    }

@@ -10,7 +10,7 @@ from harness.model.assembly import Assembly, BoolArray, FloatArray
 from harness.model.comparison import CaseResults
 from harness.model.envelope import size_of
 from harness.model.method import Status
-from harness.model.result import Result, residual_of
+from harness.model.result import Result, plastic_and_residual_of
 from reports.labels import numbers
 from reports.labels.wall_summary import value_in_words
 
@@ -29,11 +29,11 @@ def strength_rows(item: CaseResults) -> list[StrengthRow]:
     """One row a method that took the strength of the joints; none where all joints are dry."""
     rows = []
     for result in item.results:
-        residual = residual_of(result)
-        if residual is None or result.status is not Status.OK:
+        pair = plastic_and_residual_of(result)
+        if pair is None or result.status is not Status.OK:
             continue
-        shown = value_in_words(residual) if residual.status is Status.OK else numbers.NOTHING
-        rows.append(StrengthRow(result.method, value_in_words(result), shown, result.traits.bounds_above))
+        plastic, residual = (value_in_words(each) if each.status is Status.OK else numbers.NOTHING for each in pair)
+        rows.append(StrengthRow(result.method, plastic, residual, result.traits.bounds_above))
     return rows
 
 
@@ -58,7 +58,8 @@ def strength_text(assembly: Assembly, unit: str) -> str:
     if assembly.strong:
         cohesion, tension = assembly.constant[:, 2], 2.0 * assembly.constant[:, 0]
         joints = _number(~assembly.law.dry)
-        parts.append(f"cohesion c A {_range(cohesion, unit)}, tension T {_range(tension, unit)}; {joints}")
+        brittle = f", of which brittle {_number(assembly.brittle)}" if assembly.breaks else ""
+        parts.append(f"cohesion c A {_range(cohesion, unit)}, tension T {_range(tension, unit)}; {joints}{brittle}")
     if assembly.crushes:
         finite = np.isfinite(assembly.crushing)
         parts.append(f"crushing force f_c A {_range(assembly.crushing[finite], unit)}; {_number(finite)}")

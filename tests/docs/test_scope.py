@@ -32,10 +32,12 @@ FEATURES: dict[str, tuple[dict[str, Any], ...]] = {
     "friction": ({},),
     "dilatancy": ({"friction": {"default": 0.5, "dilatancy": 0.2}},),
     "cohesion, tensile strength": ({"cohesion": 2}, {"cohesion": 2, "tensile_strength": 1}),
+    "brittle joints": ({"cohesion": 2, "after": "residual"},),
     "compressive strength": ({"compressive_strength": 400},),
     "ties, props": ({"ties": [ENDS]}, {"props": [ENDS]}),
     "settlements": ({"settlements": [{"blocks": ["ground"], "translation": [0, -1]}]},),
     "pressures": ({"loads": {"live": {"pressures": [FACE]}}},),
+    "fills": ({"loads": {"dead": {"fills": [{"level": 2, "unit_weight": 18}]}, **PUSH}},),
     "load cases, combinations": ({"load_cases": {"push": PUSH}, "combinations": {"sum": {"dead": 1.35, "push": 1.5}}},),
     "travelling loads": ({"travelling": {"axle": {"force": [0, -10]}}},),
 }

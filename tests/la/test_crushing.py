@@ -242,6 +242,7 @@ def test_commands_answer_or_refuse(tmp_path: Path):
         refused = drystone(*command)
         assert refused.returncode == 2, refused.stdout
         assert "compressive strength" in refused.stderr
+    assert "--method la-associated" in drystone("factor", path).stderr
 
 
 def test_strength_far_above_the_loads_is_refused_with_the_joint():

@@ -153,3 +153,77 @@ def test_dry_walls_are_written_as_before():
     built = build(Wall.model_validate(wall_data(BOND, 0.5)))
     assert not {"cohesion", "tensile_strength"} & set(str(built.wall.document()).split("'"))
     assert not built.assembly.constant.any()
+
+
+def brittle(data: dict[str, Any]) -> list[bool]:
+    return build(Wall.model_validate(data)).assembly.brittle.tolist()
+
+
+@pytest.mark.parametrize(
+    ("where", "bed", "head"),
+    [
+        ({"friction": 0.5, "cohesion": 2.0}, False, False),
+        ({"friction": 0.5, "cohesion": 2.0, "after": "plastic"}, False, False),
+        ({"friction": 0.5, "cohesion": 2.0, "after": "residual"}, True, True),
+        (
+            {
+                "friction": {
+                    "default": 0.5,
+                    "cohesion": 2.0,
+                    "after": "residual",
+                    "rules": [{"joint": "bed", "value": 1}],
+                }
+            },
+            False,
+            True,
+        ),
+        (
+            {"friction": {"default": 0.5, "rules": [{"joint": "bed", "value": 1, "cohesion": 1, "after": "residual"}]}},
+            True,
+            False,
+        ),
+    ],
+)
+def test_brittle_joints_are_named_where_strength_is(where: dict[str, Any], bed: bool, head: bool):
+    built = build(Wall.model_validate(wall_data(BOND) | where))
+    wall = built.assembly
+    beds = np.array(wall.joint) == "bed"
+    assert wall.brittle.tolist() == np.where(beds, bed, head).tolist()
+    assert brittle(built.wall.document()) == wall.brittle.tolist()
+    assert wall.breaks is (bed or head)
+    assert (wall.residual.constant[wall.brittle] == 0.0).all()
+    if wall.breaks:
+        np.testing.assert_array_equal(wall.residual.constant[~wall.brittle], wall.constant[~wall.brittle])
+    else:
+        assert not wall.residual.strong
+
+
+def test_an_interface_is_brittle_by_its_own_field():
+    data = wall_data(stack(2, 1.0, 0.5), 0.5)
+    names = build(Wall.model_validate(data)).assembly.block_ids
+    given = {"between": [names[0], names[1]], "from": [0, 0], "to": [1, 0], "friction": 0.7, "cohesion": 5.0}
+    assert sum(brittle(data | {"interfaces": {"given": [given | {"after": "residual"}]}})) == 1
+    assert sum(brittle(data | {"interfaces": {"given": [given]}})) == 0
+
+
+def test_a_brittle_wall_has_a_key_of_its_own():
+    strong = wall_data(BOND, 0.5, cohesion=2.0)
+    keys = {
+        content_of(build(Wall.model_validate(strong | more)).assembly)
+        for more in ({}, {"after": "plastic"}, {"after": "residual"})
+    }
+    assert len(keys) == 2
+
+
+@pytest.mark.parametrize(
+    ("more", "words"),
+    [
+        ({"after": "brittle", "cohesion": 1.0}, "after: .*'plastic' or 'residual'"),
+        ({"after": "residual"}, "neither cohesion nor tensile strength"),
+        ({"after": "residual", "cohesion": 0.0}, "neither cohesion nor tensile strength"),
+        ({"after": "residual", "friction": {"default": 0.5}}, "friction by rules holds"),
+    ],
+)
+def test_a_word_about_no_strength_is_refused(more: dict[str, Any], words: str):
+    with pytest.raises(InputError, match=words):
+        parse_wall(wall_data(BOND, 0.5) | more, "")

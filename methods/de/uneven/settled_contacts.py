@@ -252,6 +252,7 @@ def with_contacts(
         dilatancy=np.zeros(len(rows)),
         constant=np.zeros((len(rows), 4)),
         crushing=np.full(len(rows), np.inf),
+        brittle=np.zeros(len(rows), dtype=bool),
         joint=tuple("bed" if flat else "head" for flat in level),
     ), single
 

@@ -29,9 +29,12 @@ class BreakpointTolerances:
         rate: rates of breakpoint functions below this share of the fastest gap rate count as zero.
         soft_rate: the same on pinned pieces, as forces over a motion as long as the displacements so far.
         sure_rate: such a rate, over the fastest velocity, from which its sign in a new direction is beyond doubt.
+        broken: slack, as a share of the load scale, up to which a brittle joint is at its strength: rounding of a path
+            is less, and the judge accepts ten times as much.
     """
 
     force: float = 1e-12
+    broken: float = 1e-9
     rate: float = 1e-11
     soft_rate: float = 1e-7
     sure_rate: float = 1e-6

@@ -14,6 +14,7 @@ import numpy as np
 from harness.model.assembly import FloatArray, IntArray
 from methods.numerics.block_kernels import COLUMNS
 from methods.numerics.vectors import largest
+from methods.springs.model.breaking import joints_at_strength
 from methods.springs.model.factor import Change, Factor, SingularTangent
 from methods.springs.model.gap_law import OPEN, SLIP_PLUS, STICK, gap_forces, shear_limit
 from methods.springs.model.wall_model import WallModel, load_scale
@@ -133,6 +134,11 @@ class PathFollower:
     def _out_of_balance(self) -> FloatArray:
         return self.model.out_of_balance(self.opening, self.trial, self.state, self.multiplier)
 
+    def at_strength(self) -> IntArray:
+        """The brittle joints (k,) that have reached their strength here."""
+        within = self.options.breakpoints.broken * self.scale
+        return joints_at_strength(self.model, self.opening, self.trial, self.state, within)
+
     def commit(self) -> FloatArray:
         """The history h = T - kt s (P,) after the present shears are frozen in."""
         model = self.model
@@ -158,8 +164,11 @@ class PathFollower:
             turn: share of the peak by which the path may fall before it is reported as turned down.
 
         Returns:
-            Why the stretch ended. At PLATEAU the velocity of `direction` is the mechanism.
+            Why the stretch ended. At PLATEAU the velocity of `direction` is the mechanism; at BROKEN a brittle joint
+            has reached its strength.
         """
+        if self.model.assembly.breaks and len(self.at_strength()):
+            return PathEnd.BROKEN
         try:
             while record.events < max_events:
                 self.model.deadline.ask()
@@ -203,6 +212,8 @@ class PathFollower:
             self._note(record, 1)
             return PathEnd.TARGET
         self._advance(way.velocity, way.speed, step)
+        if model.assembly.breaks and len(self.at_strength()):
+            return PathEnd.BROKEN
         record.events += 1
         self._note(record, note)
         if self.multiplier < record.peak - turn * max(abs(record.peak), 1e-3):

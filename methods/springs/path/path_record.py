@@ -21,6 +21,7 @@ class PathEnd(StrEnum):
     TURNED_DOWN = "turned_down"
     EVENTS = "events"
     BREAKDOWN = "breakdown"
+    BROKEN = "broken"
     TIME = "time"
 
 

@@ -1,0 +1,72 @@
+"""What the judge asks of brittle joints: an answer lists those that it calls broken, and is judged with these dry.
+
+`details["broken"]` has the numbers of the joints that have lost their cohesion and tensile strength, none where it is
+missing. Forces bear no tension and no cohesion there. In a mechanism without dilatancy a joint that is called whole
+rests: one that opened or slipped would be broken. `details["breaking"]` has those that break at the multiplier of a
+collapse; each is at its strength in the forces at this multiplier. That loading leads there depends on the stiffness of
+joints, and is not judged.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+
+from harness.engine.measures import Measures, between
+from harness.model.assembly import Assembly, BoolArray, FloatArray
+from harness.model.result import normalised_mechanism, relative_velocities
+
+BROKEN = "broken"
+BREAKING = "breaking"
+
+
+def listed(assembly: Assembly, details: dict[str, Any], name: str) -> BoolArray | str:
+    """(m,) joints that an answer lists under a name; or what is wrong with the list."""
+    mask = np.zeros(assembly.n_interfaces, dtype=bool)
+    numbers = details.get(name, [])
+    if not isinstance(numbers, list) or any(type(p) is not int for p in numbers):
+        return f"`{name}` is no list of numbers of joints."
+    for p in numbers:
+        if not 0 <= p < len(mask):
+            return f"`{name}` names the joint {p}, of {len(mask)}."
+        if not assembly.brittle[p]:
+            ends = (assembly.block_ids[side[p]] for side in (assembly.block_a, assembly.block_b))
+            return f"`{name}` names the joint between {' and '.join(ends)}, which is not brittle, or broken before."
+        mask[p] = True
+    return mask
+
+
+def dried(assembly: Assembly, broken: BoolArray) -> Assembly:
+    """The wall whose joints `broken` (m,) bear by compression and friction alone."""
+    constant, brittle = assembly.constant.copy(), assembly.brittle.copy()
+    constant[broken] = 0.0
+    brittle[broken] = False
+    return replace(assembly, constant=constant, brittle=brittle)
+
+
+def motion_of_whole(assembly: Assembly, mechanism: FloatArray) -> float:
+    """The fastest opening or slip of a joint that is brittle and whole, the fastest vertex having speed 1."""
+    opening, slip = relative_velocities(assembly, normalised_mechanism(assembly, mechanism))
+    rates = np.maximum(abs(opening).max(axis=1, initial=0.0), abs(slip))
+    return float(rates[assembly.brittle].max(initial=0.0))
+
+
+def unused_strength(assembly: Assembly, forces: FloatArray, multiplier: float, joints: BoolArray) -> float:
+    """What the joint furthest from its strength would still bear of tension at an end, or of shear, as yield counts.
+
+    A joint that has no shear strength in these forces cannot break by shear.
+
+    Args:
+        assembly: the wall; forces: (m, 3) contact forces at the multiplier.
+        joints: (m,) whose strength is asked for.
+    """
+    scale = between(assembly, Measures.of(assembly, forces, multiplier).acting)
+    normal, shear = forces[:, :2], forces[:, 2]
+    strength = assembly.friction * normal.sum(axis=1)
+    of_tension = (normal + assembly.constant[:, :2]).min(axis=1)
+    ways = np.column_stack([strength + assembly.constant[:, 2] + shear, strength + assembly.constant[:, 3] - shear])
+    of_shear = np.where(ways.max(axis=1) > 1e-6 * scale, ways.min(axis=1), np.inf)
+    left = np.minimum(of_tension, of_shear) / scale
+    return float(abs(left)[joints].max(initial=0.0))

@@ -1,0 +1,116 @@
+"""The judge on walls with brittle joints: what an answer calls broken is dry, and what it calls whole rests."""
+
+from __future__ import annotations
+
+from functools import cache
+from typing import Any
+
+import numpy as np
+import pytest
+
+from harness.engine.judge import answered, judge
+from harness.model.assembly import Assembly
+from harness.model.method import load_method
+from harness.model.result import Judgement, Result
+from tests.walls import assembly, stack
+
+WALLS = {
+    "slides": {"pattern": stack(2, 1.0, 0.2), "friction": 0.5, "cohesion": 1.0},
+    "topples": {"pattern": stack(2, 0.4, 1.0), "friction": 1.0, "cohesion": 8.0, "tensile_strength": 4.0},
+}
+
+
+@cache
+def state(name: str, method: str, after: str = "residual") -> tuple[Assembly, Result]:
+    wall = assembly(**WALLS[name], after=after)
+    return wall, answered(load_method(method), wall)[0]
+
+
+def judged(wall: Assembly, result: Result, **details: Any) -> Judgement:
+    kept = {key: value for key, value in (result.details | details).items() if value is not None}
+    return judge(wall, result.model_copy(update={"details": kept}), 1e-8)
+
+
+@pytest.mark.parametrize("method", ["la", "la-associated", "fe"])
+@pytest.mark.parametrize("name", WALLS)
+def test_right_answers_are_accepted(name: str, method: str):
+    wall, result = state(name, method)
+    assert judged(wall, result).accepted is True
+
+
+@pytest.mark.parametrize("name", WALLS)
+def test_a_plastic_mechanism_that_moves_a_whole_brittle_joint_is_rejected(name: str):
+    """It is a collapse state if joints keep their strength; a joint that has moved has none."""
+    plastic, result = state(name, "la", "plastic")
+    wall, _ = state(name, "la")
+    assert judged(plastic, result, without_strength=None).accepted is True
+    said = judged(wall, result, without_strength=None)
+    assert said.accepted is False
+    assert "calls whole moves" in said.sentence
+    assert said.residuals["whole"] > 0.01
+
+
+@pytest.mark.parametrize("name", WALLS)
+def test_the_associated_state_of_whole_joints_is_an_upper_bound(name: str):
+    wall, result = state(name, "la-associated")
+    assert "upper bound" in judged(wall, result).sentence
+
+
+@pytest.mark.parametrize(
+    "listed", [None, [], [1], [0, 5], [-1], ["0"], [True], "0", 0], ids=lambda listed: repr(listed)
+)
+def test_a_residual_state_without_its_list_of_broken_joints_is_rejected(listed: Any):
+    """The lower joint moves in it, which bears only friction: called whole, it would take more."""
+    wall, result = state("slides", "la")
+    moving = int(np.argmax(abs(np.array(result.forces)[:, 2])))
+    assert judged(wall, result, broken=[moving]).accepted is True
+    given = [1 - moving] if listed == [1] else listed
+    assert judged(wall, result, broken=given).accepted is False
+
+
+def test_a_joint_that_is_not_brittle_cannot_be_called_broken():
+    _, result = state("slides", "la")
+    lower = {"between": ["base", "1"], "value": 0.5, "cohesion": 1.0, "after": "residual"}
+    upper = lower | {"between": ["1", "2"], "after": "plastic"}
+    mixed = assembly(stack(2, 1.0, 0.2), {"default": 0.5, "rules": [lower, upper]})
+    assert mixed.brittle.sum() == 1
+    said = judged(mixed, result)
+    assert said.accepted is False
+    assert "not brittle" in said.sentence
+
+
+@pytest.mark.parametrize("name", WALLS)
+def test_a_break_is_shown_by_forces_at_strength_and_a_motion_that_nothing_resists(name: str):
+    wall, result = state(name, "fe")
+    breaking = result.details["breaking"]
+    assert len(breaking) == 1
+    right = judged(wall, result)
+    assert right.accepted is True
+    assert right.residuals["breaking"] < 1e-8
+    other = [1 - breaking[0]]
+    for listed in (other, [*breaking, *other], [], [7], "0"):
+        assert judged(wall, result, breaking=listed).accepted is False
+    assert judged(wall, result, broken=breaking).accepted is False
+    unshown = judge(wall, result.model_copy(update={"mechanism": None}), 1e-8)
+    assert unshown.accepted is None
+    still = np.array(result.mechanism)
+    for motion in (-still, 0.0 * still, still * [0.0, 1.0, 0.0] + [0.0, 0.1, 0.0]):
+        wrong = judge(wall, result.model_copy(update={"mechanism": motion.tolist()}), 1e-8)
+        assert wrong.accepted is False
+
+
+def test_a_break_below_its_multiplier_is_rejected():
+    """At nine tenths of the load no joint is at its strength."""
+    wall, result = state("slides", "fe")
+    forces = np.array(result.forces) * [1.0, 1.0, 0.9]
+    lower = {"multiplier": 0.9 * (result.multiplier or 0.0), "forces_multiplier": 0.9 * (result.multiplier or 0.0)}
+    said = judge(wall, result.model_copy(update=lower | {"forces": forces.tolist()}), 1e-8)
+    assert said.accepted is False
+    assert said.residuals["breaking"] > 1e-3
+
+
+def test_the_plastic_answer_beside_the_residual_one_is_judged_too():
+    wall, result = state("slides", "la")
+    plastic = result.details["with_strength"]
+    assert judged(wall, result, with_strength=plastic | {"multiplier": 0.9}).accepted is False
+    assert judged(wall, result, with_strength={"finding": "?"}).accepted is False
