@@ -298,8 +298,8 @@ def check_takes(method: Method, assembly: Assembly) -> None:
         raise InputError(
             f"{method.name} takes joints that do not crush; that between {between(int(np.argmin(assembly.crushing)))} "
             "has a compressive strength",
-            f"Take a method that takes it ({', '.join(methods_with('any_crushing'))}), as by --method la-associated, "
-            "or leave it out",
+            f"Take a method that takes it (--method {methods_with('any_crushing')[0]}; all of them: "
+            f"{', '.join(methods_with('any_crushing'))}), or leave it out",
         )
     if np.any(assembly.support_motion):
         block = int(np.argmax(np.any(assembly.support_motion, axis=1)))
