@@ -66,10 +66,10 @@ def reactions(wall: Wall, tolerance: float = 1e-9) -> tuple[Reaction, Reaction] 
     assembly = wall.assembly
     if not np.any(with_bars_as_joints(assembly).support_strains):
         remedy = 'Give "settlements": [{"blocks": [...], "translation": [0, -1]}]'
-        raise InputError("no support with a joint, a tie or a prop moves", remedy, "settlements")
+        raise InputError("no support with a joint, a tie or a prop moves", remedy, "settlements", wall.case.origin)
     if assembly.crushes:
         remedy = "Leave compressive strength out: the programmes of reactions are linear"
-        raise InputError("some joints have compressive strength", remedy, "settlements")
+        raise InputError("some joints have compressive strength", remedy, "settlements", wall.case.origin)
     found: list[Reaction] = []
     for greatest in (False, True):
         answer = extreme_reaction(assembly, greatest)
