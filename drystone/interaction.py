@@ -18,14 +18,14 @@ from drystone.walls import Wall
 from harness.engine import pipeline
 from harness.engine.executors import InProcess, LocalExecutor
 from harness.engine.measures import magnitudes
-from harness.engine.plan import check_methods
+from harness.engine.plan import check_methods, check_taken
 from harness.engine.run import Limits, Run
 from harness.model.assembly import Assembly, FloatArray
 from harness.model.case import Case
-from harness.model.errors import InputError
+from harness.model.errors import MOST_NAMED, InputError, first_few
 from harness.model.live_load import with_live_load
 from harness.model.load_cases import load_cases_of, named_loads
-from harness.model.method import Method, check_takes, load_method
+from harness.model.method import Method, load_method
 from harness.model.reading import validate
 from harness.model.result import Result
 
@@ -107,7 +107,7 @@ class LoadPair:
             if len(names) != 2:
                 raise InputError(
                     f"the wall has {len(names)} load cases with a live load",
-                    f"Name two of {', '.join(cases)} (--load-cases A,B)",
+                    f"Name two of {first_few(list(cases), MOST_NAMED)} (--load-cases A,B)",
                     "load_cases",
                     case.origin,
                 )
@@ -343,9 +343,5 @@ def _checked(pair: LoadPair, method: str, settings: dict[str, Any]) -> Method:
     check_methods([method], "--method")
     loaded = load_method(method)
     validate(loaded.Settings, settings, "settings")
-    try:
-        check_takes(loaded, pair.cases[0].assembly)
-    except InputError as error:
-        error.source = error.source or pair.source
-        raise
+    check_taken(loaded, pair.cases[0], "--method")
     return loaded

@@ -64,7 +64,7 @@ def reactions(wall: Wall, tolerance: float = 1e-9) -> tuple[Reaction, Reaction] 
     from methods.la.core.reaction import extreme_reaction
 
     assembly = wall.assembly
-    check_reactions(assembly)
+    check_reactions(assembly, wall.case.origin)
     found: list[Reaction] = []
     for greatest in (False, True):
         answer = extreme_reaction(assembly, greatest)
@@ -88,7 +88,7 @@ def reactions(wall: Wall, tolerance: float = 1e-9) -> tuple[Reaction, Reaction] 
     return found[0], found[1]
 
 
-def check_reactions(assembly: Assembly) -> None:
+def check_reactions(assembly: Assembly, file: str) -> None:
     """Refuse a wall whose reactions are not asked by linear programmes.
 
     Raises:
@@ -96,15 +96,15 @@ def check_reactions(assembly: Assembly) -> None:
     """
     if not np.any(with_bars_as_joints(assembly).support_strains):
         remedy = 'Give "settlements": [{"blocks": [...], "translation": [0, -1]}]'
-        raise InputError("no support with a joint, a tie or a prop moves", remedy, "settlements")
+        raise InputError("no support with a joint, a tie or a prop moves", remedy, "settlements", file)
     if assembly.crushes:
         remedy = "Leave compressive strength out: the programmes of reactions are linear"
-        raise InputError("some joints have compressive strength", remedy, "settlements")
+        raise InputError("some joints have compressive strength", remedy, "settlements", file)
     if assembly.breaks:
         remedy = (
             'Leave out "after" to ask of a wall whose joints stay whole, their strength of one whose joints are broken'
         )
-        raise InputError("some joints are brittle, and a reaction depends on which have broken", remedy, "settlements")
+        raise InputError("some joints are brittle; a reaction depends on those that broke", remedy, "settlements", file)
 
 
 def moving_blocks(assembly: Assembly, mechanism: FloatArray) -> tuple[str, ...]:

@@ -19,14 +19,18 @@ import numpy as np
 from drystone.walls import Wall
 from harness.engine import pipeline
 from harness.engine.executors import InProcess, LocalExecutor
-from harness.engine.plan import check_methods
+from harness.engine.plan import check_methods, check_taken, takers
 from harness.engine.run import Limits, Run
 from harness.model.assembly import Assembly
 from harness.model.case import Case
 from harness.model.errors import InputError
-from harness.model.method import Finding, Status, check_takes, load_method
+from harness.model.method import Finding, Status, load_method
 from harness.model.reading import validate
 from harness.model.result import Result
+
+WITHOUT_SELF_STRESS = ("fe", "de")
+"""Methods that load a wall from rest, so that its joints carry no self-stress but what the loads cause."""
+NONE_WITHOUT = f"and none of {', '.join(WITHOUT_SELF_STRESS)}, which would find that, takes this wall"
 
 
 @dataclass(frozen=True)
@@ -136,9 +140,10 @@ class FactorOfSafety:
                 return
             yield f"The judge accepted an equilibrium within yield at {self.lower:.8g}."
             if self.stands.traits.any_self_stress:
+                without = " and ".join(takers(self.wall.case, WITHOUT_SELF_STRESS))
                 yield (
                     "Joints may carry any self-stress in it: a wall whose joints slide without dilatancy can fall "
-                    "earlier, so ask fe and de too."
+                    f"earlier, {f'so ask {without} too' if without else NONE_WITHOUT}."
                 )
         if self.falls is not None:
             at = "without friction" if math.isinf(self.upper) else f"at {self.upper:.8g} and above"
@@ -237,17 +242,14 @@ def factor_by(
         accuracy = loaded.traits.accuracy if loaded.traits.brackets else 1e-4
     if not 1e-12 <= accuracy < 1.0:
         raise InputError(f"the accuracy {accuracy:g} is out of range", "Give one from 1e-12 to below 1", "accuracy")
-    try:
-        check_takes(loaded, wall.assembly)
-        if share != 0.0 and not wall.assembly.has_live_load:
-            raise InputError(
-                "a share of the live load is asked for and there is none",
-                'Give "loads": {"live": ...}, or the share 0',
-                "loads.live",
-            )
-    except InputError as error:
-        error.source = error.source or wall.case.origin
-        raise
+    check_taken(loaded, wall.case, "--method")
+    if share != 0.0 and not wall.assembly.has_live_load:
+        raise InputError(
+            "a share of the live load is asked for and there is none",
+            'Give "loads": {"live": ...}, or the share 0',
+            "loads.live",
+            wall.case.origin,
+        )
     executor = InProcess() if limits is None else LocalExecutor(1)
     with pipeline.opened_at(store) as opened:
 

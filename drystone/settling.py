@@ -112,7 +112,7 @@ def settled_until_collapse(wall: Wall, tolerance: float = 1e-9) -> SettledCollap
     from methods.la.settling import settle
 
     assembly = wall.assembly
-    check_reactions(assembly)
+    check_reactions(assembly, wall.case.origin)
     _check_simple(assembly)
     found = settle(MovedWall.at_rest(assembly))
     if isinstance(found, str):

@@ -25,7 +25,7 @@ from drystone.cli.options import (
 )
 from drystone.cli.settings import settings_of
 from harness.engine import pipeline
-from harness.engine.plan import check_methods, find_cases
+from harness.engine.plan import check_methods, check_taken, find_cases
 from harness.engine.run import Limits, Run
 from harness.engine.sensitivity import advised
 from harness.engine.store import open_store
@@ -120,6 +120,7 @@ def export(
     warn(found)
     result = None
     if method is not None:
+        check_taken(load_method(method), found, "--method")
         with open_store(store) as opened, terminal.progress(1, quiet=True) as told:
             (result,) = pipeline.execute([Run(found, method, chosen, Limits())], opened, 1, told=told)
         if result.status is not Status.OK or result.finding is Finding.NONE:

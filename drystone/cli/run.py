@@ -10,6 +10,7 @@ import click
 from drystone.analysis import analyse_by
 from drystone.cli import terminal
 from drystone.cli.options import (
+    INPUT_ERROR,
     as_loaded,
     both_signs_flag,
     cases_option,
@@ -27,12 +28,16 @@ from drystone.cli.options import (
 )
 from drystone.cli.settings import settings_of
 from drystone.walls import Wall
-from harness.engine.plan import check_methods, check_order, find_cases
+from harness.engine.plan import check_methods, check_order, check_taken, find_cases
 from harness.engine.run import Limits
 from harness.model.envelope import envelope
-from harness.model.errors import InputError
+from harness.model.errors import MOST_NAMED, InputError, first_few
 from harness.model.load_cases import named_loads
-from harness.model.method import Status
+from harness.model.method import Status, load_method
+from harness.model.result import Result
+
+SEVERITY = (INPUT_ERROR, 1, 3, 0)
+"""Exit codes, the gravest first: of several load cases the gravest is that of the command."""
 
 
 @click.command()
@@ -86,13 +91,15 @@ def run(
     chosen = settings_of(method, settings)
     if found.wall.load_case_fields and load_case is None:
         raise InputError(
-            f"it has the load cases {', '.join(named_loads(found.wall))}",
+            f"it has the load cases {first_few(list(named_loads(found.wall)), MOST_NAMED)}",
             "Choose one: --load-case NAME; `drystone compare` answers all of them",
             "load_cases",
             found.origin,
         )
     cases = as_loaded(found, load_case, live, both_signs=both_signs)
     warn(cases[0])
+    for each in cases:
+        check_taken(load_method(method), each)
     limits = Limits(seconds, memory * 2**20)
     results = [
         analyse_by(Wall(case), method, chosen, isolated=True, limits=limits, processes=jobs, store=store, fresh=fresh)
@@ -115,5 +122,12 @@ def run(
                 print()
         if len(cases) > 1:
             say(envelope(cases, results).sentence)
-    codes = {1 if result.status is not Status.OK else terminal.JUDGED[result.judge.accepted] for result in results}
-    sys.exit(1 if 1 in codes else max(codes))
+    codes = [_code(result) for result in results]
+    sys.exit(min(codes, key=SEVERITY.index))
+
+
+def _code(result: Result) -> int:
+    """The exit code of one answer; a wall that the method asked for refuses is wrong input."""
+    if result.status is Status.REFUSED:
+        return INPUT_ERROR
+    return 1 if result.status is not Status.OK else terminal.JUDGED[result.judge.accepted]

@@ -26,7 +26,7 @@ from drystone.cli.options import (
 )
 from drystone.walls import read_wall as wall_of_file
 from harness.engine import pipeline
-from harness.engine.plan import check_methods, find_cases
+from harness.engine.plan import check_methods, check_taken, find_cases
 from harness.engine.run import Limits, Run
 from harness.engine.store import open_store
 from harness.formats.registry import FORMATS
@@ -197,6 +197,8 @@ def _answers(case: str, methods: list[str], store: Path, folders: tuple[Path, ..
     check_methods(methods)
     (found,) = find_cases([case], None, folders)
     warn(found)
+    for name in methods:
+        check_taken(load_method(name), found, "--methods")
     with open_store(store) as opened, terminal.progress(len(methods), quiet=True) as told:
         results = pipeline.execute([Run(found, name, {}, Limits()) for name in methods], opened, 1, told=told)
     for result in results:

@@ -58,4 +58,5 @@ def decide(
     sentence += (
         f"; not within {tolerance:.3g}: {', '.join(failed)}." if failed else f" and holds within {tolerance:.3g}."
     )
-    return Judgement(residuals=residuals, tolerance=tolerance, accepted=not failed, sentence=sentence)
+    signless = {name: value + 0.0 for name, value in residuals.items()}  # the maximum of 0 and -0 may be -0
+    return Judgement(residuals=signless, tolerance=tolerance, accepted=not failed, sentence=sentence)

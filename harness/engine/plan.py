@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Mapping, Sequence
+from contextlib import suppress
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -12,7 +13,7 @@ from harness.engine.run import Limits, Run
 from harness.model.case import Case, case_folders, case_of_wall, id_of, read_case, shipped_cases
 from harness.model.errors import InputError, did_you_mean
 from harness.model.library import library
-from harness.model.method import Method, listed_methods, method_names
+from harness.model.method import Method, check_takes, listed_methods, load_method, method_names
 from harness.model.reading import DRAWINGS
 
 
@@ -106,6 +107,34 @@ def _methods_meant(name: str) -> str:
     """What may have been meant by a name that no method has."""
     known = listed_methods()
     return f"{did_you_mean(name, known)} There are: {', '.join(known)}".strip()
+
+
+def check_taken(method: Method, case: Case, option: str = "") -> None:
+    """Refuse a wall with joints, bars or supports that a method which is asked by name does not take.
+
+    Args:
+        method: asked; case: the wall; option: that names methods, where one was not given perhaps.
+
+    Raises:
+        InputError: naming the file, what is not taken, and the methods that take it.
+    """
+    try:
+        check_takes(method, case.assembly)
+    except InputError as error:
+        error.source = error.source or case.origin
+        able = takers(case, listed_methods()) if option else []
+        error.remedy += f". The wall as it is: {option} {able[0]}" if able else ""
+        raise
+
+
+def takers(case: Case, names: Sequence[str]) -> list[str]:
+    """Those of some methods that take a wall."""
+    found = []
+    for name in names:
+        with suppress(InputError):  # one that cannot be loaded takes nothing
+            check_takes(load_method(name), case.assembly)
+            found.append(name)
+    return found
 
 
 def check_shares(method: Method, processes: int) -> None:

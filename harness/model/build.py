@@ -10,13 +10,13 @@ from functools import cached_property, partial
 import numpy as np
 
 from harness.model import geometry
-from harness.model.assembly import Assembly, FloatArray
+from harness.model.assembly import Assembly, BoolArray, FloatArray, IntArray
 from harness.model.bars import Bars
 from harness.model.blocks import blocks_of_wall, polygons_of, support_faults, weight_of
 from harness.model.errors import MOST_NAMED, InputError, first_few, of_each, raise_faults
 from harness.model.friction_rules import JointLaws, laws_of_joints
 from harness.model.input_checks import input_warnings, thickness_of
-from harness.model.interfaces import check_held, faces_of, find_joints, normals_of
+from harness.model.interfaces import Joints, check_held, faces_of, find_joints, normals_of
 from harness.model.load_fields import Load, Loads
 from harness.model.loads import (
     check_pairs,
@@ -26,9 +26,12 @@ from harness.model.loads import (
     has_pressures,
     with_pressures,
 )
+from harness.model.names import faults_of_wall
 from harness.model.plausibility import contact_warnings, force_warnings, interface_warnings, near_misses
 from harness.model.wall import Block, Inset, Interface, Wall
 
+MOST_MOVED = 1_000_000
+"""Pairs of a settlement and a support that it moves, a second of work."""
 SMALLEST = float(np.finfo(float).tiny / np.finfo(float).eps)
 """Least sum of loads, whatever its unit: a share of it as small as rounding still has all its digits."""
 
@@ -61,8 +64,61 @@ class Built:
         return self.thickness()
 
 
-def build(wall: Wall, name: str = "wall") -> Built:
+@dataclass(frozen=True, eq=False)
+class Laid:
+    """Blocks of a wall and the joints between them: what is the same under all of its loads.
+
+    Attributes:
+        blocks: all n of it; index: their numbers by id; polygons, fixed, weight, centroids: theirs.
+        size: typical block size [length].
+        joints: its m interfaces; block_a, block_b, face1, face2, normal: theirs, as of `Assembly`.
+    """
+
+    blocks: list[Block]
+    index: dict[str, int]
+    polygons: tuple[FloatArray, ...]
+    fixed: BoolArray
+    weight: FloatArray
+    centroids: FloatArray
+    size: float
+    joints: Joints
+    block_a: IntArray
+    block_b: IntArray
+    face1: FloatArray
+    face2: FloatArray
+    normal: FloatArray
+
+
+def lay(wall: Wall, blocks: list[Block]) -> Laid:
+    """The blocks of a wall, as `blocks_of_wall` gives them, with their joints.
+
+    Raises:
+        InputError: naming the block or the interface that is wrong.
+    """
+    names = tuple(block.id for block in blocks)
+    index = {block_id: k for k, block_id in enumerate(names)}
+    polygons = tuple(polygons_of(blocks))
+    fixed = np.array([block.fixed for block in blocks], dtype=bool)
+    raise_faults(support_faults(fixed))
+    weight = np.array(of_each(lambda block: weight_of(block, wall), blocks))
+    centroids = geometry.centroids(polygons)
+    shapes = geometry.shapes_of(polygons)
+    size = geometry.typical_size(shapes[~fixed])
+    found = find_joints(wall.interfaces, polygons, names, fixed, shapes, size)
+    block_a, block_b, face1, face2 = faces_of(found, index, fixed)
+    check_held(names, fixed, block_a, block_b, found)
+    normal = normals_of(
+        polygons, centroids, block_a, block_b, face1, face2, found.interfaces, trusted=found.trusted, size=size
+    )
+    return Laid(blocks, index, polygons, fixed, weight, centroids, size, found, block_a, block_b, face1, face2, normal)
+
+
+def build(wall: Wall, name: str = "wall", laid: Laid | None = None) -> Built:
     """The assembly of a wall.
+
+    Args:
+        wall: as described; name: what it is called.
+        laid: its blocks and joints, where they were laid for other loads already.
 
     Raises:
         InputError: naming the block, interface or load that is wrong; or it has load cases, each a wall of its own.
@@ -73,25 +129,14 @@ def build(wall: Wall, name: str = "wall") -> Built:
             "Choose one with --load-case of run, compare or expand; compare answers all of them without",
             "load_cases",
         )
-    blocks = blocks_of_wall(wall)
-    names = tuple(block.id for block in blocks)
-    index = {block_id: k for k, block_id in enumerate(names)}
+    blocks = blocks_of_wall(wall) if laid is None else laid.blocks
+    raise_faults([] if laid is None else faults_of_wall(wall, blocks))
     for load in (wall.loads.dead, wall.loads.live or Load()):
         check_pairs(load, blocks)
-    polygons = tuple(polygons_of(blocks))
-    fixed = np.array([block.fixed for block in blocks], dtype=bool)
-    raise_faults(support_faults(fixed))
-    weight = np.array(of_each(lambda block: weight_of(block, wall), blocks))
-    centroids = geometry.centroids(polygons)
-
-    shapes = geometry.shapes_of(polygons)
-    size = geometry.typical_size(shapes[~fixed])
-    joints_found = find_joints(wall.interfaces, polygons, names, fixed, shapes, size)
-    interfaces = joints_found.interfaces
-    block_a, block_b, face1, face2 = faces_of(joints_found, index, fixed)
-    check_held(names, fixed, block_a, block_b, joints_found)
-    trusted = joints_found.trusted
-    normal = normals_of(polygons, centroids, block_a, block_b, face1, face2, interfaces, trusted=trusted, size=size)
+    laid = lay(wall, blocks) if laid is None else laid
+    names, index, fixed, size = tuple(laid.index), laid.index, laid.fixed, laid.size
+    weight, centroids, face1, face2 = laid.weight, laid.centroids, laid.face1, laid.face2
+    interfaces = laid.joints.interfaces
     across, up = np.abs((face2 - face1) @ _level_and_upright(wall.loads).T).T
     inclined = np.where(across >= up, "bed", "head").tolist()
     joints = tuple(interface.joint or name for interface, name in zip(interfaces, inclined, strict=True))
@@ -100,17 +145,17 @@ def build(wall: Wall, name: str = "wall") -> Built:
     assembly = Assembly(
         name=name,
         block_ids=names,
-        polygons=polygons,
+        polygons=laid.polygons,
         centroid=centroids,
         weight=weight,
         fixed=fixed,
-        block_a=block_a,
-        block_b=block_b,
+        block_a=laid.block_a,
+        block_b=laid.block_b,
         end1=end1,
         end2=end2,
         face1=face1,
         face2=face2,
-        normal=normal,
+        normal=laid.normal,
         friction=laws.friction,
         dilatancy=laws.dilatancy,
         joint=joints,
@@ -138,13 +183,13 @@ def build(wall: Wall, name: str = "wall") -> Built:
     _check_sizes(assembly)
     warnings = [
         *wall.doubts,
-        *contact_warnings(assembly, joints_found.corners, size),
-        *near_misses(names, joints_found.missed, joints_found.missed_gap, joints_found.gap),
+        *contact_warnings(assembly, laid.joints.corners, size),
+        *near_misses(names, laid.joints.missed, laid.joints.missed_gap, laid.joints.gap),
         *force_warnings(assembly, wall.loads, size),
         *input_warnings(wall, blocks, assembly),
     ]
-    if trusted < len(interfaces):
-        warnings += interface_warnings(assembly, size, trusted)
+    if laid.joints.trusted < len(interfaces):
+        warnings += interface_warnings(assembly, size, laid.joints.trusted)
     explicit = partial(_explicit, wall, blocks, weight, interfaces, joints, laws)
     return Built(assembly, tuple(warnings), explicit, partial(_joint_thickness, wall, blocks, assembly))
 
@@ -206,21 +251,26 @@ def _support_motion(wall: Wall, blocks: list[Block], assembly: Assembly) -> Floa
     """
     motion = np.zeros((len(blocks), 3))
     index = {block.id: k for k, block in enumerate(blocks)}
-    groups = groups_of_blocks(blocks)
+    groups, moved = groups_of_blocks(blocks), 0
     for number, settlement in enumerate(wall.settlements):
         place = f"settlements[{number}]"
-        named = {index[name] for name in settlement.blocks or ()}
-        chosen = sorted(named.union(groups.get(settlement.group or "", ())))
-        if not chosen:
+        named = np.array([index[name] for name in settlement.blocks or ()], dtype=np.int64)
+        chosen = np.union1d(named, groups.get(settlement.group or "", named))
+        if not len(chosen):
             raise InputError(f'no block is in a group "{settlement.group}"', "Name a group of fixed blocks", place)
-        for k in chosen:
-            if not blocks[k].fixed:
-                raise InputError(
-                    f'block "{blocks[k].id}" is not fixed', "Name supports: only they have a prescribed motion", place
-                )
-            x, y = assembly.centroid[k] - (settlement.about or assembly.centroid[k])
-            turn = settlement.rotation
-            motion[k] += [settlement.translation[0] - turn * y, settlement.translation[1] + turn * x, turn]
+        moved += len(chosen)
+        if moved > MOST_MOVED:
+            problem = f"it and those before it move more than {MOST_MOVED:,} supports in all"
+            raise InputError(problem, "Add up those of the same supports", place)
+        if not assembly.fixed[chosen].all():
+            name = blocks[int(chosen[np.argmin(assembly.fixed[chosen])])].id
+            raise InputError(f'block "{name}" is not fixed', "Name supports: only they have a prescribed motion", place)
+        middle = assembly.centroid[chosen]
+        x, y = (middle - (middle if settlement.about is None else settlement.about)).T
+        turn = settlement.rotation
+        motion[chosen] += np.stack(
+            [settlement.translation[0] - turn * y, settlement.translation[1] + turn * x, np.full(len(x), turn)], axis=1
+        )
     return motion
 
 

@@ -27,7 +27,11 @@ MOST_NEAR = 10_000_000
 """Pairs of a vertex and a face within sight of it, those of its own block too: each takes some 50 bytes, and a wall of
 100,000 blocks has about 3 million."""
 SAMPLE = 500
-"""Vertices by which the number of pairs is estimated before they are sought."""
+"""Vertices by which the number of pairs is estimated before they are counted."""
+CHUNK = 1_000_000
+"""Pairs that are looked up at once."""
+FIRST = 16
+"""Vertices that are looked up first, when it is not known how many faces one has in sight."""
 
 
 @dataclass(frozen=True)
@@ -105,39 +109,57 @@ class Edges:
         """
         reach, vertex, edge = self._seen[-1] if self._seen else (-1.0, np.empty(0, np.int64), np.empty(0, np.int64))
         if distance > reach:
-            self._check_number_within(distance)
-            low, high = (self.first - distance).T, (self.first + distance).T
-            vertex, edge = self._tree.query(shapely.box(*low, *high))
-            others = self.owner[vertex] != self.owner[edge]  # first: most faces in sight are of the own round block
-            vertex, edge = self._within(distance, vertex[others], edge[others])
+            vertex, edge = self._looked_up(distance)
             self._seen.append((distance, vertex, edge))
         elif distance < reach:
             vertex, edge = self._within(distance, vertex, edge)
         return vertex, edge
 
-    def _within(self, distance: float, vertex: IntArray, edge: IntArray) -> tuple[IntArray, IntArray]:
-        """Those of the pairs that are no further apart."""
-        close = shapely.dwithin(self._points[vertex], self._lines[edge], distance)
-        return vertex[close], edge[close]
-
-    def _check_number_within(self, distance: float) -> None:
-        """Refuse to look so far that every vertex has hundreds of faces around it, by a sample of the vertices.
+    def _looked_up(self, distance: float) -> tuple[IntArray, IntArray]:
+        """The pairs within a distance, sought for so many vertices at a time as are likely to find `CHUNK` faces.
 
         Raises:
-            InputError: how many there are.
+            InputError: as of `near`.
         """
-        count, found = len(self._points), 0
-        sample = self._points[:: -(-count // SAMPLE)]
-        for number, point in enumerate(sample, start=1):
-            found += len(self._tree.query(point, predicate="dwithin", distance=distance))
-            if found * count > MOST_NEAR * len(sample):
+        count = len(self._points)
+        boxes = shapely.box(*(self.first - distance).T, *(self.first + distance).T)
+
+        def check(found: int, looked: int, most: int) -> None:
+            if found > most:
                 raise InputError(
-                    f"its outlines have {count:,} vertices, with about {found / number:.0f} faces within "
-                    f"{distance:.3g} of each, too many to find the joints among them",
+                    f"its outlines have {count:,} vertices, and {looked:,} of them have about {found / looked:.0f} "
+                    f"faces each within {distance:.3g}, too many to find the joints among them",
                     "Simplify the outlines, let faces of a joint lie less apart (greatest_gap, greatest_overlap, "
                     "sight), or give the interfaces as a list",
                     "interfaces",
                 )
+
+        # A sample refuses most of what is too much at once; the count, which nothing can hide from, the rest. Both come
+        # before any distance is computed, which takes ten times as long.
+        sample = boxes[:: -(-count // SAMPLE)]
+        seen = 0
+        for begin in range(0, len(sample), FIRST):
+            part = sample[begin : begin + FIRST]
+            seen += self._tree.query(part).shape[1]
+            check(seen, begin + len(part), MOST_NEAR * len(sample) // count)
+        first, found, parts = 0, 0, []
+        while first < count:
+            last = min(count, first + max(1, CHUNK * first // max(found, 1) if first else FIRST))
+            parts.append(slice(first, last))
+            found, first = found + self._tree.query(boxes[first:last]).shape[1], last
+            check(found, first, MOST_NEAR)
+        pairs = []
+        for part in parts:
+            vertex, edge = self._tree.query(boxes[part])
+            vertex += part.start
+            others = self.owner[vertex] != self.owner[edge]  # first: most faces in sight are of the own round block
+            pairs.append(self._within(distance, vertex[others], edge[others]))
+        return np.concatenate([vertex for vertex, _ in pairs]), np.concatenate([edge for _, edge in pairs])
+
+    def _within(self, distance: float, vertex: IntArray, edge: IntArray) -> tuple[IntArray, IntArray]:
+        """Those of the pairs that are no further apart."""
+        close = shapely.dwithin(self._points[vertex], self._lines[edge], distance)
+        return vertex[close], edge[close]
 
     def side_by_side(self, distance: float) -> tuple[IntArray, IntArray]:
         """Pairs of edges, each way round, of which one ends at a vertex within a distance of the other [length].

@@ -6,6 +6,7 @@ from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 from difflib import get_close_matches
 from functools import lru_cache
+from itertools import accumulate, islice
 from typing import TypeVar
 
 Item = TypeVar("Item")
@@ -21,6 +22,12 @@ MOST_NAMED = 20
 """Names that a sentence lists."""
 MOST_WORDED = 500
 """Faults of one input that are put into words; the rest are counted."""
+MOST_HINTED = 20
+"""Unknown names of one kind for which one that may have been meant is looked for."""
+MOST_COMPARED = 2000
+"""Names that an unknown one is compared with, in the search for the one that was meant."""
+MOST_LETTERS = 500_000
+"""Pairs of letters that are compared in that search, a tenth of a second of work."""
 
 
 def visible(text: str) -> str:
@@ -106,7 +113,7 @@ class InputFaults(InputError):
         return self._faults
 
     def __str__(self) -> str:
-        count = len(self.faults) + self.more
+        count = len(self.faults) + self.more + sum(fault.more for fault in self.faults)
         if count == 1:
             return str(self.faults[0])
         head = f"{visible(self.source)}: {count} faults" if self.source else f"{count} faults"
@@ -187,8 +194,52 @@ def did_you_mean(word: str, known: Iterable[str]) -> str:
 def _did_you_mean(word: str, known: tuple[str, ...]) -> str:
     names = {name.lower(): name for name in known}
     names |= {other: names[name] for name, others in LIKE_MEANING.items() if name in names for other in others}
-    near = get_close_matches(word.lower(), names, n=1, cutoff=0.6)
+    letters = accumulate((len(name) * len(word) for name in names), initial=0)
+    compared = [name for name, before in zip(names, letters, strict=False) if before <= MOST_LETTERS]
+    near = get_close_matches(word.lower(), compared, n=1, cutoff=0.6)
     return f'Did you mean "{names[near[0]]}"?' if near else ""
+
+
+class Hints:
+    """Which of some names may have been meant by names that are not among them; looked for while they are few.
+
+    Args:
+        known: the names there are.
+    """
+
+    def __init__(self, known: Iterable[str]) -> None:
+        self._all = sorted(known)
+        self._left = MOST_HINTED
+
+    def of(self, word: str) -> str:
+        """The question whether another name was meant; empty where none is near, or after many such words."""
+        self._left -= 1
+        return did_you_mean(word, self._all[:MOST_COMPARED]) if self._left >= 0 else ""
+
+    def there(self, most: int) -> str:
+        """So many of the names in words."""
+        return first_few(self._all, most)
+
+
+def first_worded(faults: Iterable[InputError], more: str, element: str) -> list[InputError]:
+    """The first of many faults of one kind, and a last one that says how many more there are.
+
+    Args:
+        faults: made one by one, so that thousands take no memory.
+        more: what the others are, in words; element: what they are about.
+    """
+    waiting = iter(faults)
+    found = list(islice(waiting, MOST_WORDED))
+    if count := sum(1 for _ in waiting):
+        found.append(uncounted(count, more, element))
+    return found
+
+
+def uncounted(count: int, more: str, element: str) -> InputError:
+    """One fault that stands for many of a kind: how many, what they are in words, what they are about."""
+    fault = InputError(f"{count:,} more {more}", "Mend those listed first", element)
+    fault.more = count - 1
+    return fault
 
 
 def first_few(names: Sequence[str], most: int) -> str:

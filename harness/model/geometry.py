@@ -9,7 +9,7 @@ import shapely
 from shapely.validation import explain_validity
 
 from harness.model.assembly import BoolArray, FloatArray, IntArray, signed_area
-from harness.model.errors import MOST_WORDED, InputError, Spot, raise_faults
+from harness.model.errors import MOST_WORDED, InputError, Spot, raise_faults, uncounted
 from harness.model.rings import rings_of
 
 NEAR = 0.02
@@ -20,7 +20,11 @@ neighbours, 8 in a grid, and each pair reads the vertices of both."""
 READ_BESIDES = 2_000_000
 """Vertices read besides, a few seconds of work: a fan of 600 wedges about one point, or 400 blocks on a ground of
 5,000 vertices."""
-CHUNK = 256
+PAIRS_A_BLOCK = 10
+"""Pairs of blocks that touch or overlap, a block: a block of a wall has 6 neighbours."""
+PAIRS_BESIDES = 10_000
+"""Such pairs besides, of which the common area is computed where blocks are known to overlap, a second of work."""
+CHUNK = 32
 """Geometries that are looked up at once: what is found beyond a limit is at most what so many find."""
 
 
@@ -88,9 +92,22 @@ def typical_size(shapes: np.ndarray) -> float:
     return float(np.median(np.sqrt(shapely.area(shapes))))
 
 
-def distances(polygons: Sequence[FloatArray], which: IntArray, points: FloatArray) -> FloatArray:
-    """Distance (k,) of points (k, 2) from the polygons of numbers `which` (k,), 0 within them [length]."""
-    return np.asarray(shapely.distance(shapes_of([polygons[k] for k in which]), shapely.points(points)))
+def distances_beyond(polygons: Sequence[FloatArray], which: IntArray, points: FloatArray, near: float) -> FloatArray:
+    """Distance (k,) of points (k, 2) from the polygons of numbers `which` (k,), 0 where it is no more than `near`.
+
+    Each polygon is indexed once, so that thousands of points of one with thousands of vertices take no product of both.
+    """
+    found, at = np.zeros(len(which)), shapely.points(points)
+    used, place = np.unique(which, return_inverse=True)
+    shapes = shapes_of([polygons[k] for k in used]) if len(used) else np.empty(0, dtype=object)
+    shapely.prepare(shapes)
+    beyond = np.flatnonzero(~shapely.dwithin(shapes[place], at, near))
+    for number in np.unique(place[beyond]).tolist():
+        mine = beyond[place[beyond] == number] if len(used) > 1 else beyond
+        ring = shapely.get_coordinates(shapely.get_exterior_ring(shapes[number]))
+        edges = shapely.STRtree(shapely.linestrings(np.stack([ring[:-1], ring[1:]], axis=1)))
+        found[mine] = edges.query_nearest(at[mine], all_matches=False, return_distance=True)[1]
+    return found
 
 
 def shapes_of(polygons: Sequence[FloatArray]) -> np.ndarray:
@@ -124,10 +141,20 @@ def overlapping(shapes: np.ndarray, fixed: BoolArray, tolerance: float) -> tuple
     perimeter = shapely.length(shapes)
     nothing = np.empty((0, 2), dtype=np.int64), np.empty(0)
     # No pair shares more than all blocks together, and their union is found in n log n, where pairs are many.
-    if shapely.area(shapes).sum() - shapely.union_all(shapes).area <= tolerance * perimeter.min():
+    meet = np.isin(np.arange(len(shapes)), np.stack([i, j]))  # blocks apart from all share nothing, and cost the most
+    apart = shapely.area(shapes[meet & ~fixed]).sum() + shapely.union_all(shapes[meet & fixed]).area
+    common = float(apart - shapely.union_all(shapes[meet]).area)
+    if common <= tolerance * perimeter.min():
         return nothing
     wanted = ~(fixed[i] & fixed[j])
     i, j = i[wanted], j[wanted]
+    if len(i) > PAIRS_A_BLOCK * len(shapes) + PAIRS_BESIDES:
+        raise InputError(
+            f"they share an area of {common:.3g} in all, and {len(i):,} pairs of the {len(shapes):,} touch or overlap, "
+            "too many to say which",
+            "Blocks may touch but not overlap: draw each once",
+            "blocks",
+        )
     shared = shapely.area(shapely.intersection(shapes[i], shapes[j]))
     excess = shared - tolerance * np.minimum(perimeter[i], perimeter[j])
     worst = np.flatnonzero(excess > 0.0)
@@ -211,8 +238,7 @@ def overlap_faults(
     worded = zip(pairs[:most].tolist(), shared[:most].tolist(), strict=True)
     faults = [_overlap(shapes[a], shapes[b], (names[a], names[b]), area) for (a, b), area in worded]
     if len(pairs) > most:
-        more = f"{len(pairs) - most:,} more pairs of blocks overlap"
-        faults.append(InputError(more, "Mend those listed first", "blocks"))
+        faults.append(uncounted(len(pairs) - most, "pairs of blocks overlap", "blocks"))
     return faults
 
 

@@ -4,15 +4,18 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
+from itertools import islice
 
 import numpy as np
 
 from harness.model.assembly import Assembly
-from harness.model.errors import did_you_mean, first_few
+from harness.model.errors import MOST_NAMED, Hints, first_few
 from harness.model.friction_fields import Friction
 from harness.model.units import KILONEWTONS, METRES, unit_weight_in_kn_m3
 from harness.model.wall import Block, Wall
 
+LONGEST = 200
+"""Letters of a name that a sentence repeats."""
 GREATEST_FRICTION = 2.0
 """Coefficient beyond which an angle in degrees is likelier: stone on stone has .4 to .8, 2 is a face of 63 degrees."""
 NO_SLIDING = 100.0
@@ -83,39 +86,56 @@ def _rule_slips(wall: Wall, blocks: list[Block], assembly: Assembly) -> list[str
         frozenset((assembly.block_ids[a], assembly.block_ids[b]))
         for a, b in zip(assembly.block_a.tolist(), assembly.block_b.tolist(), strict=True)
     }
-    unknown, idle = unknown_in_rules(wall, blocks), []
+    joints = set(assembly.joint)
+    unknown, idle = _unknown_in_rules(wall.friction, wall, blocks), []
     for number, rule in enumerate(wall.friction.rules):
         met = (
-            (rule.joint is not None and rule.joint in assembly.joint)
+            (rule.joint is not None and rule.joint in joints)
             or (rule.materials is not None and frozenset(rule.materials) in pairs)
             or (rule.between is not None and frozenset(rule.between) in touching)
         )
         if not met and number not in unknown:
             idle.append(f"friction.rules[{number}]")
     told = [f"{first_few(idle, 5)}: no interface is of this kind, so the rule does nothing"] if idle else []
-    return [*unknown.values(), *told]
+    return [*unknown_in_rules(wall, blocks), *told]
 
 
-def unknown_in_rules(wall: Wall, blocks: Sequence[Block]) -> dict[int, str]:
-    """By number of the rule, sentences about friction of materials that no block is of, and of joints not there.
+def unknown_in_rules(wall: Wall, blocks: Sequence[Block]) -> list[str]:
+    """Sentences about friction of materials that no block is of, and of joints not there; the first, and a count.
 
     "bed" and "head" are names of every wall, and a rule for them may stand where there is none.
     """
     if not isinstance(wall.friction, Friction):
-        return {}
+        return []
+    unknown = _unknown_in_rules(wall.friction, wall, blocks)
+    hints = {kind: Hints(known) for kind, known in _names_of_rules(wall, blocks).items()}
+    sentences = []
+    for number, (kind, name) in islice(unknown.items(), MOST_NAMED):
+        hint = hints[kind].of(name) or f"There are: {hints[kind].there(8)}"
+        what = "no block is of the material" if kind == "material" else "no joint has the name"
+        sentences.append(f'friction.rules[{number}]: {what} "{name[:LONGEST]}", so the rule does nothing. {hint}')
+    more = len(unknown) - len(sentences)
+    return sentences + [f"friction.rules: {more:,} more do nothing for the same reason"] * (more > 0)
+
+
+def _names_of_rules(wall: Wall, blocks: Sequence[Block]) -> dict[str, set[str]]:
+    """The names of materials and of joints that a rule may give."""
     given = wall.interfaces if isinstance(wall.interfaces, list) else wall.interfaces.given
     named = {"bed", "head"} | {interface.joint for interface in given if interface.joint is not None}
-    materials = {block.material for block in blocks}
-    sentences = {}
-    for number, rule in enumerate(wall.friction.rules):
-        for name, known, what in (
-            *((name, materials, "no block is of the material") for name in rule.materials or ()),
-            *([(rule.joint, named, "no joint has the name")] if rule.joint is not None else []),
-        ):
-            if name not in known:
-                hint = did_you_mean(name, known) or f"There are: {first_few(sorted(known), 8)}"
-                sentences[number] = f'friction.rules[{number}]: {what} "{name}", so the rule does nothing. {hint}'
-    return sentences
+    return {"material": {block.material for block in blocks}, "joint": named}
+
+
+def _unknown_in_rules(friction: Friction, wall: Wall, blocks: Sequence[Block]) -> dict[int, tuple[str, str]]:
+    """By number of the rule, "material" or "joint" and the name that is not there."""
+    known = _names_of_rules(wall, blocks)
+    unknown = {}
+    for number, rule in enumerate(friction.rules):
+        names = [("material", name) for name in rule.materials or ()]
+        names += [("joint", rule.joint)] if rule.joint is not None else []
+        for kind, name in names:
+            if name not in known[kind]:
+                unknown[number] = (kind, name)
+    return unknown
 
 
 def _unit_weight_slips(wall: Wall, blocks: list[Block]) -> list[str]:

@@ -18,10 +18,10 @@ from harness.model.assembly import BoolArray, FloatArray, IntArray
 from harness.model.blocks import polygons_of, support_faults, weight_of, written_out
 from harness.model.build import Built, build
 from harness.model.contacts import check_gap
-from harness.model.errors import MOST_WORDED, InputError, Spot, sorted_out
+from harness.model.errors import MOST_WORDED, InputError, Spot, sorted_out, uncounted
 from harness.model.input_checks import unknown_in_rules
 from harness.model.interfaces import Joints, faults_of_given, floating, floating_groups, joints_of, limits_of
-from harness.model.load_cases import build_load_case, named_loads
+from harness.model.load_cases import each_built, named_loads
 from harness.model.names import faults_of_wall
 from harness.model.plausibility import NEAR_MISS, allowing, saying, span
 from harness.model.wall import Block, Detection, Interface, Wall
@@ -128,18 +128,25 @@ def inspect(wall: Wall, name: str = "wall", before: Sequence[InputError] = ()) -
     built = None
     if not faults and not before:
         try:
-            made = [build_load_case(wall, each, name) for each in named_loads(wall)] or [build(wall, name)]
-            built = made[0]
+            built = _first_built(wall, name)
         except InputError as error:
             faults += error.faults
     marks = [*(_marked(fault, "fault") for fault in (*before, *faults)), *doubts]
     # Near misses are in the list one by one, so the sentence that sums them up would be a repetition.
-    warnings = (*wall.doubts, *unknown_in_rules(wall, blocks).values()) if built is None else built.warnings
+    warnings = (*wall.doubts, *unknown_in_rules(wall, blocks)) if built is None else built.warnings
     marks += [FaultMark("doubt", "", text) for text in warnings if NEAR_MISS not in text]
     middle = {block.id: np.mean(np.array(block.polygon), axis=0) for block in apart}
     names = tuple(block.id for block in apart)
     outlines = tuple(polygons.get(k, np.array(block.polygon, dtype=float)) for k, block in enumerate(blocks))
     return Inspection(wall, names, outlines, fixed, tuple(_placed(mark, middle) for mark in _once(marks)), built)
+
+
+def _first_built(wall: Wall, name: str) -> Built:
+    """The wall under the first of its load cases, all of which can be built, or as it is if it has none."""
+    known, first = named_loads(wall), None
+    for _, built in each_built(wall, dict.fromkeys(known, name), known) if known else ():
+        first = first or built
+    return first or build(wall, name)
 
 
 def _outlines(blocks: Sequence[Block]) -> tuple[list[InputError], dict[int, FloatArray]]:
@@ -207,8 +214,7 @@ def _lying(
     groups = floating_groups(held, pairs)
     faults += [floating(names, group, joints) for group in groups[:MOST_WORDED]]
     if len(groups) > MOST_WORDED:
-        more = f"{len(groups) - MOST_WORDED:,} more groups of blocks float"
-        faults.append(InputError(more, "Mend those listed first", "blocks"))
+        faults.append(uncounted(len(groups) - MOST_WORDED, "groups of blocks float", "blocks"))
     said = {fault.spot.blocks for fault in faults if fault.spot is not None}
     return faults, [mark for mark in _missed(names, joints) if mark.blocks not in said]
 

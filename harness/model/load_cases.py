@@ -2,24 +2,29 @@
 
 from __future__ import annotations
 
+import math
 import re
-from collections.abc import Iterator
+from collections.abc import Collection, Iterator, Mapping
 from dataclasses import dataclass, replace
 from itertools import product
 from pathlib import Path
 from typing import Any
 
 from harness.model.blocks import blocks_of_wall, polygons_of
-from harness.model.build import Built, build
+from harness.model.build import Built, Laid, build, lay
 from harness.model.case import Case
 from harness.model.errors import MOST_NAMED, InputError, did_you_mean, first_few, raise_faults
-from harness.model.load_fields import DEAD, Loads
+from harness.model.load_fields import DEAD, Load, Loads
 from harness.model.loads import times, together
-from harness.model.travelling import travelling_loads
-from harness.model.wall import Wall
+from harness.model.travelling import Upward
+from harness.model.wall import MOST_LOAD_CASES, Wall
 
 _TITLE_JOINT = ", load case "
 """Between the title of a wall and the name of a load case."""
+MOST_ADDED = 100_000
+"""Forces and pressures that the combinations of a wall add up, a second of work."""
+MOST_BUILT = 200_000
+"""Blocks that are built under load cases, those of every load case counted: some seconds of work."""
 
 
 @dataclass(frozen=True)
@@ -43,25 +48,38 @@ def named_loads(wall: Wall) -> dict[str, NamedLoads]:
     A combination of a load that travels is one of its load cases for each place.
 
     Raises:
-        InputError: a load travels over no face, or a combination names what there is not, or cannot be added up.
+        InputError: a load travels over no face, a combination names what there is not, or cannot be added up, or the
+            load cases are too many.
     """
     found = {name: NamedLoads(own, f"load_cases.{name}") for name, own in wall.load_cases.items()}
     members = {name: [name] for name in found}
     if wall.travelling:
         blocks = blocks_of_wall(wall)
-        polygons = polygons_of(blocks)
+        upward = Upward(blocks, polygons_of(blocks), wall.loads.gravity_per_weight)
     for name, travelling in wall.travelling.items():
-        place, gravity = f"travelling.{name}", wall.loads.gravity_per_weight
-        loads = travelling_loads(travelling, blocks, polygons, gravity, place)
+        place = f"travelling.{name}"
+        loads = upward.loads(travelling, place, MOST_LOAD_CASES - len(found))
         members[name] = [f"{name}-{number}" for number in range(1, len(loads) + 1)]
         for each, own in zip(members[name], loads, strict=True):
             _add(found, each, NamedLoads(own, place))
-    alone = dict(found)
+    alone, added = dict(found), 0
     for name, factors in wall.combinations.items():
-        for suffix, chosen in _chosen(name, factors, members, list(alone)):
-            combined = _combined(name, {each: alone[each] for each in chosen}, chosen, factors)
-            _add(found, f"{name}{suffix}", combined)
+        for suffix, chosen in _chosen(name, factors, members, alone, MOST_LOAD_CASES - len(found)):
+            cases = {each: alone[each] for each in chosen}
+            added += sum(_count(case.own) for case in cases.values())
+            if added > MOST_ADDED:
+                raise InputError(
+                    f"it and those before it add up more than {MOST_ADDED:,} forces and pressures",
+                    "Combine fewer load cases, or give those on the same blocks as one",
+                    f"combinations.{name}",
+                )
+            _add(found, f"{name}{suffix}", _combined(name, cases, chosen, factors))
     return found
+
+
+def _count(loads: Loads) -> int:
+    """Forces and pressures of a load case."""
+    return sum(len(load.body) + len(load.points) + len(load.pressures) for load in (loads.dead, loads.live or Load()))
 
 
 def _add(found: dict[str, NamedLoads], name: str, loads: NamedLoads) -> None:
@@ -73,18 +91,31 @@ def _add(found: dict[str, NamedLoads], name: str, loads: NamedLoads) -> None:
 
 
 def _chosen(
-    name: str, factors: dict[str, float], members: dict[str, list[str]], known: list[str]
+    name: str, factors: dict[str, float], members: dict[str, list[str]], known: Collection[str], most: int
 ) -> Iterator[tuple[str, dict[str, float]]]:
-    """The load cases of a combination with their factors, for each place of loads that travel, and what names it."""
+    """The load cases of a combination with their factors, for each place of loads that travel, and what names it.
+
+    Args:
+        name, factors: of the combination; members: load cases by what makes them; known: all that may be combined.
+        most: load cases that a wall may still have.
+    """
     options = []
     for each, factor in factors.items():
         if each == DEAD:
             continue
         cases = members.get(each, [each] if each in known else [])
         if not cases:
-            remedy = f"{did_you_mean(each, [*members, *known])} There are: {', '.join([DEAD, *members])}".strip()
+            there = first_few([DEAD, *members], MOST_NAMED)
+            remedy = f"{did_you_mean(each, [*members, *known])} There are: {there}".strip()
             raise InputError(f'no load case is called "{each}"', remedy, f"combinations.{name}")
         options.append([(case, factor, "" if case == each else case.removeprefix(each)) for case in cases])
+    count = math.prod(len(each) for each in options)
+    if count > most:
+        raise InputError(
+            f"it makes {count:.6g} load cases, and the wall may have {most:,} more at most",
+            "Combine loads that travel with each other at fewer places, or one at a time",
+            f"combinations.{name}",
+        )
     for chosen in product(*options):
         yield "".join(suffix for _, _, suffix in chosen), {case: factor for case, factor, _ in chosen}
 
@@ -127,20 +158,50 @@ def under_load_case(wall: Wall, name: str, known: dict[str, NamedLoads] | None =
 
 
 def build_load_case(
-    wall: Wall, load_case: str, name: str = "wall", known: dict[str, NamedLoads] | None = None
+    wall: Wall,
+    load_case: str,
+    name: str = "wall",
+    known: dict[str, NamedLoads] | None = None,
+    laid: Laid | None = None,
 ) -> Built:
     """The assembly of a wall under one of its load cases.
+
+    Args:
+        wall: with load cases; load_case: of it; name: of the assembly.
+        known: all load cases; laid: blocks and joints; where they have been made.
 
     Raises:
         InputError: as `build`, with the place where the file says it.
     """
     try:
-        return build(under_load_case(wall, load_case, known), name)
+        return build(under_load_case(wall, load_case, known), name, laid)
     except InputError as error:
         for fault in error.faults:
             fault.element = _in_the_file(fault.element, wall, load_case, known)
         raise_faults(error.faults)
         raise
+
+
+def each_built(wall: Wall, names: Mapping[str, str], known: dict[str, NamedLoads]) -> Iterator[tuple[str, Built]]:
+    """The assemblies of a wall under its load cases, one after another; blocks and joints are laid once.
+
+    Args:
+        wall: with load cases; names: of the assemblies by load case; known: all load cases.
+
+    Raises:
+        InputError: as `build_load_case`, or so many load cases of so many blocks that they take minutes to build.
+    """
+    blocks = blocks_of_wall(wall)
+    if len(names) > 1 and len(names) * len(blocks) > MOST_BUILT:
+        raise InputError(
+            f"its {len(blocks):,} blocks are built under each of {len(names):,} load cases, and at most "
+            f"{MOST_BUILT:,} in all",
+            "Give fewer load cases, or choose one with --load-case of run or expand",
+            "load_cases",
+        )
+    laid = lay(wall, blocks)
+    for load_case, name in names.items():
+        yield load_case, build_load_case(wall, load_case, name, known, laid)
 
 
 def _in_the_file(element: str, wall: Wall, load_case: str, known: dict[str, NamedLoads] | None) -> str:
@@ -175,7 +236,10 @@ def load_cases_of(case: Case, name: str | None = None) -> list[Case]:
         return [case]
     try:
         known = named_loads(case.wall)
-        return [_one(case, each, known) for each in (list(known) if name is None else [name])]
+        if name is not None:
+            under_load_case(case.wall, name, known)  # there is such a load case
+        wanted = {each: f"{case.id}-{each}" for each in (known if name is None else [name])}
+        return [_one(case, each, known, built) for each, built in each_built(case.wall, wanted, known)]
     except InputError as error:
         error.source = error.source or case.origin
         raise
@@ -187,7 +251,7 @@ def title_of_wall(case: Case) -> str:
     return title if title and case.load_case.startswith(name) else case.file.title
 
 
-def _one(case: Case, name: str, known: dict[str, NamedLoads]) -> Case:
+def _one(case: Case, name: str, known: dict[str, NamedLoads], built: Built) -> Case:
     wall = under_load_case(case.wall, name, known)
     update: dict[str, Any] = {
         "id": f"{case.id}-{name}",
@@ -203,6 +267,5 @@ def _one(case: Case, name: str, known: dict[str, NamedLoads]) -> Case:
         wall_id=case.id,
         load_case=name,
     )
-    # Built here once, where the places of its faults in the file are known: `Case.built` keeps it.
-    found.__dict__["built"] = build_load_case(case.wall, name, found.id, known)
+    found.__dict__["built"] = built  # where the places of its faults in the file are known: `Case.built` keeps it
     return found

@@ -5,14 +5,11 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator
 from typing import Any
 
-from harness.model.errors import MOST_NAMED, InputError, Spot, did_you_mean, first_few
+from harness.model.errors import MOST_NAMED, Hints, InputError, Spot, first_worded
 from harness.model.friction_fields import Friction
 from harness.model.load_fields import Load
 from harness.model.pressure_fields import Fill, Pressure
 from harness.model.wall import Block, Detection, Wall
-
-MOST_COMPARED = 2000
-"""Ids that an unknown one is compared with, in the search for the one that was meant."""
 
 
 def name_faults(blocks: Iterable[tuple[str, str]], named: Iterable[tuple[str, str]]) -> list[InputError]:
@@ -22,19 +19,23 @@ def name_faults(blocks: Iterable[tuple[str, str]], named: Iterable[tuple[str, st
         blocks: place in the file and id of every block.
         named: place in the file and id of every block that something else names.
     """
-    faults = []
     seen: set[str] = set()
-    for place, name in blocks:
-        if name in seen:
-            remedy = "Give every block an id of its own (patterns: a prefix)"
-            faults.append(InputError("two blocks have this id", remedy, place, spot=Spot((name,))))
-        seen.add(name)
-    known = sorted(seen)[:MOST_COMPARED]
-    for place, name in named:
-        if name not in seen:
-            remedy = did_you_mean(name, known) or "Name a block of this wall"
-            faults.append(InputError(f'no block is called "{name}"', remedy, place))
-    return faults
+
+    def twice() -> Iterator[InputError]:
+        for place, name in blocks:
+            if name in seen:
+                remedy = "Give every block an id of its own (patterns: a prefix)"
+                yield InputError("two blocks have this id", remedy, place, spot=Spot((name,)))
+            seen.add(name)
+
+    found = first_worded(twice(), "blocks have the id of another", "blocks")
+    hints = Hints(seen)
+    unknown = (
+        InputError(f'no block is called "{name}"', hints.of(name) or "Name a block of this wall", place)
+        for place, name in named
+        if name not in seen
+    )
+    return found + first_worded(unknown, "names are of no block", "wall")
 
 
 def faults_of_wall(wall: Wall, blocks: list[Block]) -> list[InputError]:
@@ -44,39 +45,57 @@ def faults_of_wall(wall: Wall, blocks: list[Block]) -> list[InputError]:
 
 
 def _groups_and_supports(wall: Wall, blocks: list[Block]) -> list[InputError]:
-    """Loads of groups that no block is in, and of blocks that cannot move."""
-    groups = {group for block in blocks for group in block.groups}
+    """Loads of groups that no block is in, and of blocks and bars that cannot move."""
     fixed = {block.id for block in blocks if block.fixed}
-    faults = []
-    for where, load in (("loads.dead", wall.loads.dead), ("loads.live", wall.loads.live or Load())):
-        grouped = [(f"{where}.body[{number}]", body.group) for number, body in enumerate(load.body)]
-        on_faces: list[tuple[str, Pressure | Fill]] = [
-            *((f"{where}.pressures[{number}]", pressure) for number, pressure in enumerate(load.pressures)),
-            *((f"{where}.fills[{number}]", fill) for number, fill in enumerate(load.fills)),
-        ]
-        grouped += [(place, each.group) for place, each in on_faces]
-        for place, group in grouped:
+    faults = first_worded(_unknown_groups(wall, blocks), "loads name groups that no block is in", "loads")
+    faults += first_worded(_loads_on_supports(wall, fixed), "loads are on fixed blocks", "loads")
+    return faults + first_worded(_bars_between_supports(wall, fixed), "bars join two fixed blocks", "wall")
+
+
+def _loads_of(wall: Wall) -> tuple[tuple[str, Load], tuple[str, Load]]:
+    return ("loads.dead", wall.loads.dead), ("loads.live", wall.loads.live or Load())
+
+
+def _on_faces(where: str, load: Load) -> list[tuple[str, Pressure | Fill]]:
+    """Pressures and fills with the places where they stand."""
+    return [
+        *((f"{where}.pressures[{number}]", pressure) for number, pressure in enumerate(load.pressures)),
+        *((f"{where}.fills[{number}]", fill) for number, fill in enumerate(load.fills)),
+    ]
+
+
+def _unknown_groups(wall: Wall, blocks: list[Block]) -> Iterator[InputError]:
+    groups = {group for block in blocks for group in block.groups}
+    hints = Hints(groups)
+    there = hints.there(MOST_NAMED) or "none"
+    for where, load in _loads_of(wall):
+        named = [(f"{where}.body[{number}]", body.group) for number, body in enumerate(load.body)]
+        named += [(place, each.group) for place, each in _on_faces(where, load)]
+        for place, group in named:
             if group is not None and group not in groups:
-                known = sorted(groups)[:MOST_COMPARED]
-                there = first_few(known, MOST_NAMED) or "none"
-                remedy = f"{did_you_mean(group, known)} Groups of this wall: {there}"
-                faults.append(InputError(f'no block is in a group "{group}"', remedy.strip(), place))
-        for place, each in on_faces:
+                remedy = f"{hints.of(group)} Groups of this wall: {there}".strip()
+                yield InputError(f'no block is in a group "{group}"', remedy, place)
+
+
+def _loads_on_supports(wall: Wall, fixed: set[str]) -> Iterator[InputError]:
+    remedy = "Load a block that is free to move"
+    for where, load in _loads_of(wall):
+        for place, each in _on_faces(where, load):
             for name in sorted(fixed.intersection(each.blocks or ())):
-                problem = f'block "{name}" is fixed'
-                faults.append(InputError(problem, "Load a block that is free to move", place, spot=Spot((name,))))
+                yield InputError(f'block "{name}" is fixed', remedy, place, spot=Spot((name,)))
         for number, point in enumerate(load.points):
             if point.block in fixed:
-                problem, place = f'block "{point.block}" is fixed', f"{where}.points[{number}]"
-                spot = Spot((point.block,), point.at)
-                faults.append(InputError(problem, "Load a block that is free to move", place, spot=spot))
+                spot, place = Spot((point.block,), point.at), f"{where}.points[{number}]"
+                yield InputError(f'block "{point.block}" is fixed', remedy, place, spot=spot)
+
+
+def _bars_between_supports(wall: Wall, fixed: set[str]) -> Iterator[InputError]:
     for kind, bars in (("ties", wall.ties), ("props", wall.props)):
         for number, bar in enumerate(bars):
             ends = (bar.start.block, bar.end.block)
             if fixed.issuperset(ends):
                 remedy = "Join a block that is free to move to another or to a fixed one"
-                faults.append(InputError("both of its blocks are fixed", remedy, f"{kind}[{number}]", spot=Spot(ends)))
-    return faults
+                yield InputError("both of its blocks are fixed", remedy, f"{kind}[{number}]", spot=Spot(ends))
 
 
 def _named(wall: Wall) -> Iterator[tuple[str, str]]:

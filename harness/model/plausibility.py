@@ -7,8 +7,8 @@ from collections.abc import Sequence
 import numpy as np
 
 from harness.model.assembly import Assembly, FloatArray, IntArray
-from harness.model.errors import InputError, first_few
-from harness.model.geometry import distances
+from harness.model.errors import MOST_NAMED, InputError, first_few
+from harness.model.geometry import distances_beyond
 from harness.model.load_fields import Load, Loads
 
 BESIDE = 0.05
@@ -91,7 +91,7 @@ def interface_warnings(assembly: Assembly, size: float, first: int = 0) -> list[
     off = np.zeros(assembly.n_interfaces)
     for block in (assembly.block_a, assembly.block_b):
         for end in (assembly.face1, assembly.face2):
-            off = np.maximum(off, distances(assembly.polygons, block, end))
+            off = np.maximum(off, distances_beyond(assembly.polygons, block, end, BESIDE * size))
     off[:first] = 0.0
     if off.max(initial=0.0) > ASTRAY * size:
         number = int(np.argmax(off))
@@ -114,13 +114,17 @@ def force_warnings(assembly: Assembly, loads: Loads, size: float) -> list[str]:
     sentences = []
     index = {name: k for k, name in enumerate(assembly.block_ids)}
     for where, load in (("loads.dead", loads.dead), ("loads.live", loads.live or Load())):
-        for number, point in enumerate(load.points):
-            block = np.array([index[point.block]])
-            off = float(distances(assembly.polygons, block, np.array([point.at]))[0])
-            if off > BESIDE * size:
-                sentences.append(
-                    f'{where}.points[{number}] acts {off:.3g} away from block "{point.block}": an arm, or a coordinate?'
-                )
+        blocks = np.array([index[point.block] for point in load.points], dtype=np.int64)
+        places = np.array([point.at for point in load.points], dtype=float).reshape(-1, 2)
+        off = distances_beyond(assembly.polygons, blocks, places, BESIDE * size)
+        beside = np.flatnonzero(off).tolist()
+        sentences += [
+            f'{where}.points[{number}] acts {off[number]:.3g} away from block "{load.points[number].block}": an arm, '
+            "or a coordinate?"
+            for number in beside[:MOST_NAMED]
+        ]
+        if len(beside) > MOST_NAMED:
+            sentences.append(f"{where}.points: {len(beside) - MOST_NAMED:,} more act away from their blocks")
     return sentences
 
 

@@ -7,6 +7,7 @@ loads, dead and live apart. `harness.model.reading` reads it, `harness.model.bui
 from __future__ import annotations
 
 import re
+from collections import Counter
 from typing import Annotated, Any, Literal
 
 from pydantic import BaseModel, Discriminator, Field, Tag, model_validator
@@ -255,10 +256,14 @@ class Wall(Strict):
         description="by name, each on top of the gravity and the dead load of `loads`",
     )
     travelling: dict[str, Travelling] = Field(
-        default_factory=dict, description="by name, each a load case for every place of the force: NAME-1, NAME-2, ..."
+        default_factory=dict,
+        max_length=MOST_LOAD_CASES,
+        description="by name, each a load case for every place of the force: NAME-1, NAME-2, ...",
     )
     combinations: dict[str, Combination] = Field(
-        default_factory=dict, description="by name, each a load case that adds others with factors"
+        default_factory=dict,
+        max_length=MOST_LOAD_CASES,
+        description="by name, each a load case that adds others with factors",
     )
     settlements: list[Settlement] = Field(
         default_factory=list, description="supports that move; asked about by `drystone reaction` alone"
@@ -289,7 +294,7 @@ class Wall(Strict):
             raise ValueError(
                 "loads.live beside load_cases: a load case has a live load of its own, so name this one there too"
             )
-        twice = next((name for name in named if named.count(name) > 1), None)
+        twice = next((name for name, count in Counter(named).items() if count > 1), None)
         if twice is not None:
             raise ValueError(f'"{twice}" names two of load_cases, travelling and combinations: give each its own name')
         if self.combinations and DEAD in named:

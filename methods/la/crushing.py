@@ -9,6 +9,10 @@ from harness.model.method import Answer, Finding, Status
 from methods.la.answers import falls_answer, not_converged, unbounded_answer
 from methods.numerics.stress_blocks import BlockLimit, Greatest
 
+ROUGH = (
+    " The solver ended without the accuracy asked of it: the answer is as good as the two multipliers agree and the "
+    "judge finds."
+)
 STATED = 1e-6
 """Gap between the multipliers of forces and mechanism, relative to the larger or to the load unit, that is accepted."""
 
@@ -35,7 +39,8 @@ def crushing_answer(assembly: Assembly, greatest: Greatest) -> Answer:
         return Answer(
             Status.OK,
             Finding.STANDS,
-            "Under its dead load the wall has an equilibrium within yield; no live load is given.",
+            "Under its dead load the wall has an equilibrium within yield; no live load is given."
+            + (ROUGH if own.inaccurate else ""),
             forces=forces,
             forces_multiplier=0.0,
             iterations=own.rounds,
@@ -57,7 +62,7 @@ def _collapse(assembly: Assembly, found: BlockLimit) -> Answer:
         Status.OK,
         Finding.COLLAPSES,
         f"The greatest multiplier within statics and yield, crushing included, is {multiplier:.7g}; by virtual work on "
-        f"its mechanism none is above {found.upper:.7g}.",
+        f"its mechanism none is above {found.upper:.7g}.{ROUGH if found.inaccurate else ''}",
         multiplier=multiplier,
         forces=found.forces,
         forces_multiplier=multiplier,

@@ -55,6 +55,7 @@ class BlockLimit:
         outcome: "optimal", "infeasible" (no multiplier is borne), "unbounded" or "unknown".
         multiplier: borne by `forces` (m, 3) [force]; upper: that of `mechanism` (n, 3) by virtual work.
         rounds: of added points.
+        inaccurate: the solver ended without its own accuracy, and what it found is only as good as it is checked.
     """
 
     outcome: str
@@ -63,6 +64,7 @@ class BlockLimit:
     mechanism: FloatArray | None = None
     upper: float = float("nan")
     rounds: int = 0
+    inaccurate: bool = False
 
 
 Greatest = Callable[[Assembly, FloatArray, FloatArray, float], BlockLimit]

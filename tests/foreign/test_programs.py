@@ -200,13 +200,14 @@ def test_a_program_describes_what_it_takes_and_its_settings(folder: Path):
     wrong = drystone("run", "lines", "slide", "--set", "does=dance", cwd=folder)
     assert wrong.returncode == 2
     assert "does" in wrong.stderr
-    large = json.loads(drystone("run", "lines", "stack-10", "--json", cwd=folder).stdout)
-    assert large["status"] == "refused"
+    refused = drystone("run", "lines", "stack-10", "--json", cwd=folder)
+    large = json.loads(refused.stdout)
+    assert (refused.returncode, large["status"]) == (2, "refused")
     assert "up to 5 free blocks" in large["sentence"]
     (folder / "strong.json").write_text(json.dumps(wall_with(cohesion=1.0)))
-    strong = json.loads(drystone("run", "lines", "strong.json", "--json", cwd=folder).stdout)
-    assert strong["status"] == "refused"
-    assert "dry joints only" in strong["sentence"]
+    strong = drystone("run", "lines", "strong.json", "--json", cwd=folder)
+    assert (strong.returncode, strong.stdout) == (2, "")
+    assert "strong.json: lines takes dry joints only" in strong.stderr
 
 
 @pytest.mark.parametrize("stream", [1, 2])

@@ -224,7 +224,7 @@ def test_sizes_and_distances_of_outlines():
     polygons = [outline(0.0, 0.0, 2.0, 2.0), outline(3.0, 0.0, 9.0, 1.0), outline(0.0, 5.0, 4.0, 4.0)]
     assert geometry.typical_size(geometry.shapes_of(polygons)) == 3.0
     points = np.array([[1.0, 1.0], [3.0, 2.0], [3.0, 4.0]])
-    assert geometry.distances(polygons, np.array([0, 0, 1]), points).tolist() == [0.0, 1.0, 3.0]
+    assert geometry.distances_beyond(polygons, np.array([0, 0, 1]), points, 0.0).tolist() == [0.0, 1.0, 3.0]
     assert geometry.counter_clockwise(polygons[0][::-1]).tolist() == polygons[0].tolist()
     assert geometry.counter_clockwise(polygons[0]) is polygons[0]
 

@@ -12,9 +12,9 @@ import drystone
 from harness.model.build import build
 from harness.model.errors import InputError
 from harness.model.load_cases import build_load_case, named_loads
+from harness.model.load_fields import Load
 from harness.model.loads import times, together
 from harness.model.reading import parse_wall
-from harness.model.load_fields import Load
 
 GROUND = {"id": "ground", "polygon": [[-1, -1], [3, -1], [3, 0], [-1, 0]], "fixed": True}
 PUSH = {"body": [{"per_weight": [1, 0]}]}

@@ -6,6 +6,7 @@ crush, F = n1 + n2 + T (Orduna and Lourenco 2003): exact, and written to be read
 
 from __future__ import annotations
 
+import warnings
 from typing import Any
 
 import numpy as np
@@ -42,7 +43,9 @@ def greatest_by_cones(
     yields = block_diagonal(law.rows) @ flat + law.constant.ravel() >= 0
     limit = [multiplier <= most / per_unit] if most < np.inf else []
     programme = cvxpy.Problem(cvxpy.Maximize(multiplier), [balance, yields, *blocks, *limit])
-    programme.solve(solver=solver, **ACCURATE.get(solver, {}))
+    with warnings.catch_warnings():  # cvxpy warns of a status that is looked at here
+        warnings.filterwarnings("ignore", message="Solution may be inaccurate", category=UserWarning)
+        programme.solve(solver=solver, **ACCURATE.get(solver, {}))
     outcome = {"optimal": "optimal", "optimal_inaccurate": "optimal"}.get(programme.status, programme.status)
     if outcome != "optimal":
         return BlockLimit(outcome if outcome in ("infeasible", "unbounded") else "unknown")
@@ -51,4 +54,5 @@ def greatest_by_cones(
     motion *= np.sign((live * motion).sum()) or 1.0
     above = kinematic_multiplier(assembly, motion, dead, live)
     found = np.asarray(forces.value, dtype=float) * unit
-    return BlockLimit("optimal", float(multiplier.value) * per_unit, found, motion, above)
+    rough = programme.status != "optimal"
+    return BlockLimit("optimal", float(multiplier.value) * per_unit, found, motion, above, inaccurate=rough)
