@@ -55,6 +55,7 @@ from harness.engine.residuals import (
 from harness.model.answer_check import checked
 from harness.model.assembly import Assembly, FloatArray
 from harness.model.bars import Bars
+from harness.model.details import AnswerDetails
 from harness.model.displaced import DisplacedState
 from harness.model.method import Finding, Method, Status, check_takes
 from harness.model.result import Judgement, Result, bracket_is_wide, residual_of, result_of
@@ -84,7 +85,7 @@ def judge(assembly: Assembly, result: Result, tolerance: float) -> Judgement:
     if fault := _contradiction(assembly, result, tolerance):
         return said_of(tolerance, False, fault)
     said = _judge_finding(assembly, forces, mechanism, result, tolerance)
-    if assembly.strong and "without_strength" in result.details:
+    if assembly.strong and AnswerDetails(result.details).has_without_strength:
         said = _with_residual(said, assembly.without_strength, residual_of(result))
     if said.accepted and tolerance > COARSEST:
         said.accepted = None
@@ -284,7 +285,7 @@ def _judge_standing(assembly: Assembly, forces: FloatArray | None, result: Resul
 
 def _judge_unbounded(assembly: Assembly, forces: FloatArray | None, result: Result, tolerance: float) -> Judgement:
     """Forces under the dead load, and forces that balance the live load alone: together they bear any multiplier."""
-    growth = result.details.get("live_forces")
+    growth = AnswerDetails(result.details).live_forces
     if forces is None or result.forces_multiplier or growth is None:
         lacking = "forces that balance the live load alone" if growth is None else "forces under the dead load"
         return said_of(

@@ -146,7 +146,7 @@ def residual_of(result: Result) -> Result | None:
 
     None where none comes, or where what comes is no answer.
     """
-    own = result.details.get("without_strength")
+    own = AnswerDetails(result.details).without_strength
     if not isinstance(own, dict):
         return None
     kept = {name: getattr(result, name) for name in ("case", "method", "family", "blocks", "interfaces", "traits")}
