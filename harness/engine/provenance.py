@@ -110,7 +110,11 @@ def sources_version(*packages: str, others: Sequence[str] = ()) -> str:
 
 
 JUDGE = tuple(
-    f"harness.engine.{name}" for name in ("judge", "bar_checks", "crushing", "measured_motion", "measures", "residuals")
+    f"harness.engine.{name}"
+    for name in (
+        *("judge", "judge_dead_load", "judge_decision"),
+        *("bar_checks", "crushing", "measured_motion", "measures", "residuals"),
+    )
 )
 """The modules that judge, besides `harness.model`."""
 
