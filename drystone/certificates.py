@@ -20,6 +20,7 @@ from harness.model.assembly import Assembly
 from harness.model.case import Case, read_case, shipped_cases
 from harness.model.comparison import CaseResults, Certified, ComparisonRun, Gate
 from harness.model.content import content_of
+from harness.model.details import AnswerDetails
 from harness.model.errors import InputError
 from harness.model.json_text import json_of, read_bytes
 from harness.model.library import library
@@ -140,7 +141,7 @@ def _of_results(item: CaseResults, seconds: float) -> tuple[list[Certified], dic
     refused: dict[str, str] = {}
     until = time.process_time() + seconds
     for result in item.results:
-        document = result.details.get("certificate")
+        document = AnswerDetails(result.details).certificate
         if document is None:
             continue
         try:
@@ -261,7 +262,7 @@ def certified_results(case: Case, result: Result, seconds: float = 60.0) -> Case
         seconds: of CPU time for a certificate that the method hands on.
     """
     item = CaseResults(case, [result])
-    asked = is_collapse_state(result) or result.details.get("certificate") is not None
+    asked = is_collapse_state(result) or AnswerDetails(result.details).certificate is not None
     return _with_certificate(item, seconds) if asked else item
 
 

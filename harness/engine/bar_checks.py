@@ -1,7 +1,7 @@
 """What the judge asks of ties and props: tensions in their range, and an elongation only where they are at its ends.
 
 The prestress of a bar is part of the dead load; these are tensions beyond it. They are read from the details of an
-answer (`harness.model.bars.BAR_FORCES`), total tensions in the order of the wall's ties and then props.
+answer (`harness.model.details.BAR_FORCES`), total tensions in the order of the wall's ties and then props.
 """
 
 from __future__ import annotations
@@ -11,7 +11,8 @@ from typing import Any
 import numpy as np
 
 from harness.model.assembly import Assembly, FloatArray
-from harness.model.bars import BAR_FORCES, Bars
+from harness.model.bars import Bars
+from harness.model.details import BAR_FORCES, AnswerDetails
 
 
 def tensions_beyond(assembly: Assembly, details: dict[str, Any], name: str = BAR_FORCES) -> FloatArray | str | None:
@@ -19,7 +20,7 @@ def tensions_beyond(assembly: Assembly, details: dict[str, Any], name: str = BAR
     bars = assembly.bars
     if not len(bars):
         return None
-    listed = details.get(name)
+    listed = AnswerDetails(details).bar_tensions(name)
     if listed is None:
         return f"It gives no tensions of the ties and props (`{name}`), so it cannot be checked."
     try:

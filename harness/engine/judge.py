@@ -63,6 +63,7 @@ from harness.engine.residuals import (
 from harness.model.answer_check import checked
 from harness.model.assembly import Assembly, FloatArray
 from harness.model.bars import Bars
+from harness.model.details import AnswerDetails
 from harness.model.displaced import DisplacedState
 from harness.model.method import Finding, Method, Status, check_takes
 from harness.model.result import Judgement, Result, bracket_is_wide, plastic_of, residual_of, result_of
@@ -93,10 +94,11 @@ def judge(assembly: Assembly, result: Result, tolerance: float) -> Judgement:
         return said_of(tolerance, False, fault)
     judged = _judge_brittle if assembly.breaks else _judge_finding
     said = judged(assembly, forces, mechanism, result, tolerance)
-    if assembly.strong and "without_strength" in result.details:
+    details = AnswerDetails(result.details)
+    if assembly.strong and details.has_without_strength:
         lost = assembly.brittle if assembly.breaks else np.ones(assembly.n_interfaces, dtype=bool)
         said = _with_other(said, dried(assembly, lost), residual_of(result), "Without cohesion and tensile strength")
-    if assembly.breaks and "with_strength" in result.details:
+    if assembly.breaks and details.has_with_strength:
         plastic = replace(assembly, brittle=np.zeros_like(assembly.brittle))
         said = _with_other(said, plastic, plastic_of(result), "With plastic strength")
     if said.accepted and tolerance > COARSEST:
@@ -324,7 +326,7 @@ def _judge_standing(assembly: Assembly, forces: FloatArray | None, result: Resul
 
 def _judge_unbounded(assembly: Assembly, forces: FloatArray | None, result: Result, tolerance: float) -> Judgement:
     """Forces under the dead load, and forces that balance the live load alone: together they bear any multiplier."""
-    growth = result.details.get("live_forces")
+    growth = AnswerDetails(result.details).live_forces
     if forces is None or result.forces_multiplier or growth is None:
         lacking = "forces that balance the live load alone" if growth is None else "forces under the dead load"
         return said_of(

@@ -8,7 +8,7 @@ from harness.engine.bar_checks import dissipated_by_bars, tensions_beyond
 from harness.engine.judge_decision import countable, decide, said_of
 from harness.engine.residuals import collapse_residuals, dissipated_by_strength, moving_parts, power
 from harness.model.assembly import Assembly, FloatArray
-from harness.model.bars import BAR_FORCES, DEAD_BAR_FORCES
+from harness.model.details import BAR_FORCES, DEAD_BAR_FORCES, AnswerDetails
 from harness.model.limit import accuracy, gross_power, least_told
 from harness.model.result import Judgement, Result, relative_velocities
 
@@ -40,7 +40,8 @@ def judge_limit(
     """
     if result.multiplier != 0.0:
         return said_of(tolerance, False, "A wall at its limit has the multiplier 0.")
-    by_statics = [result.details.get(name) for name in ("dead_forces", "dilatant_mechanism")]
+    details = AnswerDetails(result.details)
+    by_statics = [details.dead_forces, details.dilatant_mechanism]
     forces, mechanism = (
         own if shown is None else np.asarray(shown, dtype=float).reshape(-1, 3)
         for own, shown in zip((forces, mechanism), by_statics, strict=True)
@@ -84,7 +85,7 @@ def judge_fall(assembly: Assembly, mechanism: FloatArray | None, result: Result,
 
     A method that measured the motion may hand it over beside it, as `details["dilatant_mechanism"]`.
     """
-    shown = result.details.get("dilatant_mechanism")
+    shown = AnswerDetails(result.details).dilatant_mechanism
     if shown is not None:
         mechanism = np.asarray(shown, dtype=float).reshape(-1, 3)
         if mechanism.shape != (assembly.n_blocks, 3) or not countable(mechanism):

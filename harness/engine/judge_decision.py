@@ -8,7 +8,7 @@ import numpy as np
 
 from harness.engine.bar_checks import tensions_beyond
 from harness.model.assembly import Assembly, FloatArray
-from harness.model.bars import BAR_FORCES
+from harness.model.details import BAR_FORCES
 from harness.model.result import Judgement, Result
 
 COUNTABLE = 1e100

@@ -31,8 +31,8 @@ import numpy as np
 from harness.engine.measures import Measures, between
 from harness.engine.residuals import moving_parts, power
 from harness.model.assembly import Assembly, FloatArray
+from harness.model.details import MOVING_FORCES, AnswerDetails
 from harness.model.limit import gross_power
-from harness.model.method import MOVING_FORCES
 from harness.model.result import relative_velocities
 
 TOLERANCE = 0.02
@@ -61,7 +61,7 @@ def motion_faults(
         multiplier: of the live load under which it moves.
         details: of the answer, which may hold the contact forces of the motion.
     """
-    given = details.get(MOVING_FORCES)
+    given = AnswerDetails(details).moving_forces
     try:
         forces = None if given is None else _forces(assembly, given)
     except NotOfThisWall as error:

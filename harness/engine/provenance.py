@@ -111,7 +111,10 @@ def sources_version(*packages: str, others: Sequence[str] = ()) -> str:
 
 JUDGE = tuple(
     f"harness.engine.{name}"
-    for name in ("judge", "bar_checks", "brittle_checks", "crushing", "measured_motion", "measures", "residuals")
+    for name in (
+        *("judge", "judge_breaking", "judge_dead_load", "judge_decision"),
+        *("bar_checks", "brittle_checks", "crushing", "measured_motion", "measures", "residuals"),
+    )
 )
 """The modules that judge, besides `harness.model`."""
 

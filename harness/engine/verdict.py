@@ -6,9 +6,9 @@ from collections.abc import Iterable
 
 import numpy as np
 
-from harness.model.answer_check import MISSING_PACKAGE
 from harness.model.case import Reference, ReferenceType
 from harness.model.comparison import CaseResults, Gate
+from harness.model.details import AnswerDetails
 from harness.model.displaced import DisplacedState
 from harness.model.method import Finding, Status
 from harness.model.result import Comparison, Result, Verdict
@@ -43,13 +43,12 @@ def _value(reference: Reference, result: Result) -> float | list[float] | str | 
     if reference.quantity in ("blocks", "interfaces", "unknowns"):
         count = getattr(result, reference.quantity)
         return None if count is None else float(count)
-    detail = result.details.get(reference.quantity.removeprefix("details."))
-    return detail if isinstance(detail, int | float | str) else None
+    return AnswerDetails(result.details).quantity(reference.quantity.removeprefix("details."))
 
 
 def _verdict(reference: Reference, result: Result, value: float | list[float] | str | None) -> tuple[Verdict, str]:
     violated = Verdict.VIOLATES_BOUND if reference.type is ReferenceType.BOUND else Verdict.OUTSIDE_TOLERANCE
-    if result.status is Status.REFUSED and result.details.get(MISSING_PACKAGE) is True:
+    if result.status is Status.REFUSED and AnswerDetails(result.details).missing_package:
         return Verdict.NOT_TESTED, f"not tested: {result.sentence}"
     if result.status is not Status.OK:
         return Verdict.OUTSIDE_TOLERANCE, f"no value: {result.status}. {result.sentence}"
@@ -101,7 +100,7 @@ def overall(comparisons: Iterable[Comparison]) -> Verdict:
 
 def _is_the_least_known(result: Result) -> bool:
     """Whether a result is of a family's main method that seeks the least state, and ended its search."""
-    return result.traits.seeks_least and result.is_main and not result.details.get("stopped_by_limit", False)
+    return result.traits.seeks_least and result.is_main and not AnswerDetails(result.details).stopped_by_limit
 
 
 def theory_gates(results: CaseResults) -> list[Gate]:
@@ -175,8 +174,8 @@ def _moves_no_lower(results: CaseResults, usable: dict[str, Result], moved: Resu
     if not moved.traits.moves_no_lower:
         return None
     known, why = _unique(results, usable)
-    value = 0.0 if moved.finding is Finding.FALLS else moved.details.get("lowest_moving")
-    if known is None or known.multiplier is None or not isinstance(value, float | int):
+    value = 0.0 if moved.finding is Finding.FALLS else AnswerDetails(moved.details).lowest_moving
+    if known is None or known.multiplier is None or value is None:
         return None
     slack = moved.traits.accuracy * abs(known.multiplier) + BOUND_TOLERANCE
     return Gate(
@@ -190,7 +189,7 @@ def _moves_no_lower(results: CaseResults, usable: dict[str, Result], moved: Resu
 def _unique(results: CaseResults, usable: dict[str, Result]) -> tuple[Result | None, str]:
     """The state below which no wall of this case moves, and why; None where theory does not know one."""
     collapses = [result for result in usable.values() if result.finding.has_multiplier]
-    proved = next((result for result in collapses if result.details.get("proved_least")), None)
+    proved = next((result for result in collapses if AnswerDetails(result.details).proved_least), None)
     if proved is not None:
         return proved, f"{proved.method} shows that there is none lower"
     least = next((result for result in collapses if result.traits.seeks_least and result.is_main), None)

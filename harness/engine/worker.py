@@ -28,9 +28,10 @@ from typing import Any
 import numpy as np
 
 from harness.engine.resource_use import cpu_seconds
-from harness.model.answer_check import MISSING_PACKAGE, AnswerFault, checked, encodable
+from harness.model.answer_check import AnswerFault, checked, encodable
 from harness.model.assembly import Assembly, FloatArray
 from harness.model.deadline import Deadline, OutOfTime, answering_by
+from harness.model.details import MISSING_PACKAGE
 from harness.model.errors import InputError, MissingPackage, visible
 from harness.model.foreign.program_method import method_of
 from harness.model.foreign.register import Program

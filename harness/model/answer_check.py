@@ -22,8 +22,6 @@ DEEPEST = 33
 """Depth to which details may be nested. One that holds a result may have `json_text.MOST_NESTED` levels in all."""
 FLOWS = ("non-associated", "associated", "approximate")
 """Flow rules that an answer may name."""
-MISSING_PACKAGE = "missing_package"
-"""Detail of a refusal, true where a package is not installed that an extra brings."""
 NUMBERS = "iuf"
 """Kinds of NumPy's types that are real numbers."""
 

@@ -16,6 +16,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
+from harness.model.details import AnswerDetails
+
 if TYPE_CHECKING:
     from harness.model.assembly import Assembly
     from harness.model.result import Result
@@ -23,11 +25,6 @@ if TYPE_CHECKING:
 FloatArray = NDArray[np.float64]
 IntArray = NDArray[np.int64]
 BoolArray = NDArray[np.bool_]
-
-BAR_FORCES = "bar_forces"
-"""Name under which an answer's details hold the (k,) tensions of the bars beside its contact forces [force]."""
-DEAD_BAR_FORCES = "dead_bar_forces"
-"""The same beside the `dead_forces` of a wall at its limit."""
 
 
 def _no_index() -> IntArray:
@@ -142,7 +139,7 @@ def tensions(bars: Bars, forces: FloatArray) -> FloatArray:
 
 def bar_tensions(assembly: Assembly, result: Result | None) -> FloatArray | None:
     """(k,) tensions that an answer gives of the bars of a wall [force]; None where it gives none of them."""
-    listed = None if result is None or result.forces is None else result.details.get(BAR_FORCES)
+    listed = None if result is None or result.forces is None else AnswerDetails(result.details).bar_tensions()
     fits = isinstance(listed, list) and len(listed) == len(assembly.bars) > 0
     return np.asarray(listed, dtype=float) if fits else None
 

@@ -15,10 +15,10 @@ import numpy as np
 
 from harness.model.assembly import OF_BLOCKS, Assembly, BoolArray, FloatArray, IntArray
 from harness.model.deadline import OutOfTime, best_so_far
-from harness.model.details import AnswerDetails
+from harness.model.details import MOVING_FORCES, AnswerDetails
 from harness.model.errors import first_few
 from harness.model.groups import groups_of
-from harness.model.method import MOVING_FORCES, Answer, Finding, Status
+from harness.model.method import Answer, Finding, Status
 
 NAMED = 8
 """Blocks of a component that are named at most."""
@@ -230,10 +230,11 @@ def _mechanism(assembly: Assembly, part: Component, answer: Answer) -> FloatArra
 
 def _moving_forces(assembly: Assembly, part: Component, answer: Answer) -> dict[str, Any]:
     """The contact forces that were measured with the mechanism of a component, as details of the whole wall."""
-    if MOVING_FORCES not in answer.details:
+    measured = AnswerDetails(answer.details).moving_forces
+    if measured is None:
         return {}
     forces = np.zeros((assembly.n_interfaces, 3))
-    forces[part.interfaces] = answer.details[MOVING_FORCES]
+    forces[part.interfaces] = measured
     return {MOVING_FORCES: forces.tolist()}
 
 

@@ -1,16 +1,27 @@
 """What an answer's details say, by type: the one place that knows the names under which methods put it.
 
-A method may add details of its own. A detail of another type than is declared here counts as missing.
+A method may add details of its own. A detail of another type than is declared here counts as missing. What an answer
+claims as a proof is `Any`, as it is given: the judge, and the checker of certificates, say what is wrong with it.
 """
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 
-from harness.model.assembly import FloatArray
+from harness.model.joint_law import FloatArray
+
+BAR_FORCES = "bar_forces"
+"""Name under which an answer's details hold the (k,) tensions of the bars beside its contact forces [force]."""
+DEAD_BAR_FORCES = "dead_bar_forces"
+"""The same beside the `dead_forces` of a wall at its limit."""
+MOVING_FORCES = "moving_forces"
+"""Name under which an answer's details hold the (m, 3) contact forces that were measured with its mechanism [force]."""
+MISSING_PACKAGE = "missing_package"
+"""Detail of a refusal, true where a package is not installed that an extra brings."""
 
 
 @dataclass(frozen=True)
@@ -97,10 +108,80 @@ class AnswerDetails:
         return LastImprovement(last["source"], _number(last.get("multiplier")), _number(last.get("cpu_seconds")))
 
     @property
-    def certificate(self) -> dict[str, Any] | None:
+    def proved_least(self) -> bool:
+        """Of searches for the least state: whether none is lower, to rounding."""
+        return self.data.get("proved_least") is True
+
+    @property
+    def lower_bound(self) -> float | None:
+        """Of searches for the least state: a multiplier, finite, below which there is none, to rounding."""
+        value = self.data.get("lower_bound")
+        found = None if isinstance(value, bool) else _number(value)
+        return found if found is not None and math.isfinite(found) else None
+
+    @property
+    def certificate(self) -> Any:
         """Of proofs: a document for `drystone verify-bound`."""
-        found = self.data.get("certificate")
-        return found if isinstance(found, dict) else None
+        return self.data.get("certificate")
+
+    @property
+    def without_strength(self) -> Any:
+        """Of walls with strength of their joints: the answer for the same wall without."""
+        return self.data.get("without_strength")
+
+    @property
+    def has_without_strength(self) -> bool:
+        """Whether anything stands in place of that answer."""
+        return "without_strength" in self.data
+
+    @property
+    def with_strength(self) -> Any:
+        """Of walls with brittle joints: the answer as if all of these kept their strength."""
+        return self.data.get("with_strength")
+
+    @property
+    def has_with_strength(self) -> bool:
+        """Whether anything stands in place of that answer."""
+        return "with_strength" in self.data
+
+    @property
+    def live_forces(self) -> Any:
+        """Of loads without end: (m, 3) contact forces that balance the live load alone [force]."""
+        return self.data.get("live_forces")
+
+    @property
+    def dead_forces(self) -> Any:
+        """Of walls at their limit: (m, 3) contact forces under the dead load [force]."""
+        return self.data.get("dead_forces")
+
+    @property
+    def dilatant_mechanism(self) -> Any:
+        """Of falls and walls at their limit: (n, 3) velocities of a mechanism with associated flow."""
+        return self.data.get("dilatant_mechanism")
+
+    @property
+    def moving_forces(self) -> Any:
+        """Of measured motions: (m, 3) contact forces that were measured with the mechanism [force]."""
+        return self.data.get(MOVING_FORCES)
+
+    @property
+    def lowest_moving(self) -> float | None:
+        """Of measured motions: the least multiplier at which the wall moved."""
+        return _number(self.data.get("lowest_moving"))
+
+    def bar_tensions(self, name: str = BAR_FORCES) -> Any:
+        """(k,) tensions of ties and props [force], beside the contact forces or, `DEAD_BAR_FORCES`, the dead ones."""
+        return self.data.get(name)
+
+    @property
+    def missing_package(self) -> bool:
+        """Of refusals: whether a package is not installed that an extra brings."""
+        return self.data.get(MISSING_PACKAGE) is True
+
+    def quantity(self, name: str) -> float | str | None:
+        """A number or a text of any name, as references of cases ask for; None where it is neither."""
+        found = self.data.get(name)
+        return found if isinstance(found, int | float | str) else None
 
     @property
     def peak(self) -> float | None:

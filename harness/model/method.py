@@ -55,10 +55,6 @@ class Finding(StrEnum):
         return self in (Finding.COLLAPSES, Finding.AT_LIMIT)
 
 
-MOVING_FORCES = "moving_forces"
-"""Name under which an answer's details hold the (m, 3) contact forces that were measured with its mechanism [force]."""
-
-
 @dataclass
 class Answer:
     """What a method found. n = number of blocks (fixed ones included), m = number of interfaces.

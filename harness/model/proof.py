@@ -5,13 +5,13 @@ This is the one place that decides it. Report, appendix, CSV, JSON, terminal and
 
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass
 from decimal import ROUND_FLOOR, Context
 from enum import StrEnum
 from typing import TYPE_CHECKING, Any
 
 from harness.model.comparison import refusal
+from harness.model.details import AnswerDetails
 from harness.model.method import Status
 
 if TYPE_CHECKING:
@@ -115,9 +115,11 @@ def least_known(item: CaseResults) -> Result | None:
     states = [result for result in item.results if is_collapse_state(result)]
     best = min((result.multiplier or 0.0 for result in states), default=0.0)
     near = [r for r in states if (r.multiplier or 0.0) <= best + EQUAL * max(abs(best), 1e-300)]
-    return min(
-        near, key=lambda r: (not r.details.get("proved_least"), not r.traits.seeks_least, r.method), default=None
-    )
+
+    def rank(result: Result) -> tuple[bool, bool, str]:
+        return not AnswerDetails(result.details).proved_least, not result.traits.seeks_least, result.method
+
+    return min(near, key=rank, default=None)
 
 
 def proof_of(item: CaseResults, result: Result) -> Proof:
@@ -140,7 +142,7 @@ def proof_of(item: CaseResults, result: Result) -> Proof:
     lower, by = max(floating, key=lambda pair: pair[0], default=(0.0, ""))
     if bound is not None and value - bound <= CERTIFIED * abs(value):
         return Proof(Standing.MINIMUM, bound, refused=refused)
-    if result.details.get("proved_least") is True and value <= least + EQUAL * abs(least):
+    if AnswerDetails(result.details).proved_least and value <= least + EQUAL * abs(least):
         return Proof(Standing.TO_ROUNDING, bound, by=result.method, refused=refused)
     if result is not least_known(item):
         return Proof(refused=refused)
@@ -158,6 +160,4 @@ def _certified_bound(item: CaseResults, value: float, least: float) -> float | N
 
 def _said(result: Result) -> float:
     """The lower bound that a method says it found in floating point; zero where it says none, or no number."""
-    value = result.details.get("lower_bound")
-    number = isinstance(value, int | float) and not isinstance(value, bool)
-    return float(value) if number and value is not None and math.isfinite(value) else 0.0
+    return AnswerDetails(result.details).lower_bound or 0.0

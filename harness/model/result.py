@@ -146,12 +146,12 @@ def residual_of(result: Result) -> Result | None:
 
     None where none comes, or where what comes is no answer.
     """
-    return _beside(result, "without_strength")
+    return _beside(result, AnswerDetails(result.details).without_strength)
 
 
 def plastic_of(result: Result) -> Result | None:
     """The answer that comes with that for a wall with broken joints: as if all kept their strength. None as above."""
-    return _beside(result, "with_strength")
+    return _beside(result, AnswerDetails(result.details).with_strength)
 
 
 def plastic_and_residual_of(result: Result) -> tuple[Result, Result] | None:
@@ -162,9 +162,8 @@ def plastic_and_residual_of(result: Result) -> tuple[Result, Result] | None:
     return None if residual is None else (result, residual)
 
 
-def _beside(result: Result, name: str) -> Result | None:
-    """The answer under a name in the details of a result, as a result."""
-    own = result.details.get(name)
+def _beside(result: Result, own: object) -> Result | None:
+    """What stands in the details of a result for an answer, as a result."""
     if not isinstance(own, dict):
         return None
     kept = {name: getattr(result, name) for name in ("case", "method", "family", "blocks", "interfaces", "traits")}

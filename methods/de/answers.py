@@ -10,7 +10,8 @@ import numpy as np
 
 from harness.model.assembly import Assembly, IntArray
 from harness.model.deadline import best_so_far
-from harness.model.method import MOVING_FORCES, Answer, Finding, Status
+from harness.model.details import MOVING_FORCES
+from harness.model.method import Answer, Finding, Status
 from methods.de.engines.engine import Engine
 from methods.de.engines.mass_scaling import MassScaling, courses, insertion_orders, tunings
 from methods.de.holds.bracket_state import BracketState, stopped_answer

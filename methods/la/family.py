@@ -10,7 +10,8 @@ from typing import Any
 import numpy as np
 
 from harness.model.assembly import Assembly
-from harness.model.bars import BAR_FORCES, DEAD_BAR_FORCES, Bars, tensions, with_bars_as_joints
+from harness.model.bars import Bars, tensions, with_bars_as_joints
+from harness.model.details import BAR_FORCES, DEAD_BAR_FORCES
 from harness.model.method import Answer, Finding, Solver
 from methods.la.answers import dead_load_answer
 from methods.la.core.newton_matrix import NewtonMatrix

@@ -9,9 +9,9 @@ from typing import Any
 import numpy as np
 
 from harness.model.assembly import Assembly
-from harness.model.bars import BAR_FORCES, DEAD_BAR_FORCES
 from harness.model.deadline import best_so_far
-from harness.model.method import MOVING_FORCES, Answer, Finding, Status
+from harness.model.details import BAR_FORCES, DEAD_BAR_FORCES, MOVING_FORCES
+from harness.model.method import Answer, Finding, Status
 
 
 def plastic_and_residual(assembly: Assembly, solve: Callable[[Assembly], Answer]) -> Answer:

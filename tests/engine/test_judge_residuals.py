@@ -24,8 +24,9 @@ from harness.engine.residuals import (
     moving_parts,
 )
 from harness.model.assembly import Assembly
+from harness.model.details import MOVING_FORCES
 from harness.model.displaced import DisplacedState
-from harness.model.method import MOVING_FORCES, Answer, Finding, Status
+from harness.model.method import Answer, Finding, Status
 from harness.model.result import Judgement, result_of
 from tests.known_walls import box, of_blocks, push
 

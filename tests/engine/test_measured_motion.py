@@ -7,7 +7,8 @@ import pytest
 
 from harness.engine.judge import judge
 from harness.engine.measured_motion import TOLERANCE, motion_residuals
-from harness.model.method import MOVING_FORCES, Finding, Status
+from harness.model.details import MOVING_FORCES
+from harness.model.method import Finding, Status
 from harness.model.result import Result
 from tests.walls import assembly, stack
 

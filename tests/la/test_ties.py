@@ -14,9 +14,10 @@ from harness.engine.judge import answered, judge
 from harness.engine.reaction_judge import judge_reaction
 from harness.engine.symmetry import VIEWS, beside
 from harness.model.assembly import Assembly
-from harness.model.bars import BAR_FORCES, Bars
+from harness.model.bars import Bars
 from harness.model.build import build
 from harness.model.components import components_of
+from harness.model.details import BAR_FORCES
 from harness.model.errors import InputError
 from harness.model.method import Finding, check_takes, load_method, method_names, methods_with
 from harness.model.result import Judgement, Result

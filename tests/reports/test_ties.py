@@ -11,7 +11,8 @@ import pytest
 
 import drystone
 from harness.model.bar_forces import bar_forces_of
-from harness.model.bars import BAR_FORCES, state_of
+from harness.model.bars import state_of
+from harness.model.details import BAR_FORCES
 from harness.model.result import Result
 from harness.model.support_reactions import out_of_balance, reactions_of
 from reports.drawing.display_list import Lines

@@ -12,10 +12,10 @@ import numpy as np
 from pydantic import BaseModel, ConfigDict, Field, model_validator
 
 from harness.model.assembly import Assembly
-from harness.model.bars import BAR_FORCES, DEAD_BAR_FORCES
+from harness.model.details import BAR_FORCES, DEAD_BAR_FORCES, MOVING_FORCES
 from harness.model.errors import InputError
 from harness.model.fields import LARGEST
-from harness.model.method import MOVING_FORCES, Answer, Finding, Status
+from harness.model.method import Answer, Finding, Status
 from harness.model.reading import validate
 
 Finite = Annotated[float, Field(ge=-LARGEST, le=LARGEST, strict=True)]
