@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 from functools import cache
 from typing import Any
 
@@ -10,8 +11,9 @@ import pytest
 
 from harness.engine.judge import answered, judge
 from harness.model.assembly import Assembly
+from harness.model.foreign.result_document import answer_from_file
 from harness.model.method import load_method
-from harness.model.result import Judgement, Result
+from harness.model.result import Judgement, Result, result_of
 from tests.walls import assembly, stack
 
 WALLS = {
@@ -114,3 +116,16 @@ def test_the_plastic_answer_beside_the_residual_one_is_judged_too():
     plastic = result.details["with_strength"]
     assert judged(wall, result, with_strength=plastic | {"multiplier": 0.9}).accepted is False
     assert judged(wall, result, with_strength={"finding": "?"}).accepted is False
+
+
+@pytest.mark.parametrize("method", ["la", "fe"])
+def test_an_answer_from_a_file_says_which_joints_are_broken(method: str):
+    """As `drystone judge` reads the output of `drystone run --json --fields`."""
+    wall, result = state("topples", method)
+    written = json.loads(result.model_dump_json())
+    answer = answer_from_file(written, wall, "answer.json")
+    read = result_of(answer, wall, case="x", method=method, family=method)
+    assert judge(wall, read, 1e-8).accepted is True
+    written["details"] |= {"broken": [0, 1, 7]}
+    read = result_of(answer_from_file(written, wall, "answer.json"), wall, case="x", method=method, family=method)
+    assert judge(wall, read, 1e-8).accepted is False

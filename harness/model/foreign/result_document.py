@@ -23,6 +23,7 @@ Triples = list[tuple[Finite, Finite, Finite]]
 OF_INTERFACES = ("forces", "live_forces", "dead_forces", MOVING_FORCES)
 OF_BLOCKS = ("mechanism", "dilatant_mechanism")
 OF_BARS = (BAR_FORCES, DEAD_BAR_FORCES)
+OF_BRITTLE_JOINTS = ("broken", "breaking")
 IN_DETAILS = (*OF_INTERFACES[1:], *OF_BARS, "dilatant_mechanism", "lower_bound", "certificate")
 """Fields that an `Answer` holds among its details."""
 
@@ -135,6 +136,9 @@ def answer_from_file(data: Any, assembly: Assembly, source: str) -> Answer:
     taken = {name: data[name] for name in names if name in data}
     proofs = ("live_forces", "dead_forces", "dilatant_mechanism", *(OF_BARS if len(assembly.bars) else ()))
     taken |= {name: listed for name in proofs if (listed := data.get(name, details.get(name))) is not None}
+    if assembly.breaks:  # no program takes brittle joints, so `result/1` has no fields of its own for them
+        joints = {name: data.get(name, details.get(name)) for name in OF_BRITTLE_JOINTS}
+        taken["details"] = {name: listed for name, listed in joints.items() if listed is not None}
     return answer_of({"format": "result/1", "sentence": "An answer from a file."} | taken, assembly, source)
 
 
