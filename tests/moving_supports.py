@@ -55,6 +55,13 @@ def tilted(width: float, height: float, friction: float) -> drystone.Wall:
     return drystone.build_wall(content | {"settlements": turn})
 
 
+def segmental(friction: float, *settlements: dict[str, Any], origin: tuple[float, float] = (0.0, 0.0)) -> drystone.Wall:
+    """A segmental arch of 15 voussoirs on two abutments."""
+    ring = {"type": "ring", "inner_radius": 2, "outer_radius": 2.4, "count": 15, "angles": [150, 30], "origin": origin}
+    content = {"format": "wall/1", "unit_weight": 20, "friction": friction, "pattern": ring}
+    return drystone.build_wall(content | {"settlements": list(settlements)})
+
+
 def weight(wall: drystone.Wall) -> float:
     """Of the free blocks."""
     return float(wall.assembly.weight[wall.assembly.free].sum())

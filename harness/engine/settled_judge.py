@@ -102,13 +102,15 @@ def judge_settled_fall(
 
 
 def _put_together(assembly: Assembly, displacement: float, places: FloatArray) -> _Moved:
-    """The wall at these places."""
+    """The wall at these places, about its middle, where coordinates have the most digits."""
+    middle_of_wall = complex(*assembly.middle)
     size = assembly.length_scale
     turn = np.exp(1j * places[:, 2])
-    was, centre = _complex(assembly.centroid), _complex(assembly.centroid + places[:, :2])
+    was = _complex(assembly.centroid) - middle_of_wall
+    centre = was + _complex(places)
 
     def of(block: NDArray[np.int64], points: FloatArray) -> NDArray[np.complex128]:
-        return np.asarray(centre[block] + turn[block] * (_complex(points) - was[block]))
+        return np.asarray(centre[block] + turn[block] * (_complex(points) - middle_of_wall - was[block]))
 
     half = np.exp(0.5j * (places[assembly.block_a, 2] + places[assembly.block_b, 2]))
     normal, tangent = half * _complex(assembly.normal), half * _complex(assembly.tangent)
@@ -121,7 +123,10 @@ def _put_together(assembly: Assembly, displacement: float, places: FloatArray) -
     first = np.where(~meets[:, 0] & meets[:, 1], middle[1] - along, middle[0])
     second = np.where(meets[:, 0] & ~meets[:, 1], middle[0] + along, middle[1])
     second = np.where(meets.any(axis=1), second, first + along)
-    parts = [_pairs(centre[k] + turn[k] * (_complex(polygon) - was[k])) for k, polygon in enumerate(assembly.polygons)]
+    parts = [
+        _pairs(centre[k] + turn[k] * (_complex(polygon) - middle_of_wall - was[k]))
+        for k, polygon in enumerate(assembly.polygons)
+    ]
     velocity = _complex(assembly.support_motion) * np.exp(1j * displacement * assembly.support_motion[:, 2])
     end1, end2 = _pairs(first), _pairs(second)
     wall = replace(
@@ -170,7 +175,9 @@ def _depth(polygons: list[FloatArray], fixed: BoolArray, rounding: float) -> flo
     pairs = (i < j) & ~(fixed[i] & fixed[j])
     i, j = i[pairs], j[pairs]
     outline = shapely.length(shapes)
-    depth = shapely.area(shapely.intersection(shapes[i], shapes[j])) / np.minimum(outline[i], outline[j])
+    # Without a grid the common area of two faces that coincide to rounding may come out as a whole block.
+    common = shapely.intersection(shapes[i], shapes[j], grid_size=0.1 * rounding)
+    depth = shapely.area(common) / np.minimum(outline[i], outline[j])
     deepest = float(depth.max(initial=0.0))
     return deepest if deepest > rounding else 0.0
 

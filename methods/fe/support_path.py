@@ -33,12 +33,17 @@ class SupportSteps:
         first: step, in displacements of a gap spring under the mean weight of a block: the wall is still elastic then.
         longer: factor on the next; most: number of steps. A plateau that is not reached at longer^most first steps,
             some 1e9 times the elastic displacement, is beyond the digits of the gaps.
+        steady: multiple of the displacement of a mechanism up to which the reaction has to stay the same where gaps
+            still change their states on it; same: to this share of the dead load, a hundred times what equilibria that
+            are found by relaxation leave out of balance.
         noise: gap rates below this share of the speed of the supports count as zero on the plateau, as do rates of
             breakpoint functions below this share of the fastest gap rate: the tangent is solved to 1e-12 or so of them.
     """
 
     first: float = 0.05
     longer: float = 1.3
+    steady: float = 10.0
+    same: float = 1e-7
     most: int = 80
     noise: float = 1e-9
 
@@ -118,20 +123,39 @@ def support_path(
     if not gravity.found:
         return "The gap springs find no equilibrium under the dead load."
     imposed = _ImposedMotion.of(model, 1.0 if gives_way else -1.0)
-    points = [_ImposedPoint(0.0, model, gravity)]
-    step, reason = steps.first, f"The reaction still changes after {steps.most} steps."
+    points, last, reason = _followed(imposed, factor, gravity, steps)
+    if last is None:
+        return _path(points, None, None, reason)
+    return _path(points, last.mechanism(gives_way), last.point.displacement - last.length_behind(steps.noise), "")
+
+
+def _followed(
+    imposed: _ImposedMotion, factor: Factor, gravity: Equilibrium, steps: SupportSteps
+) -> tuple[list[_ImposedPoint], _Piece | None, str]:
+    """The points up to the plateau, the mechanism there, and why there is none where that is None."""
+    model, kept, step = imposed.model, 0, steps.first
+    assembly = model.assembly
+    same = steps.same * assembly.force_scale * fastest_vertex(assembly, assembly.support_motion)
+    points, last = [_ImposedPoint(0.0, model, gravity)], None
     for _ in range(steps.most):
         point = _imposed(imposed, factor, gravity, points[-1], step)
         if not point.rest.found:
-            reason = f"No equilibrium was found at the displacement {point.displacement * model.displacement:.6g}."
-            break
+            place = point.displacement * model.displacement
+            return points, None, f"No equilibrium was found at the displacement {place:.6g}."
         points.append(point)
+        if last is not None and abs(point.reaction - last.point.reaction) > same:
+            last = None
         piece = _Piece.at(imposed, factor, point)
-        if piece is not None and piece.is_plateau(steps.noise):
-            mechanism = piece.mechanism(gives_way)
-            return _path(points, mechanism, point.displacement - piece.length_behind(steps.noise), "")
+        if piece is None or not piece.is_mechanism():
+            piece = _Piece.between(imposed, points[-2], point)
+        if piece.is_mechanism() and piece.is_last(steps.noise):
+            return points, piece, ""
+        if piece.is_mechanism() and last is None:
+            last, kept = piece, len(points)
+        if last is not None and point.displacement > steps.steady * last.point.displacement:
+            return points[:kept], last, ""
         step *= steps.longer
-    return _path(points, None, None, reason)
+    return points, None, f"The reaction still changes after {steps.most} steps."
 
 
 @dataclass(frozen=True, eq=False)
@@ -147,6 +171,11 @@ class _ImposedPoint:
         """(m, 3) contact forces [force]."""
         rest = self.rest
         return self.model.end_forces(*self.model.forces(rest.u, rest.history, rest.state))
+
+    @property
+    def reaction(self) -> float:
+        """Work of the contact forces on the prescribed motion."""
+        return float((self.model.assembly.support_strains * self.forces).sum())
 
 
 def _imposed(
@@ -175,20 +204,41 @@ class _Piece:
         try:
             refactor_any(factor, rest.state)
             velocity = factor.solve(pull)
+            if factor.is_regularised:  # refined until none of the pull is borne by the regularisation
+                tangent = model.tangent(rest.state)
+                for _ in range(model.options.collapse.rounds):
+                    velocity += factor.solve(pull - tangent @ velocity)
         except SingularTangent:
             return None
+        return cls.along(imposed, point, velocity)
+
+    @classmethod
+    def between(cls, imposed: _ImposedMotion, last: _ImposedPoint, point: _ImposedPoint) -> _Piece:
+        """The chord from the last point: where several motions have no stiffness the tangent does not choose."""
+        step = point.displacement - last.displacement
+        return cls.along(imposed, point, (point.rest.u - last.rest.u) / step)
+
+    @classmethod
+    def along(cls, imposed: _ImposedMotion, point: _ImposedPoint, velocity: FloatArray) -> _Piece:
+        """The piece through a point along a velocity (N,)."""
+        model, rest = point.model, point.rest
         opening_rate, slip_rate = np.empty(model.n_points), np.empty(model.n_points)
         point_strains(model.unknown, model.rows, model.interface, model.position, velocity, opening_rate, slip_rate)
         rates = opening_rate + imposed.opening, model.kt * slip_rate + imposed.trial
         opening, slip = model.strains(rest.u)
         return cls(point, (opening, model.kt * slip + rest.history), rates, velocity)
 
-    def is_plateau(self, noise: float) -> bool:
-        """Whether no force changes along it and no gap changes its state ahead."""
+    def is_mechanism(self) -> bool:
+        """Whether no force changes along it, and no gap closes."""
         model, state = self.point.model, self.point.rest.state
         strain, elastic = strain_rates(*self.rates, model.kt, state)
         fastest = max(strain, 1.0)  # the speed of the supports: where the wall goes with them nothing strains
-        return elastic <= model.options.mechanism.elastic * fastest and self._length(1.0, noise) == np.inf
+        rounding = model.options.mechanism.elastic * fastest
+        return elastic <= rounding and bool(self.rates[0][state == OPEN].min(initial=0.0) >= -rounding)
+
+    def is_last(self, noise: float) -> bool:
+        """Whether no gap changes its state ahead."""
+        return self._length(1.0, noise) == np.inf
 
     def length_behind(self, noise: float) -> float:
         """How far the piece reaches back, not beyond the point of rest under the dead load."""
@@ -216,14 +266,14 @@ def _path(
     points: list[_ImposedPoint], mechanism: FloatArray | None, constant_from: float | None, reason: str
 ) -> SupportPath:
     """The path through some points, the last of which is its end."""
-    model, forces = points[0].model, [point.forces for point in points]
-    strains, states = model.assembly.support_strains, [point.rest.state for point in points]
+    model = points[0].model
+    states = [point.rest.state for point in points]
     return SupportPath(
         displacement=np.array([point.displacement for point in points]) * model.displacement,
-        reaction=np.array([float((strains * each).sum()) for each in forces]),
+        reaction=np.array([point.reaction for point in points]),
         slipping=tuple(int(np.count_nonzero(state >= SLIP_PLUS)) for state in states),
         opened=tuple(int(np.count_nonzero(state == OPEN)) for state in states),
-        forces=forces[-1],
+        forces=points[-1].forces,
         mechanism=mechanism,
         constant_from=None if constant_from is None else constant_from * model.displacement,
         reason=reason,

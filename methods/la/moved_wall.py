@@ -51,7 +51,10 @@ class MovedWall:
 
     @classmethod
     def at_rest(cls, drawn: Assembly) -> MovedWall:
-        """The wall as drawn."""
+        """The wall as drawn, about its middle: far from it coordinates have no digits left for pins that meet."""
+        middle = drawn.middle
+        ends = {name: getattr(drawn, name) - middle for name in ("centroid", "end1", "end2", "face1", "face2")}
+        drawn = replace(drawn, polygons=tuple(polygon - middle for polygon in drawn.polygons), **ends)
         return cls(drawn, 0.0, np.zeros((drawn.n_blocks, 3)), np.ones((drawn.n_interfaces, 2), dtype=bool))
 
     @cached_property

@@ -18,7 +18,7 @@ from methods.fe.settings import GapSpringsSettings
 from methods.fe.support_path import SupportPath, SupportSteps, support_path
 from tests.commands import drystone as command
 from tests.la.test_reaction_command import DOWN, WEIGHT, data
-from tests.moving_supports import bricks, semicircle, weight
+from tests.moving_supports import bricks, segmental, semicircle, weight
 
 EXACT = 1e-8
 """Relative accuracy that `fe` declares of a plateau."""
@@ -110,6 +110,24 @@ def test_any_motion_of_the_supports(settlements: list[dict[str, Any]]):
     gives, pushes = values(both(reaction_paths(wall)))
     assert low - EXACT * WEIGHT <= gives <= pushes + EXACT * WEIGHT
     assert pushes <= high + EXACT * WEIGHT
+
+
+@pytest.mark.parametrize(
+    "wall",
+    [
+        segmental(0.3, {"blocks": ["abutment-2"], "translation": [1, 0]}),
+        segmental(
+            0.8,
+            {"blocks": ["abutment-2"], "translation": [1, 0]},
+            {"blocks": ["abutment-1"], "translation": [-1, -0.5]},
+        ),
+    ],
+    ids=["several motions without stiffness", "gaps that change states at one reaction"],
+)
+def test_arch_whose_mechanism_the_tangent_does_not_choose(wall: drystone.Wall):
+    """It is a hinge mechanism or slides at one end, and both have the reactions of associated flow."""
+    found = both(reaction_paths(wall))
+    assert values(found) == pytest.approx(found[0].extremes, rel=EXACT)
 
 
 def test_joints_with_strength():

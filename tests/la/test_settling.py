@@ -18,7 +18,7 @@ from methods.la.moved_wall import ClosureTolerances, MovedWall, support_places
 from methods.la.settling import SettledUntil, settle
 from tests.commands import drystone as command
 from tests.la.test_reaction_command import DOWN, data
-from tests.moving_supports import bricks, semicircle, tilted
+from tests.moving_supports import bricks, segmental, semicircle, tilted
 
 DIGITS = 1e-7
 """Of values given with seven digits."""
@@ -68,6 +68,13 @@ def test_mirrored_and_scaled_arch_spreads_alike():
     document["settlements"] = [{"blocks": ["right"], "translation": [-30.0, 0.0]}]
     found = falls(settled_until_collapse(drystone.build_wall(document)))
     assert found.stands == pytest.approx(0.1410498, abs=DIGITS)
+
+
+def test_arch_in_coordinates_of_a_national_grid():
+    """Far from the origin the drawing has nine digits, and the spread as many."""
+    spread = {"blocks": ["abutment-2"], "translation": [1, 0]}
+    here, there = (falls(settled_until_collapse(segmental(0.8, spread, origin=at))) for at in ((0.0, 0.0), (5e5, 4e6)))
+    assert there.stands == pytest.approx(here.stands, rel=1e-8)
 
 
 def test_supports_that_move_back_close_the_joints_again():
