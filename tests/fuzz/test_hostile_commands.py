@@ -70,7 +70,7 @@ LONGEST = 60_000
 
 @pytest.mark.skipif(not hasattr(os, "fork"), reason="the cost of one command is that of a child process")
 @pytest.mark.parametrize("asked", ASKED, ids=lambda asked: asked[:50])
-def test_a_hostile_word_or_file_ends_in_a_sentence_and_nothing_is_written(asked: str, tmp_path: Path):
+def test_a_hostile_word_or_file_ends_in_a_sentence_and_nothing_is_written(asked: str, tmp_path: Path) -> None:
     folder = tmp_path / "here"
     folder.mkdir()
     for name in FILES.keys() & set(asked.split()) | {"w.json"}:
