@@ -24,6 +24,7 @@ from harness.engine.run import Limits, Run
 from harness.model.assembly import Assembly
 from harness.model.case import Case
 from harness.model.errors import InputError
+from harness.model.fields import LARGEST
 from harness.model.method import Finding, Status, load_method
 from harness.model.reading import validate
 from harness.model.result import Result
@@ -236,8 +237,8 @@ def factor_by(
     check_methods([method], "method")
     loaded = load_method(method)
     validate(loaded.Settings, settings, "settings")
-    if not math.isfinite(share):
-        raise InputError(f"the share {share} is not finite", "Give a finite number, as 0.5", "share")
+    if not abs(share) <= LARGEST:
+        raise InputError(f"the share {share} is no number up to {LARGEST:g}", "Give one as 0.5", "share")
     if accuracy is None:
         accuracy = loaded.traits.accuracy if loaded.traits.brackets else 1e-4
     if not 1e-12 <= accuracy < 1.0:

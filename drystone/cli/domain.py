@@ -72,6 +72,11 @@ def domain(
     A method of the associated maximum gives the whole convex polygon, others points of its boundary. Exit code 1: it is
     incomplete.
     """
+    drawn = output is not None and output.suffix.lower() != ".csv"
+    if output is not None and drawn:
+        from reports.drawing.figures import check_ending, save
+
+        check_ending(output)
     (found,) = find_cases([case], None, folders)
     loads = LoadPair.of(found, load_cases=() if load_cases is None else load_cases.split(","), live=live)
     warn(loads.cases[0])
@@ -85,13 +90,11 @@ def domain(
         store=store,
         fresh=fresh,
     )
-    if output is not None and output.suffix.lower() == ".csv":
+    if output is not None and drawn:
+        save(answer.plot, output)
+    elif output is not None:
         with replacing(output) as draft:
             draft.write_text(answer.as_csv(), encoding="utf-8")
-    elif output is not None:
-        from reports.drawing.figures import save
-
-        save(answer.plot, output)
     if as_json:
         print_json(answer.as_json())
     else:

@@ -14,10 +14,12 @@ from pathlib import Path
 from typing import Any
 
 import click
+from harness.model.broken_json import MOST_SHOWN
 
-from harness.engine.run import Limits
+from harness.engine.run import LONGEST, MOST_MEMORY, Limits
 from harness.model.case import Case
 from harness.model.errors import InputError, visible
+from harness.model.fields import LARGEST
 from harness.model.live_load import both_signs as signs_of
 from harness.model.live_load import is_horizontal, with_live_load
 from harness.model.load_cases import load_cases_of
@@ -79,7 +81,8 @@ def _of_the_system(error: OSError) -> str:
     return f"{where}{error.strerror or error}" + (f". {remedy}" if remedy else "")
 
 
-def _finite(_context: click.Context, _option: click.Parameter, value: float) -> float:
+def finite(_context: click.Context, _option: click.Parameter, value: float) -> float:
+    """A number that is one; raises click.BadParameter."""
     if not math.isfinite(value):
         raise click.BadParameter(f"{value} is not a finite number.")
     return value
@@ -91,8 +94,9 @@ def pair(text: str) -> tuple[float, float]:
         x, y = (float(part) for part in text.split(","))
     except ValueError:
         x = y = math.nan
-    if not (math.isfinite(x) and math.isfinite(y)):
-        raise click.BadParameter(f'"{text}" is not two numbers with a comma between them, as 1,0.')
+    if not (abs(x) <= LARGEST and abs(y) <= LARGEST):
+        problem = f"not two numbers up to {LARGEST:g} with a comma between them, as 1,0"
+        raise click.BadParameter(f'"{text[:MOST_SHOWN]}" is {problem}.')
     return x, y
 
 
@@ -188,11 +192,11 @@ jobs_option = click.option(
     help="Runs at a time.",
 )
 seconds_option = click.option(
-    "--seconds", type=click.FloatRange(min=0.0, min_open=True), default=Limits().seconds, show_default=True,
-    callback=_finite, help="Wall-clock limit of one run.",
+    "--seconds", type=click.FloatRange(min=0.0, min_open=True, max=LONGEST), default=Limits().seconds,
+    show_default=True, callback=finite, help="Wall-clock limit of one run.",
 )  # fmt: skip
 memory_option = click.option(
-    "--memory", type=click.IntRange(16), default=Limits().memory_bytes // 2**20, show_default=True,
+    "--memory", type=click.IntRange(16, MOST_MEMORY), default=Limits().memory_bytes // 2**20, show_default=True,
     help="Memory limit of one run [MiB].",
 )  # fmt: skip
 report_option = click.option(

@@ -9,8 +9,9 @@ from typing import Literal
 import click
 
 from drystone.certificates import nearest, proved, read_certificate, write_certificate
-from drystone.cli.options import OUTPUT, cases_option, catching, json_flag, print_json, say, warn
+from drystone.cli.options import OUTPUT, cases_option, catching, finite, json_flag, print_json, say, warn
 from harness.engine.plan import find_cases
+from harness.engine.run import LONGEST
 from harness.model.errors import InputError
 from methods.proof.same_wall import require_same_wall
 from methods.proof.verify.checker import verify
@@ -25,8 +26,9 @@ from methods.proof.verify.exact_wall import CertificateError
 )
 @click.option(
     "--seconds",
-    type=click.FloatRange(min=0.0),
+    type=click.FloatRange(min=0.0, max=LONGEST),
     default=120.0,
+    callback=finite,
     show_default=True,
     help="Limit for the multiplier intervals.",
 )

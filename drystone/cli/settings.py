@@ -30,7 +30,7 @@ def settings_of(method: str, pairs: tuple[str, ...]) -> dict[str, Any]:
             )
         try:
             values[name] = json.loads(text)
-        except json.JSONDecodeError:
+        except (ValueError, RecursionError):  # no JSON, a number of thousands of digits, or nested without end
             values[name] = text
     validate(load_method(method).Settings, values, f"--set of {method}")
     return values

@@ -168,8 +168,11 @@ def figure(
     folders: tuple[Path, ...],
 ) -> None:
     """Draw the answers of methods on CASE as a figure for a paper."""
+    from reports.drawing.figures import check_ending
     from reports.drawing.figures import figure as draw
 
+    if output is not None:
+        check_ending(output)
     found, results = _answers(case, methods or [library().methods.one], store, folders)
     path = output or Path(f"{found.id}-{kind}.{suffix}")
     draw(found, results, kind, path)
@@ -186,7 +189,10 @@ def figure(
 def animate(case: str, method: str, output: Path | None, store: Path, folders: tuple[Path, ...]) -> None:
     """Animate the mechanism a method finds on CASE."""
     from reports.drawing.animate import animate as draw
+    from reports.drawing.animate import check_ending
 
+    if output is not None:
+        check_ending(output)
     found, results = _answers(case, [method], store, folders)
     path = output or Path(f"{found.id}.gif")
     draw(found, results[0], path)

@@ -10,6 +10,7 @@ from pathlib import Path
 from typing import Any
 
 from harness.engine.run import Limits, Run
+from harness.model.broken_json import MOST_SHOWN
 from harness.model.case import Case, case_folders, case_of_wall, id_of, read_case, shipped_cases
 from harness.model.errors import InputError, did_you_mean
 from harness.model.library import library
@@ -74,7 +75,7 @@ def check_methods(names: Sequence[str], element: str = "--methods") -> None:
     known = method_names()
     for name in names:
         if name not in known:
-            raise InputError(f'no method is called "{name}"', _methods_meant(name), element)
+            raise InputError(f'no method is called "{name[:MOST_SHOWN]}"', _methods_meant(name), element)
 
 
 def check_order(method: str, case: str) -> None:
@@ -166,7 +167,7 @@ def find_cases(words: Sequence[str], suite: str | None, folders: Sequence[Path])
     if words and suite:
         raise InputError("cases and a suite are given", "Give one or the other", "compare")
     if words:
-        found = [_find_case(word, library) for word in words]
+        found = [_find_case(word, library) for word in dict.fromkeys(words)]
         return _told_apart(list({Path(case.origin).resolve(): case for case in reversed(found)}.values())[::-1])
     cases = [read_case(folder) for folder in library.values()]
     own = {path.resolve() for path in folders}

@@ -20,6 +20,11 @@ from harness.model.foreign.register import program_named
 from harness.model.method import Traits
 from harness.model.result import Result, result_of
 
+LONGEST = 1e9
+"""Seconds that a run may be given: thirty years, which clocks and timers still count."""
+MOST_MEMORY = 2**30
+"""Mebibytes that a run may be given, which systems still count in bytes."""
+
 
 @dataclass(frozen=True)
 class Limits:

@@ -115,7 +115,7 @@ def read_mapping(path: Path) -> Mapping:
     """
     try:
         return validate(Mapping, tomllib.loads(read_text(path)), str(path))
-    except tomllib.TOMLDecodeError as error:
+    except (tomllib.TOMLDecodeError, RecursionError) as error:
         raise InputError(f"it cannot be read ({error})", "Give valid TOML", source=str(path)) from None
 
 

@@ -10,6 +10,7 @@ import numpy as np
 from harness.model.assembly import FloatArray
 from harness.model.case import Case
 from harness.model.errors import InputError
+from harness.model.fields import LARGEST
 from harness.model.load_fields import BodyForce, Load
 from harness.model.loads import times
 
@@ -66,12 +67,14 @@ def with_live_load(case: Case, x: float, y: float) -> Case:
     It has no references and no certificate: what is known of the case holds for the live load of its file.
 
     Raises:
-        InputError: (x, y) is zero.
+        InputError: (x, y) is zero, or larger than numbers of the format.
     """
     if x == 0.0 and y == 0.0:
         raise InputError(
             "the live load 0,0 is none", "Give a multiple of the weight, as 1,0 for to the right", "--live"
         )
+    if not (abs(x) <= LARGEST and abs(y) <= LARGEST):
+        raise InputError(f"the live load {x:g},{y:g} is no pair of numbers up to {LARGEST:g}", "Give one", "--live")
     loads = case.wall.loads.model_copy(update={"live": Load(body=[BodyForce(per_weight=(x, y))])})
     said = f"live load ({x:g}, {y:g}) times the weight"
     file = case.file.model_copy(update={"references": [], "kind": "multiplier", "title": f"{case.file.title}, {said}"})

@@ -33,6 +33,18 @@ GREATEST = 2.0
 """Last displacement, as a multiple of the one the report draws."""
 
 
+def check_ending(path: Path) -> None:
+    """Refuse a file whose ending says no format of animations.
+
+    Raises:
+        InputError: naming those there are.
+    """
+    if path.suffix.lower() not in FORMATS:
+        raise InputError(
+            f'no animation format is called "{path.suffix}"', f"Use {', '.join(FORMATS)}", source=str(path)
+        )
+
+
 def animate(case: Case, result: Result, path: Path) -> None:
     """Draw the collapse of a result as an animation.
 
@@ -44,11 +56,8 @@ def animate(case: Case, result: Result, path: Path) -> None:
     Raises:
         InputError: another ending, or a result without a mechanism.
     """
+    check_ending(path)
     suffix = path.suffix.lower()
-    if suffix not in FORMATS:
-        raise InputError(
-            f'no animation format is called "{path.suffix}"', f"Use {', '.join(FORMATS)}", source=str(path)
-        )
     if result.mechanism is None and released(result, case.assembly.n_blocks) is None:
         raise InputError(
             f"{result.method} gave no mechanism to animate ({labels.STATUS[result.status][1]}: {result.sentence})",

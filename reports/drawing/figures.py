@@ -154,14 +154,23 @@ def style() -> Iterator[None]:
         yield
 
 
+def check_ending(path: Path) -> None:
+    """Refuse a file whose ending says no format of figures.
+
+    Raises:
+        InputError: naming those there are.
+    """
+    if path.suffix.lower() not in FORMATS:
+        raise InputError(f'no figure format is called "{path.suffix}"', f"Use {', '.join(FORMATS)}", source=str(path))
+
+
 def save(make: Callable[[], Figure], path: Path) -> None:
     """Make a figure and write it, in the style of figures.
 
     Raises:
         InputError: an ending that no figure has, or the path of something that is no regular file.
     """
-    if path.suffix.lower() not in FORMATS:
-        raise InputError(f'no figure format is called "{path.suffix}"', f"Use {', '.join(FORMATS)}", source=str(path))
+    check_ending(path)
     with replacing(path) as draft, style():
         make().savefig(draft, metadata=metadata(path))
 

@@ -117,6 +117,44 @@ KINDS: dict[str, Callable[[int], Document]] = {
     "round blocks": lambda n: wall(
         blocks=[GROUND, *({"id": f"s{k}", "polygon": circle(5000, 2.0 * k, 1.0)} for k in range(20))]
     ),
+    "combinations of load cases": lambda n: wall(
+        loads={},
+        load_cases={"c": {"live": {"points": [{"block": "a", "at": [0.5, 0.5], "force": [1, 0]}] * n}}},
+        combinations={f"x{k}": {"c": 1.5} for k in range(400)},
+    ),
+    "products of loads that travel": lambda n: wall(
+        loads={},
+        travelling={f"t{k}": {"force": [0, -1], "per_face": 60} for k in range(5)},
+        combinations={"x": {f"t{k}": 1.0 for k in range(5)}},
+    ),
+    "loads that travel on far more faces": lambda n: bonded(
+        60, loads={}, travelling={f"t{k}": {"force": [0, -1], "per_face": 100} for k in range(400)}
+    ),
+    "load cases on many blocks": lambda n: bonded(
+        60, loads={}, load_cases={f"c{k}": {"live": {"body": [PUSH]}} for k in range(500)}
+    ),
+    "rules for materials that there are not": lambda n: wall(
+        blocks=[GROUND, *({**BLOCK, "id": f"s{k}", "material": f"m{k}"} for k in range(200))],
+        friction={"default": 0.5, "rules": [{"materials": [f"n{k}", "x"], "value": 0.1} for k in range(n)]},
+    ),
+    "names near to many": lambda n: wall(
+        blocks=[GROUND, *({**BLOCK, "id": f"stone{k}"} for k in range(2000))],
+        interfaces={"removed": [[f"stoneage{k}", f"stony{k}"] for k in range(n)]},
+    ),
+    "settlements of a group": lambda n: wall(
+        blocks=[{**BLOCK, "groups": []}]
+        + [
+            {"id": f"s{k}", "polygon": box(1.1 * k, -1, 1.1 * k + 1, 0), "fixed": True, "groups": ["g"]}
+            for k in range(n)
+        ],
+        settlements=[{"group": "g", "translation": [0, -1]}] * n,
+    ),
+    "forces beside a block": lambda n: wall(
+        loads={"live": {"points": [{"block": "a", "at": [50, 0.5], "force": [1, 0]}] * n}}
+    ),
+    "blocks that lie apart": lambda n: wall(
+        blocks=[GROUND, *({"id": f"s{k}", "polygon": box(6.1 + 1.1 * k, 0, 7.1 + 1.1 * k, 1)} for k in range(n))]
+    ),
     "sight without end": lambda n: bonded(60, interfaces={"sight": 1e15}),
     "every block fixed": lambda n: wall(
         blocks=[{**GROUND, "id": f"s{k}", "polygon": [[7 * k, 0], [7 * k + 6, 0], [7 * k, 1]]} for k in range(100)]

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import itertools
 import json
+import math
 from collections import OrderedDict
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
@@ -24,6 +25,16 @@ from harness.model.errors import InputError
 from harness.model.method import load_method
 from harness.model.reading import parse_wall, validate, wall_json
 from harness.model.wall import Wall
+
+MOST_DRAWN = 10_000_000
+"""Values that a study draws: each takes some 100 bytes."""
+MOST_TOLD = 200
+"""Characters of an error in which a wall of a study is told by its values."""
+
+
+def shown(count: int) -> str:
+    """A count in words, rounded where it has more digits than a reader needs."""
+    return f"{count:,}" if count < 10**12 else f"more than 10^{len(str(count)) - 1}"
 
 
 @dataclass(frozen=True)
@@ -69,7 +80,7 @@ class WallVariant:
         Raises:
             InputError: its data are no wall.
         """
-        changed = ", ".join(f"{name} = {value}" for name, value in self.values.items())
+        changed = ", ".join(f"{name} = {value}" for name, value in self.values.items())[:MOST_TOLD]
         return parse_wall(self.data, f"study {self.study}, {self.id} with {changed}")
 
     @cached_property
@@ -152,11 +163,14 @@ def expand(study: Study, sources: Sequence[WallSource]) -> list[SweepRun]:
     unknown = sorted(set(study.settings) - set(study.methods))
     if unknown:
         raise InputError(f'"{unknown[0]}" is no method of the study', "Name it in methods", "settings")
-    axes = list(study.axes())
-    draws = _draws(study)
-    count = len(sources) * len(draws) * len(study.methods) * int(np.prod([len(axis) for axis in axes], dtype=float))
+    samples = study.samples if study.draw else 1
+    count = len(sources) * samples * len(study.methods) * math.prod(study.lengths())  # before any value is made
     if count > MOST_RUNS:
-        raise InputError(f"it expands to {count:,} runs", f"A study makes at most {MOST_RUNS:,}", study.name)
+        raise InputError(f"it expands to {shown(count)} runs", f"A study makes at most {MOST_RUNS:,}", study.name)
+    if samples * len(study.draw) > MOST_DRAWN:
+        problem = f"{samples:,} samples of {len(study.draw):,} quantities are drawn"
+        raise InputError(problem, f"A study draws at most {MOST_DRAWN:,} values", study.name)
+    axes, draws = list(study.axes()), _draws(study)
     limits = Limits(study.limits.seconds, study.limits.memory * 2**20)
     runs, walls = list[SweepRun](), Walls()
     for source in sources:

@@ -19,6 +19,8 @@ from harness.model.reading import validate
 
 LIKE_A_RANGE = re.compile(r"\s*(\d*\.?\d+)\s*(?:-|\.\.\.?|–|to)\s*(\d*\.?\d+)\s*")
 """Two numbers with a sign between them that people write for a range."""
+LONGEST = 100
+"""Characters of a word that a sentence repeats."""
 SIZES = 6
 """Sizes of defects in a range that does not say how many."""
 
@@ -54,6 +56,8 @@ def quick_study(
         name, equals, values = words.partition("=")
         if not equals or not values:
             raise InputError(f'"{words}" varies nothing', "Give NAME=FROM:TO:COUNT or NAME=A,B,C", "--vary")
+        if name in axes:
+            raise InputError(f'"{name[:LONGEST]}" varies twice', "Give all of its values at once", "--vary")
         axes[name] = axis_of(values, f"--vary {name}", None)
     if imperfection:
         axes["imperfection"] = axis_of(imperfection, "--imperfection", SIZES)
@@ -102,7 +106,7 @@ def axis_of(words: str, element: str, count: int | None) -> Any:
     Raises:
         InputError: words that are neither.
     """
-    with contextlib.suppress(json.JSONDecodeError):
+    with contextlib.suppress(ValueError, RecursionError):
         return json.loads(f"[{words}]")
     parts = words.split(":")
     if ends := LIKE_A_RANGE.fullmatch(words):
@@ -124,7 +128,7 @@ def axis_of(words: str, element: str, count: int | None) -> Any:
 def _value(word: str) -> Any:
     try:
         return json.loads(word)
-    except json.JSONDecodeError:  # .5 is no number of JSON
+    except (ValueError, RecursionError):  # .5 is no number of JSON
         with contextlib.suppress(ValueError):
             if math.isfinite(number := float(word)):
                 return number

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import tomllib
+from collections import Counter
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Annotated, Any, Literal
@@ -10,6 +11,7 @@ from typing import Annotated, Any, Literal
 import numpy as np
 from pydantic import Discriminator, Field, Tag, model_validator
 
+from harness.engine.run import LONGEST, MOST_MEMORY
 from harness.model.errors import InputError
 from harness.model.fields import Strict
 from harness.model.json_text import read_text
@@ -95,8 +97,8 @@ class Distribution(Strict):
 class StudyLimits(Strict):
     """What one run may use."""
 
-    seconds: Annotated[float, Field(gt=0.0)] = 120.0
-    memory: Annotated[int, Field(ge=16, description="[MiB]")] = 4096
+    seconds: Annotated[float, Field(gt=0.0, le=LONGEST)] = 120.0
+    memory: Annotated[int, Field(ge=16, le=MOST_MEMORY, description="[MiB]")] = 4096
 
 
 class Curve(Strict):
@@ -142,13 +144,18 @@ class Study(Strict):
         if bool(self.cases) == (self.wall is not None):
             raise ValueError("a study names either cases or a wall of its own")
         for group in self.together:
-            if len({len(values_of(axis)) for axis in group.values()}) != 1:
+            if len({length_of(axis) for axis in group.values()}) != 1:
                 raise ValueError(f"axes that vary together have equal length: {', '.join(group)}")
         names = [*self.vary, *self.draw, *(name for group in self.together for name in group)]
-        twice = sorted({name for name in names if names.count(name) > 1})
+        twice = sorted(name for name, count in Counter(names).items() if count > 1)
         if twice:
             raise ValueError(f'"{twice[0]}" varies twice')
         return self
+
+    def lengths(self) -> list[int]:
+        """The number of values of each axis of the grid."""
+        together = [length_of(next(iter(group.values()))) for group in self.together]
+        return [*map(length_of, self.vary.values()), *together]
 
     def axes(self) -> Iterator[list[dict[str, Any]]]:
         """Each axis of the grid as a list of assignments, one of which holds at a time."""
@@ -157,6 +164,13 @@ class Study(Strict):
         for group in self.together:
             columns = [values_of(axis) for axis in group.values()]
             yield [dict(zip(group, values, strict=True)) for values in zip(*columns, strict=True)]
+
+
+def length_of(axis: list[Any] | Range | Whole) -> int:
+    """The number of values of an axis."""
+    if isinstance(axis, Range):
+        return axis.count
+    return axis.seeds if isinstance(axis, Whole) else len(axis)
 
 
 def values_of(axis: list[Any] | Range | Whole) -> list[Any]:
@@ -172,6 +186,6 @@ def read_study(path: Path) -> Study:
     """
     try:
         data = tomllib.loads(read_text(path))
-    except tomllib.TOMLDecodeError as error:
+    except (tomllib.TOMLDecodeError, RecursionError) as error:
         raise InputError(f"it cannot be read ({error})", "Give valid TOML", source=str(path)) from None
     return validate(Study, data, str(path))
