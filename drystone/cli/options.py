@@ -14,12 +14,12 @@ from pathlib import Path
 from typing import Any
 
 import click
-from harness.model.broken_json import MOST_SHOWN
 
 from harness.engine.run import LONGEST, MOST_MEMORY, Limits
 from harness.model.case import Case
 from harness.model.errors import InputError, visible
 from harness.model.fields import LARGEST
+from harness.model.json_text import MOST_SHOWN
 from harness.model.live_load import both_signs as signs_of
 from harness.model.live_load import is_horizontal, with_live_load
 from harness.model.load_cases import load_cases_of

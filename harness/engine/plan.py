@@ -10,9 +10,9 @@ from pathlib import Path
 from typing import Any
 
 from harness.engine.run import Limits, Run
-from harness.model.broken_json import MOST_SHOWN
 from harness.model.case import Case, case_folders, case_of_wall, id_of, read_case, shipped_cases
 from harness.model.errors import InputError, did_you_mean
+from harness.model.json_text import MOST_SHOWN
 from harness.model.library import library
 from harness.model.method import Method, check_takes, listed_methods, load_method, method_names
 from harness.model.reading import DRAWINGS
