@@ -15,8 +15,9 @@ from typing import Any
 import numpy as np
 
 from harness.engine.measures import Measures, between
+from harness.engine.residuals import moving_parts, scaled_to_live_work
 from harness.model.assembly import Assembly, BoolArray, FloatArray
-from harness.model.result import normalised_mechanism, relative_velocities
+from harness.model.result import relative_velocities
 
 BROKEN = "broken"
 BREAKING = "breaking"
@@ -47,10 +48,13 @@ def dried(assembly: Assembly, broken: BoolArray) -> Assembly:
 
 
 def motion_of_whole(assembly: Assembly, mechanism: FloatArray) -> float:
-    """The fastest opening or slip of a joint that is brittle and whole, the fastest vertex having speed 1."""
-    opening, slip = relative_velocities(assembly, normalised_mechanism(assembly, mechanism))
-    rates = np.maximum(abs(opening).max(axis=1, initial=0.0), abs(slip))
-    return float(rates[assembly.brittle].max(initial=0.0))
+    """The fastest opening or slip of a joint that is brittle and whole, each component scaled as for its residuals."""
+    fastest = 0.0
+    for part, motion in moving_parts(assembly, mechanism)[1]:
+        opening, slip = relative_velocities(part.assembly, scaled_to_live_work(part.assembly, motion)[0])
+        rates = np.maximum(abs(opening).max(axis=1, initial=0.0), abs(slip))
+        fastest = max(fastest, float(rates[part.assembly.brittle].max(initial=0.0)))
+    return fastest
 
 
 def unused_strength(assembly: Assembly, forces: FloatArray, multiplier: float, joints: BoolArray) -> float:

@@ -304,6 +304,17 @@ def _largest_working(assembly: Assembly, mechanism: FloatArray) -> float:
     return float((work[does] / speed[does]).max(initial=0.0))
 
 
+def scaled_to_live_work(assembly: Assembly, mechanism: FloatArray) -> tuple[FloatArray, float]:
+    """The motion (n, 3) of a component of fastest vertex 1, larger where its live work is small, and that work."""
+    live_work = power(assembly.live, mechanism)
+    largest = _largest_working(assembly, mechanism)
+    if 0.0 < live_work < AT_REST * largest:
+        return mechanism, 0.0
+    if 0.0 < live_work < largest:
+        return mechanism * (largest / live_work), largest
+    return mechanism, live_work
+
+
 def _mechanism_residuals(
     assembly: Assembly,
     forces: FloatArray,
@@ -317,12 +328,7 @@ def _mechanism_residuals(
 
     `bars` are the tensions (k,) beyond their prestress, and what acts at them (k,).
     """
-    live_work = power(assembly.live, mechanism)
-    largest = _largest_working(assembly, mechanism)
-    if 0.0 < live_work < AT_REST * largest:
-        live_work = 0.0
-    elif 0.0 < live_work < largest:
-        mechanism, live_work = mechanism * (largest / live_work), largest
+    mechanism, live_work = scaled_to_live_work(assembly, mechanism)
     opening, slip = relative_velocities(assembly, mechanism)
     dilatancy = assembly.friction if flow == "associated" else assembly.dilatancy
     lift = dilatancy * abs(slip)

@@ -11,9 +11,11 @@ import pytest
 
 from harness.engine.judge import answered, judge
 from harness.model.assembly import Assembly
+from harness.model.build import build
 from harness.model.foreign.result_document import answer_from_file
 from harness.model.method import load_method
 from harness.model.result import Judgement, Result, result_of
+from harness.model.wall import Wall
 from tests.walls import assembly, stack
 
 WALLS = {
@@ -129,3 +131,32 @@ def test_an_answer_from_a_file_says_which_joints_are_broken(method: str):
     written["details"] |= {"broken": [0, 1, 7]}
     read = result_of(answer_from_file(written, wall, "answer.json"), wall, case="x", method=method, family=method)
     assert judge(wall, read, 1e-8).accepted is False
+
+
+@pytest.mark.parametrize("on_top", [False, True], ids=["beside it", "on the wall"])
+def test_a_block_that_slides_on_ice_hides_no_brittle_joint_that_moves(on_top: bool):
+    """It needs no force, so that the plastic collapse state beside it may be as slow as one likes."""
+
+    def block(name: str, x: float, y: float, height: float, fixed: bool = False) -> dict[str, Any]:
+        corners = [[x, y], [x + 1.0, y], [x + 1.0, y + height], [x, y + height]]
+        return {"id": name, "polygon": corners, "fixed": fixed}
+
+    below, ice = ("block", block("ice", 0.0, 0.2, 0.2)) if on_top else ("floor", block("ice", 9.0, 0.0, 0.2))
+    blocks = [block("base", 0.0, -1.0, 1.0, True), block("block", 0.0, 0.0, 0.2), ice]
+    blocks += [] if on_top else [block("floor", 9.0, -1.0, 1.0, True)]
+    body = {"live": {"body": [{"blocks": ["block"], "per_weight": [1, 0]}]}}
+    plain = {"format": "wall/1", "unit_weight": 20.0, "blocks": blocks, "loads": body}
+
+    def wall(after: str) -> Assembly:
+        glued = {"between": ["base", "block"], "value": 0.5, "cohesion": 1.0, "after": after}
+        rules = [glued, {"between": [below, "ice"], "value": 0.0}]
+        return build(Wall.model_validate(plain | {"friction": {"default": 0.5, "rules": rules}})).assembly
+
+    plastic, brittle = wall("plastic"), wall("residual")
+    result, _ = answered(load_method("la"), plastic)
+    motion = 1e-9 * np.array(result.mechanism) / abs(np.array(result.mechanism)).max()
+    motion[brittle.block_ids.index("ice"), 0] += 1.0
+    hidden = result.model_copy(update={"mechanism": motion.tolist()})
+    assert judged(plastic, hidden, without_strength=None).accepted is True
+    assert judged(brittle, hidden, without_strength=None).residuals["whole"] > 0.1
+    assert judged(brittle, hidden, without_strength=None).accepted is False
