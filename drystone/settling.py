@@ -122,7 +122,8 @@ def settled_until_collapse(wall: Wall, tolerance: float = 1e-9) -> SettledCollap
     said = [judge_settled(assembly, stands, places, last.state.reaction, last.state.forces, tolerance)]
     if found.fall is not None and found.mechanism is not None:
         at = found.fall.displacement
-        said.append(judge_settled_fall(assembly, at, found.fall.places, found.mechanism, tolerance))
+        bore = last.state.forces
+        said.append(judge_settled_fall(assembly, at, found.fall.places, found.mechanism, tolerance, bore=bore))
     return SettledCollapse(
         assembly,
         stands,

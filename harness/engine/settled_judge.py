@@ -10,6 +10,7 @@ supports           distance of a support from the place to which its prescribed 
 interpenetration   depth by which blocks share area, or by which a joint has closed beyond touching
 parted             normal force at an end that has parted, beside the mean weight of a block
 sliding            distance along a joint of the two points of a contact
+lifted             distance across the joint of an end that bore force where the wall last stood
 closings           closing velocity at a contact, beyond dilatant flow
 """
 
@@ -22,6 +23,7 @@ import shapely
 from numpy.typing import NDArray
 
 from harness.engine.judge_dead_load import GAIN, IMMENSE
+from harness.engine.judge_decision import COUNTABLE, countable, said_of
 from harness.engine.reaction_judge import held
 from harness.engine.residuals import block_sums, force_residuals, power
 from harness.model.assembly import Assembly, BoolArray, FloatArray
@@ -31,6 +33,7 @@ from harness.model.result import Judgement, fastest_vertex, relative_velocities
 
 MEETS = 1e-9
 """Distance, in sizes of a block, up to which the two points of an end meet: pins are closed to 1e-13."""
+UNCOUNTABLE = f"Its numbers are not finite, or larger than {COUNTABLE:g}."
 DEPTH = 1e-9
 """Depth of a common area, in sizes of a block, that is rounding of places."""
 
@@ -41,11 +44,13 @@ class _Moved:
 
     Attributes:
         assembly: of it, an end that has parted on the line of its joint; meets: (m, 2) ends that are contacts.
+        gap: (m, 2) distance of the two points of each end, across the joint [length].
         residuals: of its places: supports, interpenetration, sliding.
     """
 
     assembly: Assembly
     meets: BoolArray
+    gap: FloatArray
     residuals: dict[str, float]
 
 
@@ -62,6 +67,8 @@ def judge_settled(
         forces: (m, 3) contact forces, along the joints as they have turned [force].
         tolerance: the largest residual that is acceptable.
     """
+    if not all(countable(each) for each in (displacement, places, reaction, forces)):
+        return said_of(tolerance, False, UNCOUNTABLE)
     moved = _put_together(assembly, displacement, places)
     wall = moved.assembly
     parted = float(abs(np.where(moved.meets, 0.0, forces[:, :2])).max(initial=0.0))
@@ -76,16 +83,26 @@ def judge_settled(
 
 
 def judge_settled_fall(
-    assembly: Assembly, displacement: float, places: FloatArray, mechanism: FloatArray, tolerance: float
+    assembly: Assembly,
+    displacement: float,
+    places: FloatArray,
+    mechanism: FloatArray,
+    tolerance: float,
+    *,
+    bore: FloatArray,
 ) -> Judgement:
     """Whether a wall falls where the supports have moved by a multiple of their prescribed motion and rest.
 
     Args:
         assembly, displacement, places, tolerance: as for `judge_settled`.
         mechanism: (n, 3) motion of all blocks.
+        bore: (m, 3) contact forces where it last stood; blocks lifted off what bore them fall anywhere.
     """
+    if not all(countable(each) for each in (displacement, places, mechanism, bore)):
+        return said_of(tolerance, False, UNCOUNTABLE)
     moved = _put_together(assembly, displacement, places)
     wall = moved.assembly
+    borne = bore[:, :2] * assembly.n_free > tolerance * assembly.force_scale
     speed = fastest_vertex(wall, mechanism) or 1.0
     motion = mechanism / speed
     opening, slip = relative_velocities(wall, motion)
@@ -94,6 +111,7 @@ def judge_settled_fall(
     gain = power(wall.dead, motion)
     enough = max(GAIN * gross_power(wall, motion), IMMENSE * wall.force_scale * float(closings.sum()))
     residuals = moved.residuals | {
+        "lifted": float(np.where(borne, moved.gap, 0.0).max(initial=0.0)) / assembly.length_scale,
         "moving_supports": fastest_vertex(wall, np.where(wall.fixed[:, None], motion, 0.0)),
         "closings": float(closings.max(initial=0.0)),
         "no_work": 0.0 if gain > enough else 1.0,
@@ -146,7 +164,7 @@ def _put_together(assembly: Assembly, displacement: float, places: FloatArray) -
         "interpenetration": max(closed, _depth(parts, assembly.fixed, DEPTH * size)) / size,
         "sliding": float(abs(np.where(meets, shift, 0.0)).max(initial=0.0)) / size,
     }
-    return _Moved(wall, meets, residuals)
+    return _Moved(wall, meets, gap, residuals)
 
 
 def _off_their_way(assembly: Assembly, displacement: float, places: FloatArray) -> float:

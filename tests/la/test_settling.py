@@ -156,6 +156,9 @@ def test_judge_rejects_places_and_forces_that_are_wrong():
     assert not accepted(displacement=found.stands * 1.0001)
     assert not accepted(displacement=0.0, places=np.zeros_like(found.places))
     assert not accepted(reaction=right["reaction"] * 1.0001)
+    assert not accepted(places=np.nan * found.places)
+    assert not accepted(forces=np.full_like(found.forces, np.inf))
+    assert not accepted(displacement=np.nan)
     assert not accepted(forces=1.0001 * found.forces)
     moved = found.places.copy()
     moved[3] += [1e-5, -1e-5, 0.0]
@@ -173,7 +176,7 @@ def test_judge_rejects_a_fall_that_is_none():
     assert found.mechanism is not None
 
     def accepted(mechanism: np.ndarray, displacement: float, places: np.ndarray) -> bool | None:
-        return judge_settled_fall(wall, displacement, places, mechanism, JUDGED).accepted
+        return judge_settled_fall(wall, displacement, places, mechanism, JUDGED, bore=found.forces).accepted
 
     assert found.fallen is not None
     assert accepted(found.mechanism, found.falls, found.fallen)
@@ -182,6 +185,32 @@ def test_judge_rejects_a_fall_that_is_none():
     assert not accepted(found.mechanism + np.array([0.0, -0.1, 0.0]), found.falls, found.fallen)
     assert not accepted(found.mechanism, found.stands, found.places)  # there it does no work yet
     assert not accepted(found.mechanism, found.falls, found.fallen + 1e-6)
+    assert not accepted(found.mechanism, found.falls, np.nan * found.fallen)
+
+
+def test_judge_rejects_a_fall_of_blocks_that_are_lifted_off_what_bore_them():
+    """Half way to the collapse a block in the air falls as well."""
+    wall = tilted(1.0, 2.0, 0.9).assembly
+    found = falls(settled_until_collapse(tilted(1.0, 2.0, 0.9)))
+    half = 0.5 * found.stands
+    base, block = wall.block_ids.index("base"), wall.block_ids.index("block")
+    turned = found.places.copy()
+    turned[base] = _turned(wall.centroid[base], half)
+    turned[block] = _turned(wall.centroid[block], half)
+    down = np.zeros_like(turned)
+    down[block, 1] = -1.0
+    for height in (1e-6, 1.0):
+        lifted = turned + [[0.0, height, 0.0] if k == block else [0.0] * 3 for k in range(wall.n_blocks)]
+        said = judge_settled_fall(wall, half, lifted, down, JUDGED, bore=found.forces)
+        assert said.accepted is False
+        assert "not within 1e-09: lifted" in said.sentence
+
+
+def _turned(point: np.ndarray, angle: float) -> list[float]:
+    """Displacement and rotation of a point that turns clockwise about (3, 0)."""
+    arm = complex(*point) - 3.0
+    way = arm * np.exp(-1j * angle) - arm
+    return [way.real, way.imag, -angle]
 
 
 def test_command(tmp_path: Path):
