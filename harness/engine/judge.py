@@ -165,8 +165,11 @@ def _with_other(said: Judgement, wall: Assembly, other: Result | None, words: st
     own = Judgement(accepted=False, sentence="The answer is none of this wall.")
     if other is not None and all(len(getattr(other, name) or [()] * n) == n for name, n in sizes.items()):
         if other.status is not Status.OK:
-            return said
-        own = judge(wall, other, said.tolerance)
+            if other.multiplier is None and other.bracket is None:
+                return said
+            own = said_of(said.tolerance, False, f'It gives a multiplier beside the status "{other.status}".')
+        else:
+            own = judge(wall, other, said.tolerance)
     both = (said.accepted, own.accepted)
     accepted = False if False in both else None if None in both else True
     sentence = f"{said.sentence} {words}: {own.sentence}"

@@ -21,6 +21,8 @@ def judge_breaking(
         return said_of(tolerance, False, breaking)
     if multiplier is None or not breaking.any():
         return said_of(tolerance, False, "It gives no multiplier, or no joint that breaks there.")
+    if result.flow == "approximate":
+        return said_of(tolerance, False, "It measures a bracket, while joints break at one multiplier.")
     if forces is None:
         return said_of(tolerance, None, NO_FORCES)
     at = multiplier if result.forces_multiplier is None else result.forces_multiplier

@@ -95,6 +95,9 @@ def test_a_break_is_shown_by_forces_at_strength_and_a_motion_that_nothing_resist
     for listed in (other, [*breaking, *other], [], [7], "0"):
         assert judged(wall, result, breaking=listed).accepted is False
     assert judged(wall, result, broken=breaking).accepted is False
+    measured = {"flow": "approximate", "bracket": (0.0, 1e50)}
+    assert "one multiplier" in judge(wall, result.model_copy(update=measured), 1e-8).sentence
+    assert judge(wall, result.model_copy(update=measured), 1e-8).accepted is False
     unshown = judge(wall, result.model_copy(update={"mechanism": None}), 1e-8)
     assert unshown.accepted is None
     still = np.array(result.mechanism)
@@ -118,6 +121,10 @@ def test_the_plastic_answer_beside_the_residual_one_is_judged_too():
     plastic = result.details["with_strength"]
     assert judged(wall, result, with_strength=plastic | {"multiplier": 0.9}).accepted is False
     assert judged(wall, result, with_strength={"finding": "?"}).accepted is False
+    none = plastic | {"status": "not_converged", "finding": "none", "multiplier": None}
+    assert judged(wall, result, with_strength=none).accepted is True
+    for claim in ({"multiplier": 99.0}, {"bracket": [0.0, 99.0]}):
+        assert judged(wall, result, with_strength=none | claim).accepted is False
 
 
 @pytest.mark.parametrize("method", ["la", "fe"])
