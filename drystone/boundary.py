@@ -25,6 +25,10 @@ from harness.model.result import Result
 
 PARALLEL = 1e-9
 """Sine of an angle between two directions that is rounding."""
+SAME = 1e-6
+"""Relative distance of two points from the edge of the other up to which both edges are one: a thousand times what the
+judge tolerates of an associated state. A coarser one would join edges that differ, and the lines of neither would pass
+through both ends of what they were taken for."""
 FAR = 100.0
 """A boundary is followed to this multiple of its nearest point. Farther out the weight is so small beside the live load
 that a linear programme has too few digits for the judge's tolerance of 1e-9."""
@@ -96,20 +100,15 @@ class Boundary:
     def polygon(self) -> None:
         """Find every edge, from the four directions of the axes on.
 
-        A closed polygon has as many edges as vertices; an open one has one more, or is a strip or a half-plane.
-
         Raises:
-            Stopped: the edges do not fit the vertices, so one was missed; or as `ask`.
+            Stopped: two neighbouring vertices have no edge in common, so one was missed; or as `ask`.
         """
         self._all_sides(self._edge_between)
-        corners = self.corners()
-        vertices = sum(point.bounded for point in corners)
-        is_open = vertices < len(corners)
-        due = {vertices} if not is_open else {vertices + 1} if vertices else {1, 2}
-        if (edges := len(self.edges())) not in due:
+        sides = self._sides()
+        if missing := sum(line is None for line in sides):
             raise Stopped(
-                f"The edges ({edges}) and vertices ({vertices}) found make no whole polygon: the accuracy is too "
-                "coarse, or the two loads are so nearly multiples of each other that their digits do not suffice."
+                f"The edges and vertices found make no whole polygon: {missing} of {len(sides)} sides have no edge, "
+                "because the two loads are so nearly multiples of each other that their digits do not suffice."
             )
 
     def points_between(self) -> None:
@@ -168,7 +167,7 @@ class Boundary:
             assert b.normal is not None
             difference = a.normal - b.normal
             apart = float(max(abs(a.normal @ b.at - 1.0), abs(b.normal @ a.at - 1.0)))
-            if apart <= self.accuracy:
+            if apart <= min(self.accuracy, SAME):
                 self.excess = max(self.excess, apart)
                 return []  # one edge
         else:
@@ -237,20 +236,51 @@ class Boundary:
 
     def edges(self) -> FloatArray:
         """(k, 2) normals of the edges, by angle: lines through two vertices, or one and an unbounded direction."""
+        lines = [line for line in self._sides() if line is not None]
+        return np.array(sorted(lines, key=lambda line: math.atan2(line[1], line[0]))).reshape(-1, 2)
+
+    def _sides(self) -> list[FloatArray | None]:
+        """The edge of every two neighbouring corners; None: no line found passes through both.
+
+        Between two unbounded directions there is none, except that of a strip or half-plane, where they are opposite.
+        """
         corners = self.corners()
-        kept: list[FloatArray] = []
-        for line in (point.normal for point in self.found if point.normal is not None):
-            size = float(np.hypot(*line))
-            on = [
-                abs(line @ end.at - 1.0) <= self.accuracy
-                if end.bounded
-                else abs(line @ end.direction) <= PARALLEL * size
-                for end in corners
+        sides: list[FloatArray | None] = []
+        for a, b in zip(corners, [*corners[1:], *corners[:1]], strict=True):
+            turn = _cross(a.direction, b.direction)
+            opposite = abs(turn) <= PARALLEL and float(a.direction @ b.direction) < 0.0
+            if a.bounded or b.bounded:
+                sides.append(self._line_through(a, b) if turn > 0.0 else None)
+            elif opposite and (line := self._line_through(a, b)) is not None:
+                sides.append(line)
+            elif not opposite and turn < 0.0:
+                sides.append(None)
+        return sides
+
+    def _line_through(self, a: BoundaryPoint, b: BoundaryPoint) -> FloatArray | None:
+        """The line of a point between two corners that passes through both; where there is none, of one at a corner.
+
+        The mechanism at a vertex may be any mixture of those of its two edges, therefore the points between come first.
+        """
+        for least in (PARALLEL, -PARALLEL):
+            lines = [
+                point.normal
+                for point in self.found
+                if point.normal is not None
+                and _cross(a.direction, point.direction) > least * np.hypot(*a.direction) * np.hypot(*point.direction)
+                and _cross(point.direction, b.direction) > least * np.hypot(*b.direction) * np.hypot(*point.direction)
             ]
-            known = any(np.abs(line - other).max() <= self.accuracy * np.abs(other).max() for other in kept)
-            if sum(on) >= 2 and not known:
-                kept.append(line)
-        return np.array(sorted(kept, key=lambda line: math.atan2(line[1], line[0]))).reshape(-1, 2)
+            best = min(lines, key=lambda line: max(_beside(line, a), _beside(line, b)), default=None)
+            if best is not None and max(_beside(best, a), _beside(best, b)) <= self.accuracy:
+                return best
+        return None
+
+
+def _beside(line: FloatArray, corner: BoundaryPoint) -> float:
+    """Relative distance of a corner from a line, or sine of the angle between an unbounded direction and the line."""
+    if corner.bounded:
+        return float(abs(line @ corner.at - 1.0))
+    return float(abs(line @ corner.direction) / (np.hypot(*line) * np.hypot(*corner.direction)))
 
 
 def _by_angle(points: Iterable[BoundaryPoint]) -> tuple[BoundaryPoint, ...]:

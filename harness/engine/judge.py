@@ -248,14 +248,14 @@ def _judge_collapse(
     beyond = beyond_prestress(assembly, result)
     if mechanism is None:
         found = force_residuals(assembly, forces, at, beyond=beyond)
-        said = decide(found, tolerance, f"The contact forces at multiplier {at:.6g}")
+        said = decide(found, tolerance, f"The contact forces at multiplier {at:.6g} were")
         said.accepted = None if said.accepted else said.accepted
         said.sentence += " It gives no mechanism, so that it collapses there is not shown."
         return said
     residuals = collapse_residuals(assembly, forces, at, mechanism, result.flow, beyond)
     residuals["multiplier"] = apart(multiplier, at)
     wider = dict.fromkeys(GAPS, CRUSHING_GAP) if assembly.crushes else None
-    said = decide(residuals, tolerance, f"The collapse state ({result.flow} flow)", wider=wider)
+    said = decide(residuals, tolerance, f"The collapse state ({result.flow} flow) was", wider=wider)
     if said.accepted:
         size = max(assembly.load_unit, abs(multiplier))
         error = abs(multiplier - at) + size * (residuals["complementarity"] + residuals["virtual_work"])
@@ -275,7 +275,7 @@ def _judge_bracket(assembly: Assembly, forces: FloatArray | None, result: Result
     far = False
     if forces is not None:
         residuals = force_residuals(assembly, forces, at, beyond=beyond_prestress(assembly, result))
-        what = f"Equilibrium and yield of the contact forces at multiplier {at:.6g}"
+        what = f"Equilibrium and yield of the contact forces at multiplier {at:.6g} were"
     else:
         moved = DisplacedState.of(result.details)
         if moved is None:
@@ -283,7 +283,7 @@ def _judge_bracket(assembly: Assembly, forces: FloatArray | None, result: Result
         if fault := displaced_fault(assembly, moved):
             return said_of(tolerance, False, f"The state of rest is no proof: {fault}.")
         residuals, far = displaced_residuals(assembly, moved, at), moved_far(assembly, moved)
-        what = f"Equilibrium and yield of the contact forces on the displaced blocks, at multiplier {at:.6g},"
+        what = f"Equilibrium and yield of the contact forces on the displaced blocks, at multiplier {at:.6g}, were"
     residuals["multiplier"] = apart(lower, at) if lower > at else 0.0
     said = decide(residuals, tolerance, what)
     if said.accepted and far:
@@ -318,7 +318,7 @@ def _judge_standing(assembly: Assembly, forces: FloatArray | None, result: Resul
         return said_of(tolerance, True, "Every block is fixed: nothing can move.")
     else:
         return said_of(tolerance, None, NO_FORCES)
-    said = decide(residuals, tolerance, what)
+    said = decide(residuals, tolerance, f"{what} were")
     if said.accepted and far:
         said.accepted, said.sentence = None, said.sentence + MOVED_FAR
     elif said.accepted and assembly.has_live_load:
@@ -348,5 +348,5 @@ def _judge_unbounded(assembly: Assembly, forces: FloatArray | None, result: Resu
         bars=Bars(),
     )
     residuals |= {f"live_{name}": value for name, value in force_residuals(alone, ray, 1.0).items()}
-    what = "Forces under the dead load and forces that balance the live load alone"
+    what = "Forces under the dead load and forces that balance the live load alone were"
     return decide(residuals, tolerance, what, dict.fromkeys(("live_equilibrium", "live_yield"), WITHOUT_END))

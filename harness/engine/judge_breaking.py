@@ -30,7 +30,7 @@ def judge_breaking(
     residuals["breaking"] = unused_strength(wall, forces, at, breaking)
     residuals["multiplier"] = apart(multiplier, at)
     said = decide(
-        residuals, tolerance, f"The forces at multiplier {at:.6g}, with the joints that break at their strength,"
+        residuals, tolerance, f"The forces at multiplier {at:.6g}, with the joints that break at their strength, were"
     )
     if not said.accepted:
         return said

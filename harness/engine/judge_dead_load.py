@@ -59,12 +59,14 @@ def judge_limit(
     residuals = collapse_residuals(assembly, forces, 0.0, mechanism, "associated", beyond)
     if told > 0.0:
         residuals["virtual_work"] *= within * assembly.load_unit / told
-    said = decide(residuals, within, what)
+    said = decide(residuals, within, f"{what} was")
     at = _multiplier_of(assembly, mechanism)
     if said.accepted or not 0.0 < abs(at) <= min(told, MOST_OPEN * within * assembly.load_unit):
         return said
     return decide(
-        collapse_residuals(assembly, forces, at, mechanism, "associated", beyond), within, f"{what}, but for {at:.1g}"
+        collapse_residuals(assembly, forces, at, mechanism, "associated", beyond),
+        within,
+        f"{what}, but for {at:.1g}, was",
     )
 
 

@@ -44,7 +44,10 @@ def decide(
     stricter: dict[str, float] | None = None,
     wider: dict[str, float] | None = None,
 ) -> Judgement:
-    """Accepted where every residual is within the tolerance, or within its own where that is stricter or wider."""
+    """Accepted where every residual is within the tolerance, or within its own where that is stricter or wider.
+
+    What was recomputed ends with its verb, "was" or "were".
+    """
     within = {name: min(tolerance, (stricter or {}).get(name, tolerance)) for name in residuals}
     within |= {name: max(tolerance, value) for name, value in (wider or {}).items() if name in residuals}
     failed = [
@@ -54,9 +57,10 @@ def decide(
     ]
     if "live_work" in residuals and not residuals["live_work"] > 0.0:
         failed.append("the live load does no work on the mechanism")
-    sentence = f"{what} was recomputed from the equilibrium of the blocks"
+    holds = "holds" if what.endswith("was") else "hold"
+    sentence = f"{what} recomputed from the equilibrium of the blocks"
     sentence += (
-        f"; not within {tolerance:.3g}: {', '.join(failed)}." if failed else f" and holds within {tolerance:.3g}."
+        f"; not within {tolerance:.3g}: {', '.join(failed)}." if failed else f" and {holds} within {tolerance:.3g}."
     )
     signless = {name: value + 0.0 for name, value in residuals.items()}  # the maximum of 0 and -0 may be -0
     return Judgement(residuals=signless, tolerance=tolerance, accepted=not failed, sentence=sentence)

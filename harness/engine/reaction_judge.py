@@ -107,5 +107,5 @@ def held(residuals: dict[str, float], tolerance: float, what: str) -> Judgement:
     """Accepted where every residual is within the tolerance; what was checked stands before the verb."""
     failed = [f"{name} {value:.3g}" for name, value in residuals.items() if not value <= tolerance]
     said = f"; not within {tolerance:.3g}: {', '.join(failed)}." if failed else f" and hold within {tolerance:.3g}."
-    sentence = f"{what} checked from block sums{said}"
+    sentence = f"{what} recomputed from the equilibrium of the blocks{said}"
     return Judgement(residuals=residuals, tolerance=tolerance, accepted=not failed, sentence=sentence)

@@ -125,8 +125,9 @@ def build(wall: Wall, name: str = "wall", laid: Laid | None = None) -> Built:
     """
     if named := wall.load_case_fields:
         raise InputError(
-            f"it has {len(named)} load case(s), and one is built at a time: {first_few(named, MOST_NAMED)}",
-            "Choose one with --load-case of run, compare or expand; compare answers all of them without",
+            f"it has the load cases {first_few(named, MOST_NAMED)}, each a wall of its own",
+            "Choose one: --load-case NAME of `drystone run` or `compare`; other commands take the file that "
+            "`drystone expand WALL.json --load-case NAME` prints",
             "load_cases",
         )
     blocks = blocks_of_wall(wall) if laid is None else laid.blocks

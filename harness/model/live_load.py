@@ -83,7 +83,7 @@ def with_live_load(case: Case, x: float, y: float) -> Case:
         file=file,
         wall=case.wall.model_copy(update={"loads": loads}),
         origin=f"{Path(case.origin).name} with the {said}",
-        notes=(*case.notes, f"the {said} takes the place of that of the file"),
+        notes=case.notes if case.wall.loads.live is None else (*case.notes, f"the {said} replaces that of the file"),
     )
 
 

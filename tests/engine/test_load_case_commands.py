@@ -33,7 +33,15 @@ def test_run_takes_the_live_load_of_the_command_line(wall: Path):
     done = drystone("run", "la-associated", wall, "--live", "-2,0", "--json")
     assert done.returncode == 0, done.stderr
     assert json.loads(done.stdout)["multiplier"] == pytest.approx(LEFT / 2, rel=1e-9)
-    assert "takes the place of that of the file" in done.stderr
+    assert "replaces that of the file" in done.stderr
+
+
+def test_no_live_load_is_said_to_be_replaced_where_the_file_has_none(tmp_path: Path):
+    path = tmp_path / "unloaded.json"
+    path.write_text(json.dumps({key: value for key, value in LEANING.items() if key != "loads"}))
+    done = drystone("run", "la-associated", path, "--live", "-2,0", "--json")
+    assert done.returncode == 0, done.stderr
+    assert "replaces" not in done.stderr
 
 
 def test_run_answers_both_signs_and_says_which_governs(wall: Path):

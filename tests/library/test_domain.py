@@ -94,12 +94,46 @@ def test_a_load_that_lifts_bounds_a_half_plane():
 
 
 def test_edges_that_do_not_fit_the_vertices_are_no_polygon():
-    """Loads that differ by 1e-12 have a vertex at 1e12, where lines have no digits; coarse accuracy misses edges."""
+    """Loads that differ by 1e-12 have a vertex at 1e12, where lines have no digits."""
     near = drystone.domain(FLAT, live=((1.0, 0.0), (1.0, 1e-12)))
-    coarse = drystone.domain(BLOCK, accuracy=0.9)
-    for found in (near, coarse):
-        assert "make no whole polygon" in found.reason
-        assert found.as_json()["exact"] is False
+    assert "make no whole polygon" in near.reason
+    assert near.as_json()["exact"] is False
+
+
+def arch_under_two_forces() -> Any:
+    """A ring of many short edges: forces at its quarters, one of them inclined."""
+    ring = {"type": "ring", "inner_radius": 1, "outer_radius": 1.2, "count": 25}
+    forces = {"left": ("v7", [-0.8, 0.85], [0, -1]), "right": ("v19", [0.8, 0.85], [0.3, -1])}
+    cases = {
+        name: {"live": {"points": [{"block": block, "at": at, "force": way}]}}
+        for name, (block, at, way) in forces.items()
+    }
+    made = {"format": "wall/1", "unit_weight": 20, "friction": 0.6, "pattern": ring, "load_cases": cases}
+    return drystone.build_wall(made, "arch")
+
+
+def test_a_coarse_polygon_is_whole_and_says_how_coarse_it_is():
+    """Short edges are left out; the others are lines that the finer polygon has or touches, and meet at its corners."""
+    wall, accuracy = arch_under_two_forces(), 1e-2
+    fine, coarse = drystone.domain(wall), drystone.domain(wall, accuracy=accuracy)
+    for found in (fine, coarse):
+        assert found.reason == ""
+        assert len(found.edges) == len(found.vertices) + len(found.unbounded) == len(found.points)
+    assert len(coarse.edges) < len(fine.edges)
+    assert coarse.runs < fine.runs
+    assert (coarse.edges @ fine.vertices.T).max() <= 1.0 + 1e-7
+    assert (fine.edges @ coarse.vertices.T).max() <= 1.0 + 1e-7
+    at_corners = np.sort(coarse.edges @ coarse.vertices.T, axis=0)[-2:]
+    assert at_corners.min() >= 1.0 - accuracy
+    assert 0.0 < coarse.excess <= accuracy
+    assert "inside the lines of its edges by up to" in coarse.sentence
+
+
+def test_the_coarsest_accuracy_leaves_the_polygon_of_a_block_whole():
+    found = drystone.domain(BLOCK, accuracy=0.9)
+    assert found.reason == ""
+    assert len(found.edges) == len(found.vertices) >= 3
+    assert (found.edges @ CORNERS.T).max() <= 1.0 + 1e-9
 
 
 def test_polygon_of_a_bonded_wall_is_what_single_directions_give():
