@@ -140,6 +140,11 @@ def _judge_brittle(
     said = _judge_finding(wall, forces, mechanism, result, tolerance)
     if broken.any():
         said.sentence += f" {int(broken.sum())} of {int(assembly.brittle.sum())} brittle joints are taken as broken."
+        if result.finding is Finding.FALLS and said.accepted:
+            whole = judge_fall(assembly, mechanism, result, tolerance)
+            if not whole.accepted:
+                said.accepted = None
+                said.sentence += " That the dead load breaks them is not shown: were they whole, this proves no fall."
     if result.finding is not Finding.COLLAPSES or mechanism is None or len(mechanism) != assembly.n_blocks:
         return said
     moves = motion_of_whole(wall, mechanism)

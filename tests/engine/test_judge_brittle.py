@@ -13,7 +13,7 @@ from harness.engine.judge import answered, judge
 from harness.model.assembly import Assembly
 from harness.model.build import build
 from harness.model.foreign.result_document import answer_from_file
-from harness.model.method import load_method
+from harness.model.method import Answer, Finding, Status, load_method
 from harness.model.result import Judgement, Result, result_of
 from harness.model.wall import Wall
 from tests.walls import assembly, stack
@@ -167,3 +167,18 @@ def test_a_block_that_slides_on_ice_hides_no_brittle_joint_that_moves(on_top: bo
     assert judged(plastic, hidden, without_strength=None).accepted is True
     assert judged(brittle, hidden, without_strength=None).residuals["whole"] > 0.1
     assert judged(brittle, hidden, without_strength=None).accepted is False
+
+
+@pytest.mark.parametrize(("unit_weight", "shown"), [(20.0, None), (40.0, True)])
+def test_a_fall_after_a_break_is_shown_only_where_the_joints_could_not_bear_the_weight_whole(
+    unit_weight: float, shown: bool | None
+):
+    """A block of weight .2 gamma hangs on T = 6: it can bear 4, not 8. That anything breaks it at 4 nobody shows."""
+    panel = {"type": "panel", "cell_length": 1.0, "cell_height": 0.2, "layout": ["L", "B"], "fixed": "L"}
+    glue = {"cohesion": 10.0, "tensile_strength": 6.0, "after": "residual"}
+    wall = assembly(panel, 0.5, unit_weight=unit_weight, **glue)
+    motion = np.where(wall.fixed[:, None], 0.0, [[0.0, -1.0, 0.0]])
+    answer = Answer(Status.OK, Finding.FALLS, "it falls", mechanism=motion, flow="associated")
+    answer.details = {"broken": [0], "broken_at": [0.0]}
+    result = result_of(answer, wall, case="glued", method="own", family="own")
+    assert judge(wall, result, 1e-8).accepted is shown

@@ -234,7 +234,7 @@ def test_commands_answer_or_refuse(tmp_path: Path):
     done = drystone("run", "la-associated", path)
     assert done.returncode == 0, done.stderr
     assert "0.06" in done.stdout
-    assert "fe takes joints that do not crush" in drystone("run", "fe", path).stdout
+    assert "fe takes joints that do not crush" in drystone("run", "fe", path).stderr
     data = json.loads(path.read_text())
     moving = tmp_path / "moving.json"
     moving.write_text(json.dumps(data | {"settlements": [{"blocks": ["base"], "translation": [0, -1]}]}))
