@@ -283,7 +283,7 @@ def test_locale_hash_seed_threads_and_encoding_change_no_digit(wall: Path):
         assert answer_of(run_la(wall, env=environment(**changes))) == plain, changes
 
 
-@pytest.mark.parametrize("encoding", ["ascii", "cp1252"])
+@pytest.mark.parametrize("encoding", ["ascii", pytest.param("cp1252", marks=pytest.mark.slow)])
 def test_a_terminal_that_cannot_show_every_letter_is_written_to_all_the_same(tmp_path: Path, encoding: str):
     path = tmp_path / "wall.json"
     path.write_text(json.dumps(wall_data(stack(1)) | {"title": "Mauer μ 石 ✓"}))

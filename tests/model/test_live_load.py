@@ -83,7 +83,7 @@ def test_another_live_load_takes_the_place_of_that_of_the_file_and_what_is_known
     assert loaded_anew.assembly.live[free, :2].tolist() == expected.tolist()
     assert loaded_anew.assembly.dead.tolist() == case.assembly.dead.tolist()
     assert loaded_anew.file.references == []
-    assert "live load (0.5, -2) times the weight takes the place" in loaded_anew.warnings[0]
+    assert "live load (0.5, -2) times the weight replaces that of the file" in loaded_anew.warnings[0]
     with pytest.raises(InputError, match="the live load 0,0 is none"):
         with_live_load(case, 0.0, 0.0)
 

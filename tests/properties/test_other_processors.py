@@ -27,7 +27,8 @@ def as_on(core: str, *arguments: str) -> subprocess.CompletedProcess[str]:
     )
 
 
-@pytest.mark.parametrize("core", ["Nehalem", pytest.param("Haswell", marks=pytest.mark.slow)])
+@pytest.mark.slow
+@pytest.mark.parametrize("core", ["Nehalem", "Haswell"])
 def test_hard_walls_hold_with_the_kernels_of(core: str):
     if platform.machine() not in ("x86_64", "AMD64"):
         pytest.skip(f"{core} kernels are of x86-64, and this is {platform.machine()}")
