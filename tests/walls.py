@@ -5,8 +5,9 @@ from __future__ import annotations
 from typing import Any
 
 from harness.model.assembly import Assembly
-from harness.model.build import build
+from harness.model.build import Built, build
 from harness.model.case import Case, CaseFile, Reference
+from harness.model.load_cases import each_built, named_loads
 from harness.model.wall import Wall
 
 PUSH = {"live": {"body": [{"per_weight": [1, 0]}]}}
@@ -28,6 +29,11 @@ def running_bond(count: int, bricks: int, length: float = 0.4, height: float = 0
 
 def stack(count: int, width: float = 0.3, height: float = 0.2) -> dict[str, Any]:
     return {"type": "stack", "width": width, "height": height, "count": count}
+
+
+def built_load_case(wall: Wall, name: str) -> Built:
+    ((_, _, built),) = each_built(wall, {name: name}, named_loads(wall))
+    return built
 
 
 def assembly(pattern: dict[str, Any], friction: Any = 0.65, **more: Any) -> Assembly:

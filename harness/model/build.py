@@ -9,20 +9,18 @@ from functools import cached_property, partial
 
 import numpy as np
 
-from harness.model import geometry
-from harness.model.assembly import Assembly, BoolArray, FloatArray, IntArray
+from harness.model.assembly import Assembly, FloatArray
 from harness.model.bars import Bars
-from harness.model.blocks import blocks_of_wall, polygons_of, support_faults, weight_of
-from harness.model.errors import MOST_NAMED, InputError, first_few, of_each, raise_faults
+from harness.model.blocks import blocks_of_wall
+from harness.model.errors import MOST_NAMED, InputError, first_few, raise_faults
 from harness.model.friction_rules import JointLaws, laws_of_joints
 from harness.model.input_checks import input_warnings, thickness_of
-from harness.model.interfaces import Joints, check_held, faces_of, find_joints, normals_of
+from harness.model.laid import Laid, lay
 from harness.model.load_fields import Load, Loads
 from harness.model.loads import (
     check_pairs,
     dead_load,
     generalised_load,
-    groups_of_blocks,
     has_pressures,
     with_pressures,
 )
@@ -64,55 +62,6 @@ class Built:
         return self.thickness()
 
 
-@dataclass(frozen=True, eq=False)
-class Laid:
-    """Blocks of a wall and the joints between them: what is the same under all of its loads.
-
-    Attributes:
-        blocks: all n of it; index: their numbers by id; polygons, fixed, weight, centroids: theirs.
-        size: typical block size [length].
-        joints: its m interfaces; block_a, block_b, face1, face2, normal: theirs, as of `Assembly`.
-    """
-
-    blocks: list[Block]
-    index: dict[str, int]
-    polygons: tuple[FloatArray, ...]
-    fixed: BoolArray
-    weight: FloatArray
-    centroids: FloatArray
-    size: float
-    joints: Joints
-    block_a: IntArray
-    block_b: IntArray
-    face1: FloatArray
-    face2: FloatArray
-    normal: FloatArray
-
-
-def lay(wall: Wall, blocks: list[Block]) -> Laid:
-    """The blocks of a wall, as `blocks_of_wall` gives them, with their joints.
-
-    Raises:
-        InputError: naming the block or the interface that is wrong.
-    """
-    names = tuple(block.id for block in blocks)
-    index = {block_id: k for k, block_id in enumerate(names)}
-    polygons = tuple(polygons_of(blocks))
-    fixed = np.array([block.fixed for block in blocks], dtype=bool)
-    raise_faults(support_faults(fixed))
-    weight = np.array(of_each(lambda block: weight_of(block, wall), blocks))
-    centroids = geometry.centroids(polygons)
-    shapes = geometry.shapes_of(polygons)
-    size = geometry.typical_size(shapes[~fixed])
-    found = find_joints(wall.interfaces, polygons, names, fixed, shapes, size)
-    block_a, block_b, face1, face2 = faces_of(found, index, fixed)
-    check_held(names, fixed, block_a, block_b, found)
-    normal = normals_of(
-        polygons, centroids, block_a, block_b, face1, face2, found.interfaces, trusted=found.trusted, size=size
-    )
-    return Laid(blocks, index, polygons, fixed, weight, centroids, size, found, block_a, block_b, face1, face2, normal)
-
-
 def build(wall: Wall, name: str = "wall", laid: Laid | None = None) -> Built:
     """The assembly of a wall.
 
@@ -130,8 +79,11 @@ def build(wall: Wall, name: str = "wall", laid: Laid | None = None) -> Built:
             "`drystone expand WALL.json --load-case NAME` prints",
             "load_cases",
         )
-    blocks = blocks_of_wall(wall) if laid is None else laid.blocks
-    raise_faults([] if laid is None else faults_of_wall(wall, blocks))
+    if laid is None:
+        blocks = blocks_of_wall(wall)
+    else:
+        blocks = laid.blocks
+        raise_faults(faults_of_wall(wall, blocks))
     for load in (wall.loads.dead, wall.loads.live or Load()):
         check_pairs(load, blocks)
     laid = lay(wall, blocks) if laid is None else laid
@@ -160,13 +112,13 @@ def build(wall: Wall, name: str = "wall", laid: Laid | None = None) -> Built:
         friction=laws.friction,
         dilatancy=laws.dilatancy,
         joint=joints,
-        dead=dead_load(wall.loads, blocks, index, weight, centroids, fixed),
-        live=generalised_load(wall.loads.live or Load(), blocks, index, weight, centroids, fixed),
+        dead=dead_load(wall.loads, laid),
+        live=generalised_load(wall.loads.live or Load(), laid),
     )
     if has_pressures(wall.loads):
-        assembly = with_pressures(wall, blocks, assembly, size)
+        assembly = with_pressures(wall, laid, assembly)
     if wall.settlements:
-        assembly = replace(assembly, support_motion=_support_motion(wall, blocks, assembly))
+        assembly = replace(assembly, support_motion=_support_motion(wall, laid))
     if wall.ties or wall.props:
         bars = _bars(wall, index)
         prestress = np.where(fixed[:, None], 0.0, bars.generalised(bars.prestress, centroids))
@@ -244,29 +196,26 @@ def _level_and_upright(loads: Loads) -> FloatArray:
     return np.array([[-y, x], [x, y]])
 
 
-def _support_motion(wall: Wall, blocks: list[Block], assembly: Assembly) -> FloatArray:
+def _support_motion(wall: Wall, laid: Laid) -> FloatArray:
     """(n, 3) motions of the supports, those of several settlements of a block added up.
 
     Raises:
         InputError: a settlement names a block that is not fixed, or a group that there is not.
     """
-    motion = np.zeros((len(blocks), 3))
-    index = {block.id: k for k, block in enumerate(blocks)}
-    groups, moved = groups_of_blocks(blocks), 0
+    motion, moved = np.zeros((len(laid.blocks), 3)), 0
     for number, settlement in enumerate(wall.settlements):
         place = f"settlements[{number}]"
-        named = np.array([index[name] for name in settlement.blocks or ()], dtype=np.int64)
-        chosen = np.union1d(named, groups.get(settlement.group or "", named))
-        if not len(chosen):
+        chosen = laid.named(settlement)
+        if chosen is None or not len(chosen):
             raise InputError(f'no block is in a group "{settlement.group}"', "Name a group of fixed blocks", place)
         moved += len(chosen)
         if moved > MOST_MOVED:
             problem = f"it and those before it move more than {MOST_MOVED:,} supports in all"
             raise InputError(problem, "Add up those of the same supports", place)
-        if not assembly.fixed[chosen].all():
-            name = blocks[int(chosen[np.argmin(assembly.fixed[chosen])])].id
+        if not laid.fixed[chosen].all():
+            name = laid.blocks[int(chosen[np.argmin(laid.fixed[chosen])])].id
             raise InputError(f'block "{name}" is not fixed', "Name supports: only they have a prescribed motion", place)
-        middle = assembly.centroid[chosen]
+        middle = laid.centroids[chosen]
         x, y = (middle - (middle if settlement.about is None else settlement.about)).T
         turn = settlement.rotation
         motion[chosen] += np.stack(

@@ -144,7 +144,7 @@ def inspect(wall: Wall, name: str = "wall", before: Sequence[InputError] = ()) -
 def _first_built(wall: Wall, name: str) -> Built:
     """The wall under the first of its load cases, all of which can be built, or as it is if it has none."""
     known, first = named_loads(wall), None
-    for _, built in each_built(wall, dict.fromkeys(known, name), known) if known else ():
+    for _, _, built in each_built(wall, dict.fromkeys(known, name), known) if known else ():
         first = first or built
     return first or build(wall, name)
 

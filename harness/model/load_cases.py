@@ -11,9 +11,10 @@ from pathlib import Path
 from typing import Any
 
 from harness.model.blocks import blocks_of_wall, polygons_of
-from harness.model.build import Built, Laid, build, lay
+from harness.model.build import Built, build
 from harness.model.case import Case
 from harness.model.errors import MOST_NAMED, InputError, did_you_mean, first_few, raise_faults
+from harness.model.laid import lay
 from harness.model.load_fields import DEAD, Load, Loads
 from harness.model.loads import times, together
 from harness.model.travelling import Upward
@@ -157,40 +158,17 @@ def under_load_case(wall: Wall, name: str, known: dict[str, NamedLoads] | None =
     return wall.model_copy(update={"loads": loads, "load_cases": {}, "travelling": {}, "combinations": {}})
 
 
-def build_load_case(
-    wall: Wall,
-    load_case: str,
-    name: str = "wall",
-    known: dict[str, NamedLoads] | None = None,
-    laid: Laid | None = None,
-) -> Built:
-    """The assembly of a wall under one of its load cases.
-
-    Args:
-        wall: with load cases; load_case: of it; name: of the assembly.
-        known: all load cases; laid: blocks and joints; where they have been made.
-
-    Raises:
-        InputError: as `build`, with the place where the file says it.
-    """
-    try:
-        return build(under_load_case(wall, load_case, known), name, laid)
-    except InputError as error:
-        for fault in error.faults:
-            fault.element = _in_the_file(fault.element, wall, load_case, known)
-        raise_faults(error.faults)
-        raise
-
-
-def each_built(wall: Wall, names: Mapping[str, str], known: dict[str, NamedLoads]) -> Iterator[tuple[str, Built]]:
-    """The assemblies of a wall under its load cases, one after another; blocks and joints are laid once.
+def each_built(wall: Wall, names: Mapping[str, str], known: dict[str, NamedLoads]) -> Iterator[tuple[str, Wall, Built]]:
+    """A wall under its load cases, one after another, with the assembly; blocks and joints are laid once.
 
     Args:
         wall: with load cases; names: of the assemblies by load case; known: all load cases.
 
     Raises:
-        InputError: as `build_load_case`, or so many load cases of so many blocks that they take minutes to build.
+        InputError: as `under_load_case`; as `build`, with the place where the file says it; or so many load cases of so
+            many blocks that they take minutes to build.
     """
+    walls = {load_case: under_load_case(wall, load_case, known) for load_case in names}
     blocks = blocks_of_wall(wall)
     if len(names) > 1 and len(names) * len(blocks) > MOST_BUILT:
         raise InputError(
@@ -201,16 +179,23 @@ def each_built(wall: Wall, names: Mapping[str, str], known: dict[str, NamedLoads
         )
     laid = lay(wall, blocks)
     for load_case, name in names.items():
-        yield load_case, build_load_case(wall, load_case, name, known, laid)
+        try:
+            built = build(walls[load_case], name, laid)
+        except InputError as error:
+            for fault in error.faults:
+                fault.element = _in_the_file(fault.element, wall, load_case, known)
+            raise_faults(error.faults)
+            raise
+        yield load_case, walls[load_case], built
 
 
-def _in_the_file(element: str, wall: Wall, load_case: str, known: dict[str, NamedLoads] | None) -> str:
+def _in_the_file(element: str, wall: Wall, load_case: str, known: dict[str, NamedLoads]) -> str:
     """The place of a load in the file, where `element` is that of the wall under one load case."""
     found = re.fullmatch(r"loads\.(dead|live)(?:\.(\w+)(?:\[(\d+)\])?)?", element)
     if found is None:
         return element
     if load_case not in wall.load_cases:
-        return known[load_case].place if known and load_case in known else element
+        return known[load_case].place
     kind, group, number = found.groups()
     if kind == "dead" and number is not None:
         common = len(getattr(wall.loads.dead, group))
@@ -236,10 +221,8 @@ def load_cases_of(case: Case, name: str | None = None) -> list[Case]:
         return [case]
     try:
         known = named_loads(case.wall)
-        if name is not None:
-            under_load_case(case.wall, name, known)  # there is such a load case
         wanted = {each: f"{case.id}-{each}" for each in (known if name is None else [name])}
-        return [_one(case, each, known, built) for each, built in each_built(case.wall, wanted, known)]
+        return [_one(case, each, wall, built) for each, wall, built in each_built(case.wall, wanted, known)]
     except InputError as error:
         error.source = error.source or case.origin
         raise
@@ -251,8 +234,7 @@ def title_of_wall(case: Case) -> str:
     return title if title and case.load_case.startswith(name) else case.file.title
 
 
-def _one(case: Case, name: str, known: dict[str, NamedLoads], built: Built) -> Case:
-    wall = under_load_case(case.wall, name, known)
+def _one(case: Case, name: str, wall: Wall, built: Built) -> Case:
     update: dict[str, Any] = {
         "id": f"{case.id}-{name}",
         "title": f"{case.file.title}{_TITLE_JOINT}{name}",

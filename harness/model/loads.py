@@ -8,11 +8,12 @@ from dataclasses import replace
 
 import numpy as np
 
-from harness.model.assembly import Assembly, BoolArray, FloatArray, IntArray
+from harness.model.assembly import Assembly, BoolArray, FloatArray
 from harness.model.errors import InputError
 from harness.model.fields import Point
 from harness.model.fill import fill_forces
 from harness.model.input_checks import thickness_of
+from harness.model.laid import Laid
 from harness.model.load_fields import BodyForce, Load, Loads
 from harness.model.pressure import outlines_of, pressure_forces
 from harness.model.pressure_fields import Fill, Pressure
@@ -22,14 +23,7 @@ MOST_PAIRS = 20_000_000
 """Pairs of a load and a block, or a face, that it may act on."""
 
 
-def dead_load(
-    loads: Loads,
-    blocks: list[Block],
-    index: dict[str, int],
-    weight: FloatArray,
-    centroids: FloatArray,
-    fixed: np.ndarray,
-) -> FloatArray:
+def dead_load(loads: Loads, laid: Laid) -> FloatArray:
     """Gravity and what is dead besides it; a file of the time when a dead load stood for gravity is refused.
 
     Raises:
@@ -37,43 +31,31 @@ def dead_load(
     """
     gravity = BodyForce(per_weight=loads.gravity_per_weight)
     if loads.gravity is None and loads.dead.body:
-        multiples = generalised_load(Load(body=loads.dead.body), blocks, index, np.ones(len(blocks)), centroids, fixed)
-        if bool(np.all(multiples[~fixed, 1] < 0.0)):
+        multiples = generalised_load(Load(body=loads.dead.body), replace(laid, weight=np.ones(len(laid.blocks))))
+        if bool(np.all(multiples[~laid.fixed, 1] < 0.0)):
             raise InputError(
                 "the dead load presses every block down by a multiple of its weight, and gravity acts besides",
                 'Leave it out; or say in loads "gravity": false if it stands for gravity, or true if it does not',
                 "loads.dead.body",
             )
     whole = Load(body=[gravity, *loads.dead.body], points=loads.dead.points)
-    return generalised_load(whole, blocks, index, weight, centroids, fixed)
+    return generalised_load(whole, laid)
 
 
-def generalised_load(
-    load: Load,
-    blocks: list[Block],
-    index: dict[str, int],
-    weight: FloatArray,
-    centroids: FloatArray,
-    fixed: np.ndarray,
-) -> FloatArray:
+def generalised_load(load: Load, laid: Laid) -> FloatArray:
     """Generalised forces (n, 3) of a load whose names are known to be of the wall."""
-    generalised = np.zeros((len(blocks), 3))
-    groups, everything = groups_of_blocks(blocks), np.arange(len(blocks))
+    generalised = np.zeros((len(laid.blocks), 3))
     for body in load.body:
-        if body.group is not None:
-            chosen = groups[body.group]
-        elif body.blocks is not None:
-            chosen = np.array(sorted({index[block_id] for block_id in body.blocks}), dtype=np.int64)
-        else:
-            chosen = everything
-        generalised[chosen, :2] += weight[chosen, None] * np.array(body.per_weight)
+        chosen = laid.named(body)
+        where = slice(None) if chosen is None else chosen
+        generalised[where, :2] += laid.weight[where, None] * np.array(body.per_weight)
     if load.points:
-        k = np.array([index[point.block] for point in load.points])
-        arm = np.array([point.at for point in load.points]) - centroids[k]
+        k = np.array([laid.index[point.block] for point in load.points])
+        arm = np.array([point.at for point in load.points]) - laid.centroids[k]
         force = np.array([point.force for point in load.points])
         moment = arm[:, 0] * force[:, 1] - arm[:, 1] * force[:, 0]
         np.add.at(generalised, k, np.column_stack([force, moment]))
-    generalised[fixed] = 0.0
+    generalised[laid.fixed] = 0.0
     return generalised
 
 
@@ -102,41 +84,24 @@ def check_pairs(load: Load, blocks: Sequence[Block]) -> None:
             raise InputError(f"{what}, and at most {MOST_PAIRS:,} are summed up", remedy, "loads")
 
 
-def groups_of_blocks(blocks: Sequence[Block]) -> dict[str, IntArray]:
-    """Numbers of the blocks of every group."""
-    groups: dict[str, list[int]] = {}
-    for k, block in enumerate(blocks):
-        for group in block.groups:
-            groups.setdefault(group, []).append(k)
-    return {group: np.array(members) for group, members in groups.items()}
-
-
 def has_pressures(loads: Loads) -> bool:
     """Whether any load presses on faces."""
     return any(load.pressures or load.fills for load in (loads.dead, loads.live or Load()))
 
 
-def with_pressures(wall: Wall, blocks: list[Block], assembly: Assembly, size: float) -> Assembly:
+def with_pressures(wall: Wall, laid: Laid, assembly: Assembly) -> Assembly:
     """The assembly with the pressures and fills of the wall added to its loads.
 
     Raises:
         InputError: part of a pressure lies on no face, or on faces of two blocks; or a fill loads none.
     """
-    thickness = [thickness_of(block, wall) for block in blocks]
-    outlines, index, groups = (
-        outlines_of(assembly.polygons),
-        {block.id: k for k, block in enumerate(blocks)},
-        groups_of_blocks(blocks),
-    )
+    thickness = [thickness_of(block, wall) for block in laid.blocks]
+    outlines = outlines_of(laid.polygons)
 
     def chosen(load: Pressure | Fill) -> BoolArray:
         """(n,) blocks that a load on faces may act on."""
-        if load.blocks is None and load.group is None:
-            return ~assembly.fixed
-        named = np.zeros(len(blocks), dtype=bool)
-        named[[index[name] for name in load.blocks or ()]] = True
-        named[groups.get(load.group or "", [])] = True
-        return named & ~assembly.fixed
+        named = laid.named(load)
+        return ~laid.fixed if named is None else ~laid.fixed & np.isin(np.arange(len(laid.blocks)), named)
 
     sums = {}
     for kind, load in (("dead", wall.loads.dead), ("live", wall.loads.live or Load())):
@@ -146,10 +111,10 @@ def with_pressures(wall: Wall, blocks: list[Block], assembly: Assembly, size: fl
                 pressure,
                 chosen(pressure),
                 outlines,
-                assembly.centroid,
+                laid.centroids,
                 thickness,
                 wall.units.unit_weight_factor,
-                size,
+                laid.size,
                 f"loads.{kind}.pressures[{number}]",
             )
         for number, fill in enumerate(load.fills):
@@ -157,7 +122,7 @@ def with_pressures(wall: Wall, blocks: list[Block], assembly: Assembly, size: fl
                 fill,
                 chosen(fill),
                 outlines,
-                assembly.centroid,
+                laid.centroids,
                 thickness,
                 wall.units.unit_weight_factor,
                 f"loads.{kind}.fills[{number}]",

@@ -10,9 +10,9 @@ import pytest
 from harness.model.build import build
 from harness.model.case import CaseFile, Reference
 from harness.model.errors import InputError
-from harness.model.load_cases import build_load_case
 from harness.model.pattern_fields import Panel, Ring, RunningBond, Stack
 from harness.model.reading import parse_wall
+from tests.walls import built_load_case
 
 GUIDE = (Path(__file__).parents[2] / "docs" / "writing-a-wall.md").read_text(encoding="utf-8")
 EXAMPLES = re.findall(r"```json\n(.*?)```", GUIDE, re.DOTALL)
@@ -22,7 +22,7 @@ ERRORS = re.findall(r"```json error\n(.*?)```\n\n```text\n(.*?)\n```", GUIDE, re
 @pytest.mark.parametrize("text", EXAMPLES, ids=lambda text: json.loads(text)["title"])
 def test_example_builds_without_warning(text: str) -> None:
     wall = parse_wall(json.loads(text), "the guide")
-    made = [build_load_case(wall, name) for name in wall.load_cases] or [build(wall)]
+    made = [built_load_case(wall, name) for name in wall.load_cases] or [build(wall)]
     assert [built.warnings for built in made] == [()] * len(made)
 
 

@@ -9,9 +9,10 @@ import pytest
 
 from harness.model.build import build
 from harness.model.errors import InputError
-from harness.model.load_cases import build_load_case, named_loads
+from harness.model.load_cases import named_loads
 from harness.model.method import check_takes, listed_methods, load_method
 from harness.model.wall import Wall
+from tests.walls import built_load_case
 
 PAGE = Path(__file__).resolve().parents[2] / "docs" / "scope.md"
 HEAD = "| feature of the wall |"
@@ -49,7 +50,7 @@ def _cell(feature: str, name: str) -> str:
     for fields in FEATURES[feature]:
         wall = Wall.model_validate(PLAIN | fields)
         cases = named_loads(wall)
-        for built in [build_load_case(wall, case, case) for case in cases] or [build(wall)]:
+        for built in [built_load_case(wall, case) for case in cases] or [build(wall)]:
             try:
                 check_takes(method, built.assembly)
             except InputError:

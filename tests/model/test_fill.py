@@ -11,10 +11,11 @@ import shapely
 import drystone
 from harness.model.build import build
 from harness.model.errors import InputError
-from harness.model.load_cases import build_load_case, named_loads
+from harness.model.load_cases import named_loads
 from harness.model.load_fields import Load
 from harness.model.loads import times, together
 from harness.model.reading import parse_wall
+from tests.walls import built_load_case
 
 GROUND = {"id": "ground", "polygon": [[-1, -1], [3, -1], [3, 0], [-1, 0]], "fixed": True}
 PUSH = {"body": [{"per_weight": [1, 0]}]}
@@ -134,7 +135,7 @@ def test_fill_belongs_to_load_cases_combinations_and_sums():
     }
     wall = parse_wall(data, "")
     cases = named_loads(wall)
-    dead = {name: build_load_case(wall, name, name).assembly.dead[1, 1] for name in cases}
+    dead = {name: built_load_case(wall, name).assembly.dead[1, 1] for name in cases}
     assert dead["push"] == pytest.approx(-10.0 - 18.0)
     assert dead["more"] == pytest.approx(-10.0 - 36.0)
     assert dead["design"] == pytest.approx(-1.35 * 28.0)
