@@ -9,7 +9,6 @@ joints, and is not judged.
 
 from __future__ import annotations
 
-from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -37,14 +36,6 @@ def listed(assembly: Assembly, details: dict[str, Any], name: str) -> BoolArray 
             return f"`{name}` names the joint between {' and '.join(ends)}, which is not brittle, or broken before."
         mask[p] = True
     return mask
-
-
-def dried(assembly: Assembly, broken: BoolArray) -> Assembly:
-    """The wall whose joints `broken` (m,) bear by compression and friction alone."""
-    constant, brittle = assembly.constant.copy(), assembly.brittle.copy()
-    constant[broken] = 0.0
-    brittle[broken] = False
-    return replace(assembly, constant=constant, brittle=brittle)
 
 
 def motion_of_whole(assembly: Assembly, mechanism: FloatArray) -> float:

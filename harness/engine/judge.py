@@ -48,7 +48,7 @@ from typing import Any
 import numpy as np
 
 from harness.engine.bar_checks import tensions_beyond
-from harness.engine.brittle_checks import BREAKING, BROKEN, dried, listed, motion_of_whole
+from harness.engine.brittle_checks import BREAKING, BROKEN, listed, motion_of_whole
 from harness.engine.judge_breaking import judge_breaking
 from harness.engine.judge_dead_load import judge_fall, judge_limit
 from harness.engine.judge_decision import COUNTABLE, NO_FORCES, apart, beyond_prestress, countable, decide, said_of
@@ -96,8 +96,7 @@ def judge(assembly: Assembly, result: Result, tolerance: float) -> Judgement:
     said = judged(assembly, forces, mechanism, result, tolerance)
     details = AnswerDetails(result.details)
     if assembly.strong and details.has_without_strength:
-        lost = assembly.brittle if assembly.breaks else np.ones(assembly.n_interfaces, dtype=bool)
-        said = _with_other(said, dried(assembly, lost), residual_of(result), "Without cohesion and tensile strength")
+        said = _with_other(said, assembly.residual, residual_of(result), "Without cohesion and tensile strength")
     if assembly.breaks and details.has_with_strength:
         plastic = replace(assembly, brittle=np.zeros_like(assembly.brittle))
         said = _with_other(said, plastic, plastic_of(result), "With plastic strength")
@@ -134,7 +133,7 @@ def _judge_brittle(
     broken = listed(assembly, result.details, BROKEN)
     if isinstance(broken, str):
         return said_of(tolerance, False, broken)
-    wall = dried(assembly, broken)
+    wall = assembly.with_broken(broken)
     if result.finding is Finding.COLLAPSES and BREAKING in result.details:
         return judge_breaking(wall, forces, mechanism, result, tolerance)
     said = _judge_finding(wall, forces, mechanism, result, tolerance)

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-from harness.engine.brittle_checks import BREAKING, dried, listed, unused_strength
-from harness.engine.judge_dead_load import fall_of
+from harness.engine.brittle_checks import BREAKING, listed, unused_strength
+from harness.engine.judge_dead_load import shown_to_fall
 from harness.engine.judge_decision import NO_FORCES, apart, beyond_prestress, decide, said_of
-from harness.engine.residuals import force_residuals, moving_parts
+from harness.engine.residuals import force_residuals
 from harness.model.assembly import Assembly, FloatArray
 from harness.model.result import Judgement, Result
 
@@ -38,13 +38,11 @@ def judge_breaking(
         said.accepted = None
         said.sentence += " It gives no mechanism, so that nothing bears this once they have broken is not shown."
         return said
-    alone = dried(wall, breaking)
+    alone = wall.with_broken(breaking)
     alone = replace(alone, dead=alone.dead + multiplier * alone.live)
-    supports, parts = moving_parts(alone, mechanism)
-    shown = [fall_of(part.assembly, motion, tolerance) for part, motion in parts]
-    proves, gain, closing, _ = max(shown, default=(False, 0.0, 0.0, 0.0))
-    said.residuals = said.residuals | {"supports": supports, "interpenetration": closing, "dead_work": gain}
-    if proves and supports <= tolerance:
+    proved, own = shown_to_fall(alone, mechanism, tolerance)
+    said.residuals = said.residuals | own
+    if proved:
         said.sentence += (
             " Without that strength the loads do positive work on the mechanism, with dilatant flow: no equilibrium is "
             "left. That loading breaks these joints depends on their stiffness and is not judged."

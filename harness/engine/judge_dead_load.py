@@ -95,10 +95,7 @@ def judge_fall(assembly: Assembly, mechanism: FloatArray | None, result: Result,
     elif result.flow == "approximate" or mechanism is None:
         told = "The motion was measured, which is no proof" if mechanism is not None else "It gives no mechanism"
         return said_of(tolerance, None, f"{told}; there is no proof that no equilibrium exists.")
-    supports, parts = moving_parts(assembly, mechanism)
-    shown_by = [fall_of(part.assembly, motion, tolerance) for part, motion in parts]
-    proves, gain, closing, work = max(shown_by, default=(False, 0.0, 0.0, 0.0))
-    proved = proves and supports <= tolerance
+    proved, residuals = shown_to_fall(assembly, mechanism, tolerance)
     sentence = (
         "The dead load does positive work on the mechanism, with dilatant flow and supports at rest: no equilibrium "
         "exists, which proves the fall."
@@ -106,11 +103,19 @@ def judge_fall(assembly: Assembly, mechanism: FloatArray | None, result: Result,
         else "The mechanism proves no fall: the work of the dead load does not exceed the possible work of its "
         "closings, or it is not dilatant, or it moves the supports."
     )
-    residuals = {"supports": supports, "interpenetration": closing, "dead_work": gain, "closing_work": work}
     return Judgement(residuals=residuals, tolerance=tolerance, accepted=proved, sentence=sentence)
 
 
-def fall_of(part: Assembly, motion: FloatArray, tolerance: float) -> tuple[bool, float, float, float]:
+def shown_to_fall(assembly: Assembly, mechanism: FloatArray, tolerance: float) -> tuple[bool, dict[str, float]]:
+    """Whether a mechanism (n, 3) proves that a wall falls under its dead load; residuals of the component that does."""
+    supports, parts = moving_parts(assembly, mechanism)
+    shown = [_fall_of(part.assembly, motion, tolerance) for part, motion in parts]
+    proves, gain, closing, work = max(shown, default=(False, 0.0, 0.0, 0.0))
+    residuals = {"supports": supports, "interpenetration": closing, "dead_work": gain, "closing_work": work}
+    return proves and supports <= tolerance, residuals
+
+
+def _fall_of(part: Assembly, motion: FloatArray, tolerance: float) -> tuple[bool, float, float, float]:
     """Whether the motion (n, 3) of a component proves its fall; its gain, its largest closing, and `closing_work`.
 
     The gain is the dead work less what cohesion and tensile strength take. Were there forces in equilibrium under the

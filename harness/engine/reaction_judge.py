@@ -40,10 +40,7 @@ def judge_reaction(
     tensions = bars.prestress if tensions is None else tensions
     beyond_prestress = tensions - bars.prestress if len(bars) else None
     sense = -1.0 if greatest else 1.0
-    supports = np.where(assembly.fixed[:, None], mechanism - sense * assembly.support_motion, 0.0)
-    speed = fastest_vertex(assembly, assembly.support_motion) or 1.0
-    fastest = max(fastest_vertex(assembly, mechanism), speed)
-    work = assembly.force_scale * speed
+    work = _work(assembly, reaction)
     opening, slip = relative_velocities(assembly, mechanism)
     beyond = opening - (assembly.friction * abs(slip))[:, None]
     on_blocks = block_sums(assembly, forces) + bars.generalised(tensions, assembly.centroid)
@@ -51,11 +48,10 @@ def judge_reaction(
     taken = dissipated_by_strength(assembly, beyond, slip) + dissipated_by_bars(assembly, mechanism)
     on_supports = np.where(assembly.fixed[:, None], bars.generalised(bars.prestress, assembly.centroid), 0.0)
     bound = sense * (power(assembly.dead + on_supports, mechanism) - taken)
-    residuals = force_residuals(assembly, forces, 0.0, beyond=beyond_prestress) | {
-        "supports": fastest_vertex(assembly, supports) / speed,
-        "interpenetration": max(0.0, float((-beyond).max(initial=0.0))) / fastest,
-        "reaction": abs(shown - reaction) / max(work, abs(reaction)),
-        "virtual_work": abs(bound - reaction) / max(work, abs(reaction)),
+    residuals = force_residuals(assembly, forces, 0.0, beyond=beyond_prestress)
+    residuals |= _of_motion(assembly, mechanism, sense, beyond) | {
+        "reaction": abs(shown - reaction) / work,
+        "virtual_work": abs(bound - reaction) / work,
     }
     what = "greatest" if greatest else "least"
     return held(residuals, tolerance, f"Forces and mechanism of the {what} reaction were")
@@ -85,22 +81,41 @@ def judge_plateau(
         tolerance: the largest residual that is acceptable.
     """
     sense = 1.0 if gives_way else -1.0
-    supports = np.where(assembly.fixed[:, None], mechanism - sense * assembly.support_motion, 0.0)
-    speed = fastest_vertex(assembly, assembly.support_motion) or 1.0
-    fastest = max(fastest_vertex(assembly, mechanism), speed)
-    work = max(assembly.force_scale * speed, abs(reaction))
+    work = _work(assembly, reaction)
     opening, slip = relative_velocities(assembly, mechanism)
     friction = float((assembly.friction * forces[:, :2].sum(axis=1) * abs(slip)).sum())
     taken = friction + dissipated_by_strength(assembly, opening, slip)
     low, high = extremes
-    residuals = force_residuals(assembly, forces, 0.0) | {
-        "supports": fastest_vertex(assembly, supports) / speed,
-        "interpenetration": max(0.0, float((-opening).max(initial=0.0))) / fastest,
+    residuals = force_residuals(assembly, forces, 0.0) | _of_motion(assembly, mechanism, sense, opening)
+    residuals |= {
         "reaction": abs(power(block_sums(assembly, forces), assembly.support_motion) - reaction) / work,
         "virtual_work": abs(sense * (power(assembly.dead, mechanism) - taken) - reaction) / work,
         "extremes": max(0.0, low - reaction, reaction - high) / work,
     }
     return held(residuals, tolerance, "Forces and mechanism of the constant reaction were")
+
+
+def _work(assembly: Assembly, reaction: float) -> float:
+    """What the work of a reaction is compared with: the dead load on the prescribed motion, or the work if greater."""
+    speed = fastest_vertex(assembly, assembly.support_motion) or 1.0
+    return max(assembly.force_scale * speed, abs(reaction))
+
+
+def _of_motion(assembly: Assembly, mechanism: FloatArray, sense: float, opening: FloatArray) -> dict[str, float]:
+    """Residuals of a mechanism that moving supports drive.
+
+    Args:
+        assembly: with its `support_motion`; mechanism: (n, 3).
+        sense: 1 where the supports move as prescribed, -1 where they move backwards.
+        opening: (m, 2) rates that are not to be negative.
+    """
+    supports = np.where(assembly.fixed[:, None], mechanism - sense * assembly.support_motion, 0.0)
+    speed = fastest_vertex(assembly, assembly.support_motion) or 1.0
+    fastest = max(fastest_vertex(assembly, mechanism), speed)
+    return {
+        "supports": fastest_vertex(assembly, supports) / speed,
+        "interpenetration": max(0.0, float((-opening).max(initial=0.0))) / fastest,
+    }
 
 
 def held(residuals: dict[str, float], tolerance: float, what: str) -> Judgement:
