@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import click
 
-from drystone.bench import Bench, bench, set_names, wall_set
+from drystone.bench import bench, set_names, wall_set
 from drystone.cli import terminal
 from drystone.cli.options import (
     OUTPUT,
@@ -21,12 +21,12 @@ from drystone.cli.options import (
     seconds_option,
     store_option,
 )
+from drystone.cli.outputs import check_output, write_output
 from harness.engine.isolate import preload_methods
 from harness.engine.plan import check_methods
 from harness.engine.run import Limits
 from harness.model.errors import InputError
 from harness.model.library import library
-from harness.model.writing import replacing
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -66,6 +66,8 @@ def bench_(
 
     Exit code 0 whatever the methods answer: `drystone check` holds methods to references.
     """
+    for path in output:
+        check_output(path)
     chosen = wall_set(name)
     names = (
         list(library().methods.compare) if methods is None else [part.strip() for part in methods.split(",") if part]
@@ -80,7 +82,7 @@ def bench_(
     for path, table in zip(others, tables, strict=True):
         made = made.joined(table, str(path))
     for path in output:
-        _write(made, path)
+        write_output(path, lambda: str(made.table.to_csv(index=False)), made.plot)
     if as_json:
         print_json({"set": name, "version": chosen.version, "methods": made.summary().to_dict("records")})
         return
@@ -96,13 +98,3 @@ def _read(path: Path) -> pd.DataFrame:
     except ValueError as error:
         said = f"it is no table of `drystone bench` ({error})"
         raise InputError(said, "Give its CSV file", source=str(path)) from None
-
-
-def _write(made: Bench, path: Path) -> None:
-    if path.suffix.lower() != ".csv":
-        from reports.drawing.figures import save
-
-        save(made.plot, path)
-        return
-    with replacing(path) as draft:
-        made.table.to_csv(draft, index=False)

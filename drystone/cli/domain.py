@@ -21,11 +21,11 @@ from drystone.cli.options import (
     settings_option,
     warn,
 )
+from drystone.cli.outputs import check_output, write_output
 from drystone.cli.settings import settings_of
 from drystone.interaction import LoadPair, domain_by
 from harness.engine.plan import find_cases
 from harness.engine.run import Limits
-from harness.model.writing import replacing
 
 
 @click.command()
@@ -72,11 +72,7 @@ def domain(
     A method of the associated maximum gives the whole convex polygon, others points of its boundary. Exit code 1: it is
     incomplete.
     """
-    drawn = output is not None and output.suffix.lower() != ".csv"
-    if output is not None and drawn:
-        from reports.drawing.figures import check_ending, save
-
-        check_ending(output)
+    check_output(output)
     (found,) = find_cases([case], None, folders)
     loads = LoadPair.of(found, load_cases=() if load_cases is None else load_cases.split(","), live=live)
     warn(loads.cases[0])
@@ -90,11 +86,7 @@ def domain(
         store=store,
         fresh=fresh,
     )
-    if output is not None and drawn:
-        save(answer.plot, output)
-    elif output is not None:
-        with replacing(output) as draft:
-            draft.write_text(answer.as_csv(), encoding="utf-8")
+    write_output(output, answer.as_csv, answer.plot)
     if as_json:
         print_json(answer.as_json())
     else:

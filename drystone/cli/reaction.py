@@ -3,21 +3,17 @@
 from __future__ import annotations
 
 import sys
-from collections.abc import Callable
 from pathlib import Path
-from typing import TYPE_CHECKING, NoReturn
+from typing import NoReturn
 
 import click
 
 from drystone.cli.options import OUTPUT, cases_option, catching, json_flag, print_json, say, warn
+from drystone.cli.outputs import check_output, write_output
 from drystone.reactions import least_known_reactions, reactions
 from drystone.walls import Wall
 from harness.engine.plan import find_cases
 from harness.model.errors import InputError, first_few
-from harness.model.writing import replacing
-
-if TYPE_CHECKING:
-    from matplotlib.figure import Figure
 
 SAID = {
     "least": "least reaction",
@@ -66,6 +62,7 @@ def reaction(
         raise InputError("they are different questions", "Give one of --without-dilatancy, --path, --until-collapse")
     if output is not None and not (as_path or until_collapse):
         raise InputError("two numbers are no curve", "Give --path or --until-collapse with it", "--output")
+    check_output(output)
     (found,) = find_cases([case], None, folders)
     warn(found)
     wall = Wall(found)
@@ -100,7 +97,7 @@ def _print_paths(wall: Wall, output: Path | None, as_json: bool) -> None:
     names = ("giving_way", "pushing")
     if isinstance(answer, str):
         _print_none(answer, names, as_json)
-    _write(output, lambda: paths_as_csv(answer), lambda: paths_figure(answer, wall.title))
+    write_output(output, lambda: paths_as_csv(answer), lambda: paths_figure(answer, wall.title))
     if as_json:
         print_json({name: each.as_json() for name, each in zip(names, answer, strict=True)})
     else:
@@ -119,7 +116,7 @@ def _print_collapse(wall: Wall, output: Path | None, as_json: bool) -> None:
     answer = settled_until_collapse(wall)
     if isinstance(answer, str):
         _print_none(answer, ("stands", "falls"), as_json)
-    _write(output, answer.as_csv, answer.plot)
+    write_output(output, answer.as_csv, answer.plot)
     if as_json:
         print_json(answer.as_json())
     else:
@@ -134,16 +131,3 @@ def _print_none(reason: str, names: tuple[str, ...], as_json: bool) -> NoReturn:
     else:
         say(reason)
     sys.exit(1)
-
-
-def _write(output: Path | None, table: Callable[[], str], figure: Callable[[], Figure]) -> None:
-    """Write a table or a figure, as the ending of the file says."""
-    if output is None:
-        return
-    if output.suffix.lower() == ".csv":
-        with replacing(output) as draft:
-            draft.write_text(table(), encoding="utf-8")
-        return
-    from reports.drawing.figures import save
-
-    save(figure, output)

@@ -34,15 +34,8 @@ GREATEST = 2.0
 
 
 def check_ending(path: Path) -> None:
-    """Refuse a file whose ending says no format of animations.
-
-    Raises:
-        InputError: naming those there are.
-    """
-    if path.suffix.lower() not in FORMATS:
-        raise InputError(
-            f'no animation format is called "{path.suffix}"', f"Use {', '.join(FORMATS)}", source=str(path)
-        )
+    """Refuse a file whose ending says no format of animations; raises InputError."""
+    figures.check_ending(path, FORMATS, "animation")
 
 
 def animate(case: Case, result: Result, path: Path) -> None:

@@ -5,7 +5,7 @@ Widths are those of a journal: one column of 88 mm, two of 180 mm. The same inpu
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
@@ -154,14 +154,14 @@ def style() -> Iterator[None]:
         yield
 
 
-def check_ending(path: Path) -> None:
-    """Refuse a file whose ending says no format of figures.
+def check_ending(path: Path, formats: Sequence[str] = FORMATS, kind: str = "figure") -> None:
+    """Refuse a file whose ending says no format of its kind.
 
     Raises:
         InputError: naming those there are.
     """
-    if path.suffix.lower() not in FORMATS:
-        raise InputError(f'no figure format is called "{path.suffix}"', f"Use {', '.join(FORMATS)}", source=str(path))
+    if path.suffix.lower() not in formats:
+        raise InputError(f'no {kind} format is called "{path.suffix}"', f"Use {', '.join(formats)}", source=str(path))
 
 
 def save(make: Callable[[], Figure], path: Path) -> None:
