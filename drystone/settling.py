@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import csv
-import io
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
@@ -85,11 +83,9 @@ class SettledCollapse:
 
     def as_csv(self) -> str:
         """One row a point on the way."""
-        text = io.StringIO()
-        out = csv.writer(text, lineterminator="\n")
-        out.writerow(["displacement", "reaction"])
-        out.writerows(zip(self.displacement.tolist(), self.reaction.tolist(), strict=True))
-        return text.getvalue()
+        import pandas as pd
+
+        return str(pd.DataFrame({"displacement": self.displacement, "reaction": self.reaction}).to_csv(index=False))
 
     def plot(self) -> Figure:
         """The reaction against the displacement, and the wall where it last stands."""

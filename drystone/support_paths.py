@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import csv
-import io
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
 
@@ -148,14 +146,21 @@ def reaction_paths(wall: Wall, **settings: Any) -> tuple[ReactionPath, ReactionP
 
 def paths_as_csv(paths: tuple[ReactionPath, ...]) -> str:
     """One row a point of each path."""
-    text = io.StringIO()
-    out = csv.writer(text, lineterminator="\n")
-    out.writerow(["support", "displacement", "reaction", "slipping_points", "open_points"])
-    for path in paths:
-        name = "gives way" if path.gives_way else "pushes"
-        points = zip(path.displacement.tolist(), path.reaction.tolist(), path.slipping, path.opened, strict=True)
-        out.writerows([name, *point] for point in points)
-    return text.getvalue()
+    import pandas as pd
+
+    tables = [
+        pd.DataFrame(
+            {
+                "support": "gives way" if path.gives_way else "pushes",
+                "displacement": path.displacement,
+                "reaction": path.reaction,
+                "slipping_points": path.slipping,
+                "open_points": path.opened,
+            }
+        )
+        for path in paths
+    ]
+    return str(pd.concat(tables).to_csv(index=False))
 
 
 def paths_figure(paths: tuple[ReactionPath, ...], head: str) -> Figure:
