@@ -6,12 +6,12 @@ from collections.abc import Iterator
 from typing import Any
 
 import cases.recipe as r
-from cases.recipe import Recipe, Remarks, push, recipe, wall
+from cases.joint_strength import BLOCKS
+from cases.recipe import BOND_21, STATICS, Recipe, Remarks, push, recipe, wall
 from harness.model.case import Reference
 
 SUITES = ("strength",)
 METHODS = ("la", "la-associated", "fe")
-STATICS = "elementary statics"
 LAWS = "elementary statics of joints that lose their strength at once when they open or slip"
 
 
@@ -35,26 +35,11 @@ def _values(found: dict[str, float], source: str, requirement: dict[str, str]) -
 
 def blocks() -> Iterator[Recipe]:
     """One block: it bears its plastic multiplier, breaks there, and is left with the residual one."""
-    unit = 20.0
-    for name, width, height, friction, cohesion, tension in (
-        ("brittle-block-slides", 1.0, 0.2, 0.5, 1.0, 0.0),
-        ("brittle-block-topples", 0.4, 2.0, 1.0, 8.0, 4.0),
-    ):
-        weight = unit * width * height
-        slides, topples = friction + cohesion * width / weight, width / height * (1.0 + tension * width / weight)
-        peak, residual = min(slides, topples), min(friction, width / height)
-        formula = "mu + c A / W" if slides < topples else "(b / h)(1 + T / W)"
-        dry = "mu" if slides < topples else "b / h"
-        content = wall(
-            f"A block {width} x {height} m on a brittle joint, cohesion {cohesion:g}, tensile strength {tension:g} kPa",
-            unit_weight=unit,
-            friction=friction,
-            cohesion=cohesion,
-            **({"tensile_strength": tension} if tension else {}),
-            after="residual",
-            pattern={"type": "stack", "width": width, "height": height, "count": 1},
-            loads=push(),
-        )
+    for block in BLOCKS:
+        peak, formula = block.peak, block.formula
+        dry = "mu" if block.does == "slides" else "b / h"
+        residual = min(block.friction, block.width / block.height)
+        strength = f"cohesion {block.cohesion:g}, tensile strength {block.tension:g} kPa"
         requirement = {
             "la": f"With the joint broken it moves at {dry} = {residual:g}.",
             "la-associated": f"With the joint whole it bears {formula} = {peak:g}.",
@@ -63,7 +48,10 @@ def blocks() -> Iterator[Recipe]:
         found = {"la": residual, "la-associated": peak, "fe": peak}
         summary = f"The joint bears {formula}, then breaks and leaves {dry}."
         references = _values(found, f"{formula} whole, {dry} broken", requirement)
-        yield recipe(name, content, references, Remarks(LAWS, summary, SUITES, methods=METHODS))
+        content = block.wall(f"brittle joint, {strength}", after="residual")
+        yield recipe(
+            f"brittle-block-{block.does}", content, references, Remarks(LAWS, summary, SUITES, methods=METHODS)
+        )
 
 
 def _box(name: str, left: float, bottom: float, right: float, top: float, **more: Any) -> dict[str, Any]:
@@ -127,7 +115,7 @@ def bonded_wall() -> Iterator[Recipe]:
         cohesion=8.0,
         tensile_strength=4.0,
         after="residual",
-        pattern={"type": "running_bond", "block_length": 0.4, "block_height": 0.2, "count": 6, "bricks": 3},
+        pattern=BOND_21,
         loads=push(),
     )
     references = [

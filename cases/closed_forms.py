@@ -9,9 +9,8 @@ import math
 from collections.abc import Iterator
 
 import cases.recipe as r
-from cases.recipe import Recipe, Remarks, exact, push, recipe, wall
+from cases.recipe import BOND_21, STATICS, Recipe, Remarks, exact, push, recipe, wall
 
-STATICS = "elementary statics"
 MILANKOVITCH = (
     "M. Milankovitch, Theorie der Druckkurven, Zeitschrift fur Mathematik und Physik 55 (1907) 1-27; "
     "J. Heyman, The safety of masonry arches, International Journal of Mechanical Sciences 11 (1969) 363-385"
@@ -298,7 +297,7 @@ def running_bonds() -> Iterator[Recipe]:
         f"The 21-brick wall with friction {friction}: slides as a whole",
         unit_weight=20.0,
         friction=friction,
-        pattern={"type": "running_bond", "block_length": 0.4, "block_height": 0.2, "count": 6, "bricks": 3},
+        pattern=BOND_21,
         loads=push(),
     )
     source = f"{STATICS}: lambda = friction, the whole wall slides on the ground or any course on the one below"

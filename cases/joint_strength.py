@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import Any
 
 import cases.recipe as r
-from cases.closed_forms import STATICS
-from cases.recipe import Recipe, Remarks, exact, push, recipe, wall
+from cases.recipe import BOND_21, STATICS, Recipe, Remarks, exact, push, recipe, wall
 from harness.model.case import Reference
+from harness.model.wall import Wall
 
 BONDED = (
     "A. Orduna, P. B. Lourenco, Cap model for limit analysis and strengthening of masonry structures, Journal of "
@@ -15,31 +17,58 @@ BONDED = (
 )
 
 
+@dataclass(frozen=True)
+class BondedBlock:
+    """A block on one joint with cohesion and tensile strength, pushed by its weight; in m and kPa."""
+
+    does: str
+    width: float
+    height: float
+    friction: float
+    cohesion: float
+    tension: float
+
+    @property
+    def peak(self) -> float:
+        """The multiplier at which it slides or topples, by statics."""
+        weight = UNIT_WEIGHT * self.width * self.height
+        slides = self.friction + self.cohesion * self.width / weight
+        topples = self.width / self.height * (1.0 + self.tension * self.width / weight)
+        return min(slides, topples)
+
+    @property
+    def formula(self) -> str:
+        """Of that multiplier."""
+        return "mu + c A / W" if self.does == "slides" else "(b / h)(1 + T / W)"
+
+    def wall(self, joint: str, **more: Any) -> Wall:
+        """The wall; what its joint is stands in the title."""
+        return wall(
+            f"A block {self.width} x {self.height} m on a {joint}",
+            unit_weight=UNIT_WEIGHT,
+            friction=self.friction,
+            cohesion=self.cohesion,
+            **({"tensile_strength": self.tension} if self.tension else {}),
+            pattern={"type": "stack", "width": self.width, "height": self.height, "count": 1},
+            loads=push(),
+            **more,
+        )
+
+
+UNIT_WEIGHT = 20.0
+BLOCKS = (BondedBlock("slides", 1.0, 0.2, 0.5, 1.0, 0.0), BondedBlock("topples", 0.4, 2.0, 1.0, 8.0, 4.0))
+
+
 def bonded_blocks() -> Iterator[Recipe]:
     """One block with cohesion slides at mu + c A / W, one with tensile strength topples at (b / h)(1 + T / W)."""
-    unit = 20.0
-    for name, width, height, friction, cohesion, tension, formula in (
-        ("bonded-block-slides", 1.0, 0.2, 0.5, 1.0, 0.0, "mu + c A / W"),
-        ("bonded-block-topples", 0.4, 2.0, 1.0, 8.0, 4.0, "(b / h)(1 + T / W)"),
-    ):
-        weight = unit * width * height
-        slides, topples = friction + cohesion * width / weight, width / height * (1.0 + tension * width / weight)
-        value = round(min(slides, topples), 14)
-        does = "slides" if slides < topples else "topples"
-        content = wall(
-            f"A block {width} x {height} m on a joint with cohesion {cohesion:g} and tensile strength {tension:g} kPa",
-            unit_weight=unit,
-            friction=friction,
-            cohesion=cohesion,
-            **({"tensile_strength": tension} if tension else {}),
-            pattern={"type": "stack", "width": width, "height": height, "count": 1},
-            loads=push(),
-        )
+    for block in BLOCKS:
+        value, does, formula = round(block.peak, 14), block.does, block.formula
+        strength = f"cohesion {block.cohesion:g} and tensile strength {block.tension:g} kPa"
         source = f"{STATICS}: lambda = {formula}, A = b t, T = f_t A, t = 1 m"
         references = exact(value, source, f"The block {does} at {formula} = {value:g}.")
         summary = f"Pushed by a multiple of its weight, it {does} at {formula}; without strength it would at less."
         remarks = Remarks(BONDED, summary, ("strength",))
-        yield recipe(name, content, references, remarks)
+        yield recipe(f"bonded-block-{does}", block.wall(f"joint with {strength}"), references, remarks)
 
 
 def bonded_wall() -> Iterator[Recipe]:
@@ -49,7 +78,7 @@ def bonded_wall() -> Iterator[Recipe]:
         unit_weight=20.0,
         friction=0.65,
         cohesion=0.4,
-        pattern={"type": "running_bond", "block_length": 0.4, "block_height": 0.2, "count": 6, "bricks": 3},
+        pattern=BOND_21,
         loads=push(),
     )
     references = [
@@ -122,10 +151,9 @@ def crushing_piers() -> Iterator[Recipe]:
 
 def crushing_walls() -> Iterator[Recipe]:
     """The 21-brick wall and a semicircular arch whose joints crush: second-order cone programmes of other code."""
-    bond = {"type": "running_bond", "block_length": 0.4, "block_height": 0.2, "count": 6, "bricks": 3}
     ring = {"type": "ring", "inner_radius": 0.9, "outer_radius": 1.1, "count": 20}
     for name, title, friction, pattern, length, ratio, value, digits in (
-        ("crushing-wall-21", "The 21-brick wall", 0.65, bond, 0.4, 20.0, 0.51801, 5e-6),
+        ("crushing-wall-21", "The 21-brick wall", 0.65, BOND_21, 0.4, 20.0, 0.51801, 5e-6),
         ("crushing-arch-20", "A semicircular arch of 20 voussoirs", 1000.0, ring, 1.0, 20.0, 0.2530433, 5e-8),
     ):
         content = wall(

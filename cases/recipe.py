@@ -27,6 +27,12 @@ class Recipe:
     wall: Wall
 
 
+STATICS = "elementary statics"
+"""Source of values by hand."""
+BOND_21 = {"type": "running_bond", "block_length": 0.4, "block_height": 0.2, "count": 6, "bricks": 3}
+"""Pattern of the 21-brick wall."""
+
+
 def push(x: float = 1.0) -> dict[str, Any]:
     """Loads of a tilting table: gravity dead, a horizontal multiple `x` of every weight live."""
     return {"live": {"body": [{"per_weight": (x, 0.0)}]}}

@@ -7,11 +7,10 @@ from collections.abc import Iterator
 from typing import Any
 
 import cases.recipe as r
-from cases.recipe import Recipe, Remarks, push, recipe, wall
+from cases.recipe import STATICS, Recipe, Remarks, push, recipe, wall
 
 METHODS = ("la", "la-associated")
 SUITES = ("ties",)
-STATICS = "elementary statics"
 THRUST = (
     "J. Heyman, The stone skeleton, International Journal of Solids and Structures 2 (1966) 249-279: an arch spreads "
     "at its least thrust"
