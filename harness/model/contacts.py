@@ -26,8 +26,6 @@ TIMES = 10.0
 MOST_NEAR = 10_000_000
 """Pairs of a vertex and a face within sight of it, those of its own block too: each takes some 50 bytes, and a wall of
 100,000 blocks has about 3 million."""
-SAMPLE = 500
-"""Vertices by which the number of pairs is estimated before they are counted."""
 CHUNK = 1_000_000
 """Pairs that are looked up at once."""
 FIRST = 16
@@ -123,38 +121,26 @@ class Edges:
         """
         count = len(self._points)
         boxes = shapely.box(*(self.first - distance).T, *(self.first + distance).T)
-
-        def check(found: int, looked: int, most: int) -> None:
-            if found > most:
+        # All are counted before any distance is computed, which takes ten times as long.
+        first, found, pairs = 0, 0, []
+        while first < count:
+            last = min(count, first + max(1, CHUNK * first // max(found, 1) if first else FIRST))
+            vertex, edge = self._tree.query(boxes[first:last])
+            found += len(vertex)
+            if found > MOST_NEAR:
                 raise InputError(
-                    f"its outlines have {count:,} vertices, and {looked:,} of them have about {found / looked:.0f} "
-                    f"faces each within {distance:.3g}, too many to find the joints among them",
+                    f"its outlines have {count:,} vertices, and {last:,} of them have about {found / last:.0f} faces "
+                    f"each within {distance:.3g}, too many to find the joints among them",
                     "Simplify the outlines, let faces of a joint lie less apart (greatest_gap, greatest_overlap, "
                     "sight), or give the interfaces as a list",
                     "interfaces",
                 )
-
-        # A sample refuses most of what is too much at once; the count, which nothing can hide from, the rest. Both come
-        # before any distance is computed, which takes ten times as long.
-        sample = boxes[:: -(-count // SAMPLE)]
-        seen = 0
-        for begin in range(0, len(sample), FIRST):
-            part = sample[begin : begin + FIRST]
-            seen += self._tree.query(part).shape[1]
-            check(seen, begin + len(part), MOST_NEAR * len(sample) // count)
-        first, found, parts = 0, 0, []
-        while first < count:
-            last = min(count, first + max(1, CHUNK * first // max(found, 1) if first else FIRST))
-            parts.append(slice(first, last))
-            found, first = found + self._tree.query(boxes[first:last]).shape[1], last
-            check(found, first, MOST_NEAR)
-        pairs = []
-        for part in parts:
-            vertex, edge = self._tree.query(boxes[part])
-            vertex += part.start
-            others = self.owner[vertex] != self.owner[edge]  # first: most faces in sight are of the own round block
-            pairs.append(self._within(distance, vertex[others], edge[others]))
-        return np.concatenate([vertex for vertex, _ in pairs]), np.concatenate([edge for _, edge in pairs])
+            vertex += first
+            others = self.owner[vertex] != self.owner[edge]  # most faces in sight are of the own round block
+            pairs.append((vertex[others], edge[others]))
+            first = last
+        close = [self._within(distance, *pair) for pair in pairs]
+        return np.concatenate([vertex for vertex, _ in close]), np.concatenate([edge for _, edge in close])
 
     def _within(self, distance: float, vertex: IntArray, edge: IntArray) -> tuple[IntArray, IntArray]:
         """Those of the pairs that are no further apart."""
