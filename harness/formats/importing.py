@@ -5,7 +5,6 @@ from __future__ import annotations
 import contextlib
 import io
 import math
-import tomllib
 import warnings
 from collections import Counter
 from collections.abc import Iterator
@@ -24,7 +23,7 @@ from harness.model.assembly import FloatArray
 from harness.model.errors import InputError, first_few
 from harness.model.fields import Coefficient, Name, NonNegative, Point, Positive, Strict
 from harness.model.friction_fields import FrictionRule
-from harness.model.json_text import read_text
+from harness.model.json_text import read_toml
 from harness.model.reading import parse_wall, validate
 from harness.model.units import METRES, LengthUnit
 from harness.model.wall import Wall
@@ -113,10 +112,7 @@ def read_mapping(path: Path) -> Mapping:
     Raises:
         InputError: naming the file and the field.
     """
-    try:
-        return validate(Mapping, tomllib.loads(read_text(path)), str(path))
-    except (tomllib.TOMLDecodeError, RecursionError) as error:
-        raise InputError(f"it cannot be read ({error})", "Give valid TOML", source=str(path)) from None
+    return validate(Mapping, read_toml(path), str(path))
 
 
 def mapping_beside(path: Path) -> Mapping:

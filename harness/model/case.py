@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import tomllib
 from dataclasses import dataclass, replace
 from enum import StrEnum
 from functools import cached_property
@@ -16,7 +15,7 @@ from harness.model.build import Built, build
 from harness.model.content import hash_of
 from harness.model.errors import InputError
 from harness.model.fields import Strict
-from harness.model.json_text import read_json, read_text
+from harness.model.json_text import read_json, read_toml
 from harness.model.method import method_names
 from harness.model.reading import parse_wall, read_document, validate
 from harness.model.wall import Wall
@@ -165,11 +164,7 @@ def read_case(folder: Path) -> Case:
     path = folder / "case.toml"
     if not path.exists():
         raise InputError("there is no case.toml", "A case is a folder with case.toml and wall.json", source=str(folder))
-    try:
-        data = tomllib.loads(read_text(path, LARGEST_CASE_FILE))
-    except (tomllib.TOMLDecodeError, RecursionError) as error:
-        raise InputError(f"it cannot be read ({error})", "Give valid TOML", source=str(path)) from None
-    file = validate(CaseFile, data, str(path))
+    file = validate(CaseFile, read_toml(path, LARGEST_CASE_FILE), str(path))
     if file.id != folder.name:
         raise InputError(f'id is "{file.id}" in a folder called "{folder.name}"', "Give both one name", "id", str(path))
     wall_path = folder / file.wall

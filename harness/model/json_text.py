@@ -1,4 +1,4 @@
-"""Text and JSON of a file that may be anything: sizes and depths have an end, and every fault is one clear sentence."""
+"""Text, JSON and TOML of a file that may be anything: sizes and depths have an end, every fault is one sentence."""
 
 from __future__ import annotations
 
@@ -7,6 +7,7 @@ import math
 import os
 import re
 import stat
+import tomllib
 from collections import Counter
 from pathlib import Path
 from typing import IO, Any
@@ -106,6 +107,27 @@ def read_text(path: Path, limit: int = LARGEST_FILE) -> str:
     return text_of(read_bytes(path, limit), str(path))
 
 
+def read_toml(path: Path, limit: int = LARGEST_FILE) -> dict[str, Any]:
+    """The content of a TOML file of limited size.
+
+    Args:
+        path: the file.
+        limit: most bytes that are read.
+
+    Raises:
+        InputError: as by `read_text`, or the text is no TOML, nested too deeply, or has a number of too many digits.
+    """
+    text, source = read_text(path, limit), str(path)
+    try:
+        return tomllib.loads(text)
+    except tomllib.TOMLDecodeError as error:
+        raise InputError(f"it is no TOML ({error})", "Give valid TOML", source=source) from None
+    except ValueError:
+        raise InputError("it has a number of thousands of digits", "Give finite numbers", source=source) from None
+    except RecursionError:
+        raise InputError("its lists or tables are nested too deeply", "Give flat ones", source=source) from None
+
+
 def text_of(content: bytes, source: str, otherwise: str = "") -> str:
     """The text of a file in UTF-8, a byte order mark left out, or in the encoding `otherwise` where that is given.
 
@@ -168,7 +190,7 @@ def json_of(text: str, source: str, most_values: int = MOST_VALUES) -> Any:
             raise InputError(f'the name "{twice}" is given twice in one object', "Keep one", source=source)
         return found
 
-    too_deep = InputError(f"it is nested more than {MOST_NESTED} deep", "Give a wall/1 document", source=source)
+    too_deep = InputError(f"it is nested more than {MOST_NESTED} deep", "Give a flat document", source=source)
     try:
         data = json.loads(text, parse_constant=refuse_constant, parse_float=finite, object_pairs_hook=unique)
     except json.JSONDecodeError as error:

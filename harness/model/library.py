@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import tomllib
 from functools import cache
 from typing import Annotated, TypeVar
 
@@ -10,7 +9,7 @@ from pydantic import Field
 
 from harness.model.case import shipped_cases
 from harness.model.fields import Strict
-from harness.model.json_text import read_text
+from harness.model.json_text import read_toml
 from harness.model.reading import validate
 
 LARGEST_FILE = 2**16
@@ -47,7 +46,7 @@ class Library(Strict):
 def shipped_words(kind: type[Words], name: str) -> Words:
     """The content of a TOML file that stands beside the cases."""
     path = shipped_cases() / name
-    return validate(kind, tomllib.loads(read_text(path, LARGEST_FILE)), str(path))
+    return validate(kind, read_toml(path), str(path))
 
 
 @cache

@@ -39,6 +39,7 @@ def listed() -> str:
         entries.append(f"[methods.{what.replace(' ', '-')}]\ncommand = {json.dumps(words)}\nabout.tolerance = 1e-9\n")
     lines = [sys.executable, PROGRAM, "--lines"]
     entries.append(f"[methods.lines]\ncommand = {json.dumps(lines)}\nlines = true\ndescribe = true\n")
+    entries.append(f"[methods.quick]\ncommand = {json.dumps([sys.executable, '-c', ''])}\nlines = true\n")
     return "\n".join(entries)
 
 
@@ -190,6 +191,11 @@ def test_what_a_program_says_unasked_answers_no_later_wall():
     assert third.status == "ok"
 
 
+def test_a_program_by_lines_that_ends_at_once_is_said_to_have_ended():
+    (found,) = ran("quick")
+    assert "ended with exit code 0 and gave no line" in found.sentence
+
+
 def test_lines_that_do_not_come_are_not_waited_for_and_the_next_run_is_made():
     (found,) = ran("lines", seconds=1.5, does="hang")
     assert found.status == "timeout"
@@ -249,6 +255,7 @@ def test_a_changed_program_answers_anew(folder: Path):
         ('[methods.la]\ncommand = ["prog", "{wall}", "{result}"]\n', "an installed method has this name"),
         ('[methods."My Method"]\ncommand = ["prog", "{wall}", "{result}"]\n', "no name of a method"),
         ("[methods", "valid TOML"),
+        ("[methods.mine]\ntolerance = 1\n", "methods.mine.command: it is missing"),
     ],
 )
 def test_a_wrong_entry_is_told_with_its_file_and_field(folder: Path, text: str, words: str):

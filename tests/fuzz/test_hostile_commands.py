@@ -28,6 +28,9 @@ FILES = {
     "draws.toml": STUDY
     + "samples = 1000000\n[draw]\n"
     + "".join(f'q{k} = {{distribution = "uniform", low = 0, high = 1}}\n' for k in range(100)),
+    "nested.toml": "methods = " + "[" * 5_000 + "]" * 5_000,
+    "digits.toml": "methods = " + "9" * 5_000,
+    "many.toml": "".join(f"[methods.m{k}]\ncommand = [5, '{{wall}}']\n" for k in range(5_000)),
     "lists.toml": STUDY + "[vary]\nfriction = " + "[" * 5_000 + "]" * 5_000 + "\n",
 }
 READ = ("factor {}", "reaction {}", "bound {} -o o.json", "domain {}", "figure {} -o o.pdf", "animate {} -o o.gif",
@@ -57,6 +60,8 @@ ASKED = [
     "sweep axes.toml",
     "sweep draws.toml",
     "sweep lists.toml",
+    "sweep digits.toml",
+    *(f"--methods-file {name}.toml run m0 w.json" for name in ("nested", "digits", "many")),
     "judge w.json nested.json",
     "judge w.json digits.json",
     "judge w.json long.json",

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import tomllib
 from collections import Counter
 from collections.abc import Iterator
 from pathlib import Path
@@ -12,9 +11,8 @@ import numpy as np
 from pydantic import Discriminator, Field, Tag, model_validator
 
 from harness.engine.run import LONGEST, MOST_MEMORY
-from harness.model.errors import InputError
 from harness.model.fields import Strict
-from harness.model.json_text import read_text
+from harness.model.json_text import read_toml
 from harness.model.reading import validate
 
 MOST_RUNS = 1_000_000
@@ -184,8 +182,4 @@ def read_study(path: Path) -> Study:
     Raises:
         InputError: naming the file and the element.
     """
-    try:
-        data = tomllib.loads(read_text(path))
-    except (tomllib.TOMLDecodeError, RecursionError) as error:
-        raise InputError(f"it cannot be read ({error})", "Give valid TOML", source=str(path)) from None
-    return validate(Study, data, str(path))
+    return validate(Study, read_toml(path), str(path))

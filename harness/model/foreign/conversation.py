@@ -71,7 +71,9 @@ class Conversation:
         try:
             if self._said or self._ready():
                 early = self._line() or bytes(self._said)
-                raise AnswerFault(f'The program wrote "{_shown(early)}" before it was asked')
+                raise AnswerFault(
+                    f'The program wrote "{_shown(early)}" before it was asked' if early else self._no_line(process)
+                )
             with contextlib.suppress(BrokenPipeError):
                 process.stdin.write(json.dumps(request).encode() + b"\n")
                 process.stdin.flush()

@@ -127,7 +127,7 @@ class ProgramMethod(Method):
         try:
             return read_json(places["result"])
         except InputError as error:
-            raise AnswerFault(f"Its result cannot be read: {error.problem}. {error.remedy}") from None
+            raise AnswerFault(f"Its result cannot be used: {error.problem}. {error.remedy}") from None
 
 
 def _seconds() -> float:

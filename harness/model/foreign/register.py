@@ -20,7 +20,7 @@ from pydantic import BaseModel, ConfigDict, Field, ValidationInfo, field_validat
 
 from harness.model.errors import InputError
 from harness.model.foreign.description import NAME, About
-from harness.model.json_text import read_text
+from harness.model.json_text import read_text, read_toml
 from harness.model.method import method_points
 from harness.model.reading import validate
 from harness.model.writing import write_whole
@@ -126,11 +126,7 @@ def programs() -> dict[str, Program]:
 @functools.lru_cache(maxsize=8)
 def _read(path: Path, _changed: int, _size: int) -> dict[str, Program]:
     """The programs of a file in one state of it."""
-    try:
-        data = tomllib.loads(read_text(path, MOST_BYTES))
-    except (tomllib.TOMLDecodeError, RecursionError) as error:
-        raise InputError(f"it cannot be read ({error})", "Give valid TOML", source=str(path)) from None
-    entries = validate(_File, data, str(path)).methods
+    entries = validate(_File, read_toml(path, MOST_BYTES), str(path)).methods
     for name in sorted({point.name for point in method_points()} & set(entries)):
         raise InputError("an installed method has this name", "Take another name", f"methods.{name}", str(path))
     return {name: program_of(name, entry, path.parent, str(path)) for name, entry in entries.items()}
@@ -160,7 +156,8 @@ def program_of(name: str, entry: dict[str, Any], folder: Path, source: str) -> P
     try:
         made = validate(Program, {"name": name} | entry, source)
     except InputError as error:
-        error.element = f"{element}.{error.element}" if error.element else element
+        for fault in error.faults:
+            fault.element = f"{element}.{fault.element}" if fault.element else element
         raise
     words = [_placed(word, folder, first=not k) for k, word in enumerate(made.command)]
     sources = [_placed(word, folder, first=False) for word in made.sources]
