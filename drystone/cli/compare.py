@@ -46,6 +46,7 @@ from harness.engine.store import open_store
 from harness.model.comparison import ComparisonRun
 from harness.model.library import library
 from harness.model.live_load import is_horizontal, reversed_live
+from harness.model.load_cases import load_cases_of
 
 
 @click.command()
@@ -174,15 +175,17 @@ def report(report: Path, figures: bool, appendix: str | None, store: Path) -> No
 def _appendix(wall: str, folder: Path, store: Path) -> None:
     """Run the methods on one wall and write its appendix; the PDF where a browser is installed.
 
-    A horizontal live load is analysed both ways: an earthquake comes from either side.
+    All load cases of the file are analysed. Without them a horizontal live load is analysed both ways, because an
+    earthquake comes from either side.
     """
     from reports.page.appendix import write_appendix
 
-    chosen = find_cases([wall], None, ())
-    warn(chosen[0])
-    title = chosen[0].id
-    if is_horizontal(chosen[0]):
-        chosen = [*chosen, reversed_live(chosen[0])]
+    (named,) = find_cases([wall], None, ())
+    title, chosen = named.id, load_cases_of(named)
+    for case in chosen:
+        warn(case)
+    if not chosen[0].load_case and is_horizontal(named):
+        chosen = [named, reversed_live(named)]
     runs = [planned for case in chosen for planned in plan_case(case, None, Limits())]
     executor = LocalExecutor(os.cpu_count() or 1)
     with open_store(store) as opened, terminal.progress(len(runs), quiet=False) as told:

@@ -16,6 +16,7 @@ from harness.model.assembly import FloatArray
 from harness.model.bar_forces import bar_forces_of
 from harness.model.case import Case
 from harness.model.comparison import CaseResults, ComparisonRun
+from harness.model.load_cases import title_of_wall
 from harness.model.live_load import direction_in_words
 from harness.model.method import Status
 from harness.model.result import Result
@@ -89,8 +90,8 @@ def render(run: ComparisonRun) -> str:
     """The appendix as text.
 
     Args:
-        run: a comparison of one wall; or of two, the second with the opposite live load. The one that collapses at the
-            lower multiplier governs, and is the one whose state is shown.
+        run: a comparison of one wall; or of its load cases; or of two, the second with the opposite live load. The one
+            that collapses at the lowest multiplier governs, and is the one whose state is shown.
     """
     found = governing(run.cases, JOINT_ROWS)
     item, case, shown = found.item, found.item.case, found.shown
@@ -101,6 +102,7 @@ def render(run: ComparisonRun) -> str:
         .render(
             run=run,
             case=case,
+            title=title_of_wall(case),
             origin=Path(run.cases[0].case.origin).name,
             digest=hashlib.sha256(document.encode()).hexdigest()[:16],
             finding=wall_findings(item),

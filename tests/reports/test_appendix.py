@@ -112,22 +112,32 @@ def test_one_direction_alone_is_named():
     assert "Live load: to the right. No other direction was analysed." in text
 
 
+def appendix(wall: str, folder: Path) -> str:
+    done = drystone("report", "--appendix", f"{wall}.json", cwd=folder)
+    assert done.returncode == 0, done.stderr
+    return (folder / "out" / f"{wall}-appendix.html").read_text()
+
+
 def test_the_command_analyses_a_horizontal_load_both_ways(tmp_path: Path):
     stones = {"g": [-1, -0.2, 2, 0], "a": [0, 0, 0.5, 0.5], "b": [0.2, 0.5, 0.6, 1.0]}
     blocks = [
         {"id": name, "fixed": name == "g", "polygon": [[x0, y0], [x1, y0], [x1, y1], [x0, y1]]}
         for name, (x0, y0, x1, y1) in stones.items()
     ]
-    loads = {"live": {"body": [{"per_weight": [-1, 0]}]}}
-    wall = {"format": "wall/1", "unit_weight": 20, "friction": 0.9, "blocks": blocks, "loads": loads}
-    (tmp_path / "lean.json").write_text(json.dumps(wall))
-    done = drystone("report", "--appendix", "lean.json", cwd=tmp_path)
-    assert done.returncode == 0, done.stderr
-    text = (tmp_path / "out" / "lean-appendix.html").read_text()
+    left, right = ({"live": {"body": [{"per_weight": [sign, 0]}]}} for sign in (-1, 1))
+    wall = {"format": "wall/1", "unit_weight": 20, "friction": 0.9, "blocks": blocks}
+    (tmp_path / "lean.json").write_text(json.dumps(wall | {"loads": left}))
+    (tmp_path / "named.json").write_text(json.dumps(wall | {"load_cases": {"wind": left, "quake": right}}))
+    text, named = appendix("lean", tmp_path), appendix("named", tmp_path)
     # About the right toe at (.5, 0): (5 kN * .25 m + 4 kN * .1 m) over (5 kN * .25 m + 4 kN * .75 m); about the left
     # one: (5 * .25 + 4 * .4) over the same.
     assert "collapses at 0.38824 under the live load to the right" in text
     assert "<td>0.67059 (la)</td>" in text
+    assert "2 load cases were analysed; the lowest multiplier governs" in named
+    assert "all further results are for the load case quake" in named
+    assert "<h1>named</h1>" in named
+    for name, value, governs in (("wind", 0.67059, ""), ("quake", 0.38824, "yes")):
+        assert f'<th scope="row">{name}</th><td>{value} (la)</td><td>least known</td><td>{governs}</td>' in named
 
 
 @pytest.mark.parametrize("without", ["forces", "mechanism"])
