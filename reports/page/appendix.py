@@ -16,8 +16,8 @@ from harness.model.assembly import FloatArray
 from harness.model.bar_forces import bar_forces_of
 from harness.model.case import Case
 from harness.model.comparison import CaseResults, ComparisonRun
-from harness.model.load_cases import title_of_wall
 from harness.model.live_load import direction_in_words
+from harness.model.load_cases import title_of_wall
 from harness.model.method import Status
 from harness.model.result import Result
 from harness.model.writing import write_whole
