@@ -97,6 +97,7 @@ def test_a_bracket_that_closes_has_nothing_that_stopped_it() -> None:
     assert (found.closed, found.stopped, found.refused) == (True, None, "")
 
 
+@pytest.mark.slow
 def test_what_the_tree_and_the_windows_both_refused_is_proved_now(tmp_path: Path) -> None:
     for name in ("arch-five-voussoirs", "courses-unequal-joints"):
         answer, output = bound(tmp_path, json.loads((DATA / f"{name}.json").read_text()))

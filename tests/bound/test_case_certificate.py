@@ -115,6 +115,7 @@ def of_two_normal_forces() -> dict[str, Any]:
     return document
 
 
+@pytest.mark.slow
 def test_states_divided_at_a_normal_force_are_proved_on_both_sides_of_it() -> None:
     document = of_two_normal_forces()
     node = document["cases"]
@@ -137,7 +138,13 @@ def test_every_part_is_needed_to_its_end() -> None:
         assert refused_or_true(LEAST, document)
 
 
-@pytest.mark.parametrize("shown", sorted(STEPS.keys() - {"no mechanism", "slow"}))
+@pytest.mark.parametrize(
+    "shown",
+    [
+        pytest.param(name, marks=[pytest.mark.slow] * (name == "loaded"))
+        for name in sorted(STEPS.keys() - {"no mechanism", "slow"})
+    ],
+)
 def test_steps_are_refused_with_opposite_proofs(shown: str) -> None:
     document = copy.deepcopy(of_irregular_wall())
     steps = [step for node in nodes(document["cases"]) for step in node["steps"] if step["shows"] == shown]

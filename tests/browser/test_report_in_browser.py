@@ -303,6 +303,7 @@ def test_links_lead_to_their_place(browser: Browser, report: Path, size: Any):
     opened.context.close()
 
 
+@pytest.mark.slow
 def test_sixty_five_cases_by_eight_methods_open_fast(browser: Browser, tmp_path: Path):
     path = tmp_path / "large.html"
     path.write_text(build.render(samples.large(65), data_folder="large-data"), encoding="utf-8")

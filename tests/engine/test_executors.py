@@ -39,6 +39,7 @@ def looked(child: Child) -> TimedResult | Retry:
     return found
 
 
+@pytest.mark.slow
 def test_a_process_that_made_other_runs_before_gives_the_same_bits_as_a_fresh_one():
     wall = assembly(running_bond(3, 2), 0.7)
     tasks = [Task(method, wall, {}, 60.0, 2**31) for method in ("fe", "la-associated", "la", "fe-newton", "de")]

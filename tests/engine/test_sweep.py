@@ -498,7 +498,7 @@ def test_the_band_of_a_lognormal_curve_is_as_wide_as_theory_says():
     assert 0.5 * (middle["lognormal_high"] - middle["lognormal_low"]) == pytest.approx(half, rel=0.1)
 
 
-@pytest.mark.parametrize(("walls", "told"), [(19, False), (20, True)])
+@pytest.mark.parametrize(("walls", "told"), [(19, False), pytest.param(20, True, marks=pytest.mark.slow)])
 def test_ten_walls_a_quantity_tell_what_matters_and_fewer_do_not(walls: int, told: bool):
     rng = np.random.default_rng(1)
     first, second = rng.random(walls), rng.random(walls)

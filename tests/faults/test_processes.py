@@ -97,7 +97,9 @@ def test_a_killed_coordinator_leaves_no_child_and_loses_no_finished_run(wall: Pa
     assert "(stored)" in again.stderr
 
 
-@pytest.mark.parametrize(("number", "times"), [(signal.SIGKILL, 2), (signal.SIGSEGV, 1)])
+@pytest.mark.parametrize(
+    ("number", "times"), [(signal.SIGKILL, 2), pytest.param(signal.SIGSEGV, 1, marks=pytest.mark.slow)]
+)
 def test_a_killed_child_costs_its_row(wall: Path, number: signal.Signals, times: int):
     """Killed from outside (SIGKILL) a run is made once more, so it takes two blows; any other signal is its own."""
     words = ("--methods", "dummy,la-associated", "--set", "dummy.does=hang", "--seconds", "60", "--jobs", "1", "--json")
@@ -158,7 +160,7 @@ def test_a_method_that_eats_memory_costs_its_row(wall: Path):
     assert rows["la-associated"]["status"] == "ok", rows["la-associated"]["sentence"]
 
 
-@pytest.mark.parametrize("limit", [10, 12])
+@pytest.mark.parametrize("limit", [10, pytest.param(12, marks=pytest.mark.slow)])
 def test_too_few_descriptors_are_told_with_the_remedy(wall: Path, limit: int):
     def few() -> None:
         resource.setrlimit(resource.RLIMIT_NOFILE, (limit, limit))
@@ -181,6 +183,7 @@ def test_two_comparisons_share_a_store_at_once(wall: Path):
         assert store.get(found[0]["la"]["key"]) is not None
 
 
+@pytest.mark.slow
 def test_a_report_that_does_not_fit_leaves_the_earlier_one_whole_and_the_runs_stored(tmp_path: Path):
     store = filled(tmp_path / "s.sqlite")
     assert report(store).returncode == 0
@@ -283,6 +286,7 @@ def test_locale_hash_seed_threads_and_encoding_change_no_digit(wall: Path):
         assert answer_of(run_la(wall, env=environment(**changes))) == plain, changes
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("encoding", ["ascii", pytest.param("cp1252", marks=pytest.mark.slow)])
 def test_a_terminal_that_cannot_show_every_letter_is_written_to_all_the_same(tmp_path: Path, encoding: str):
     path = tmp_path / "wall.json"

@@ -70,7 +70,7 @@ def test_bound_of_a_search_that_was_stopped_is_the_answer_of_the_search(monkeypa
     assert answer.details["stopped_by_limit"]
 
 
-@pytest.mark.parametrize("windows", [0, 2])
+@pytest.mark.parametrize("windows", [0, pytest.param(2, marks=pytest.mark.slow)])
 def test_bracket_known_before_the_time_was_over_is_the_answer(windows: int, monkeypatch: pytest.MonkeyPatch):
     """Neither the state below which the bound was looked for nor the bound reached by then is lost."""
     wall, method = assembly(running_bond(3, 2), 0.75), load_method("la-bound")

@@ -110,6 +110,7 @@ def test_very_rough_walls_are_not_left_at_states_of_self_stress(
     assert max(answer.details["residuals"].values()) <= 1e-11
 
 
+@pytest.mark.slow
 def test_forces_of_a_lower_friction_lead_to_a_mechanism_where_none_is_carried() -> None:
     """The wall holds .6267281 at friction 1.5 and 2.25 too, so that it rocks; cold starts end at 1.584."""
     answer = LimitAnalysis().solve(running_bond(10, 8, 0.175, 3.0), SearchSettings())
@@ -117,7 +118,7 @@ def test_forces_of_a_lower_friction_lead_to_a_mechanism_where_none_is_carried() 
     assert answer.multiplier <= 0.6267282
 
 
-@pytest.mark.parametrize(("courses", "bricks"), [(6, 3), (16, 9)])
+@pytest.mark.parametrize(("courses", "bricks"), [(6, 3), pytest.param(16, 9, marks=pytest.mark.slow)])
 @pytest.mark.parametrize("name", ["la", "la-associated"])
 def test_wall_without_friction_bears_exactly_nothing(name: str, courses: int, bricks: int) -> None:
     method = load_method(name)

@@ -48,7 +48,10 @@ def assert_exact_within_statics(search: Search, state: CollapseState) -> None:
     assert 0.0 <= state.multiplier <= search.associated.greatest * (1.0 + 1e-9)
 
 
-@pytest.mark.parametrize("wall", WALLS.values(), ids=WALLS)
+@pytest.mark.parametrize(
+    "wall",
+    [pytest.param(wall, marks=[pytest.mark.slow] * (name == "105 bricks"), id=name) for name, wall in WALLS.items()],
+)
 @pytest.mark.parametrize("source", [AnalyticCentre(), ShiftedAssociated()], ids=["central", "safe"])
 def test_safe_forces_lead_to_an_exact_state_between_the_least_known_and_the_greatest(
     source: Source, wall: Assembly

@@ -102,7 +102,14 @@ def few(kind: str) -> list[Edge]:
 
 
 @pytest.mark.parametrize("method", ["la", "la-associated", "fe", "fe-newton", "de"])
-@pytest.mark.parametrize("kind", [kind for kind in KINDS if "12" not in kind])
+@pytest.mark.parametrize(
+    "kind",
+    [
+        pytest.param(kind, marks=[pytest.mark.slow] * (kind.endswith("degrees") and "40" not in kind))
+        for kind in KINDS
+        if "12" not in kind
+    ],
+)
 def test_walls_off_their_limit_agree_with_closed_forms(kind, method):
     found = prepared(load_method(method))
     told = {edge.name: verdict(edge, *answered(found, edge.wall)) for edge in few(kind)}

@@ -60,6 +60,7 @@ def panels(draw: st.DrawFn) -> Assembly:
     return assembly(pattern, friction | {"rules": [rule]}, loads=live)
 
 
+@pytest.mark.slow
 @settings(max_examples=10, deadline=None, derandomize=True, suppress_health_check=list(HealthCheck))
 @given(panels())
 def test_methods_agree_on_panels_of_blocks_of_any_shape(wall: Assembly):

@@ -16,7 +16,7 @@ BRACKET = 2e-3
 WITHIN = {"la": EXACT, "la-associated": EXACT, "la-tresca": EXACT, "fe": EXACT, "fe-qp": BRACKET, "de": BRACKET}
 
 
-@pytest.mark.parametrize("times", [1e-6, 1e6])
+@pytest.mark.parametrize("times", [pytest.param(1e-6, marks=pytest.mark.slow), 1e6])
 @pytest.mark.parametrize("name", list(WITHIN))
 def test_multiplier_follows_the_size_of_the_live_load(name: str, times: float):
     wall = assembly(running_bond(6, 2))
