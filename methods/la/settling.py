@@ -108,13 +108,17 @@ def settle(start: MovedWall, steps: SettlingSteps = SettlingSteps()) -> SettledU
             )
         if now.wall.displacement - start.displacement > steps.far * size:
             return SettledUntil(tuple(points), None, None, "It stands as far as it was followed.")
+        before = now.wall
         now, failure = _advanced(now, step, held, steps.width * size, steps.closure)
         if now.wall.displacement > points[-1].wall.displacement:
             points.append(now)
         if failure is None:
             step = min(steps.longer * step, steps.longest * size)
         elif failure.kind == CLOSES:
-            again = _state_of(replace(now.wall, closed=now.wall.closed | (failure.wall.gaps < 0.0)))
+            closed = now.wall.closed | (failure.wall.gaps < 0.0)
+            if now.wall is before and np.array_equal(closed, before.closed):
+                return SettledUntil(tuple(points), None, None, "From there on a joint opens and closes again at once.")
+            again = _state_of(replace(now.wall, closed=closed))
             if isinstance(again, str):
                 return SettledUntil(tuple(points), None, None, f"Where a joint closes the programme is {again}.")
             now = again
@@ -165,7 +169,7 @@ def _tried(now: StandingState, step: float, held: BoolArray, closure: ClosureTol
     wall = now.wall.moved(now.state.mechanism, step, held, closure)
     if wall is None:
         return _Failure(PARTS, now.wall, now, step)
-    if bool((wall.gaps[~held] < 0.0).any()):
+    if bool((wall.gaps[~held] < -closure.distance * wall.drawn.length_scale).any()):
         return _Failure(CLOSES, wall, now, step)
     found = _state_of(wall)
     return _Failure(FALLS, wall, now, step) if isinstance(found, str) else found

@@ -15,7 +15,7 @@ from drystone.settling import SettledCollapse, settled_until_collapse
 from harness.engine.settled_judge import judge_settled, judge_settled_fall
 from harness.model.errors import InputError
 from methods.la.moved_wall import ClosureTolerances, MovedWall, support_places
-from methods.la.settling import SettledUntil, settle
+from methods.la.settling import SettledUntil, SettlingSteps, settle
 from tests.commands import drystone as command
 from tests.la.test_reaction_command import DOWN, data
 from tests.moving_supports import bricks, segmental, semicircle, tilted
@@ -77,15 +77,20 @@ def test_arch_in_coordinates_of_a_national_grid():
     assert there.stands == pytest.approx(here.stands, rel=1e-8)
 
 
-def test_supports_that_move_back_close_the_joints_again():
-    """From a spread of .05 the right springing returns, and the arch is as it was drawn."""
+@pytest.mark.parametrize("first", [0.02, 0.013, 0.031])
+def test_supports_that_move_back_close_the_joints_again(first: float):
+    """From a spread of .05 the right springing returns, and the arch is as it was drawn.
+
+    Joints that meet again miss each other by rounding, which differs from one step and one machine to the next.
+    """
     drawn = semicircle(0.15, 12, 0.65).assembly
-    out = settle(MovedWall.at_rest(drawn))
+    steps = SettlingSteps(first=first)
+    out = settle(MovedWall.at_rest(drawn), steps)
     assert isinstance(out, SettledUntil)
     spread = next(point.wall for point in out.points if point.wall.displacement > 0.05)
     assert not spread.closed.all()
     inwards = replace(drawn, support_motion=-drawn.support_motion)
-    back = settle(replace(spread, drawn=inwards, displacement=-spread.displacement))
+    back = settle(replace(spread, drawn=inwards, displacement=-spread.displacement), steps)
     assert isinstance(back, SettledUntil)
     returned = min((point.wall for point in back.points), key=lambda wall: abs(wall.displacement))
     assert returned.displacement == pytest.approx(0.0, abs=SHARP)
