@@ -1,4 +1,4 @@
-"""Plugin of pytest: a case is a test. `pytest --drystone quick` collects every `case.toml`, an item a checked reference."""
+"""Plugin of pytest: a case is a test. `pytest --drystone quick` collects `case.toml` files, an item a reference."""
 
 from __future__ import annotations
 

@@ -34,7 +34,8 @@ gate = true
 source = "statics"
 requirement = "It slides at its friction."
 """
-WALL = """{"format": "wall/1", "unit_weight": 20, "friction": 0.3, "loads": {"live": {"body": [{"per_weight": [1, 0]}]}},
+WALL = """{"format": "wall/1", "unit_weight": 20, "friction": 0.3,
+ "loads": {"live": {"body": [{"per_weight": [1, 0]}]}},
  "pattern": {"type": "stack", "width": 0.3, "height": 0.2, "count": 1}}"""
 
 
