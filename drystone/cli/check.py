@@ -35,7 +35,7 @@ from harness.model.errors import InputError
 
 @click.command()
 @click.argument("cases", nargs=-1)
-@click.option("--suite", help="A suite of cases.  [default: all cases]")
+@click.option("--suite", help="A suite of cases.  [default: all cases, or those of --cases]")
 @click.option("--tier", type=click.Choice(["quick", "full"]), default="quick", show_default=True)
 @jobs_option
 @store_option
@@ -59,7 +59,7 @@ def check(
 
     The full tier also checks the certificates beside the cases, in fractions and against the wall.
     """
-    chosen = find_cases(cases, suite if cases or suite else "all", folders)
+    chosen = find_cases(cases, suite or ("" if cases or folders else "all"), folders)
     for case in chosen:
         warn(case)
     plan = planned(chosen, tier)
@@ -85,7 +85,7 @@ def check(
 @click.command()
 @click.argument("action", type=click.Choice(["show", "update"]), default="show")
 @click.argument("cases", nargs=-1)
-@click.option("--suite", help="A suite of cases.  [default: all cases]")
+@click.option("--suite", help="A suite of cases.  [default: all cases, or those of --cases]")
 @click.option("--reason", default="", help="The reason for an update; required.")
 @click.option("--file", "path", type=OUTPUT, help="The baseline.  [default: the one shipped]")
 @jobs_option
@@ -107,7 +107,7 @@ def baseline(
     """Show how today's values stand to the recorded ones (exit code 1 if one is worse), or record them."""
     if action == "update" and not reason.strip():
         raise InputError("an update of the baseline needs a reason", 'Give --reason "..."', "baseline")
-    chosen = find_cases(cases, suite if cases or suite else "all", folders)
+    chosen = find_cases(cases, suite or ("" if cases or folders else "all"), folders)
     recorded_in = path or shipped_cases() / "baseline.json"
     recorded = recording.read_baseline(recorded_in)
     runs = [run for case in chosen for run in plan_case(case, None, Limits())]
