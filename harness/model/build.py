@@ -74,10 +74,10 @@ def build(wall: Wall, name: str = "wall", laid: Laid | None = None) -> Built:
     """
     if named := wall.load_case_fields:
         raise InputError(
-            f"it has the load cases {first_few(named, MOST_NAMED)}, each a wall of its own",
+            f"it has the load cases of {first_few(named, MOST_NAMED)}, each a wall of its own",
             "Choose one: --load-case NAME of `drystone run` or `compare`; other commands take the file that "
             "`drystone expand WALL.json --load-case NAME` prints",
-            "load_cases",
+            wall.load_cases_place,
         )
     if laid is None:
         blocks = blocks_of_wall(wall)

@@ -62,7 +62,7 @@ def test_each_load_case_has_the_answer_of_the_wall_that_it_is():
 def test_a_wall_of_load_cases_is_not_built_as_if_it_had_none():
     made = drystone.build_wall(wall({"push": {"live": PUSH}, "none": {}}), "pier")
     assert repr(made) == "<Wall pier: load cases push, none>"
-    with pytest.raises(InputError, match=r"it has the load cases push, none, each a wall"):
+    with pytest.raises(InputError, match=r"it has the load cases of push, none, each a wall"):
         drystone.analyse(made, "la-associated")
 
 
