@@ -29,9 +29,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
     for method in given or ["la-associated"]:
         for report in (True, False):
             one, many = (_cost(method, count, report=report) for count in (1, COUNT))
-            print(
-                f"{method:<16} {'yes' if report else 'no':<7} {one:>8.2f} {many:>8.2f} {many / one:>6.2f}", flush=True
-            )
+            shown = "yes" if report else "no"
+            print(f"{method:<16} {shown:<7} {one:>8.2f} {many:>8.2f} {many / one:>6.2f}", flush=True)
     print(f"aim: a ratio below {TARGET:g} for la-associated")
     return 0
 
