@@ -15,6 +15,7 @@ from harness.model.assembly import Assembly, FloatArray
 from harness.model.bars import bar_tensions, with_bars_as_joints
 from harness.model.errors import InputError
 from harness.model.method import load_method
+from harness.model.passive import FILL
 from harness.model.result import Judgement, fastest_vertex
 from harness.model.units import DIMENSIONLESS
 
@@ -108,6 +109,12 @@ def check_reactions(assembly: Assembly, file: str) -> None:
     if not np.any(with_bars_as_joints(assembly).support_strains):
         remedy = 'Give "settlements": [{"blocks": [...], "translation": [0, -1]}]'
         raise InputError("no support with a joint, a tie or a prop moves", remedy, "settlements", file)
+    bars = assembly.bars
+    if any(
+        kind == FILL and np.any(assembly.support_motion[k]) for kind, k in zip(bars.kinds, bars.block_a, strict=True)
+    ):
+        remedy = "Add a fixed block that does not move, or leave passive fill out"
+        raise InputError("every support moves, and passive fill has no ground that rests", remedy, "settlements", file)
     if assembly.crushes:
         remedy = "Leave compressive strength out: the programmes of reactions are linear"
         raise InputError("some joints have compressive strength", remedy, "settlements", file)

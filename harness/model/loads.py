@@ -9,12 +9,14 @@ from dataclasses import replace
 import numpy as np
 
 from harness.model.assembly import Assembly, BoolArray, FloatArray
+from harness.model.bars import Bars
 from harness.model.errors import InputError
 from harness.model.fields import Point
 from harness.model.fill import fill_forces
 from harness.model.input_checks import thickness_of
 from harness.model.laid import Laid
 from harness.model.load_fields import BodyForce, Load, Loads
+from harness.model.passive import passive_bars
 from harness.model.pressure import outlines_of, pressure_forces
 from harness.model.pressure_fields import Fill, Pressure
 from harness.model.wall import Block, Wall
@@ -126,6 +128,29 @@ def with_pressures(wall: Wall, laid: Laid, assembly: Assembly) -> Assembly:
             )
         sums[kind] = total
     return replace(assembly, **sums)
+
+
+def fill_as_bars(wall: Wall, laid: Laid, support_motion: FloatArray, number: int) -> Bars:
+    """What a dead fill of the wall that resists bears, as bars from a fixed block, one that does not settle if any.
+
+    Raises:
+        InputError: it lies beside no face, or names no free block.
+    """
+    fill, place = wall.loads.dead.fills[number], f"loads.dead.fills[{number}]"
+    assert fill.passive is not None, "only fill that resists is asked about"
+    rests = laid.fixed & ~np.any(support_motion, axis=1)
+    return passive_bars(
+        fill,
+        fill.passive,
+        _loaded_by(fill, laid, place),
+        outlines_of(laid.polygons),
+        tuple(laid.index),
+        [thickness_of(block, wall) for block in laid.blocks],
+        wall.units.unit_weight_factor,
+        int(np.argmax(rests if rests.any() else laid.fixed)),
+        f"fill {number + 1}",
+        place,
+    )
 
 
 def _loaded_by(load: Pressure | Fill, laid: Laid, place: str) -> BoolArray:

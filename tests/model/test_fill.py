@@ -154,7 +154,7 @@ def test_fill_belongs_to_load_cases_combinations_and_sums():
         (SOIL | {"blocks": ["ground"]}, 'block "ground" is fixed'),
         (SOIL | {"blocks": ["nobody"]}, 'no block is called "nobody"'),
         (SOIL | {"group": "nobody"}, 'no block is in a group "nobody"'),
-        (SOIL | {"passive": True}, "soil and water that resist"),
+        (SOIL | {"kp": 3}, "soil and water that resist"),
         ({"level": 1.0}, "unit_weight"),
     ],
 )
