@@ -64,9 +64,9 @@ def passive_bars(
         InputError: it lies beside no face.
     """
     sums: dict[tuple[int, int], FloatArray] = defaultdict(lambda: np.zeros(4))
-    for block, side, ends in [*_below_the_sky(fill, outlines), *_upright(fill, outlines)]:
+    for block, way, ends in [*_below_the_sky(fill, outlines), *_upright(fill, outlines)]:
         if chosen[block]:
-            sums[block, side] += _pressed(fill.level, ends) * thickness[block]
+            sums[block, way] += _pressed(fill.level, ends) * thickness[block]
     full = {key: found for key, found in sums.items() if found[0] > UPRIGHT**2 * max(each[0] for each in sums.values())}
     if not full:
         raise InputError(
