@@ -23,8 +23,10 @@ from harness.model.pressure_fields import Fill, Passive
 
 FILL = "fill"
 """The kind of such bars."""
-UPRIGHT = 1e-9
-"""Slope, from the vertical or from the level, below which a face is upright, as coordinates are rounded, or level."""
+UPRIGHT = 0.01
+"""Slope from the vertical within which a face is upright, as surveys are rounded; beyond it an overhang is none."""
+NOTHING = 1e-9
+"""Slope from the level within which a face is level, and share of the largest force that is none: rounding."""
 
 Strip = tuple[int, int, FloatArray]
 """Part of a face: its block, 1 where the fill is on its right and -1 on its left, and its two ends (2, 2) [length]."""
@@ -67,7 +69,7 @@ def passive_bars(
     for block, way, ends in [*_below_the_sky(fill, outlines), *_upright(fill, outlines)]:
         if chosen[block]:
             sums[block, way] += _pressed(fill.level, ends) * thickness[block]
-    full = {key: found for key, found in sums.items() if found[0] > UPRIGHT**2 * max(each[0] for each in sums.values())}
+    full = {key: found for key, found in sums.items() if found[0] > NOTHING * max(each[0] for each in sums.values())}
     if not full:
         raise InputError(
             f"no face of a free block that it may resist looks sideways below its level {fill.level:.6g}",
@@ -115,19 +117,20 @@ def _below_the_sky(fill: Fill, outlines: Outlines) -> Iterator[Strip]:
             continue
         places = np.array([left, right])
         y = heights(outlines, edge, places)
-        if abs(y[1] - y[0]) > UPRIGHT * (right - left):
+        if abs(y[1] - y[0]) > NOTHING * (right - left):
             yield int(outlines.block[edge]), 1 if y[0] > y[1] else -1, np.column_stack([places, y])
 
 
 def _upright(fill: Fill, outlines: Outlines) -> Iterator[Strip]:
     """Parts of the upright faces that are above the highest face just beside them."""
     x, face = highest_faces(outlines, fill.between)
-    across, along = (outlines.last - outlines.first).T
-    hair = 1e-6 * float(abs(np.concatenate([across, along])).max())
-    for edge in np.flatnonzero((abs(across) <= UPRIGHT * abs(along)) & (along != 0.0)).tolist():
-        side = 1 if along[edge] > 0.0 else -1
-        low, high = np.array([outlines.first[edge], outlines.last[edge]])[::side]
-        beside = float(low[0]) + side * hair
+    for edge in range(len(outlines.block)):
+        if not _is_upright(outlines, edge):
+            continue
+        low, high = sorted((outlines.first[edge], outlines.last[edge]), key=lambda end: float(end[1]))
+        hair = 1e-6 * float(high[1] - low[1])
+        side = 1 if outlines.last[edge, 1] > outlines.first[edge, 1] else -1
+        beside = side * (max(side * float(low[0]), side * float(high[0])) + hair)
         if fill.between is not None and not fill.between[0] <= beside <= fill.between[1]:
             continue
         part = int(np.searchsorted(x, beside)) - 1
@@ -139,4 +142,4 @@ def _upright(fill: Fill, outlines: Outlines) -> Iterator[Strip]:
 
 def _is_upright(outlines: Outlines, edge: int) -> bool:
     across, along = outlines.last[edge] - outlines.first[edge]
-    return bool(abs(across) <= UPRIGHT * abs(along))
+    return bool(abs(across) < UPRIGHT * abs(along))

@@ -108,6 +108,26 @@ def test_inclined_faces_bear_the_pressure_on_their_vertical_projection(
     np.testing.assert_allclose(abs(bars.end2[:, 0]), 1.0 - arm / top, rtol=1e-12)
 
 
+@pytest.mark.parametrize("lean", [0.0, 1e-12, -1e-12, 0.002, -0.002, 0.1])
+def test_resistance_does_not_hang_on_how_upright_a_drawn_face_is(lean: float):
+    data = block(0.5, between=None)
+    top = [[WIDTH - lean, HEIGHT], [lean, HEIGHT]]
+    data["blocks"][1] |= {"polygon": [[0, 0], [WIDTH, 0], *top]}
+    wall = built(data)
+    np.testing.assert_allclose(wall.bars.least, -FORCE, rtol=1e-9)
+    np.testing.assert_allclose(wall.bars.end2[:, 1], LEVEL / 3.0, rtol=1e-9)
+
+
+def test_faces_of_a_whole_wall_bear_what_one_face_of_its_height_does():
+    bond = {"type": "running_bond", "block_length": 0.4, "block_height": 0.2, "count": 5, "bricks": 3}
+    data = block(0.65, between=None, level=1.2) | {"pattern": bond, "blocks": [], "unit_weight": 20.0}
+    bars = built(data).bars
+    assert len(bars) == 10
+    for side in ("left", "right"):
+        whole = -sum(least for name, least in zip(bars.names, bars.least, strict=True) if f", {side} of" in name)
+        assert whole == pytest.approx(SHARE * K_P * GAMMA * (1.2**2 - 0.2**2) / 2.0)
+
+
 def test_fill_beside_another_block_resists_above_it_alone():
     data = block(0.2, between=None)
     data["blocks"].append({"id": "low", "polygon": [[1, 0], [2, 0], [2, 0.25], [1, 0.25]], "weight": 1.0})
