@@ -13,12 +13,14 @@ from collections import defaultdict
 from collections.abc import Iterator, Sequence
 
 import numpy as np
+import shapely
 
 from harness.model.assembly import BoolArray, FloatArray
 from harness.model.bars import Bars
 from harness.model.errors import InputError
 from harness.model.fill import NO_FACE, heights, highest_faces
-from harness.model.pressure import Outlines
+from harness.model.laid import Laid
+from harness.model.pressure import Outlines, outlines_of
 from harness.model.pressure_fields import Fill, Passive
 
 FILL = "fill"
@@ -29,7 +31,7 @@ NOTHING = 1e-9
 """Slope from the level within which a face is level, and share of the largest force that is none: rounding."""
 
 Strip = tuple[int, int, FloatArray]
-"""Part of a face: its block, 1 where the fill is on its right and -1 on its left, and its two ends (2, 2) [length]."""
+"""Part of a face: its edge, 1 where the fill is on its right and -1 on its left, and its two ends (2, 2) [length]."""
 
 
 def passive_coefficient(passive: Passive) -> float:
@@ -44,8 +46,7 @@ def passive_bars(
     fill: Fill,
     passive: Passive,
     chosen: BoolArray,
-    outlines: Outlines,
-    names: Sequence[str],
+    laid: Laid,
     thickness: Sequence[float],
     unit_weight_factor: float,
     ground: int,
@@ -57,7 +58,7 @@ def passive_bars(
     Args:
         fill: beside or above the wall; passive: how it resists.
         chosen: (n,) whether it may resist a block.
-        outlines: of all blocks, counter-clockwise; names, thickness: (n,) theirs [length].
+        laid: blocks and joints of the wall; thickness: (n,) of the blocks [length].
         unit_weight_factor: what a unit weight of the file is multiplied with to be in force/length^3.
         ground: index of a fixed block that stands for the ground.
         name: of the fill, for messages and tables; place: of it in the file, for errors.
@@ -65,11 +66,7 @@ def passive_bars(
     Raises:
         InputError: it lies beside no face.
     """
-    sums: dict[tuple[int, int], FloatArray] = defaultdict(lambda: np.zeros(4))
-    for block, way, ends in [*_below_the_sky(fill, outlines), *_upright(fill, outlines)]:
-        if chosen[block]:
-            sums[block, way] += _pressed(fill.level, ends) * thickness[block]
-    full = {key: found for key, found in sums.items() if found[0] > NOTHING * max(each[0] for each in sums.values())}
+    full = _sums(fill, chosen, laid, thickness)
     if not full:
         raise InputError(
             f"no face of a free block that it may resist looks sideways below its level {fill.level:.6g}",
@@ -77,11 +74,11 @@ def passive_bars(
             place,
         )
     strongest = passive.mobilised * passive_coefficient(passive) * unit_weight_factor * fill.unit_weight
-    keys, found = sorted(full), np.array([full[key] for key in sorted(full)])
+    names, keys, found = tuple(laid.index), list(full), np.array(list(full.values()))
     middle = found[:, 1:3] / found[:, :1]
     side = np.array([key[1] for key in keys], dtype=float)
     away = np.column_stack(
-        [side * found[:, 3] / np.array([thickness[block] for block, _ in keys]), np.zeros(len(keys))]
+        [side * found[:, 3] / np.array(thickness)[[block for block, _ in keys]], np.zeros(len(keys))]
     )
     return Bars(
         names=tuple(f"{name}, {'right' if way > 0 else 'left'} of {names[k]}" for k, way in keys),
@@ -94,6 +91,21 @@ def passive_bars(
         least=-strongest * found[:, 0],
         greatest=np.zeros(len(keys)),
     )
+
+
+def _sums(fill: Fill, chosen: BoolArray, laid: Laid, thickness: Sequence[float]) -> dict[tuple[int, int], FloatArray]:
+    """By block and side where there are any, in order: the integrals of `_pressed` times the thickness."""
+    outlines = outlines_of(laid.polygons)
+    joints = _on_edges(outlines, laid)
+    sums: dict[tuple[int, int], FloatArray] = defaultdict(lambda: np.zeros(4))
+    for edge, side, ends in [*_below_the_sky(fill, outlines), *_upright(fill, outlines)]:
+        block = int(outlines.block[edge])
+        if chosen[block]:
+            sums[block, side] += _pressed(fill.level, ends) * thickness[block]
+            for part in _covered(ends, joints[edge]):
+                sums[block, side] -= _pressed(fill.level, part) * thickness[block]
+    least = NOTHING * max((found[0] for found in sums.values()), default=0.0)
+    return {key: sums[key] for key in sorted(sums) if sums[key][0] > least}
 
 
 def _pressed(level: float, ends: FloatArray) -> FloatArray:
@@ -118,7 +130,7 @@ def _below_the_sky(fill: Fill, outlines: Outlines) -> Iterator[Strip]:
         places = np.array([left, right])
         y = heights(outlines, edge, places)
         if abs(y[1] - y[0]) > NOTHING * (right - left):
-            yield int(outlines.block[edge]), 1 if y[0] > y[1] else -1, np.column_stack([places, y])
+            yield edge, 1 if y[0] > y[1] else -1, np.column_stack([places, y])
 
 
 def _upright(fill: Fill, outlines: Outlines) -> Iterator[Strip]:
@@ -137,7 +149,34 @@ def _upright(fill: Fill, outlines: Outlines) -> Iterator[Strip]:
         inside = 0 <= part < len(face) and face[part] != NO_FACE
         floor = float(heights(outlines, int(face[part]), np.array([beside]))[0]) if inside else -np.inf
         if floor < high[1] - hair:
-            yield int(outlines.block[edge]), side, np.array([[low[0], max(low[1], floor)], high])
+            yield edge, side, np.array([[low[0], max(low[1], floor)], high])
+
+
+def _on_edges(outlines: Outlines, laid: Laid) -> dict[int, list[tuple[float, float]]]:
+    """Ranges of y, from low to high, in which an edge of a block has a joint: no fill lies in a joint, if it is wide.
+
+    A joint is on the edge of each of its blocks that is nearest to its middle.
+    """
+    edges: dict[int, list[int]] = defaultdict(list)
+    for edge, block in enumerate(outlines.block.tolist()):
+        edges[block].append(edge)
+    found: dict[int, list[tuple[float, float]]] = defaultdict(list)
+    for a, b, first, last in zip(laid.block_a.tolist(), laid.block_b.tolist(), laid.face1, laid.face2, strict=True):
+        middle = shapely.Point(0.5 * (first + last))
+        for block in (a, b):
+            lines = shapely.linestrings([[outlines.first[k], outlines.last[k]] for k in edges[block]])
+            nearest = edges[block][int(np.argmin(shapely.distance(lines, middle)))]
+            found[nearest].append((float(min(first[1], last[1])), float(max(first[1], last[1]))))
+    return found
+
+
+def _covered(ends: FloatArray, joints: list[tuple[float, float]]) -> Iterator[FloatArray]:
+    """The parts (2, 2) of a strip with joints, whose ranges of y do not overlap."""
+    low, high = ends[np.argsort(ends[:, 1])]
+    for begin, end in joints:
+        cut = np.clip([begin, end], low[1], high[1])
+        if cut[1] > cut[0]:
+            yield low + (cut - low[1])[:, None] / (high[1] - low[1]) * (high - low)
 
 
 def _is_upright(outlines: Outlines, edge: int) -> bool:

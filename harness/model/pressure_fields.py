@@ -73,6 +73,8 @@ class Fill(Strict):
     def _one_place(self) -> Fill:
         if self.blocks is not None and self.group is not None:
             raise ValueError("a fill names either blocks or group, not both")
+        if self.passive is not None and self.unit_weight == 0.0:
+            raise ValueError("passive fill without weight resists nothing: give a unit weight, or leave passive out")
         if self.between is not None and not self.between[0] < self.between[1]:
             raise ValueError("a fill lies between two x, of which the first is the smaller")
         return self

@@ -19,7 +19,7 @@ from harness.model.build import build
 from harness.model.details import BAR_FORCES
 from harness.model.errors import InputError
 from harness.model.method import check_takes, load_method, method_names, methods_with
-from harness.model.reading import parse_wall
+from harness.model.reading import parse_wall, wall_json
 from harness.model.support_reactions import out_of_balance, support_reactions
 from harness.model.wall import Wall
 from tests.commands import drystone as command
@@ -123,6 +123,13 @@ def test_faces_of_a_whole_wall_bear_what_one_face_of_its_height_does():
     data = block(0.65, between=None, level=1.2) | {"pattern": bond, "blocks": [], "unit_weight": 20.0}
     bars = built(data).bars
     assert len(bars) == 10
+    narrow = json.loads(wall_json(build(Wall.model_validate(data)).wall))
+    for each in narrow["blocks"][1:]:
+        middle = np.mean([x for x, _ in each["polygon"]])
+        each["polygon"] = [[x - 0.005 * np.sign(x - middle), y] for x, y in each["polygon"]]
+    apart = built(narrow | {"interfaces": {"tolerance": 0.02}}).bars
+    assert apart.names == bars.names, "no fill lies in the joints between bricks that are drawn apart"
+    np.testing.assert_allclose(apart.least, bars.least, rtol=1e-9)
     for side in ("left", "right"):
         whole = -sum(least for name, least in zip(bars.names, bars.least, strict=True) if f", {side} of" in name)
         assert whole == pytest.approx(SHARE * K_P * GAMMA * (1.2**2 - 0.2**2) / 2.0)
@@ -222,6 +229,7 @@ def test_every_other_method_refuses_it_by_name():
         ({"passive": {"mobilised": 0.5}}, "either friction_angle or coefficient"),
         ({"passive": {"mobilised": 1.5, "coefficient": 3}}, "less than or equal to 1"),
         ({"passive": {"coefficient": 3}}, "mobilised"),
+        ({"unit_weight": 0.0}, "without weight resists nothing"),
         ({"between": [1.5, 3.0]}, "looks sideways below its level 0.6"),
     ],
 )
