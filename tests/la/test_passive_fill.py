@@ -215,6 +215,16 @@ def test_reactions_list_what_the_fill_bears_apart_from_the_supports():
     assert out_of_balance(wall, listed, result.multiplier or 0.0) < 1e-9
 
 
+def test_combination_multiplies_loads_and_not_what_resists():
+    """1.35 times the weight slides under 1.5 times the push at mu 1.35/1.5 + P/(1.5 W)."""
+    data = block(0.2)
+    loads = data.pop("loads")
+    combined = {"load_cases": {"push": loads}, "combinations": {"uls": {"dead": 1.35, "push": 1.5}}}
+    cases = drystone.build_wall(data | combined, "case").load_cases
+    assert asked("la-associated", cases["push"].assembly) == pytest.approx(0.2 + FORCE / WEIGHT, rel=EXACT)
+    assert asked("la-associated", cases["uls"].assembly) == pytest.approx((0.27 + FORCE / WEIGHT) / 1.5, rel=EXACT)
+
+
 def test_every_other_method_refuses_it_by_name():
     wall = built(block(0.2))
     assert set(methods_with("any_bars")) == set(TAKEN)
