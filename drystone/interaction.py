@@ -108,7 +108,7 @@ class LoadPair:
                 raise InputError(
                     f"the wall has {len(names)} load cases with a live load",
                     f"Name two of {first_few(list(cases), MOST_NAMED)} (--load-cases A,B)",
-                    "load_cases",
+                    case.wall.load_cases_place,
                     case.origin,
                 )
             found = [load_cases_of(case, name)[0] for name in names]

@@ -15,7 +15,9 @@ from harness.model.assembly import Assembly, FloatArray
 from harness.model.bars import bar_tensions, with_bars_as_joints
 from harness.model.errors import InputError
 from harness.model.method import load_method
+from harness.model.passive import FILL
 from harness.model.result import Judgement, fastest_vertex
+from harness.model.units import DIMENSIONLESS
 
 
 @dataclass(frozen=True, eq=False)
@@ -88,6 +90,16 @@ def reactions(wall: Wall, tolerance: float = 1e-9) -> tuple[Reaction, Reaction] 
     return found[0], found[1]
 
 
+def reaction_unit(wall: Wall) -> str:
+    """The unit of a reaction along the settlements of a wall, as "kN" or "kN m"; empty where the wall has no units.
+
+    A translation is a direction, so the reaction is a force; with a rotation, in radians, it is a moment.
+    """
+    force, length = wall.units["force"], wall.units["length"]
+    turns = any(settlement.rotation for settlement in wall.case.wall.settlements)
+    return " ".join(unit for unit in (force, length if turns else "1") if unit != DIMENSIONLESS)
+
+
 def check_reactions(assembly: Assembly, file: str) -> None:
     """Refuse a wall whose reactions are not asked by linear programmes.
 
@@ -97,6 +109,12 @@ def check_reactions(assembly: Assembly, file: str) -> None:
     if not np.any(with_bars_as_joints(assembly).support_strains):
         remedy = 'Give "settlements": [{"blocks": [...], "translation": [0, -1]}]'
         raise InputError("no support with a joint, a tie or a prop moves", remedy, "settlements", file)
+    bars = assembly.bars
+    if any(
+        kind == FILL and np.any(assembly.support_motion[k]) for kind, k in zip(bars.kinds, bars.block_a, strict=True)
+    ):
+        remedy = "Add a fixed block that does not move, or leave passive fill out"
+        raise InputError("every support moves, and passive fill has no ground that rests", remedy, "settlements", file)
     if assembly.crushes:
         remedy = "Leave compressive strength out: the programmes of reactions are linear"
         raise InputError("some joints have compressive strength", remedy, "settlements", file)
@@ -145,6 +163,8 @@ def least_known_reactions(
         guided = released(assembly, begins, greatest)
         result, judgement = answered(load_method(method), guided.assembly)
         tensions = bar_tensions(guided.assembly, result)
+        # The multiplier of the released wall is a reaction, but for a constant.
+        judgement.sentence = judgement.sentence.replace("multiplier", "reaction")
         if result.multiplier is None or result.mechanism is None or result.forces is None or tensions is None:
             return f"No reaction without dilatancy is known: {result.sentence}"
         if not guided.holds(tensions):

@@ -58,10 +58,11 @@ class SettledCollapse:
         """What was found, and what the judge says."""
         pins = f", turning about {len(self.pins)} joints: {first_few(self.pins, 8)}" if self.pins else ""
         said = " ".join(each.sentence for each in self.judgements)
+        stands, falls = _apart(self.stands, self.falls)
         if self.falls is None:
-            return f"The wall stands up to {self.stands:.7g} times the prescribed motion{pins}. {self.reason} {said}"
+            return f"The wall stands up to {stands} times the prescribed motion{pins}. {self.reason} {said}"
         return (
-            f"The wall stands up to {self.stands:.7g} times the prescribed motion{pins}. At {self.falls:.7g} times no "
+            f"The wall stands up to {stands} times the prescribed motion{pins}. At {falls} times no "
             f"admissible state is left. {said}"
         )
 
@@ -137,6 +138,15 @@ def settled_until_collapse(wall: Wall, tolerance: float = 1e-9) -> SettledCollap
         tuple(said),
         found.reason,
     )
+
+
+def _apart(low: float, high: float | None) -> tuple[str, str]:
+    """Two numbers with as many digits as tell them apart, seven at least."""
+    for digits in range(7, 18):
+        texts = f"{low:.{digits}g}", "" if high is None else f"{high:.{digits}g}"
+        if texts[0] != texts[1]:
+            break
+    return texts
 
 
 def _check_simple(assembly: Assembly) -> None:

@@ -16,6 +16,7 @@ from harness.model.build import build
 from harness.model.errors import InputError, raise_faults
 from harness.model.inspection import Inspection, inspect
 from harness.model.library import library
+from harness.model.load_cases import named_loads
 from harness.model.method import load_method
 from harness.model.plausibility import saying
 from harness.model.reading import parse_wall, read_document, wall_json
@@ -54,6 +55,8 @@ def validate(wall: Path, method: str, as_json: bool) -> None:
         say(f"{joints} joints are found" if joints is not None else f"it cannot be built; errors: {len(looked.faults)}")
         _list_marks(looked, advice[0] if advice else None)
         if plateaus:
+            if looked.wall.load_case_fields:
+                say(f"the answers are those of the load case {next(iter(named_loads(looked.wall)))}")
             terminal.print_rows(
                 [
                     {

@@ -10,10 +10,11 @@ import click
 
 from drystone.cli.options import OUTPUT, cases_option, catching, json_flag, print_json, say, warn
 from drystone.cli.outputs import check_output, write_output
-from drystone.reactions import least_known_reactions, reactions
+from drystone.reactions import least_known_reactions, reaction_unit, reactions
 from drystone.walls import Wall
 from harness.engine.plan import find_cases
 from harness.model.errors import InputError, first_few
+from harness.model.units import DIMENSIONLESS
 
 SAID = {
     "least": "least reaction",
@@ -83,9 +84,11 @@ def _print_reactions(wall: Wall, without_dilatancy: bool, as_json: bool) -> None
     if as_json:
         print_json({name: each.as_json() for name, each in zip(names, answer, strict=True)})
     else:
+        unit = reaction_unit(wall)
         for name, each in zip(names, answer, strict=True):
+            value = f"{each.value:.7g} {unit}".rstrip()
             moving = first_few(each.moving, 8) if each.moving else "no free block"
-            say(f"The {SAID[name]} is {each.value:.7g}; in its mechanism move: {moving}. {each.judgement.sentence}")
+            say(f"The {SAID[name]} is {value}; in its mechanism move: {moving}. {each.judgement.sentence}")
     sys.exit(0 if all(each.judgement.accepted for each in answer) else 1)
 
 
@@ -101,11 +104,13 @@ def _print_paths(wall: Wall, output: Path | None, as_json: bool) -> None:
     if as_json:
         print_json({name: each.as_json() for name, each in zip(names, answer, strict=True)})
     else:
+        length, unit = wall.units["length"], reaction_unit(wall)
+        heads = ["displacement" + f" [{length}]" * (length != DIMENSIONLESS), "reaction" + f" [{unit}]" * bool(unit)]
         for each in answer:
             say(each.sentence)
-            say(f"{'displacement':>14} {'reaction':>14}")
+            say(f"{heads[0]:>18} {heads[1]:>18}")
             for x, y in zip(each.displacement.tolist(), each.reaction.tolist(), strict=True):
-                say(f"{x:14.7g} {y:14.7g}")
+                say(f"{x:18.7g} {y:18.7g}")
     sys.exit(0 if all(each.accepted for each in answer) else 1)
 
 

@@ -93,7 +93,7 @@ def run(
         raise InputError(
             f"it has the load cases {first_few(list(named_loads(found.wall)), MOST_NAMED)}",
             "Choose one: --load-case NAME; `drystone compare` answers all of them",
-            "load_cases",
+            found.wall.load_cases_place,
             found.origin,
         )
     cases = as_loaded(found, load_case, live, both_signs=both_signs)

@@ -14,6 +14,7 @@ from harness.model.build import build
 from harness.model.errors import InputError
 from harness.model.inspection import Inspection
 from harness.model.interfaces import DEFAULT_TOLERANCE
+from harness.model.load_cases import named_loads, under_load_case
 from harness.model.method import Method, Status
 from harness.model.wall import Detection, Wall
 
@@ -51,7 +52,14 @@ def over_tolerance(wall: Wall, method: Method | None = None) -> list[Plateau]:
 
     Args:
         wall: as read; method: asked once a plateau, at its default settings; without one the answers are empty.
+            A wall with load cases is asked about under the first of them.
+
+    Raises:
+        InputError: blocks, names or load cases are wrong at any tolerance.
     """
+    if wall.load_case_fields:
+        known = named_loads(wall)
+        wall = under_load_case(wall, next(iter(known)), known)
     detection = wall.interfaces if isinstance(wall.interfaces, Detection) else Detection()
     size = typical_block_size(wall)
     decades = np.log10(WIDEST / DEFAULT_TOLERANCE)

@@ -7,6 +7,7 @@ from operator import attrgetter
 
 from harness.model.bars import bar_tensions, state_of
 from harness.model.case import Case
+from harness.model.passive import FILL
 from harness.model.result import Result
 from harness.model.table import TableColumn
 
@@ -16,7 +17,7 @@ class BarForce:
     """The force of one tie or prop.
 
     Attributes:
-        bar: its name; kind: "tie" or "prop"; start, end: ids of the blocks it joins.
+        bar: its name; kind: "tie", "prop" or "fill"; start, end: ids of the blocks it joins, "fill" of passive fill.
         tension: total, its prestress included; compression is negative [force].
         least, greatest: range of the tension, from prestress to yield force [force].
         state: as `harness.model.bars.state_of` says.
@@ -33,8 +34,8 @@ class BarForce:
 
 
 BARS: tuple[TableColumn[BarForce], ...] = (
-    TableColumn("bar", "string", "", "name of the tie or prop", attrgetter("bar")),
-    TableColumn("kind", "string", "", "tie or prop", attrgetter("kind")),
+    TableColumn("bar", "string", "", "name of the tie or prop, or of the side of a block in fill", attrgetter("bar")),
+    TableColumn("kind", "string", "", "tie, prop or fill", attrgetter("kind")),
     TableColumn("from", "string", "", "id of the block at its one end", attrgetter("start")),
     TableColumn("to", "string", "", "id of the block at its other end", attrgetter("end")),
     TableColumn("tension", "Float64", "force", "tension, compression negative", attrgetter("tension")),
@@ -56,7 +57,7 @@ def bar_forces_of(case: Case, result: Result) -> list[BarForce]:
         BarForce(
             bars.names[k],
             bars.kinds[k],
-            ids[bars.block_a[k]],
+            FILL if bars.kinds[k] == FILL else ids[bars.block_a[k]],
             ids[bars.block_b[k]],
             tension,
             least[k],

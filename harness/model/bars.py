@@ -41,7 +41,7 @@ class Bars:
 
     Attributes:
         names: (k,) for messages and tables.
-        kinds: (k,) "tie" or "prop".
+        kinds: (k,) "tie", "prop" or, of passive fill, "fill".
         block_a, block_b: (k,) indices of the blocks at end 1 and at end 2.
         end1, end2: (k, 2) ends [length].
         prestress: (k,) tension that acts as dead load [force].
@@ -76,6 +76,15 @@ class Bars:
             place[self.block_a[kept]],
             place[self.block_b[kept]],
             *(getattr(self, name)[kept] for name in ("end1", "end2", "prestress", "least", "greatest")),
+        )
+
+    def followed_by(self, others: Bars) -> Bars:
+        """These bars and then others."""
+        arrays = ("block_a", "block_b", "end1", "end2", "prestress", "least", "greatest")
+        return Bars(
+            self.names + others.names,
+            self.kinds + others.kinds,
+            *(np.concatenate([getattr(self, name), getattr(others, name)]) for name in arrays),
         )
 
     def copied(self) -> Bars:
@@ -148,7 +157,7 @@ def state_of(kind: str, tension: float, least: float, greatest: float) -> str:
     """ "yields" at its yield force, "slack" or "at its prestress" where it bears no more than that, else "bears".
 
     Args:
-        kind: "tie" or "prop"; tension: of the bar, in its range from `least` to `greatest`, prestress included [force].
+        kind: as of `Bars`; tension: of the bar, in its range from `least` to `greatest`, prestress included [force].
     """
     rounding = 1e-9 * (greatest - least)
     yields, slack = (greatest, least) if kind == "tie" else (least, greatest)

@@ -20,6 +20,7 @@ from harness.model.load_fields import Load, Loads
 from harness.model.loads import (
     check_pairs,
     dead_load,
+    fill_as_bars,
     generalised_load,
     has_pressures,
     with_pressures,
@@ -74,10 +75,10 @@ def build(wall: Wall, name: str = "wall", laid: Laid | None = None) -> Built:
     """
     if named := wall.load_case_fields:
         raise InputError(
-            f"it has the load cases {first_few(named, MOST_NAMED)}, each a wall of its own",
+            f"it has the load cases of {first_few(named, MOST_NAMED)}, each a wall of its own",
             "Choose one: --load-case NAME of `drystone run` or `compare`; other commands take the file that "
             "`drystone expand WALL.json --load-case NAME` prints",
-            "load_cases",
+            wall.load_cases_place,
         )
     if laid is None:
         blocks = blocks_of_wall(wall)
@@ -119,8 +120,11 @@ def build(wall: Wall, name: str = "wall", laid: Laid | None = None) -> Built:
         assembly = with_pressures(wall, laid, assembly)
     if wall.settlements:
         assembly = replace(assembly, support_motion=_support_motion(wall, laid))
-    if wall.ties or wall.props:
+    resisting = [number for number, fill in enumerate(wall.loads.dead.fills) if fill.passive is not None]
+    if wall.ties or wall.props or resisting:
         bars = _bars(wall, index)
+        for number in resisting:
+            bars = bars.followed_by(fill_as_bars(wall, laid, assembly.support_motion, number))
         prestress = np.where(fixed[:, None], 0.0, bars.generalised(bars.prestress, centroids))
         assembly = replace(assembly, bars=bars, dead=assembly.dead + prestress)
     if laws.strong:
@@ -235,10 +239,10 @@ def _bars(wall: Wall, index: dict[str, int]) -> Bars:
     return Bars(
         names=tuple(bar.id or f"{kind} {number}" for kind, number, (_, _, bar) in names),
         kinds=kinds,
-        block_a=np.array([index[bar.start.block] for _, _, bar in given]),
-        block_b=np.array([index[bar.end.block] for _, _, bar in given]),
-        end1=np.array([bar.start.at for _, _, bar in given], dtype=float),
-        end2=np.array([bar.end.at for _, _, bar in given], dtype=float),
+        block_a=np.array([index[bar.start.block] for _, _, bar in given], dtype=np.int64),
+        block_b=np.array([index[bar.end.block] for _, _, bar in given], dtype=np.int64),
+        end1=np.array([bar.start.at for _, _, bar in given], dtype=float).reshape(-1, 2),
+        end2=np.array([bar.end.at for _, _, bar in given], dtype=float).reshape(-1, 2),
         prestress=prestress,
         least=np.minimum(further, 0.0),
         greatest=np.maximum(further, 0.0),

@@ -2,7 +2,8 @@
 
 Seen from above a wall has at each x one highest face. Where that lies below the level of the fill it bears the vertical
 stress gamma (level - y) on its horizontal projection. Faces are cut at every vertex, and at the level, so that the
-stress is linear on each part; its force and moment are exact. The fill neither spreads its weight nor holds the wall.
+stress is linear on each part; its force and moment are exact. The fill does not spread its weight;
+`harness.model.passive` has what resists.
 """
 
 from __future__ import annotations
@@ -40,7 +41,7 @@ def fill_forces(
         place: of the fill in the file, for errors.
 
     Raises:
-        InputError: no face that it may load lies below its level.
+        InputError: no face that it may load lies below its level, and it does not resist either.
     """
     x, face = highest_faces(outlines, fill.between)
     forces = np.zeros((len(centroids), 3))
@@ -51,7 +52,7 @@ def fill_forces(
         if edge == NO_FACE or not chosen[block]:
             continue
         ends = np.array([left, right])
-        depth = fill.level - _heights(outlines, int(edge), ends)
+        depth = fill.level - heights(outlines, int(edge), ends)
         if depth.max() <= 0.0:
             continue
         loaded = True
@@ -62,7 +63,7 @@ def fill_forces(
         extent = thickness[block] * (ends[1] - ends[0])
         weighted = np.array([2.0 * stress[0] + stress[1], stress[0] + 2.0 * stress[1]])
         forces[block] -= extent * np.array([0.0, 0.5 * stress.sum(), float(arm @ weighted) / 6.0])
-    if not loaded:
+    if not loaded and fill.passive is None:
         raise InputError(
             f"no face of a free block that it may load looks up below its level {fill.level:.6g}",
             'Give a "level" above the extrados, and "between" that meets it',
@@ -86,13 +87,13 @@ def highest_faces(outlines: Outlines, between: tuple[float, float] | None = None
     face, height = np.full(len(middle), NO_FACE), np.full(len(middle), -np.inf)
     starts, stops = np.searchsorted(middle, last[up]), np.searchsorted(middle, first[up])
     for edge, start, stop in zip(up.tolist(), starts.tolist(), stops.tolist(), strict=True):
-        own = _heights(outlines, edge, middle[start:stop])
+        own = heights(outlines, edge, middle[start:stop])
         above = np.flatnonzero(own > height[start:stop]) + start
         face[above], height[above] = edge, own[above - start]
     return x, face
 
 
-def _heights(outlines: Outlines, edge: int, x: FloatArray) -> FloatArray:
+def heights(outlines: Outlines, edge: int, x: FloatArray) -> FloatArray:
     """(k,) heights of an edge, which is not vertical, at places x (k,)."""
     (x1, y1), (x2, y2) = outlines.first[edge], outlines.last[edge]
     return np.asarray(y1 + (y2 - y1) * ((x - x1) / (x2 - x1)))

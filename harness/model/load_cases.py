@@ -148,7 +148,7 @@ def under_load_case(wall: Wall, name: str, known: dict[str, NamedLoads] | None =
     if name not in known:
         there = f"There are: {first_few(list(known), MOST_NAMED)}" if known else 'A wall gives them in "load_cases"'
         remedy = f"{did_you_mean(name, known)} {there}".strip()
-        raise InputError(f'no load case is called "{name}"', remedy, "load_cases")
+        raise InputError(f'no load case is called "{name}"', remedy, wall.load_cases_place)
     own, factor = known[name].own, known[name].common
     gravity = wall.loads.gravity if own.gravity is None else own.gravity
     if factor != 1.0:
@@ -175,7 +175,7 @@ def each_built(wall: Wall, names: Mapping[str, str], known: dict[str, NamedLoads
             f"its {len(blocks):,} blocks are built under each of {len(names):,} load cases, and at most "
             f"{MOST_BUILT:,} in all",
             "Give fewer load cases, or choose one with --load-case of run or expand",
-            "load_cases",
+            wall.load_cases_place,
         )
     laid = lay(wall, blocks)
     for load_case, name in names.items():

@@ -57,6 +57,12 @@ class Loads(Strict):
     dead: Load = Field(default_factory=Load, description="on top of gravity")
     live: Load | None = Field(None, description="absent: only whether the wall stands is decided")
 
+    @model_validator(mode="after")
+    def _resistance_is_no_live_load(self) -> Loads:
+        if self.live is not None and any(fill.passive is not None for fill in self.live.fills):
+            raise ValueError("passive fill in a live load: what resists is not multiplied, so give it in the dead load")
+        return self
+
     @property
     def gravity_per_weight(self) -> Point:
         """Gravity as a multiple (x, y) of the weight of every block."""

@@ -9,12 +9,14 @@ from dataclasses import replace
 import numpy as np
 
 from harness.model.assembly import Assembly, BoolArray, FloatArray
+from harness.model.bars import Bars
 from harness.model.errors import InputError
 from harness.model.fields import Point
 from harness.model.fill import fill_forces
 from harness.model.input_checks import thickness_of
 from harness.model.laid import Laid
 from harness.model.load_fields import BodyForce, Load, Loads
+from harness.model.passive import passive_bars
 from harness.model.pressure import outlines_of, pressure_forces
 from harness.model.pressure_fields import Fill, Pressure
 from harness.model.wall import Block, Wall
@@ -93,42 +95,74 @@ def with_pressures(wall: Wall, laid: Laid, assembly: Assembly) -> Assembly:
     """The assembly with the pressures and fills of the wall added to its loads.
 
     Raises:
-        InputError: part of a pressure lies on no face, or on faces of two blocks; or a fill loads none.
+        InputError: part of a pressure lies on no face, or on faces of two blocks; a fill loads none; or one of them
+            names no free block.
     """
     thickness = [thickness_of(block, wall) for block in laid.blocks]
     outlines = outlines_of(laid.polygons)
-
-    def chosen(load: Pressure | Fill) -> BoolArray:
-        """(n,) blocks that a load on faces may act on."""
-        named = laid.named(load)
-        return ~laid.fixed if named is None else ~laid.fixed & np.isin(np.arange(len(laid.blocks)), named)
-
     sums = {}
     for kind, load in (("dead", wall.loads.dead), ("live", wall.loads.live or Load())):
         total = getattr(assembly, kind).copy()
         for number, pressure in enumerate(load.pressures):
+            place = f"loads.{kind}.pressures[{number}]"
             total += pressure_forces(
                 pressure,
-                chosen(pressure),
+                _loaded_by(pressure, laid, place),
                 outlines,
                 laid.centroids,
                 thickness,
                 wall.units.unit_weight_factor,
                 laid.size,
-                f"loads.{kind}.pressures[{number}]",
+                place,
             )
         for number, fill in enumerate(load.fills):
+            place = f"loads.{kind}.fills[{number}]"
             total += fill_forces(
                 fill,
-                chosen(fill),
+                _loaded_by(fill, laid, place),
                 outlines,
                 laid.centroids,
                 thickness,
                 wall.units.unit_weight_factor,
-                f"loads.{kind}.fills[{number}]",
+                place,
             )
         sums[kind] = total
     return replace(assembly, **sums)
+
+
+def fill_as_bars(wall: Wall, laid: Laid, support_motion: FloatArray, number: int) -> Bars:
+    """What a dead fill of the wall that resists bears, as bars from a fixed block, one that does not settle if any.
+
+    Raises:
+        InputError: it lies beside no face, or names no free block.
+    """
+    fill, place = wall.loads.dead.fills[number], f"loads.dead.fills[{number}]"
+    assert fill.passive is not None, "only fill that resists is asked about"
+    rests = laid.fixed & ~np.any(support_motion, axis=1)
+    return passive_bars(
+        fill,
+        fill.passive,
+        _loaded_by(fill, laid, place),
+        laid,
+        [thickness_of(block, wall) for block in laid.blocks],
+        wall.units.unit_weight_factor,
+        int(np.argmax(rests if rests.any() else laid.fixed)),
+        f"fill {number + 1}",
+        place,
+    )
+
+
+def _loaded_by(load: Pressure | Fill, laid: Laid, place: str) -> BoolArray:
+    """(n,) blocks that a load on faces may act on.
+
+    Raises:
+        InputError: none.
+    """
+    named = laid.named(load)
+    found = ~laid.fixed if named is None else ~laid.fixed & np.isin(np.arange(len(laid.blocks)), named)
+    if not found.any():
+        raise InputError("it names no free block", 'Name one, or leave "blocks" and "group" out', place)
+    return found
 
 
 def times(load: Load, factor: float) -> Load:

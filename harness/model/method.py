@@ -119,7 +119,7 @@ class Traits(BaseModel):
         any_dilatancy: it follows the dilatancy that a wall gives its joints; other methods refuse such a wall.
         any_strength: it takes joints with cohesion and tensile strength; other methods refuse such a wall.
         any_brittle: it takes joints that lose their strength once they have moved; other methods refuse such a wall.
-        any_bars: it takes ties and props; other methods refuse such a wall.
+        any_bars: it takes ties, props and passive fill; other methods refuse such a wall.
         any_crushing: it takes joints with compressive strength; other methods refuse such a wall.
         moves_no_lower: it measures when rigid blocks on even faces move (`details["lowest_moving"]`): where theory
             knows the least multiplier, moving below it is an error.
@@ -287,7 +287,7 @@ def check_takes(method: Method, assembly: Assembly) -> None:
         )
     if len(assembly.bars) and not method.traits.any_bars:
         raise InputError(
-            f"{method.name} takes no ties and props; the wall has {first_few(assembly.bars.names, 4)}",
+            f"{method.name} takes no ties, props and passive fill; the wall has {first_few(assembly.bars.names, 4)}",
             f"Take a method that knows them ({', '.join(methods_with('any_bars'))}), or leave them out",
         )
     if assembly.crushes and not method.traits.any_crushing:

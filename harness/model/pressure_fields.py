@@ -6,7 +6,7 @@ from typing import Annotated, Literal
 
 from pydantic import Field, model_validator
 
-from harness.model.fields import Angle, Name, NonNegative, Number, Point, Strict
+from harness.model.fields import Angle, Name, NonNegative, Number, Point, Positive, Strict
 
 
 class Water(Strict):
@@ -38,6 +38,24 @@ class Earth(Strict):
         return self
 
 
+class Passive(Strict):
+    """How fill resists faces that move into it: by up to mobilised x K_p x unit_weight x depth, horizontally."""
+
+    mobilised: Annotated[float, Field(gt=0.0, le=1.0, strict=True)] = Field(
+        description="share m of the passive pressure that small motions bring about"
+    )
+    friction_angle: Angle | None = Field(
+        None, description="phi of the fill [degrees]: K_p = (1 + sin phi)/(1 - sin phi)"
+    )
+    coefficient: Positive | None = Field(None, description="K_p itself, instead of `friction_angle`")
+
+    @model_validator(mode="after")
+    def _one_coefficient(self) -> Passive:
+        if (self.coefficient is None) == (self.friction_angle is None):
+            raise ValueError("passive fill gives either friction_angle or coefficient")
+        return self
+
+
 class Fill(Strict):
     """Fill up to a level: its weight on the faces that look up below it and have no block above them."""
 
@@ -48,12 +66,15 @@ class Fill(Strict):
     )
     blocks: list[Name] | None = Field(None, description="ids; all free blocks if neither blocks nor group is given")
     group: Name | None = None
-    factor: Number = Field(1.0, description="multiple of it that acts")
+    factor: Number = Field(1.0, description="multiple of its weight that acts; its resistance is not multiplied")
+    passive: Passive | None = Field(None, description="of a dead fill: it resists faces that move into it")
 
     @model_validator(mode="after")
     def _one_place(self) -> Fill:
         if self.blocks is not None and self.group is not None:
             raise ValueError("a fill names either blocks or group, not both")
+        if self.passive is not None and self.unit_weight == 0.0:
+            raise ValueError("passive fill without weight resists nothing: give a unit weight, or leave passive out")
         if self.between is not None and not self.between[0] < self.between[1]:
             raise ValueError("a fill lies between two x, of which the first is the smaller")
         return self

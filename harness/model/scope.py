@@ -24,7 +24,7 @@ _OUTSIDE = {
         "tie_rod", "anchor", "anchors", "reinforcement", "rebar", "spring", "springs", "cable", "cables", "frp",
         "post_tension",
     ),
-    "soil and water that resist (pressures and fills of a load are fields, of what they weigh and press)": (
+    "soil and water that resist (pressures and fills of a load are fields, and a dead fill may be passive)": (
         "passive", "passive_pressure", "passive_fill", "kp",
         "backfill", "fill", "soil", "earth", "earth_pressure", "foundation", "water", "pore_pressure", "uplift",
     ),

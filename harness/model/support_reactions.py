@@ -11,6 +11,7 @@ import numpy as np
 from harness.model.assembly import Assembly, FloatArray
 from harness.model.bars import bar_tensions
 from harness.model.case import Case
+from harness.model.passive import FILL
 from harness.model.result import Result
 from harness.model.table import TableColumn
 
@@ -57,7 +58,7 @@ REACTIONS: tuple[ReactionColumn, ...] = (
 def support_reactions(
     assembly: Assembly, forces: FloatArray, flat: float = 1e-9, tension: FloatArray | None = None
 ) -> list[SupportReaction]:
-    """The reaction of each support that has a joint, a tie or a prop.
+    """The reaction of each support that has a joint, a tie or a prop, and of passive fill about its centre of pressure.
 
     Args:
         assembly: the wall.
@@ -72,11 +73,11 @@ def support_reactions(
     at_ends = forces[:, :2, None] * assembly.normal[:, None]
     at_ends[:, 0] += forces[:, 2:] * assembly.tangent
     ends = np.stack([assembly.end1, assembly.end2], axis=1)
-    listed = []
+    listed, of_fill = [], np.array([kind == FILL for kind in bars.kinds], dtype=bool)
     for block in np.flatnonzero(assembly.fixed):
         is_a, is_b = assembly.block_a == block, assembly.block_b == block
         chosen = np.flatnonzero(is_a | is_b)
-        starts, stops = bars.block_a == block, bars.block_b == block
+        starts, stops = (bars.block_a == block) & ~of_fill, bars.block_b == block
         if not len(chosen) and not (starts | stops).any():
             continue
         # Of joints two vectors each at their ends; of bars one each, which pulls at the wall away from their other end.
@@ -92,7 +93,8 @@ def support_reactions(
             level = float(arms[..., 1].max())
             x, y = float(centroid[0]) + (moment + level * fx) / fy, float(centroid[1]) + level
         listed.append(SupportReaction(assembly.block_ids[block], fx, fy, moment, x, y))
-    return listed
+    pushed = [(bars.names[k], *(-pull[k]).tolist()) for k in np.flatnonzero(of_fill & np.any(pull, axis=1))]
+    return listed + [SupportReaction(name, fx, fy, 0.0, None, None) for name, fx, fy in pushed]
 
 
 def reactions_of(case: Case, result: Result) -> list[SupportReaction]:

@@ -312,6 +312,12 @@ class Wall(Strict):
         return [*self.load_cases, *self.travelling, *self.combinations]
 
     @property
+    def load_cases_place(self) -> str:
+        """The fields of the file that give load cases, for errors; `load_cases` where none does."""
+        fields = ("load_cases", "travelling", "combinations")
+        return ", ".join(name for name in fields if getattr(self, name)) or fields[0]
+
+    @property
     def units_declared(self) -> bool:
         """Whether the file says its units; otherwise metres and kilonewtons are taken."""
         return "units" in self.model_fields_set

@@ -62,6 +62,7 @@ LOOKS = {
     "contact": Look("ink", "", 42, round=True),
     "tie": Look("plum", "", 20),
     "prop": Look("plum", "", 40),
+    "fill": Look("plum", "", 60),
     "idle": Look("plum", "", 10, (40, 30)),
     "live": Look("blue", "blue", 16),
     "dead": Look("rust", "paper", 12, (30, 18)),

@@ -39,13 +39,14 @@ def bar_rows(item: CaseResults) -> list[BarRow]:
 
 
 def bars_text(case: Case) -> str:
-    """How many ties and props there are, and their greatest forces; empty if there are none."""
+    """How many ties, props and faces in passive fill there are, and their greatest forces; empty if there are none."""
     bars = case.assembly.bars
     said = []
-    for kind, strongest in (("tie", bars.prestress + bars.greatest), ("prop", -(bars.prestress + bars.least))):
+    pulled, pushed = bars.prestress + bars.greatest, -(bars.prestress + bars.least)
+    for kind, noun, strongest in (("tie", "tie", pulled), ("prop", "prop", pushed), ("fill", "passive face", pushed)):
         forces = [float(force) for force, own in zip(strongest, bars.kinds, strict=True) if own == kind]
         if forces:
             most = numbers.quantity(max(forces), case.wall.units.force, 4)
             limit = most if min(forces) == max(forces) else f"up to {most}"
-            said.append(f"{numbers.count(len(forces), kind)}, yield force {limit}")
+            said.append(f"{numbers.count(len(forces), noun)}, yield force {limit}")
     return "; ".join(said)

@@ -195,7 +195,7 @@ def _facts(case: Case) -> list[tuple[str, str]]:
 def _loads_drawn(case: Case) -> str:
     """The caption of a wall: what of its loads is drawn."""
     assembly = case.assembly
-    bars = "; violet lines are ties, wider ones props" if len(assembly.bars) else ""
+    bars = "; violet lines are ties, wider ones props and passive fill" if len(assembly.bars) else ""
     if not assembly.has_live_load:
         return f"The wall with its supports; dots are contact points{bars}."
     step = shapes.drawn_every(len(shapes.load_arrows(assembly, assembly.live)))

@@ -29,6 +29,7 @@ PLAIN: dict[str, Any] = {
 PUSH = {"live": {"body": [{"per_weight": [1, 0]}]}}
 ENDS = {"from": {"block": "ground", "at": [1.5, 0]}, "to": {"block": "a", "at": [1, 0.5]}, "yield_force": 1}
 FACE = {"from": [0, 0], "to": [0, 1], "uniform": 3}
+SOIL = {"level": 2, "unit_weight": 18}
 FEATURES: dict[str, tuple[dict[str, Any], ...]] = {
     "friction": ({},),
     "dilatancy": ({"friction": {"default": 0.5, "dilatancy": 0.2}},),
@@ -38,7 +39,10 @@ FEATURES: dict[str, tuple[dict[str, Any], ...]] = {
     "ties, props": ({"ties": [ENDS]}, {"props": [ENDS]}),
     "settlements": ({"settlements": [{"blocks": ["ground"], "translation": [0, -1]}]},),
     "pressures": ({"loads": {"live": {"pressures": [FACE]}}},),
-    "fills": ({"loads": {"dead": {"fills": [{"level": 2, "unit_weight": 18}]}, **PUSH}},),
+    "fills": ({"loads": {"dead": {"fills": [SOIL]}, **PUSH}},),
+    "passive fill": (
+        {"loads": {"dead": {"fills": [SOIL | {"passive": {"mobilised": 0.5, "coefficient": 3}}]}, **PUSH}},
+    ),
     "load cases, combinations": ({"load_cases": {"push": PUSH}, "combinations": {"sum": {"dead": 1.35, "push": 1.5}}},),
     "travelling loads": ({"travelling": {"axle": {"force": [0, -10]}}},),
 }

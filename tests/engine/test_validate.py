@@ -157,3 +157,16 @@ def test_tolerance_that_is_recommended_is_the_middle_of_the_widest_plateau(range
 def test_no_tolerance_is_recommended_where_none_gives_joints() -> None:
     assert suggested([]) is None
     assert suggested([Plateau(0.1, 1.0, None, "no"), Plateau(1.0, 2.0, 0, "none")]) is None
+
+
+@pytest.mark.parametrize("named", ["load_cases", "travelling"])
+def test_wall_with_load_cases_has_a_table_under_the_first_of_them(tmp_path: Path, named: str):
+    alone = off(0.001, greatest_overlap=0.002)
+    _, plain = validated(tmp_path, alone)
+    given = {"push": alone["loads"]} if named == "load_cases" else {"push": {"force": [0, -1]}}
+    code, told = validated(tmp_path, alone | {"loads": {}, named: given})
+    assert code == 0
+    assert [item["joints"] for item in told["tolerances"]] == [item["joints"] for item in plain["tolerances"]]
+    assert (told["tolerances"] == plain["tolerances"]) is (named == "load_cases")
+    run = CliRunner().invoke(main, ["validate", str(tmp_path / "wall.json")])
+    assert f"the answers are those of the load case push{'-1' * (named == 'travelling')}\n" in run.stdout

@@ -146,7 +146,7 @@ def test_what_fe_does_not_take_is_refused():
     with pytest.raises(InputError, match="no support with a joint"):
         reaction_paths(drystone.build_wall(data()))
     tie = {"from": {"block": "left", "at": [0.1, 0]}, "to": {"block": "block", "at": [0.1, 0.2]}, "yield_force": 1}
-    with pytest.raises(InputError, match="takes no ties and props"):
+    with pytest.raises(InputError, match="takes no ties, props and passive fill"):
         reaction_paths(drystone.build_wall(data(DOWN, ties=[tie])))
 
 

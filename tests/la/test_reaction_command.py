@@ -13,7 +13,7 @@ import numpy as np
 import pytest
 
 import drystone
-from drystone.reactions import reactions
+from drystone.reactions import reaction_unit, reactions
 from harness.engine.reaction_judge import judge_reaction
 from harness.model.assembly import Assembly
 from harness.model.build import build
@@ -56,11 +56,25 @@ def test_command_prints_both_with_their_mechanisms(tmp_path: Path):
     path.write_text(json.dumps(data(DOWN)), encoding="utf-8")
     done = command("reaction", path)
     assert done.returncode == 0, done.stderr
-    assert "The least reaction is 1.142857; in its mechanism move: block." in done.stdout
-    assert "The greatest reaction is 4;" in done.stdout
+    assert "The least reaction is 1.142857 kN; in its mechanism move: block." in done.stdout
+    assert "The greatest reaction is 4 kN;" in done.stdout
     values = json.loads(command("reaction", path, "--json").stdout)
     assert values["least"]["value"] == pytest.approx(2.0 / 7.0 * WEIGHT, rel=1e-9)
     assert values["greatest"]["judge"]["accepted"] is True
+
+
+@pytest.mark.parametrize(
+    ("settlement", "units", "unit"),
+    [
+        (DOWN, {"length": "mm", "force": "N"}, "N"),
+        ({"blocks": ["right"], "rotation": -1, "about": [2, 0]}, {"length": "m", "force": "lbf"}, "lbf m"),
+        (DOWN, {"length": "1", "force": "1"}, ""),
+    ],
+)
+def test_reaction_has_the_unit_of_a_force_and_with_a_rotation_of_a_moment(
+    settlement: dict[str, Any], units: dict[str, str], unit: str
+):
+    assert reaction_unit(drystone.build_wall(data(settlement, units=units))) == unit
 
 
 def test_command_refuses_a_wall_whose_supports_rest(tmp_path: Path):

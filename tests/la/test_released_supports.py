@@ -139,7 +139,9 @@ def test_command(tmp_path: Path):
     path.write_text(json.dumps(data(DOWN)), encoding="utf-8")
     done = command("reaction", path, "--without-dilatancy")
     assert done.returncode == 0, done.stderr
-    assert "greatest known reaction of a support that gives way, without dilatancy, is 1.142857" in done.stdout
+    assert "greatest known reaction of a support that gives way, without dilatancy, is 1.142857 kN" in done.stdout
+    assert "By virtual work the reaction of this mechanism is known" in done.stdout
+    assert "multiplier" not in done.stdout
     listed = json.loads(command("reaction", path, "--without-dilatancy", "--json").stdout)
     assert listed["pushing"]["value"] == pytest.approx(4.0, rel=EXACT)
     assert listed["giving_way"]["judge"]["accepted"] is True

@@ -367,7 +367,7 @@ def test_other_methods_refuse_ties_by_name():
     assert sorted(methods_with("any_bars")) == sorted(TAKEN)
     for name in method_names():
         if name not in TAKEN:
-            with pytest.raises(InputError, match=f"{name} takes no ties and props; the wall has tie 1"):
+            with pytest.raises(InputError, match=f"{name} takes no ties, props and passive fill; the wall has tie 1"):
                 check_takes(load_method(name), tied(2.0))
 
 

@@ -148,12 +148,13 @@ def test_fill_belongs_to_load_cases_combinations_and_sums():
     [
         (SOIL | {"level": 0.5}, "no face of a free block that it may load looks up below its level 0.5"),
         (SOIL | {"between": [2, 3]}, "no face of a free block"),
+        (SOIL | {"blocks": []}, "it names no free block"),
         (SOIL | {"between": [1, 0]}, "the first is the smaller"),
         (SOIL | {"blocks": ["block"], "group": "x"}, "either blocks or group"),
         (SOIL | {"blocks": ["ground"]}, 'block "ground" is fixed'),
         (SOIL | {"blocks": ["nobody"]}, 'no block is called "nobody"'),
         (SOIL | {"group": "nobody"}, 'no block is in a group "nobody"'),
-        (SOIL | {"passive": True}, "soil and water that resist"),
+        (SOIL | {"kp": 3}, "soil and water that resist"),
         ({"level": 1.0}, "unit_weight"),
     ],
 )

@@ -11,7 +11,7 @@ import drystone
 from harness.model.errors import InputError
 from harness.model.inspection import inspect
 from harness.model.reading import parse_wall
-from tests.walls import stack, wall_data
+from tests.walls import running_bond, stack, wall_data
 
 CROWN = {"block": "2", "at": [0.1, 0.4], "force": [0.0, -5.0]}
 SIDE = {"block": "2", "at": [0.0, 0.4], "force": [3.0, 0.0]}
@@ -62,7 +62,7 @@ def test_each_load_case_has_the_answer_of_the_wall_that_it_is():
 def test_a_wall_of_load_cases_is_not_built_as_if_it_had_none():
     made = drystone.build_wall(wall({"push": {"live": PUSH}, "none": {}}), "pier")
     assert repr(made) == "<Wall pier: load cases push, none>"
-    with pytest.raises(InputError, match=r"it has the load cases push, none, each a wall"):
+    with pytest.raises(InputError, match=r"it has the load cases of push, none, each a wall"):
         drystone.analyse(made, "la-associated")
 
 
@@ -103,3 +103,18 @@ def test_more_load_cases_than_are_answered_are_counted():
     many = {f"c{k}": {"live": {"body": [{"per_weight": [1, 0]}]}} for k in range(501)}
     with pytest.raises(InputError, match="it has 501 entries, and may have 500 at most"):
         parse_wall({"format": "wall/1", "friction": 0.5, "load_cases": many}, "wall")
+
+
+@pytest.mark.parametrize(
+    ("method", "pattern", "count"), [("la-associated", running_bond(3, 4), 20), ("la", stack(2), 3)]
+)
+def test_load_cases_together_have_the_bits_of_each_alone(method: str, pattern: dict[str, Any], count: int):
+    """One process answers all of them, and nothing goes from one load case to the next."""
+    cases = {f"c{k}": {"live": {"body": [{"per_weight": [1.0, -0.02 * k]}]}} for k in range(count)}
+    made = drystone.build_wall(wall_data(pattern, loads={}, load_cases=cases), "pier")
+    together = drystone.compare(made, [method]).results
+    assert len({row.multiplier for row in together}) > 1
+    for row, one in zip(together, made.load_cases.values(), strict=True):
+        alone = drystone.analyse(one, method)
+        for name in ("status", "finding", "multiplier", "forces", "mechanism"):
+            assert np.array_equal(getattr(row, name), getattr(alone, name)), (row.case, name)

@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 
 import drystone
+from harness.model.build import build
 from harness.model.errors import InputError
 from harness.model.load_cases import named_loads
 from harness.model.load_fields import Load
@@ -161,7 +162,10 @@ def test_file_round_trip_and_command(tmp_path: Path):
     assert json.loads(done.stdout)["multiplier"] == pytest.approx(0.231580 * 1.35 / 1.5, abs=1e-6)
     without = command("run", "la-associated", path)
     assert without.returncode == 2
-    assert "it has the load cases wheel-1, wheel-2" in without.stderr
+    assert "travelling, combinations: it has the load cases wheel-1, wheel-2" in without.stderr
+    alone = parse_wall(semicircle(0.2, travelling={"wheel": DOWN}), "")
+    with pytest.raises(InputError, match=r"^travelling: it has the load cases of wheel, each a wall"):
+        build(alone)
 
 
 @pytest.mark.parametrize(

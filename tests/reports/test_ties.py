@@ -116,7 +116,7 @@ def test_report_and_its_data(tmp_path: Path):
     asked = ("--methods", "fe,la", "--report", report, "--store", tmp_path / "store.sqlite")
     done = command("compare", path, *asked)
     assert done.returncode == 0, done.stderr
-    assert "fe takes no ties and props; the wall has tie 1, raker" in " ".join(done.stdout.split())
+    assert "fe takes no ties, props and passive fill; the wall has tie 1, raker" in " ".join(done.stdout.split())
     page = report.read_text(encoding="utf-8")
     assert "Forces of ties and props" in page
     assert "1 tie, yield force 2 kN; 1 prop, yield force 1.5 kN" in page
