@@ -18,7 +18,7 @@ def load_steps(model: WallModel, steps: list[PathStep], most: int) -> LoadSteps:
     normal, shear = np.empty(model.n_points), np.empty(model.n_points)
     forces = []
     for step in kept:
-        gap_forces(step.opening, step.trial, model.kn, model.mu, step.state, normal, shear)
+        gap_forces(step.opening, step.trial, model.kn, model.mu, model.lift, step.state, normal, shear)
         forces.append(model.end_forces(normal, shear))
     return LoadSteps(
         model.assembly.block_ids,

@@ -49,6 +49,7 @@ def with_strength(model: WallModel) -> WallModel:
         kn=np.concatenate([model.kn, stiffness[joint]]),
         kt=np.concatenate([model.kt * left, (tangential * own)[joint]]),
         mu=np.concatenate([model.mu, np.ones(count)]),
+        psi=np.concatenate([model.psi, np.zeros(count)]),
         history=np.zeros(model.n_points + count),
         initial_opening=np.concatenate([clamped, -(shear / stiffness)[joint]]),
         dead=model.dead + _clamping(model, tension),

@@ -40,7 +40,7 @@ class WallModel:
             other block's, with coefficients 0.
         rows: (m, 3, 6) coefficients of (opening at end 1, at end 2, slip).
         interface: (P,) interface of each point; position: (P,) in [0, 1] from end 1.
-        kn, kt, mu: (P,) stiffnesses and friction.
+        kn, kt, mu: (P,) stiffnesses and friction; psi: (P,) dilatancy, by which a slip lifts a point.
         history: (P,) initial h = T0 - kt s0; initial_opening: (P,) at no displacement, negative where a point carries
             compression before anything has moved.
         dead, live: (N,) dimensionless loads.
@@ -63,6 +63,7 @@ class WallModel:
     kn: FloatArray
     kt: FloatArray
     mu: FloatArray
+    psi: FloatArray
     history: FloatArray
     initial_opening: FloatArray
     dead: FloatArray
@@ -104,7 +105,17 @@ class WallModel:
     @cached_property
     def law(self) -> JointLaw:
         """The law of the gap points."""
-        return JointLaw(self.mu, np.zeros(self.n_points))
+        return JointLaw(self.mu, self.psi)
+
+    @cached_property
+    def lift(self) -> FloatArray:
+        """(P,) opening psi / kt by which a unit of shear beyond friction lifts a point."""
+        return self.psi / self.kt
+
+    @cached_property
+    def dilates(self) -> bool:
+        """Whether a slip lifts any point. Its friction history is then not updated: the lift would have to be too."""
+        return bool(self.psi.any())
 
     def strains(self, u: FloatArray) -> tuple[FloatArray, FloatArray]:
         """Openings and slips (P,) of the gap points at displacements u (N,)."""
@@ -117,14 +128,14 @@ class WallModel:
         """States (P,) of the gap points at displacements u with friction history h (P,)."""
         opening, slip = self.strains(u)
         state = np.empty(self.n_points, dtype=np.int64)
-        classify(opening, self.kt * slip + history, self.kn, self.mu, state, virgin)
+        classify(opening, self.kt * slip + history, self.kn, self.mu, self.lift, state, virgin)
         return state
 
     def forces(self, u: FloatArray, history: FloatArray, state: IntArray) -> tuple[FloatArray, FloatArray]:
         """Compression N and internal shear T (P,) of points held in the given states."""
         opening, slip = self.strains(u)
         normal, shear = np.empty(self.n_points), np.empty(self.n_points)
-        gap_forces(opening, self.kt * slip + history, self.kn, self.mu, state, normal, shear)
+        gap_forces(opening, self.kt * slip + history, self.kn, self.mu, self.lift, state, normal, shear)
         return normal, shear
 
     def end_forces(self, normal: FloatArray, shear: FloatArray) -> FloatArray:
@@ -150,7 +161,7 @@ class WallModel:
         """dead * dead load + multiplier * live load minus the internal forces of gaps g, tau (P,): (N,)."""
         out = dead * self.dead + multiplier * self.live
         tangent_defect(
-            self.unknown, self.rows, self.interface, self.position, self.kn, self.mu, state, opening, trial, out
+            self.unknown, self.rows, self.interface, self.position, self.kn, self.mu, self.lift, state, opening, trial, out
         )
         return out
 
@@ -161,7 +172,7 @@ class WallModel:
     def tangent(self, state: IntArray, shift: float = 0.0, regularised: bool = False) -> sp.csc_matrix:
         """The sparse tangent (N, N) in the given states, with what is `added` to its diagonal."""
         values = np.zeros(len(self.row_index))
-        add_tangent(self.slot, self.rows, self.interface, self.position, self.kn, self.kt, self.mu, state, values)
+        add_tangent(self.slot, self.rows, self.interface, self.position, self.kn, self.kt, self.mu, self.lift, state, values)
         matrix = sp.csc_matrix((values, self.row_index, self.column_start), shape=(self.n_unknowns, self.n_unknowns))
         if shift or regularised:
             matrix.setdiag(matrix.diagonal() + self.added(shift, regularised))
@@ -170,12 +181,12 @@ class WallModel:
     def change(self, point: int, old: int, new: int) -> tuple[IntArray, FloatArray, FloatArray]:
         """The rank-one change a b' of the tangent when a point changes its state: (unknowns, a, b), all (6,)."""
         a, b = np.empty(6), np.empty(6)
-        rank_one_change(self.rows, self.interface, self.position, self.kn, self.kt, self.mu, point, old, new, a, b)
+        rank_one_change(self.rows, self.interface, self.position, self.kn, self.kt, self.mu, self.lift, point, old, new, a, b)
         return self.unknown[self.interface[point]], a, b
 
     def add_changes(self, changes: Sequence[tuple[int, int, int]], columns: FloatArray) -> int:
         """Add the vectors a of changes (point, old, new) to the columns of (N, k); returns the first row concerned."""
-        springs = self.rows, self.interface, self.position, self.kn, self.kt, self.mu
+        springs = self.rows, self.interface, self.position, self.kn, self.kt, self.mu, self.lift
         return add_changes(self.unknown, *springs, np.array(changes), columns)
 
     def block_displacements(self, u: FloatArray) -> FloatArray:
@@ -228,6 +239,7 @@ def build_model(
     regularised = (
         options.regularisation.stiffness * np.stack([np.ones_like(lever), np.ones_like(lever), lever], axis=1).ravel()
     )
+    law = assembly.law.with_friction(np.minimum(assembly.friction, friction_cap))
     stiffness = settings.normal_stiffness or 1000.0 * force / length
     model = WallModel(
         assembly=assembly,
@@ -238,7 +250,8 @@ def build_model(
         position=np.tile(xi, m),
         kn=kn,
         kt=kn * settings.stiffness_ratio,
-        mu=np.minimum(assembly.friction, friction_cap)[interface],
+        mu=law.friction[interface],
+        psi=law.dilatancy[interface],
         history=np.zeros(m * q),
         initial_opening=np.zeros(m * q),
         dead=(assembly.dead[order] * scale).ravel(),
