@@ -4,11 +4,11 @@ With the friction limits c frozen (Tresca), the equilibrium of the gap springs m
 
     min 1/2 sum kn z^2 + 1/2 sum (kt (s - e) + h)^2 / kt + sum c |e| - load'u    with z >= psi |e| - g(u)
 
-where z is the compression and e the frictional part of the slip, which lifts by psi |e| and dissipates c = (mu - psi) N. OSQP (Stellato et al., 2020) solves it, split as
-e = e+ - e-, and the limits follow by fixed-point iteration until they repeat (Haslinger, 1983). They begin where the
-last two steps lead: limits of the last step can be too low for the next, and the energy then has no minimum although
-the wall stands. The step of the multiplier is bisected between the last step that converged and the first that did not:
-the answer is that bracket.
+where z is the compression and e the frictional part of the slip, which lifts by psi |e| and dissipates c = (mu - psi)
+N. OSQP (Stellato et al., 2020) solves it, split as e = e+ - e-, and the limits follow by fixed-point iteration until
+they repeat (Haslinger, 1983). They begin where the last two steps lead: limits of the last step can be too low for the
+next, and the energy then has no minimum although the wall stands. The step of the multiplier is bisected between the
+last step that converged and the first that did not: the answer is that bracket.
 """
 
 from __future__ import annotations

@@ -108,7 +108,9 @@ def test_frozen_law_is_the_law_where_its_limits_are_what_slip_dissipates_and_the
     ("old", "new"),
     [(STICK, SLIP_PLUS), (STICK, SLIP_MINUS), (SLIP_PLUS, STICK), (SLIP_MINUS, OPEN), (OPEN, SLIP_PLUS)],
 )
-def test_every_change_of_state_changes_the_tangent_by_the_rank_one_term_it_claims(old: int, new: int, lift: float) -> None:
+def test_every_change_of_state_changes_the_tangent_by_the_rank_one_term_it_claims(
+    old: int, new: int, lift: float
+) -> None:
     rng = np.random.default_rng(1)
     row_n, row_t = rng.normal(size=6), rng.normal(size=6)
     kn, kt, mu = 2.0, 0.7, 0.6

@@ -212,7 +212,9 @@ def test_a_point_that_just_touches_sticks_only_before_anything_moved(virgin: boo
 
 def test_a_point_at_the_limit_of_friction_sticks() -> None:
     state = np.full(3, -1)
-    classify(np.full(3, -1.0), np.array([1.0, -1.0, 1.0]), np.full(3, KN), np.array([MU, MU, 0.0]), np.zeros(3), state, False)
+    classify(
+        np.full(3, -1.0), np.array([1.0, -1.0, 1.0]), np.full(3, KN), np.array([MU, MU, 0.0]), np.zeros(3), state, False
+    )
     assert state.tolist() == [STICK, STICK, SLIP_PLUS]
 
 

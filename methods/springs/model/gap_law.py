@@ -1,7 +1,8 @@
 """The law of one gap point: a no-tension normal spring and a Coulomb-limited tangential spring that may dilate.
 
-A plastic slip of size e beyond the elastic one lifts the point by psi e. With the opening g, the slip s, the trial shear
-tau = kt s + h, where h = T0 - kt s0 holds the friction history, and the lift psi / kt of a unit of shear beyond friction:
+A plastic slip of size e beyond the elastic one lifts the point by psi e. With the opening g, the slip s, the trial
+shear tau = kt s + h, where h = T0 - kt s0 holds the friction history, and the lift psi / kt of a unit of shear beyond
+friction:
 
     open   g > lift |tau|       N = T = 0
     stick  |tau| <= -mu kn g    N = -kn g,                                        T = tau
@@ -61,9 +62,7 @@ def classify(
 
 
 @compiled
-def point_forces(
-    opening: float, trial: float, kn: float, mu: float, lift: float, state: int
-) -> tuple[float, float]:
+def point_forces(opening: float, trial: float, kn: float, mu: float, lift: float, state: int) -> tuple[float, float]:
     """Compression N and internal shear T of one point held in a state."""
     if state == OPEN:
         return 0.0, 0.0
@@ -149,9 +148,7 @@ def frozen_forces(
 
 
 @compiled
-def tangent_coefficients(
-    kn: float, kt: float, mu: float, lift: float, state: int
-) -> tuple[float, float, float, float]:
+def tangent_coefficients(kn: float, kt: float, mu: float, lift: float, state: int) -> tuple[float, float, float, float]:
     """(dFn/dg, dT/ds, dT/dg, dFn/ds) of one point in its state, Fn = -N being the internal normal force."""
     if state == OPEN:
         return 0.0, 0.0, 0.0, 0.0

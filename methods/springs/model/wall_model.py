@@ -161,7 +161,17 @@ class WallModel:
         """dead * dead load + multiplier * live load minus the internal forces of gaps g, tau (P,): (N,)."""
         out = dead * self.dead + multiplier * self.live
         tangent_defect(
-            self.unknown, self.rows, self.interface, self.position, self.kn, self.mu, self.lift, state, opening, trial, out
+            self.unknown,
+            self.rows,
+            self.interface,
+            self.position,
+            self.kn,
+            self.mu,
+            self.lift,
+            state,
+            opening,
+            trial,
+            out,
         )
         return out
 
@@ -172,7 +182,9 @@ class WallModel:
     def tangent(self, state: IntArray, shift: float = 0.0, regularised: bool = False) -> sp.csc_matrix:
         """The sparse tangent (N, N) in the given states, with what is `added` to its diagonal."""
         values = np.zeros(len(self.row_index))
-        add_tangent(self.slot, self.rows, self.interface, self.position, self.kn, self.kt, self.mu, self.lift, state, values)
+        add_tangent(
+            self.slot, self.rows, self.interface, self.position, self.kn, self.kt, self.mu, self.lift, state, values
+        )
         matrix = sp.csc_matrix((values, self.row_index, self.column_start), shape=(self.n_unknowns, self.n_unknowns))
         if shift or regularised:
             matrix.setdiag(matrix.diagonal() + self.added(shift, regularised))
@@ -181,7 +193,9 @@ class WallModel:
     def change(self, point: int, old: int, new: int) -> tuple[IntArray, FloatArray, FloatArray]:
         """The rank-one change a b' of the tangent when a point changes its state: (unknowns, a, b), all (6,)."""
         a, b = np.empty(6), np.empty(6)
-        rank_one_change(self.rows, self.interface, self.position, self.kn, self.kt, self.mu, self.lift, point, old, new, a, b)
+        rank_one_change(
+            self.rows, self.interface, self.position, self.kn, self.kt, self.mu, self.lift, point, old, new, a, b
+        )
         return self.unknown[self.interface[point]], a, b
 
     def add_changes(self, changes: Sequence[tuple[int, int, int]], columns: FloatArray) -> int:

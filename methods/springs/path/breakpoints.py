@@ -1,7 +1,7 @@
 """The search for the next breakpoint along a straight piece of the path.
 
 Inside a cell of states these functions stay positive:
-    open: g -+ lift tau (closes into slip);  slip: N (opens), sign tau + mu kn g (sticks);  stick: -mu kn g -+ tau (slips).
+    open: g -+ lift tau (closes);  slip: N (opens), sign tau + mu kn g (sticks);  stick: -mu kn g -+ tau (slips).
 The search is Harris' two-pass ratio test (1973): of the breakpoints met within a hair of the first, the one crossed
 fastest is taken, which keeps the pivots away from zero.
 """

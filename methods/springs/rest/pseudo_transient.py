@@ -7,9 +7,10 @@ settles. In one increment du of the motion the shear c = (mu - psi) N that slip 
     sum min over e of [kn min(g - psi |e|, 0)^2 / 2 + (tau - kt e)^2 / (2 kt) + c |e|] + sigma du' M du / 2 - loads' du
 
 with tau = kt s + h, which Newton with a line search finds. After it the limits c go half of their way to (mu - psi) N;
-a motion that commits its friction history also freezes the shears in, where slips do not lift. Near rest plain Newton finds the equilibrium; where its tangent is
-singular, as in a statically determinate wall, the wall is at rest when neither forces of inertia nor limits move any
-more. There the law of the gap points holds as it does on the exact path. A wall that falls comes to a steady motion.
+a motion that commits its friction history also freezes the shears in, where slips do not lift. Near rest plain Newton
+finds the equilibrium; where its tangent is singular, as in a statically determinate wall, the wall is at rest when
+neither forces of inertia nor limits move any more. There the law of the gap points holds as it does on the exact path.
+A wall that falls comes to a steady motion.
 
 On walls of many irregular blocks the exact path goes to and fro over tens of thousands of breakpoints on its way up.
 There the load is raised in finite steps instead, each until the wall has come to rest again.
