@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 
 from harness.model.assembly import FloatArray
+from harness.model.bars import path_column
 from harness.model.errors import first_few
 from harness.model.method import Answer, Finding, Status
 from methods.fe.convex_steps import ConvexResult
@@ -183,13 +184,14 @@ def compact(model: WallModel, record: PathRecord) -> dict[str, list[float]]:
     """Some of the points of a path, evenly picked, the last one kept."""
     count = len(record.multiplier)
     pick = np.unique(np.linspace(0, count - 1, min(count, PATH_POINTS)).astype(int)) if count else np.array([], int)
+    bars = [model.assembly.joint[p] for p in np.flatnonzero(model.assembly.is_bar)]
     scale = model.displacement / (float(np.abs(model.live.reshape(-1, 3)[:, :2]).sum()) or 1.0)
     return {
         "multiplier": [record.multiplier[i] for i in pick],
         "live_displacement": [record.displacement[i] * scale for i in pick],
         "slipping_points": [float(record.slipping[i]) for i in pick],
         "open_points": [float(record.open[i]) for i in pick],
-    }
+    } | {path_column(name): [record.bars[i][k] for i in pick] for k, name in enumerate(bars)}
 
 
 def bracket_answer(result: ConvexResult, forces: FloatArray, details: dict[str, Any]) -> Answer:

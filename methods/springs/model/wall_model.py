@@ -43,13 +43,14 @@ class WallModel:
         kn, kt, mu: (P,) stiffnesses and friction; psi: (P,) dilatancy, by which a slip lifts a point.
         history: (P,) initial h = T0 - kt s0; initial_opening: (P,) at no displacement, negative where a point carries
             compression before anything has moved.
+        middle: (P,) shear that a point bears besides its own, as part of the dead load: the middle of a bar's range.
         dead, live: (N,) dimensionless loads.
         inertia: (N,) dimensionless masses for slow motion.
         footing: (N,) stiffness of every block against the ground that a singular tangent is factorised with.
         column_start, row_index: CSC pattern of the tangent; slot: (m, 36) where each interface adds to its values.
         force, length, displacement: what one unit inside is worth outside.
-        cohesive: (k,) interfaces with a cohesion spring, which are the last k of the points, with rows of their own
-            behind the m.
+        cohesive: (k,) interfaces with a cohesion spring, and then ties and props: the last k of the points, with rows
+            of their own behind the m.
         options: of all that is done with the model.
         deadline: of the run in which it is made; all that goes on for long asks for it.
     """
@@ -66,6 +67,7 @@ class WallModel:
     psi: FloatArray
     history: FloatArray
     initial_opening: FloatArray
+    middle: FloatArray
     dead: FloatArray
     live: FloatArray
     inertia: FloatArray
@@ -101,6 +103,24 @@ class WallModel:
     def n_contacts(self) -> int:
         """The number of gap points that may open: all but the cohesion springs, which come last."""
         return self.n_points - len(self.cohesive)
+
+    @cached_property
+    def n_updated(self) -> int:
+        """The number of gap points whose friction history is updated: all but ties and props, which come last.
+
+        A tie that has been slack bears nothing until it is as long as before.
+        """
+        return self.n_points - int(self.assembly.is_bar.sum())
+
+    def updated(self, history: FloatArray, before: FloatArray) -> FloatArray:
+        """The history (P,) after an update from one `before` it."""
+        return np.concatenate([history[: self.n_updated], before[self.n_updated :]])
+
+    def bar_tensions(self, trial: FloatArray) -> FloatArray:
+        """Tensions of ties and props beyond their prestress [force], at trial shears tau (P,)."""
+        last = slice(self.n_updated, None)
+        limit = -self.mu[last] * self.kn[last] * self.initial_opening[last]
+        return self.force * (np.clip(trial[last], -limit, limit) + self.middle[last])
 
     @cached_property
     def law(self) -> JointLaw:
@@ -145,7 +165,7 @@ class WallModel:
             return self.force * equivalent_end_forces(self.position, self.interface, normal, shear, count)
         dry = slice(self.n_contacts)
         ends = equivalent_end_forces(self.position[dry], self.interface[dry], normal[dry], shear[dry], count)
-        ends[self.cohesive, 2] -= shear[self.n_contacts :]
+        ends[self.cohesive, 2] -= shear[self.n_contacts :] + self.middle[self.n_contacts :]
         ends *= self.force
         ends[:, :2] -= self.assembly.law.constant[:, :2]  # the clamping, which the springs bear besides
         return ends
@@ -236,12 +256,12 @@ def build_model(
     place[order] = np.arange(len(order))
     unknown, rows = _kinematic_rows(assembly, place, length)
     xi, weights = gap_points(settings.rule, settings.points)
-    m, q = assembly.n_interfaces, settings.points
-    interface = np.repeat(np.arange(m), q)
+    joints, q = np.flatnonzero(~assembly.is_bar), settings.points
+    interface = np.repeat(joints, q)
     if settings.weighting == "point":
-        kn = np.tile(weights * q, m)
+        kn = np.tile(weights * q, len(joints))
     else:
-        kn = np.tile(weights, m) * np.repeat(assembly.length / length, q)
+        kn = np.tile(weights, len(joints)) * np.repeat(assembly.length[joints] / length, q)
     n = 3 * len(order)
     start, row_index, slot = _pattern(unknown, rows, n)
     scale = np.array([1.0, 1.0, 1.0 / length]) / force
@@ -261,13 +281,14 @@ def build_model(
         unknown=unknown,
         rows=rows,
         interface=interface,
-        position=np.tile(xi, m),
+        position=np.tile(xi, len(joints)),
         kn=kn,
         kt=kn * settings.stiffness_ratio,
         mu=law.friction[interface],
         psi=law.dilatancy[interface],
-        history=np.zeros(m * q),
-        initial_opening=np.zeros(m * q),
+        history=np.zeros(len(interface)),
+        initial_opening=np.zeros(len(interface)),
+        middle=np.zeros(len(interface)),
         dead=(assembly.dead[order] * scale).ravel(),
         live=(assembly.live[order] * scale).ravel(),
         inertia=inertia,
@@ -279,7 +300,10 @@ def build_model(
         length=length,
         displacement=force / stiffness,
     )
-    return with_strength(model) if assembly.strong else model
+    if not assembly.strong:
+        return model
+    given = assembly.bar_stiffness / stiffness
+    return with_strength(model, np.where(np.isnan(given), settings.points, given))
 
 
 def load_scale(model: WallModel, multiplier: float) -> float:

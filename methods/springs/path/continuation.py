@@ -146,7 +146,7 @@ class PathFollower:
             return self.history
         normal, shear = np.empty_like(self.trial), np.empty_like(self.trial)
         gap_forces(self.opening, self.trial, model.kn, model.mu, model.lift, self.state, normal, shear)
-        return shear - (self.trial - self.history)
+        return model.updated(shear - (self.trial - self.history), self.history)
 
     def is_mechanism(self) -> bool:
         """Whether no force changes along the present piece (rates of forces negligible beside the fastest)."""
@@ -271,7 +271,8 @@ class PathFollower:
         elif record.first_limit is None and self.multiplier < record.peak * (1.0 - 1e-9):
             record.first_limit = record.peak
         if record.events % note == 0:
-            record.add(self.multiplier, live_rate(self.model.live, self.u), self.n_slip, self.n_open)
+            bars = self.model.bar_tensions(self.trial) if self.model.n_updated < self.model.n_points else ()
+            record.add(self.multiplier, live_rate(self.model.live, self.u), self.n_slip, self.n_open, bars)
         record.keep(self.load_step)
 
     def _flip(self, point: int, new: int) -> None:

@@ -245,10 +245,11 @@ def check(assembly: Assembly, multiplier: float, forces: FloatArray, mechanism: 
     speed = float(np.abs(velocity * lengths).max()) * min(1.0, max(share, IDLE)) or 1.0
     law = assembly.law
     opened, slipped = law.rates(rates)[:, :2], np.abs(rates[:, 2])
-    strength = law.strength(forces)
+    slacks, forwards = law.slacks(forces), rates[:, 2] > 0.0
+    strength = law.by_friction(forces[:, 0] + forces[:, 1]) + np.where(forwards, law.constant[:, 2], law.constant[:, 3])
     tension = law.constant[:, :2]
     size = max(assembly.load_unit, abs(multiplier))
-    against = strength + np.sign(rates[:, 2]) * forces[:, 2]
+    against = np.where(forwards, slacks[:, 2], slacks[:, 3])
     pressed = forces[:, :2] + tension
     idle = float(np.abs(pressed * opened).sum() + np.abs(against * rates[:, 2]).sum())
     pressing = np.column_stack([pressed, against]) / scale
@@ -256,7 +257,7 @@ def check(assembly: Assembly, multiplier: float, forces: FloatArray, mechanism: 
     residuals = {
         "both": float(np.minimum(np.abs(pressing), motion).max()),
         "equilibrium": float(np.abs(balance).max()) / scale,
-        "yield": max(0.0, -float(law.slacks(forces).min())) / scale,
+        "yield": max(0.0, -float(slacks.min())) / scale,
         "dilatancy": max(0.0, -float(opened.min())) / speed,
         "complementarity": idle / (power * size) if power > 0.0 else np.inf,
     }

@@ -143,7 +143,9 @@ class PseudoTransient:
 
     def _committed(self, moment: _Moment, limit: FloatArray) -> _Moment:
         """The moment under new friction limits c (P,), with its shears frozen in if the motion commits them."""
-        trial = np.clip(moment.trial, -limit, limit) if self.commits else moment.trial
+        trial = moment.trial
+        if self.commits:
+            trial = self.model.updated(np.clip(trial, -limit, limit), trial)
         return replace(moment, trial=trial, limit=limit)
 
     def _history(self, moment: _Moment, limit: FloatArray) -> FloatArray:
