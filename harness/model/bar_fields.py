@@ -26,7 +26,7 @@ class _Bar(Strict):
     )
     stiffness: Positive | None = Field(
         None,
-        description="force for a unit of elongation [force/length], which `fe` alone takes; as a joint's if absent",
+        description="force for a unit of elongation [force/length], where joints are springs; as a joint's if absent",
     )
 
     @model_validator(mode="after")
