@@ -1,4 +1,4 @@
-"""Cases of joints with cohesion, tensile and compressive strength: elementary statics, and programmes of other code."""
+"""Cases of joints with dilatancy, cohesion, tensile and compressive strength: statics, and programmes of other code."""
 
 from __future__ import annotations
 
@@ -14,6 +14,10 @@ from harness.model.wall import Wall
 BONDED = (
     "A. Orduna, P. B. Lourenco, Cap model for limit analysis and strengthening of masonry structures, Journal of "
     "Structural Engineering 129 (2003) 1367-1375"
+)
+DRUCKER = (
+    "D. C. Drucker, Coulomb friction, plasticity, and limit loads, Journal of Applied Mechanics 21 (1954) 71-74: the "
+    "limit of associated flow is unique"
 )
 
 
@@ -114,6 +118,36 @@ def bonded_wall() -> Iterator[Recipe]:
     yield recipe("bonded-wall-21", content, references, remarks)
 
 
+def dilatant_wall() -> Iterator[Recipe]:
+    """The 21-brick wall whose slips lift by the friction: associated flow, so that all methods have one multiplier."""
+    methods = ("la", "la-associated", "fe")
+    content = wall(
+        "The 21-brick wall whose joints lift by their friction as they slip",
+        unit_weight=20.0,
+        friction={"default": 0.65, "dilatancy": 0.65},
+        pattern=BOND_21,
+        loads=push(),
+    )
+    references = [
+        r.reference(
+            "associated",
+            "exact",
+            0.5844609341,
+            methods,
+            "a linear programme of other code: max lambda under equilibrium and yield",
+            "With the dilatancy of the friction every method finds the associated maximum 0.5844609.",
+            tolerance=1e-9,
+            tolerance_reason="ten digits recorded",
+            gate=True,
+        )
+    ]
+    summary = (
+        "With the dilatancy of the friction the flow is associated and the limit unique (Drucker 1954), whatever the "
+        "self-stress and the stiffness of joints; dry stone lifts by less and collapses at 0.5579978 (least known)."
+    )
+    yield recipe("dilatant-wall-21", content, references, Remarks(DRUCKER, summary, ("strength",), methods=methods))
+
+
 def crushing_piers() -> Iterator[Recipe]:
     """Piers on a joint that crushes at its toe overturn at b / h - gamma b / f_c; one has tensile strength besides."""
     unit, width, strength = 20.0, 0.4, 200.0
@@ -197,5 +231,5 @@ def _by_associated(value: float, source: str, requirement: str, tolerance: float
 
 def recipes() -> Iterator[Recipe]:
     """Every case of joints with strength."""
-    for family in (bonded_blocks, bonded_wall, crushing_piers, crushing_walls):
+    for family in (bonded_blocks, bonded_wall, dilatant_wall, crushing_piers, crushing_walls):
         yield from family()

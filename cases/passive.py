@@ -9,7 +9,7 @@ from typing import Any
 import cases.recipe as r
 from cases.recipe import STATICS, Recipe, Remarks, push, recipe, wall
 
-METHODS = ("la", "la-associated")
+METHODS = ("la", "la-associated", "fe")
 RING = (
     "M. Gilbert, Limit analysis applied to masonry arch bridges: state-of-the-art and recent developments, 5th "
     "International Conference on Arch Bridges (2007) 13-28: passive pressure on the extrados"

@@ -9,7 +9,7 @@ from typing import Any
 import cases.recipe as r
 from cases.recipe import STATICS, Recipe, Remarks, push, recipe, wall
 
-METHODS = ("la", "la-associated")
+METHODS = ("la", "la-associated", "fe")
 SUITES = ("ties",)
 THRUST = (
     "J. Heyman, The stone skeleton, International Journal of Solids and Structures 2 (1966) 249-279: an arch spreads "

@@ -9,7 +9,8 @@
 `read_wall`, `build_wall`, `new_wall` and `library_wall` give a `Wall`; `analyse` runs one method in this process,
 `compare` many, each run in a process of its own; `judge` holds an answer against equilibrium, yield and flow. `sweep`
 varies friction, proportions or seeds over many walls, and `check` compares methods with checked references.
-`factor` is the factor of safety on friction, and `domain` the interaction domain of two live loads.
+`factor` is the factor of safety on friction, `domain` the interaction domain of two live loads, and `capacity` the
+capacity curve, on updated geometry.
 """
 
 from __future__ import annotations
@@ -20,6 +21,7 @@ __version__ = "0.2.0"
 
 __all__ = [
     "Answer",
+    "CapacityCurve",
     "Check",
     "Comparison",
     "Domain",
@@ -36,6 +38,7 @@ __all__ = [
     "__version__",
     "analyse",
     "build_wall",
+    "capacity",
     "check",
     "compare",
     "domain",
@@ -51,6 +54,7 @@ __all__ = [
 
 if TYPE_CHECKING:
     from drystone.analysis import Result, analyse, judge, methods
+    from drystone.capacity_curve import CapacityCurve, capacity
     from drystone.checking import Check, check
     from drystone.comparing import Comparison, compare
     from drystone.interaction import Domain, domain
@@ -63,6 +67,7 @@ if TYPE_CHECKING:
 
 _HOME = {
     "drystone.analysis": ("Result", "analyse", "judge", "methods"),
+    "drystone.capacity_curve": ("CapacityCurve", "capacity"),
     "drystone.checking": ("Check", "check"),
     "drystone.comparing": ("Comparison", "compare"),
     "drystone.interaction": ("Domain", "domain"),

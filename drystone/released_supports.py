@@ -87,6 +87,7 @@ def released(assembly: Assembly, reaction: float, greatest: bool) -> ReleasedWal
         prestress=np.append(bars.prestress, np.zeros(2)),
         least=np.append(bars.least, -strong),
         greatest=np.append(bars.greatest, strong),
+        stiffness=np.append(bars.stiffness, np.full(2, np.nan)),
     )
     size = assembly.length_scale
     square = assembly.polygons[carrier].min(axis=0) - 3.0 * size + size * np.array([[0, 0], [1, 0], [1, 1], [0, 1.0]])

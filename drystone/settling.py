@@ -92,7 +92,7 @@ class SettledCollapse:
         """The reaction against the displacement, and the wall where it last stands."""
         from reports.drawing.settling import settled_figure
 
-        return settled_figure(self.assembly, self.places, self.displacement, self.reaction, self.stands)
+        return settled_figure(self.assembly, self.places, (self.displacement, self.reaction))
 
 
 def settled_until_collapse(wall: Wall, tolerance: float = 1e-9) -> SettledCollapse | str:
@@ -110,25 +110,25 @@ def settled_until_collapse(wall: Wall, tolerance: float = 1e-9) -> SettledCollap
 
     assembly = wall.assembly
     check_reactions(assembly, wall.case.origin)
-    _check_simple(assembly)
+    check_simple(assembly, assembly.dead)
     found = settle(MovedWall.at_rest(assembly))
     if isinstance(found, str):
         return f"The linear programme of the least reaction is {found} where the supports begin to move."
     last = found.points[-1]
     stands, places = last.wall.displacement, last.wall.places
-    said = [judge_settled(assembly, stands, places, last.state.reaction, last.state.forces, tolerance)]
+    said = [judge_settled(assembly, stands, places, last.value, last.forces, tolerance)]
     if found.fall is not None and found.mechanism is not None:
         at = found.fall.displacement
-        bore = last.state.forces
+        bore = last.forces
         said.append(judge_settled_fall(assembly, at, found.fall.places, found.mechanism, tolerance, bore=bore))
     return SettledCollapse(
         assembly,
         stands,
         None if found.fall is None else found.fall.displacement,
         np.array([point.wall.displacement for point in found.points]),
-        np.array([point.state.reaction for point in found.points]),
+        np.array([point.value for point in found.points]),
         places,
-        last.state.forces,
+        last.forces,
         tuple(
             f"{assembly.block_ids[assembly.block_a[p]]} and {assembly.block_ids[assembly.block_b[p]]}"
             for p in np.flatnonzero(last.wall.closed.sum(axis=1) == 1)
@@ -149,19 +149,30 @@ def _apart(low: float, high: float | None) -> tuple[str, str]:
     return texts
 
 
-def _check_simple(assembly: Assembly) -> None:
-    """Refuse what is not followed on updated geometry."""
-    if assembly.strong or len(assembly.bars):
-        what = "joints with cohesion or tensile strength" if assembly.strong else "ties or props"
+def check_simple(assembly: Assembly, *loads: FloatArray) -> None:
+    """Refuse what is not followed on updated geometry: strength, bars, and loads (n, 3) beside the centroids.
+
+    Raises:
+        InputError: naming what is not.
+    """
+    faults = {
+        "ties, props or passive fill": len(assembly.bars) > 0,
+        "joints with cohesion or tensile strength": assembly.strong,
+        "joints with compressive strength": assembly.crushes,
+    }
+    what = next((name for name, there in faults.items() if there), None)
+    if what is not None:
         raise InputError(
             f"the wall has {what}, which are not followed on updated geometry",
             "Leave them out, or ask for the reactions as drawn",
         )
-    moment = abs(assembly.dead[assembly.free, 2]) > 1e-12 * assembly.force_scale * assembly.length_scale
-    if moment.any():
+    for load in loads:
+        moment = abs(load[assembly.free, 2])
+        if not moment.max(initial=0.0) > 1e-12 * assembly.force_scale * assembly.length_scale:
+            continue
         block = assembly.block_ids[assembly.free[int(np.argmax(moment))]]
         raise InputError(
-            f"the dead load on {block} does not act at its centroid, and its arm changes as the block turns",
+            f"the load on {block} does not act at its centroid, and its arm changes as the block turns",
             "Leave it out, or ask for the reactions as drawn",
             "loads",
         )

@@ -11,6 +11,7 @@ from drystone.reactions import moving_blocks, reactions
 from drystone.walls import Wall
 from harness.engine.reaction_judge import judge_plateau
 from harness.model.assembly import FloatArray
+from harness.model.errors import InputError
 from harness.model.method import check_takes, load_method
 from harness.model.result import Judgement
 
@@ -104,6 +105,10 @@ def reaction_paths(wall: Wall, **settings: Any) -> tuple[ReactionPath, ReactionP
     from methods.fe.support_path import support_path
 
     assembly, method = wall.assembly, load_method("fe")
+    if len(assembly.bars):
+        raise InputError(
+            "the path takes no ties, props and passive fill", "Ask for the two reactions alone, or leave them out"
+        )
     check_takes(method, replace(assembly, support_motion=np.zeros_like(assembly.support_motion)))
     extremes = reactions(wall)
     if isinstance(extremes, str):

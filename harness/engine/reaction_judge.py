@@ -67,11 +67,12 @@ def judge_plateau(
     tolerance: float,
     extremes: tuple[float, float],
 ) -> Judgement:
-    """Whether a constant reaction belongs to a mechanism without dilatancy that moving supports drive.
+    """Whether a constant reaction belongs to a mechanism that moving supports drive, by the flow of the joints.
 
-    Forces and mechanism are held to equilibrium, yield, and the work of each other: where no joint closes and no force
-    exceeds yield, the prescribed motion does the work R of the dead load less friction and strength only if nothing
-    opens under force or slips below its strength. So no motion beside the mechanism changes R.
+    Forces and mechanism are held to equilibrium, yield, and the work of each other: where no joint closes below the
+    lift of its slip and no force exceeds yield, the prescribed motion does the work R of the dead load less what
+    friction and strength take only if nothing opens under force or slips below its strength. So no motion beside the
+    mechanism changes R.
 
     Args:
         assembly: the wall with its `support_motion`, without ties and props.
@@ -83,7 +84,8 @@ def judge_plateau(
     sense = 1.0 if gives_way else -1.0
     work = _work(assembly, reaction)
     opening, slip = relative_velocities(assembly, mechanism)
-    friction = float((assembly.friction * forces[:, :2].sum(axis=1) * abs(slip)).sum())
+    opening = opening - (assembly.dilatancy * abs(slip))[:, None]  # beyond the lift of the slip
+    friction = float(((assembly.friction - assembly.dilatancy) * forces[:, :2].sum(axis=1) * abs(slip)).sum())
     taken = friction + dissipated_by_strength(assembly, opening, slip)
     low, high = extremes
     residuals = force_residuals(assembly, forces, 0.0) | _of_motion(assembly, mechanism, sense, opening)

@@ -1,4 +1,4 @@
-"""The judge of walls whose supports have moved far: that one still stands, and that it falls a hair further.
+"""The judge of walls that have moved far: that one stands, or just bears a load, and falls a hair further.
 
 The wall is put together from the places of its blocks by complex numbers, apart from the methods. The ends of each
 joint are points of both its blocks; where they meet they are a contact, and an end that has parted bears nothing.
@@ -80,6 +80,46 @@ def judge_settled(
         "reaction": abs(shown - reaction) / work,
     }
     return held(residuals, tolerance, "Places and forces where the wall last stands were")
+
+
+def judge_moved_collapse(
+    assembly: Assembly,
+    places: FloatArray,
+    multiplier: float,
+    forces: FloatArray,
+    mechanism: FloatArray,
+    tolerance: float,
+) -> Judgement:
+    """Whether a wall, its supports at rest, bears just this multiple of its live load where its blocks have moved to.
+
+    Forces within yield show that it bears as much. A dilatant mechanism on which the live load works forwards shows by
+    virtual work that it bears no more; where nothing slides in it, it is a collapse state of any flow.
+
+    Args:
+        assembly: the wall as drawn; dry joints, no bars, dead and live loads through the centroids.
+        places: (n, 3) displacements of the centroids [length] and rotations [rad].
+        multiplier: of the live load.
+        forces: (m, 3) contact forces, along the joints as they have turned [force]; mechanism: (n, 3) at any scale.
+        tolerance: the largest residual that is acceptable.
+    """
+    if not all(countable(each) for each in (places, multiplier, forces, mechanism)):
+        return said_of(tolerance, False, UNCOUNTABLE)
+    moved = _put_together(assembly, 0.0, places)
+    wall = moved.assembly
+    parted = float(abs(np.where(moved.meets, 0.0, forces[:, :2])).max(initial=0.0))
+    motion = mechanism / (fastest_vertex(wall, mechanism) or 1.0)
+    opening, slip = relative_velocities(wall, motion)
+    lift = (wall.friction * abs(slip))[:, None]
+    live = power(wall.live, motion)
+    bears = -power(wall.dead, motion) / live if live > 0.0 else np.inf
+    residuals = moved.residuals | force_residuals(wall, forces, multiplier)
+    residuals |= {
+        "parted": parted * assembly.n_free / assembly.force_scale,
+        "moving_supports": fastest_vertex(wall, np.where(wall.fixed[:, None], motion, 0.0)),
+        "closings": max(0.0, float(np.where(moved.meets, lift - opening, 0.0).max(initial=0.0))),
+        "virtual_work": abs(bears - multiplier) / max(assembly.load_unit, abs(multiplier)),
+    }
+    return held(residuals, tolerance, "Places, forces and mechanism were")
 
 
 def judge_settled_fall(

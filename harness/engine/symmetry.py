@@ -24,6 +24,7 @@ def _mapped(assembly: Assembly, matrix: FloatArray, shift: FloatArray, length: f
     def motion(values: FloatArray) -> FloatArray:
         return np.column_stack([length * values[:, :2] @ matrix.T, sign * values[:, 2]])
 
+    bars = assembly.bars
     return replace(
         assembly,
         polygons=tuple(place(polygon)[::-1] if flip else place(polygon) for polygon in assembly.polygons),
@@ -36,7 +37,7 @@ def _mapped(assembly: Assembly, matrix: FloatArray, shift: FloatArray, length: f
         dead=load(assembly.dead),
         live=load(assembly.live),
         support_motion=motion(assembly.support_motion),
-        bars=replace(assembly.bars, end1=place(assembly.bars.end1), end2=place(assembly.bars.end2)),
+        bars=replace(bars, end1=place(bars.end1), end2=place(bars.end2), stiffness=bars.stiffness / length),
     )
 
 
@@ -69,7 +70,7 @@ def scaled(assembly: Assembly) -> Assembly:
 def heavier(assembly: Assembly) -> Assembly:
     """All loads and strengths 250 times as great."""
     forces = ("weight", "dead", "live", "constant", "crushing")
-    of_bars = ("prestress", "least", "greatest")
+    of_bars = ("prestress", "least", "greatest", "stiffness")
     bars = replace(assembly.bars, **{name: 250.0 * getattr(assembly.bars, name) for name in of_bars})
     return replace(assembly, bars=bars, **{name: 250.0 * getattr(assembly, name) for name in forces})
 
@@ -103,6 +104,7 @@ def renumbered(assembly: Assembly, seed: int = 1) -> Assembly:
         dilatancy=assembly.dilatancy[joints],
         constant=np.where(swap[:, None], assembly.constant[joints][:, [0, 1, 3, 2]], assembly.constant[joints]),
         crushing=assembly.crushing[joints],
+        bar_stiffness=assembly.bar_stiffness[joints],
         brittle=assembly.brittle[joints],
         joint=tuple(assembly.joint[k] for k in joints),
         bars=assembly.bars.chosen(rng.permutation(len(assembly.bars)), place),
@@ -144,6 +146,7 @@ def beside(assembly: Assembly, share: float) -> Assembly:
         dilatancy=np.append(assembly.dilatancy, 0.0),
         constant=np.vstack([assembly.constant, np.zeros(4)]),
         crushing=np.append(assembly.crushing, np.inf),
+        bar_stiffness=np.append(assembly.bar_stiffness, 0.0),
         brittle=np.append(assembly.brittle, False),
         joint=(*assembly.joint, "bed"),
     )

@@ -47,6 +47,7 @@ OF_JOINTS = (
     "constant",
     "crushing",
     "brittle",
+    "bar_stiffness",
 )
 
 
@@ -73,6 +74,8 @@ class Assembly:
         crushing: (m,) compression f_c A at which a joint crushes, pressed evenly and without tension [force]; infinite
             where it does not.
         brittle: (m,) whether a joint loses its constant part once it has opened at an end or slipped.
+        bar_stiffness: (m,) zero for joints; of rows that are ties and props (`with_bars_as_joints`) the force for a
+            unit of elongation [force/length], nan where none is given.
         support_motion: (n, 3) prescribed motion (ux, uy, omega) of fixed blocks; zero where supports rest, and on free
             blocks.
         bars: ties and props between blocks; their prestress is part of the dead load.
@@ -99,6 +102,7 @@ class Assembly:
     constant: FloatArray = field(default_factory=partial(np.zeros, (0, 4)))
     crushing: FloatArray = field(default_factory=partial(np.zeros, 0))
     brittle: BoolArray = field(default_factory=lambda: np.zeros(0, dtype=bool))
+    bar_stiffness: FloatArray = field(default_factory=partial(np.zeros, 0))
     support_motion: FloatArray = field(default_factory=partial(np.zeros, (0, 3)))
     bars: Bars = field(default_factory=Bars)
 
@@ -114,6 +118,8 @@ class Assembly:
             object.__setattr__(self, "crushing", np.full(len(self.joint), np.inf))
         if not len(self.brittle):
             object.__setattr__(self, "brittle", np.zeros(len(self.joint), dtype=bool))
+        if not len(self.bar_stiffness):
+            object.__setattr__(self, "bar_stiffness", np.zeros(len(self.joint)))
         if not len(self.support_motion):
             object.__setattr__(self, "support_motion", np.zeros((len(self.block_ids), 3)))
         for names, count in ((OF_BLOCKS, len(self.block_ids)), (OF_JOINTS, len(self.joint))):
@@ -127,6 +133,11 @@ class Assembly:
     def law(self) -> JointLaw:
         """The law of its joints."""
         return JointLaw(self.friction, self.dilatancy, self.constant)
+
+    @cached_property
+    def is_bar(self) -> BoolArray:
+        """(m,) rows that are ties and props, of `bars.with_bars_as_joints`."""
+        return np.asarray(self.friction < 0.0)
 
     def with_joints(self, kept: IntArray | BoolArray) -> Assembly:
         """The same blocks with these interfaces alone, by index in this order or by a mask (m,)."""

@@ -24,6 +24,10 @@ class _Bar(Strict):
     prestress: NonNegative = Field(
         0.0, description="force [force] it has from the start, which acts as dead load: from 0 to below the yield force"
     )
+    stiffness: Positive | None = Field(
+        None,
+        description="force for a unit of elongation [force/length], where joints are springs; as a joint's if absent",
+    )
 
     @model_validator(mode="after")
     def _has_two_ends_and_a_range(self) -> _Bar:

@@ -16,10 +16,11 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from harness.model.details import AnswerDetails
+from harness.model.details import BAR_FORCES, DEAD_BAR_FORCES, AnswerDetails
 
 if TYPE_CHECKING:
     from harness.model.assembly import Assembly
+    from harness.model.method import Answer
     from harness.model.result import Result
 
 FloatArray = NDArray[np.float64]
@@ -46,6 +47,7 @@ class Bars:
         end1, end2: (k, 2) ends [length].
         prestress: (k,) tension that acts as dead load [force].
         least, greatest: (k,) range of what is borne beyond the prestress, tension positive [force].
+        stiffness: (k,) force for a unit of elongation [force/length]; nan where none is given.
     """
 
     names: tuple[str, ...] = ()
@@ -57,6 +59,12 @@ class Bars:
     prestress: FloatArray = field(default_factory=_none)
     least: FloatArray = field(default_factory=_none)
     greatest: FloatArray = field(default_factory=_none)
+    stiffness: FloatArray = field(default_factory=_none)
+
+    def __post_init__(self) -> None:
+        """Without any stiffness none is given."""
+        if not len(self.stiffness):
+            object.__setattr__(self, "stiffness", np.full(len(self.names), np.nan))
 
     def __len__(self) -> int:
         """Number of bars k."""
@@ -75,7 +83,7 @@ class Bars:
             tuple(self.kinds[k] for k in kept),
             place[self.block_a[kept]],
             place[self.block_b[kept]],
-            *(getattr(self, name)[kept] for name in ("end1", "end2", "prestress", "least", "greatest")),
+            *(getattr(self, name)[kept] for name in ("end1", "end2", "prestress", "least", "greatest", "stiffness")),
         )
 
     def followed_by(self, others: Bars) -> Bars:
@@ -136,14 +144,38 @@ def with_bars_as_joints(assembly: Assembly) -> Assembly:
         "constant": np.column_stack([nothing, bars.greatest, 0.0 - bars.least]),
         "crushing": np.full(k, np.inf),
         "brittle": np.zeros(k, dtype=bool),
+        "bar_stiffness": bars.stiffness,
     }
     arrays: dict[str, Any] = {name: np.concatenate([getattr(assembly, name), more]) for name, more in further.items()}
-    return replace(assembly, joint=(*assembly.joint, *bars.kinds), bars=Bars(), **arrays)
+    return replace(assembly, joint=(*assembly.joint, *bars.names), bars=Bars(), **arrays)
 
 
 def tensions(bars: Bars, forces: FloatArray) -> FloatArray:
     """(k,) tensions of the bars [force], from the forces (m + k, 3) of a wall of `with_bars_as_joints`."""
     return np.asarray(bars.prestress - forces[len(forces) - len(bars) :, 2])
+
+
+def with_bar_forces(answer: Answer, bars: Bars, m: int) -> Answer:
+    """The answer for a wall with bars as joints, its forces (m + k, 3) told apart: of m joints and of k bars.
+
+    Columns of its path that have the name of a bar are tensions beyond the prestress, and become whole ones.
+    """
+    details = dict(answer.details)
+    named = {BAR_FORCES: answer.forces, DEAD_BAR_FORCES: details.get("dead_forces")}
+    details |= {name: tensions(bars, np.asarray(all_)).tolist() for name, all_ in named.items() if all_ is not None}
+    details |= {name: details[name][:m] for name in ("live_forces", "dead_forces") if name in details}
+    whole = {
+        path_column(name): [prestress + beyond for beyond in answer.path[path_column(name)]]
+        for name, prestress in zip(bars.names, bars.prestress.tolist(), strict=True)
+        if path_column(name) in answer.path
+    }
+    forces = None if answer.forces is None else answer.forces[:m]
+    return replace(answer, forces=forces, path=answer.path | whole, details=details)
+
+
+def path_column(name: str) -> str:
+    """The column of a path that holds the tensions of a bar."""
+    return f"tension of {name}"
 
 
 def bar_tensions(assembly: Assembly, result: Result | None) -> FloatArray | None:

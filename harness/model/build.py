@@ -246,6 +246,7 @@ def _bars(wall: Wall, index: dict[str, int]) -> Bars:
         prestress=prestress,
         least=np.minimum(further, 0.0),
         greatest=np.maximum(further, 0.0),
+        stiffness=np.array([np.nan if bar.stiffness is None else bar.stiffness for _, _, bar in given]),
     )
 
 

@@ -46,6 +46,9 @@ def content_of(assembly: Assembly) -> str:
             digest.update(np.asarray(joined, dtype="<i8").tobytes() + b";")
         besides.append((np.hstack([bars.end1 - origin, bars.end2 - origin]), assembly.length_scale))
         besides.append((np.column_stack([bars.prestress, bars.least, bars.greatest]), load))
+        given = ~np.isnan(bars.stiffness)
+        if given.any():
+            besides.append((np.where(given, bars.stiffness, -1.0), load / assembly.length_scale))
     for values, size in (
         (points - origin, assembly.length_scale),
         (assembly.normal, 1.0),

@@ -76,6 +76,10 @@ class JointLaw:
         """(m,) shear mu N that friction bears at compressions N (m,)."""
         return np.asarray(self.friction * compression)
 
+    def dissipated(self, compression: FloatArray) -> FloatArray:
+        """(m,) shear (mu - psi) N at compressions N (m,), whose work on a slip is more than the lift gives back."""
+        return np.asarray((self.friction - self.dilatancy) * compression)
+
     def part_by_friction(self, share: FloatArray, compression: FloatArray) -> FloatArray:
         """(m,) shears that are shares (m,) of what friction bears at compressions N (m,), as those frozen in."""
         return np.asarray(share * self.friction * compression)

@@ -269,7 +269,7 @@ def check_takes(method: Method, assembly: Assembly) -> None:
         raise InputError(
             f"{method.name} takes no dilatancy; the joint between {between(joint)} has the dilatancy "
             f"{law.dilatancy[joint]:g}",
-            "Take a method of limit analysis (`drystone list methods`), or leave the dilatancy out",
+            f"Take a method that takes it ({', '.join(methods_with('any_dilatancy'))}), or leave the dilatancy out",
         )
     if assembly.strong and not method.traits.any_strength:
         raise InputError(

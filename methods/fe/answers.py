@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 
 from harness.model.assembly import FloatArray
+from harness.model.bars import path_column
 from harness.model.errors import first_few
 from harness.model.method import Answer, Finding, Status
 from methods.fe.convex_steps import ConvexResult
@@ -22,6 +23,11 @@ PATH_POINTS = 300
 
 SPREAD = 0.025
 """Spread of the histories, as a share of the multiplier, above which the sentence of an answer reports it."""
+
+
+def refused(why: str) -> Answer:
+    """The answer of a method that does not take a wall, or not with these settings."""
+    return Answer(Status.REFUSED, Finding.NONE, why, details={"path_status": "refused"})
 
 
 def gravity_failure(model: WallModel, gravity: Equilibrium) -> Answer:
@@ -178,13 +184,14 @@ def compact(model: WallModel, record: PathRecord) -> dict[str, list[float]]:
     """Some of the points of a path, evenly picked, the last one kept."""
     count = len(record.multiplier)
     pick = np.unique(np.linspace(0, count - 1, min(count, PATH_POINTS)).astype(int)) if count else np.array([], int)
+    bars = [model.assembly.joint[p] for p in np.flatnonzero(model.assembly.is_bar)]
     scale = model.displacement / (float(np.abs(model.live.reshape(-1, 3)[:, :2]).sum()) or 1.0)
     return {
         "multiplier": [record.multiplier[i] for i in pick],
         "live_displacement": [record.displacement[i] * scale for i in pick],
         "slipping_points": [float(record.slipping[i]) for i in pick],
         "open_points": [float(record.open[i]) for i in pick],
-    }
+    } | {path_column(name): [record.bars[i][k] for i in pick] for k, name in enumerate(bars)}
 
 
 def bracket_answer(result: ConvexResult, forces: FloatArray, details: dict[str, Any]) -> Answer:

@@ -15,6 +15,7 @@ from typing import Any
 import numpy as np
 
 from harness.model.assembly import Assembly, FloatArray, IntArray
+from harness.model.bars import with_bar_forces, with_bars_as_joints
 from harness.model.components import analysed_apart, joints_of
 from harness.model.deadline import STOPPED, best_so_far
 from harness.model.errors import first_few
@@ -156,11 +157,13 @@ def brittle_answer(
         solved.append((part, answer))
         return answer
 
-    answer = analysed_apart(assembly, solve, _borne)
-    joints = _joints_of_wall(assembly, answer, solved)
-    broken = np.zeros(assembly.n_interfaces, dtype=bool)
+    rows = with_bars_as_joints(assembly)
+    answer = analysed_apart(rows, solve, _borne)
+    joints = _joints_of_wall(rows, answer, solved)
+    broken = np.zeros(rows.n_interfaces, dtype=bool)
     broken[joints["broken"]] = True
-    return with_proof(assembly.with_broken(broken), replace(answer, details=answer.details | joints))
+    proved = with_proof(rows.with_broken(broken), replace(answer, details=answer.details | joints))
+    return with_bar_forces(proved, assembly.bars, assembly.n_interfaces) if len(assembly.bars) else proved
 
 
 def _borne(part: Assembly, answer: Answer, multiplier: float) -> FloatArray | None:
@@ -200,7 +203,7 @@ def _traced(
     model = build_model(assembly, settings)
     if disturbance:
         noise = np.random.default_rng(seed).uniform(-disturbance, disturbance, model.n_points)
-        model = replace(model, history=noise)
+        model = replace(model, history=model.history + noise)
     gravity = gravity_state(model, make_factor(model))
     if not gravity.found:
         return gravity_failure(model, gravity)

@@ -1,14 +1,14 @@
 """Each step as convex quadratic programmes: `fe-qp`, an independent cross-check for small walls.
 
-With the friction limits c = mu N frozen (Tresca), the equilibrium of the gap springs minimises a convex energy:
+With the friction limits c frozen (Tresca), the equilibrium of the gap springs minimises a convex energy:
 
-    min 1/2 sum kn z^2 + 1/2 sum (kt (s - e) + h)^2 / kt + sum c |e| - load'u    with z >= -g(u)
+    min 1/2 sum kn z^2 + 1/2 sum (kt (s - e) + h)^2 / kt + sum c |e| - load'u    with z >= psi |e| - g(u)
 
-where z is the compression and e the frictional part of the slip. OSQP (Stellato et al., 2020) solves it, split as
-e = e+ - e-, and the limits follow by fixed-point iteration until they repeat (Haslinger, 1983). They begin where the
-last two steps lead: limits of the last step can be too low for the next, and the energy then has no minimum although
-the wall stands. The step of the multiplier is bisected between the last step that converged and the first that did not:
-the answer is that bracket.
+where z is the compression and e the frictional part of the slip, which lifts by psi |e| and dissipates c = (mu - psi)
+N. OSQP (Stellato et al., 2020) solves it, split as e = e+ - e-, and the limits follow by fixed-point iteration until
+they repeat (Haslinger, 1983). They begin where the last two steps lead: limits of the last step can be too low for the
+next, and the energy then has no minimum although the wall stands. The step of the multiplier is bisected between the
+last step that converged and the first that did not: the answer is that bracket.
 """
 
 from __future__ import annotations
@@ -93,7 +93,7 @@ class TrescaProgramme:
         n, p = model.n_unknowns, model.n_points
         opening, slip = self._gap_matrices()
         self._opening, self._slip = opening, slip
-        kn, kt = sp.diags(model.kn), sp.diags(model.kt)
+        kn, kt, lift = sp.diags(model.kn), sp.diags(model.kt), sp.diags(model.psi)
         us = slip.T @ kt
         blocks: list[list[Any]] = [
             [us @ slip, None, -us, us],
@@ -104,7 +104,7 @@ class TrescaProgramme:
         self._quadratic = sp.csc_matrix(sp.bmat(blocks))
         eye = sp.identity(p)
         rows: list[list[Any]] = [
-            [opening, eye, None, None],
+            [opening, eye, -lift, -lift],
             [None, eye, None, None],
             [None, None, eye, None],
             [None, None, None, eye],
@@ -165,8 +165,14 @@ class TrescaProgramme:
         u = result.x[: self.n]
         sliding = result.x[self.n + self.p : self.n + 2 * self.p] - result.x[self.n + 2 * self.p :]
         self.shear = model.kt * (self._slip @ u - sliding) + h
-        self.normal = np.maximum(0.0, -model.kn * (self._opening @ u + model.initial_opening))
+        lifted = model.psi * (result.x[self.n + self.p : self.n + 2 * self.p] + result.x[self.n + 2 * self.p :])
+        self.normal = np.maximum(0.0, -model.kn * (self._opening @ u + model.initial_opening - lifted))
         return u, self.normal
+
+    def forces(self, limit: FloatArray) -> tuple[FloatArray, FloatArray]:
+        """Gap forces N and T (P,) of the last solution, within the limits (P,) that it was found under."""
+        borne = limit + self.model.psi * self.normal
+        return self.normal, np.clip(self.shear, -borne, borne)
 
 
 def bracket_collapse(
@@ -188,12 +194,12 @@ def bracket_collapse(
     record = PathRecord()
     limit = _settle(programme, 0.0, np.zeros(model.n_points), fixed_points, options)
     if limit is None:
-        rough = model.law.by_friction(np.full(model.n_points, np.abs(model.dead).sum()))
+        rough = model.law.dissipated(np.full(model.n_points, np.abs(model.dead).sum()))
         limit = _settle(programme, 0.0, rough, 2 * fixed_points, options, options.damped)
     if limit is None:
         programme.solve(0.0, rough)
         return ConvexResult(0.0, None, record, programme.programmes, False, fall=programme.ray)
-    forces = programme.normal, np.clip(programme.shear, -limit, limit)
+    forces = programme.forces(limit)
     if not model.assembly.has_live_load:
         return ConvexResult(0.0, None, record, programme.programmes, True, forces)
     lower, upper, step, at, falls = 0.0, None, first_step, 0.0, np.inf
@@ -212,7 +218,7 @@ def bracket_collapse(
             growth = (settled - limit) / (goal - lower)
             lower, limit = goal, settled
             if goal <= options.kept * first_step or upper is not None:
-                forces, at = (programme.normal, np.clip(programme.shear, -limit, limit)), goal
+                forces, at = programme.forces(limit), goal
             record.add(goal, 0.0, 0, 0)
             step *= options.longer
         if upper is None and lower > options.furthest * first_step:
@@ -246,7 +252,7 @@ def _settle(
             programme.without_minimum |= answer is not None
             programme.restart()
             return None
-        new = model.law.by_friction(answer[1])
+        new = model.law.dissipated(answer[1])
         change = float(np.abs(new - limit).max())
         if change < options.repeated * share * scale:
             return new

@@ -18,6 +18,7 @@ from methods.fe.answers import (
     compact,
     falling,
     gravity_failure,
+    refused,
     single_state_answer,
     standing_answer,
     stands,
@@ -78,6 +79,8 @@ class GapSprings(Solver):
 
     def solve(self, assembly: Assembly, settings: Any) -> Answer:
         """Gravity first, then the live load to the plateau under every history asked for."""
+        if assembly.breaks and assembly.dilates:
+            return refused("brittle joints that dilate are not followed: leave out the dilatancy, or the brittleness")
         if assembly.breaks:
             events = self._limits.fewest + self._limits.first * settings.points * assembly.n_interfaces
             most = settings.max_events or events
@@ -93,6 +96,11 @@ class GapSprings(Solver):
         return answer
 
     def _solve(self, model: WallModel, settings: GapSpringsSettings) -> Answer:
+        if model.dilates and any(settings.histories or ()):
+            return refused(
+                "the plastic slip is not updated where joints dilate, because its lift would have to be too: leave "
+                "`histories` out, or give 0 alone"
+            )
         factor = make_factor(model)
         gravity = gravity_state(model, factor)
         if not gravity.found:
@@ -152,10 +160,11 @@ def _by_displacement_control(model: WallModel, factor: Factor, gravity: Equilibr
 
 
 def chosen_histories(model: WallModel, settings: GapSpringsSettings, limits: BreakpointLimits) -> tuple[float, ...]:
-    """The commit intervals to run: as set, or by the size of the wall."""
+    """The commit intervals to run: as set, or by the size of the wall; none where joints dilate."""
     if settings.histories is not None:
         return settings.histories
-    return limits.intervals if model.assembly.n_free <= limits.three else limits.intervals[:1]
+    updates = model.assembly.n_free <= limits.three and not model.dilates
+    return limits.intervals if updates else limits.intervals[:1]
 
 
 def _agree(results: list[HistoryResult], within: float) -> bool:
@@ -224,12 +233,9 @@ class ConvexSteps(Solver):
 
     def _of_component(self, assembly: Assembly, settings: Any) -> Answer:
         if assembly.n_free > settings.max_blocks:
-            return Answer(
-                Status.REFUSED,
-                Finding.NONE,
+            return refused(
                 f"{assembly.n_free} blocks: the convex steps are a cross-check for up to {settings.max_blocks} blocks, "
-                "above which their fixed-point iteration is too slow; use fe",
-                details={"path_status": "refused"},
+                "above which their fixed-point iteration is too slow; use fe"
             )
         model = build_model(assembly, settings, settings.friction_cap)
         first_step = settings.first_step * _unit(assembly)

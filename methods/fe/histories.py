@@ -265,8 +265,10 @@ def _not_collapse(model: WallModel, velocity: FloatArray) -> str:
 def _note(record: PathRecord, model: WallModel, rest: Equilibrium) -> None:
     """Add an equilibrium to the record."""
     slipping = int(np.count_nonzero(rest.state >= SLIP_PLUS))
-    record.add(rest.multiplier, float(model.live @ rest.u), slipping, int(np.count_nonzero(rest.state == OPEN)))
-    record.keep(partial(_load_step, model, rest))
+    step = _load_step(model, rest)
+    opened, bars = int(np.count_nonzero(rest.state == OPEN)), model.bar_tensions(step.trial)
+    record.add(rest.multiplier, float(model.live @ rest.u), slipping, opened, bars)
+    record.keep(lambda: step)
 
 
 def _load_step(model: WallModel, rest: Equilibrium) -> PathStep:
@@ -279,4 +281,5 @@ def with_initial_shear(model: WallModel, gravity: Equilibrium, share: float, see
     """The model with shears frozen in before the live load: a random share of what friction holds under gravity."""
     normal, _ = model.forces(gravity.u, gravity.history, gravity.state)
     noise = np.random.default_rng(seed).uniform(-share, share, model.n_points)
-    return replace(model, history=model.law.part_by_friction(noise, normal))
+    frozen = model.law.part_by_friction(noise, normal)
+    return replace(model, history=model.updated(frozen, model.history))

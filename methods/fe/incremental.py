@@ -118,7 +118,7 @@ def march(
             cut += 1
             continue
         point = StepPoint(answer.u, point.multiplier + step, answer.state)
-        record.add(point.multiplier, float(model.live @ point.u), 0, 0)
+        _note(record, model, point)
         if cut == 0:
             step *= loads.longer
     reached = point.multiplier
@@ -174,13 +174,19 @@ def _displacement_control(
             continue
         flat = abs(moved.multiplier - point.multiplier) <= options.flat * max(1.0, abs(point.multiplier))
         direction, point = moved.u - point.u, moved
-        record.add(point.multiplier, float(model.live @ point.u), 0, 0)
+        _note(record, model, point)
         record.peak = max(record.peak, point.multiplier)
         push *= options.longer
         collapse = _collapse(model, point, direction) if flat else None
         if collapse is not None:
             return collapse, point.multiplier, iterations
     return None, point.multiplier, iterations
+
+
+def _note(record: PathRecord, model: WallModel, point: StepPoint) -> None:
+    """Add a point in equilibrium to the record."""
+    trial = model.kt * model.strains(point.u)[1] + model.history
+    record.add(point.multiplier, float(model.live @ point.u), 0, 0, model.bar_tensions(trial))
 
 
 def _farthest(motion: FloatArray) -> FloatArray:

@@ -16,16 +16,17 @@ def load_steps(model: WallModel, steps: list[PathStep], most: int) -> LoadSteps:
     pick = np.unique(np.linspace(0, len(steps) - 1, min(len(steps), most)).astype(int))
     kept = [steps[-1]] if most == 1 else [steps[k] for k in pick]
     normal, shear = np.empty(model.n_points), np.empty(model.n_points)
+    joints = ~model.assembly.is_bar
     forces = []
     for step in kept:
-        gap_forces(step.opening, step.trial, model.kn, model.mu, step.state, normal, shear)
-        forces.append(model.end_forces(normal, shear))
+        gap_forces(step.opening, step.trial, model.kn, model.mu, model.lift, step.state, normal, shear)
+        forces.append(model.end_forces(normal, shear)[joints])
     return LoadSteps(
         model.assembly.block_ids,
         np.array([step.multiplier for step in kept]),
         np.array([model.block_displacements(step.u) for step in kept]),
         np.array(forces),
-        np.array([joint_states(model, step.state) for step in kept]),
+        np.array([joint_states(model, step.state)[joints] for step in kept]),
     )
 
 

@@ -13,7 +13,8 @@ class GapSpringsSettings(GapSettings):
     Attributes:
         histories: how often the friction history is committed, as fractions of the multiplier reached; 0: never.
             None: none and 1 %, and 0.2 % where their plateaus differ by more than 0.1 %; above 1,200 blocks none alone.
-            Where joints are brittle the slip is updated as they break, and no other history is followed.
+            Where joints are brittle the slip is updated as they break, and no other history is followed. Where they
+            dilate it is not updated.
         max_events: changes of state after which one history is given up; None: 2,000 and, for every gap
             point, 30 on the first history (5 above 500 blocks) and 5 on those after it. Where the first is given up,
             the load is raised in finite steps and the path goes on from there, with as many changes again.

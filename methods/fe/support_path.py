@@ -231,10 +231,11 @@ class _Piece:
     def is_mechanism(self) -> bool:
         """Whether no force changes along it, and no gap closes."""
         model, state = self.point.model, self.point.rest.state
-        strain, elastic = strain_rates(*self.rates, model.kt, state)
+        strain, elastic = strain_rates(*self.rates, model.kt, model.lift, state)
         fastest = max(strain, 1.0)  # the speed of the supports: where the wall goes with them nothing strains
         rounding = model.options.mechanism.elastic * fastest
-        return elastic <= rounding and bool(self.rates[0][state == OPEN].min(initial=0.0) >= -rounding)
+        parting = self.rates[0] - model.lift * abs(self.rates[1])
+        return elastic <= rounding and bool(parting[state == OPEN].min(initial=0.0) >= -rounding)
 
     def is_last(self, noise: float) -> bool:
         """Whether no gap changes its state ahead."""
@@ -250,7 +251,7 @@ class _Piece:
         opening_rate, trial_rate = (np.where(abs(rate) > noise, way * rate, 0.0) for rate in self.rates)
         near = model.options.breakpoints.force * load_scale(model, 0.0)
         return next_breakpoint(
-            *self.gaps, opening_rate, trial_rate, model.kn, model.mu, state, near, noise, np.inf, -1, OPEN
+            *self.gaps, opening_rate, trial_rate, model.kn, model.mu, model.lift, state, near, noise, np.inf, -1, OPEN
         )[0]
 
     def mechanism(self, gives_way: bool) -> FloatArray:

@@ -8,8 +8,6 @@ from dataclasses import replace
 from fractions import Fraction
 from typing import Any
 
-import numpy as np
-
 from harness.model.answer_check import DEEPEST
 from harness.model.assembly import Assembly
 from harness.model.json_text import nested_deeper
@@ -46,7 +44,7 @@ def with_bound(assembly: Assembly, problem: Problem, known: Answer, settings: Bo
             known.sentence.rstrip("."),
             "some joints have dilatancy" if assembly.dilates else "joints have strength",
         )
-        if np.any(assembly.friction < 0.0):  # as `harness.model.bars.with_bars_as_joints` writes them
+        if assembly.is_bar.any():
             why = "the wall has ties or props"
         return replace(known, sentence=f"{own}. No bound below it is sought: {why}.")
     began = time.process_time()

@@ -7,11 +7,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import replace
 from typing import Any
 
-import numpy as np
-
 from harness.model.assembly import Assembly
-from harness.model.bars import Bars, tensions, with_bars_as_joints
-from harness.model.details import BAR_FORCES, DEAD_BAR_FORCES
 from harness.model.method import Answer, Finding, Solver
 from methods.la.answers import dead_load_answer
 from methods.la.core.newton_matrix import NewtonMatrix
@@ -55,15 +51,6 @@ def proved_of_all(answer: Answer, parts: Sequence[Answer]) -> Answer:
     return replace(answer, sentence=answer.sentence + said, details=details)
 
 
-def _with_bar_forces(answer: Answer, bars: Bars, m: int) -> Answer:
-    """The answer for a wall with bars as joints, with its forces (m + k, 3) told apart: of m joints and of k bars."""
-    details = dict(answer.details)
-    named = {BAR_FORCES: answer.forces, DEAD_BAR_FORCES: details.get("dead_forces")}
-    details |= {name: tensions(bars, np.asarray(all_)).tolist() for name, all_ in named.items() if all_ is not None}
-    details |= {name: details[name][:m] for name in ("live_forces", "dead_forces") if name in details}
-    return replace(answer, forces=None if answer.forces is None else answer.forces[:m], details=details)
-
-
 class LimitAnalysisFamily(Solver):
     """Base of the solvers: a wall that falls under its dead load, or has no live load, is answered here."""
 
@@ -78,15 +65,12 @@ class LimitAnalysisFamily(Solver):
     def _of_components(self, assembly: Assembly, settings: Any, answer: Answering | None = None) -> Answer:
         """As `solve`, each component answered by `answer`, by default the method's own."""
         parts: list[Answer] = []
-        bars, m = assembly.bars, assembly.n_interfaces
-        rows = with_bars_as_joints(assembly)
 
         def solve_part(part: Assembly) -> Answer:
             parts.append(self._of_component(part, settings, answer))
             return parts[-1]
 
-        found = proved_of_all(analysed(rows, solve_part), parts)
-        return _with_bar_forces(found, bars, m) if len(bars) else found
+        return proved_of_all(analysed(assembly, solve_part), parts)
 
     def _of_component(self, assembly: Assembly, settings: Any, answer: Answering | None = None) -> Answer:
         """The answer of the dead load where it decides, else that of `answer`, by default the method's own."""

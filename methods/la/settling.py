@@ -1,4 +1,4 @@
-"""Supports that move until no admissible state is left: limit analysis on updated geometry.
+"""Supports that move until no admissible state is left, or a collapse that goes on: limit analysis on updated geometry.
 
 At every displacement d of the supports the least reaction and the mechanism dual to it are found (`core/reaction`) in
 the wall as it stands then, whose opened joints are pins. The wall follows that mechanism by finite rotations about its
@@ -12,6 +12,7 @@ Sources: Portioli and Cascini (2017); Iannuzzo et al. (2020).
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -21,11 +22,18 @@ from harness.model.assembly import BoolArray, FloatArray
 from harness.model.deadline import Deadline
 from harness.model.result import fastest_vertex
 from methods.la.core.problem import make_problem
-from methods.la.core.reaction import ExtremeReaction, extreme_reaction
+from methods.la.core.reaction import extreme_reaction
 from methods.la.moved_wall import ClosureTolerances, MovedWall
 from methods.numerics.linear_programme import INFINITY, Programme
 
-FALLS, CLOSES, PARTS = "falls", "closes", "parts"
+FALLS, CLOSES, PARTS, STUCK = "falls", "closes", "parts", "stuck"
+
+
+WHY = {
+    PARTS: "From there on its joints cannot all meet without sliding.",
+    STUCK: "From there on no multiplier of the live load is in equilibrium with these open joints: others would open.",
+}
+"""Why a wall was followed no further."""
 
 
 @dataclass(frozen=True)
@@ -59,14 +67,22 @@ class SettlingSteps:
 
 @dataclass(frozen=True, eq=False)
 class StandingState:
-    """A wall that its supports have moved, and the least reaction there.
+    """A wall that has moved, and how it would move on.
 
     Attributes:
-        wall: where its blocks are; state: reaction, forces and the mechanism by which it would move on.
+        wall: where its blocks are.
+        value: the least reaction of moving supports there, or the collapse multiplier where they rest.
+        forces: (m, 3) contact forces [force]; mechanism: (n, 3) motion of all blocks.
     """
 
     wall: MovedWall
-    state: ExtremeReaction
+    value: float
+    forces: FloatArray
+    mechanism: FloatArray
+
+
+StateOf = Callable[[MovedWall], StandingState | str]
+"""The state of a wall where it is, or a word for why there is none; `STUCK` where that is no fall."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -86,18 +102,27 @@ class SettledUntil:
     reason: str
 
 
-def settle(start: MovedWall, steps: SettlingSteps = SettlingSteps()) -> SettledUntil | str:
-    """Move the supports as prescribed until the wall falls; or how the first programme ended without a solution.
+def with_least_reaction(wall: MovedWall) -> StandingState | str:
+    """The least reaction of a wall as it stands, or how the programme ended."""
+    found = extreme_reaction(wall.assembly, greatest=False, parted=~wall.closed)
+    return found if isinstance(found, str) else StandingState(wall, found.reaction, found.forces, found.mechanism)
+
+
+def settle(
+    start: MovedWall, steps: SettlingSteps = SettlingSteps(), state_of: StateOf = with_least_reaction
+) -> SettledUntil | str:
+    """Move the wall along its mechanisms until it falls; or how the first programme ended without a solution.
 
     Args:
-        start: where the wall begins, as `MovedWall.at_rest` of an assembly with `support_motion` that strains joints;
-            dry joints, no bars, dead loads through the centroids.
+        start: where the wall begins, as `MovedWall.at_rest` of an assembly; dry joints, no bars, loads through the
+            centroids.
         steps: of the displacement.
+        state_of: how it would move on from where it is; by default as its supports prescribe, which must strain joints.
     """
-    now, assembly = _state_of(start), start.drawn
+    now, assembly = state_of(start), start.drawn
     if isinstance(now, str):
         return now
-    size = assembly.length_scale / fastest_vertex(assembly, assembly.support_motion)
+    size = assembly.length_scale / (fastest_vertex(assembly, assembly.support_motion) or 1.0)
     deadline, step, points = Deadline.of_run(), steps.first * size, [now]
     for _ in range(steps.most):
         deadline.ask()
@@ -109,7 +134,7 @@ def settle(start: MovedWall, steps: SettlingSteps = SettlingSteps()) -> SettledU
         if now.wall.displacement - start.displacement > steps.far * size:
             return SettledUntil(tuple(points), None, None, "It stands as far as it was followed.")
         before = now.wall
-        now, failure = _advanced(now, step, held, steps.width * size, steps.closure)
+        now, failure = _advanced(now, step, held, steps.width * size, steps.closure, state_of)
         if now.wall.displacement > points[-1].wall.displacement:
             points.append(now)
         if failure is None:
@@ -118,23 +143,23 @@ def settle(start: MovedWall, steps: SettlingSteps = SettlingSteps()) -> SettledU
             closed = now.wall.closed | (failure.wall.gaps < 0.0)
             if now.wall is before and np.array_equal(closed, before.closed):
                 return SettledUntil(tuple(points), None, None, "From there on a joint opens and closes again at once.")
-            again = _state_of(replace(now.wall, closed=closed))
+            again = state_of(replace(now.wall, closed=closed))
             if isinstance(again, str):
                 return SettledUntil(tuple(points), None, None, f"Where a joint closes the programme is {again}.")
             now = again
         elif failure.kind == FALLS:
             return _fallen(points, failure, held, steps)
         else:
-            return SettledUntil(tuple(points), None, None, "From there on its joints cannot all meet without sliding.")
+            return SettledUntil(tuple(points), None, None, WHY[failure.kind])
     return SettledUntil(tuple(points), None, None, f"It stands after {steps.most} steps.")
 
 
 @dataclass(frozen=True, eq=False)
 class _Failure:
-    """Why a step is too long: no admissible state is left, a joint has closed, or pins cannot meet.
+    """Why a step is too long: no admissible state is left, a joint has closed, pins cannot meet, or no load balances.
 
     Attributes:
-        kind: of these three; wall: after the step, before it where pins cannot meet.
+        kind: of these four; wall: after the step, before it where pins cannot meet.
         start: where the step begins; step: its length.
     """
 
@@ -144,19 +169,13 @@ class _Failure:
     step: float
 
 
-def _state_of(wall: MovedWall) -> StandingState | str:
-    """The least reaction of a wall as it stands, or how the programme ended."""
-    found = extreme_reaction(wall.assembly, greatest=False, parted=~wall.closed)
-    return found if isinstance(found, str) else StandingState(wall, found)
-
-
 def _held(now: StandingState, moves: float) -> tuple[BoolArray, str]:
     """(m, 2) ends of joints that go on to meet, and the blocks of one that slides under force or touching, if any."""
-    assembly, mechanism = now.wall.assembly, now.state.mechanism
+    assembly, mechanism = now.wall.assembly, now.mechanism
     rates = (assembly.kinematic_matrix @ mechanism[assembly.free].ravel()).reshape(-1, 3) + assembly.support_strains
     least = moves * fastest_vertex(assembly, mechanism)
     held = now.wall.closed & (rates[:, :2] <= least)
-    pressed = now.state.forces[:, :2].sum(axis=1) > moves * assembly.force_scale / assembly.n_free
+    pressed = now.forces[:, :2].sum(axis=1) > moves * assembly.force_scale / assembly.n_free
     slides = np.flatnonzero((pressed | held.any(axis=1)) & (abs(rates[:, 2]) > least))
     if not len(slides):
         return held, ""
@@ -164,27 +183,31 @@ def _held(now: StandingState, moves: float) -> tuple[BoolArray, str]:
     return held, " and ".join(assembly.block_ids[side[joint]] for side in (assembly.block_a, assembly.block_b))
 
 
-def _tried(now: StandingState, step: float, held: BoolArray, closure: ClosureTolerances) -> StandingState | _Failure:
+def _tried(
+    now: StandingState, step: float, held: BoolArray, closure: ClosureTolerances, state_of: StateOf
+) -> StandingState | _Failure:
     """The wall after a step, or why the step is too long."""
-    wall = now.wall.moved(now.state.mechanism, step, held, closure)
+    wall = now.wall.moved(now.mechanism, step, held, closure)
     if wall is None:
         return _Failure(PARTS, now.wall, now, step)
     if bool((wall.gaps[~held] < -closure.distance * wall.drawn.length_scale).any()):
         return _Failure(CLOSES, wall, now, step)
-    found = _state_of(wall)
-    return _Failure(FALLS, wall, now, step) if isinstance(found, str) else found
+    found = state_of(wall)
+    if isinstance(found, str):
+        return _Failure(STUCK if found == STUCK else FALLS, wall, now, step)
+    return found
 
 
 def _advanced(
-    now: StandingState, step: float, held: BoolArray, width: float, closure: ClosureTolerances
+    now: StandingState, step: float, held: BoolArray, width: float, closure: ClosureTolerances, state_of: StateOf
 ) -> tuple[StandingState, _Failure | None]:
     """The wall after a step; or, where that is too long, after the longest that is not, with why it is the longest."""
-    found = _tried(now, step, held, closure)
+    found = _tried(now, step, held, closure, state_of)
     if isinstance(found, StandingState):
         return found, None
     best, low, high = now, 0.0, found
     while high.step - low > width:
-        middle = _tried(now, 0.5 * (low + high.step), held, closure)
+        middle = _tried(now, 0.5 * (low + high.step), held, closure, state_of)
         if isinstance(middle, StandingState):
             best, low = middle, middle.wall.displacement - now.wall.displacement
         else:
@@ -199,7 +222,7 @@ def _fallen(points: list[StandingState], failure: _Failure, held: BoolArray, ste
     """
     width = steps.width * failure.start.wall.drawn.length_scale
     for further in (0.0, *(width * 10.0**k for k in range(steps.proofs))):
-        wall = failure.start.wall.moved(failure.start.state.mechanism, failure.step + further, held, steps.closure)
+        wall = failure.start.wall.moved(failure.start.mechanism, failure.step + further, held, steps.closure)
         mechanism = None if wall is None else _falling(wall, steps.immense)
         if mechanism is not None:
             return SettledUntil(tuple(points), wall, mechanism, "")

@@ -8,6 +8,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from harness.model.assembly import Assembly, FloatArray
+from harness.model.bars import with_bar_forces, with_bars_as_joints
 from harness.model.components import analysed_apart
 from harness.model.deadline import best_so_far
 from harness.model.limit import accuracy, gross_power, least_told, strengthened
@@ -33,8 +34,13 @@ def bear(assembly: Assembly, answer: Answer, multiplier: float) -> FloatArray | 
 
 
 def analysed(assembly: Assembly, solve: Callable[[Assembly], Answer]) -> Answer:
-    """The answer of a method for a wall from those for its independent components, with what shows it."""
-    return with_proof(assembly, analysed_apart(assembly, lambda part: at_limit(part, solve(part)), bear))
+    """The answer of a method for a wall from those for its independent components, with what shows it.
+
+    Components have the ties and props of the wall as further joints (`harness.model.bars.with_bars_as_joints`).
+    """
+    rows, bars = with_bars_as_joints(assembly), assembly.bars
+    answer = with_proof(rows, analysed_apart(rows, lambda part: at_limit(part, solve(part)), bear))
+    return with_bar_forces(answer, bars, assembly.n_interfaces) if len(bars) else answer
 
 
 @dataclass(frozen=True, eq=False)
@@ -243,9 +249,20 @@ def _proved(assembly: Assembly, answer: Answer) -> Answer:
         return replace(answer, details=answer.details | shown)
     if answer.finding is Finding.FALLS and answer.flow == "approximate":
         proof = dilatant_mechanism(assembly, assembly.dead)
+        if proof is None and assembly.strong:
+            proof = _fall_of_strong(assembly)
         if proof is not None:
             return replace(answer, details=answer.details | {"dilatant_mechanism": proof.tolist()})
     return answer
+
+
+def _fall_of_strong(assembly: Assembly) -> FloatArray | None:
+    """A dilatant mechanism (n, 3) on which the dead load does more work than joints with strength take; None if none.
+
+    It is dual to the greatest multiple of the dead load that is in equilibrium within yield, where that is below one.
+    """
+    found = greatest_multiplier(replace(assembly, live=assembly.dead))
+    return found[2] if found is not None and found[0] < 0.0 else None
 
 
 def _growing_forces(assembly: Assembly) -> FloatArray | None:

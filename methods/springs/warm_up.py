@@ -32,7 +32,7 @@ def load_kernels() -> None:
     rates = np.empty(model.n_points), np.empty(model.n_points)
     kinematics = model.unknown, model.rows, model.interface, model.position
     exact_gap_rates(*kinematics, model.kt, gravity.u, np.zeros(model.n_unknowns), *rates)
-    strain_rates(*rates, model.kt, gravity.state)
+    strain_rates(*rates, model.kt, model.lift, gravity.state)
     live_rate(model.live, gravity.u)
     for new in neighbour_states(STICK):
         factor.refactor(np.full(model.n_points, STICK), 1.0)

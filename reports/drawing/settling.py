@@ -48,21 +48,25 @@ def reaction_figure(curves: Sequence[Curve], extremes: tuple[float, float], head
 
 
 def settled_figure(
-    assembly: Assembly, places: FloatArray, displacement: FloatArray, reaction: FloatArray, stands: float
+    assembly: Assembly,
+    places: FloatArray,
+    curve_of: tuple[FloatArray, FloatArray],
+    labels: tuple[str, str] = ("displacement, in prescribed motions", "least reaction"),
 ) -> Figure:
-    """The least reaction against the displacement, and the wall where it last stands.
+    """A quantity against the displacement of a wall, and the wall where it last stands.
 
     Args:
-        assembly: the wall as drawn; places: (n, 3) displacements [length] and rotations of its blocks.
-        displacement, reaction: (k,) on the way; stands: the last displacement.
+        assembly: the wall as drawn; places: (n, 3) displacements [length] and rotations of its blocks at the end.
+        curve_of: displacements and values (k,) on the way; labels: of the two axes.
     """
+    displacement, value = curve_of
     with style():
         page = Figure(figsize=(PAGE, 0.4 * PAGE), layout="constrained")
         curve, wall = page.subplots(1, 2)
-        curve.plot(displacement, reaction, color=COLOURS["ink"], linewidth=0.9)
-        curve.plot(displacement[-1:], reaction[-1:], "o", color=COLOURS["ink"], markersize=3)
-        curve.set_xlabel("displacement, in prescribed motions")
-        curve.set_ylabel("least reaction")
+        curve.plot(displacement, value, color=COLOURS["ink"], linewidth=0.9)
+        curve.plot(displacement[-1:], value[-1:], "o", color=COLOURS["ink"], markersize=3)
+        curve.set_xlabel(labels[0])
+        curve.set_ylabel(labels[1])
         curve.grid(linewidth=0.3)
         for polygon, fixed in zip(carried(assembly, places), assembly.fixed, strict=True):
             shade = 0.35 if fixed else 0.08
@@ -70,5 +74,5 @@ def settled_figure(
         wall.autoscale_view()
         wall.set_aspect("equal")
         wall.set_axis_off()
-        wall.set_title(f"the wall at {stands:.5g}")
+        wall.set_title(f"the wall at {displacement[-1]:.5g}")
     return page

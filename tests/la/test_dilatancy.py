@@ -72,7 +72,7 @@ def test_dilatancy_of_the_friction_gives_the_associated_maximum_of_every_library
     held = 0
     for folder in case_folders([shipped_cases()]).values():
         wall = read_case(folder).assembly
-        if wall.n_interfaces > 300 or not wall.has_live_load:
+        if wall.n_interfaces > 300 or not wall.has_live_load or wall.breaks or wall.crushes:
             continue
         greatest = answer_of("la-associated", wall)
         if greatest.finding is Finding.COLLAPSES:
@@ -134,5 +134,5 @@ def test_methods_without_dilatancy_refuse_the_wall_by_name():
             continue
         with pytest.raises(InputError, match=f"{name} takes no dilatancy"):
             check_takes(method, wall)
-    assert takes == {"la", "la-associated", "la-associated-cvxpy"}
-    check_takes(load_method("fe"), assembly(running_bond(2, 2), 0.6))
+    assert takes == {"la", "la-associated", "la-associated-cvxpy", "fe", "fe-newton", "fe-qp"}
+    check_takes(load_method("de"), assembly(running_bond(2, 2), 0.6))

@@ -27,36 +27,40 @@ from methods.springs.path.breakpoints import (
     target_state,
 )
 
-KN, MU = 2.0, 0.5
+KN, MU, LIFT = 2.0, 0.5, 0.0
 NONE = (1.0, 1.0)
 """A second breakpoint function that is never met."""
 
 
 @pytest.mark.parametrize(
-    ("state", "opening", "trial", "values"),
+    ("state", "opening", "trial", "lift", "values"),
     [
-        (OPEN, 0.25, 9.0, (0.5, 1.0)),
-        (STICK, -1.0, 0.25, (0.75, 1.25)),  # mu N = 1, from either side
-        (SLIP_PLUS, -1.0, 1.5, (2.0, 0.5)),
-        (SLIP_MINUS, -1.0, -1.5, (2.0, 0.5)),
+        (OPEN, 0.25, 9.0, 0.0, (0.5, 0.5)),
+        (OPEN, 0.25, 0.25, 0.5, (0.25, 0.75)),
+        (STICK, -1.0, 0.25, 0.0, (0.75, 1.25)),  # mu N = 1, from either side
+        (STICK, -1.0, 0.25, 0.5, (0.75, 1.25)),
+        (SLIP_PLUS, -1.0, 1.5, 0.0, (2.0, 0.5)),
+        (SLIP_MINUS, -1.0, -1.5, 0.0, (2.0, 0.5)),
+        (SLIP_PLUS, -1.0, 2.0, 1.0, (3.0, 1.0)),  # N = 2 (2 + 1) / (1 + 1)
+        (SLIP_MINUS, -1.0, -2.0, 1.0, (3.0, 1.0)),
     ],
 )
 def test_breakpoint_functions_and_their_rates_by_hand(
-    state: int, opening: float, trial: float, values: tuple[float, float]
+    state: int, opening: float, trial: float, lift: float, values: tuple[float, float]
 ) -> None:
-    v0, _, v1, _ = breakpoint_functions(opening, trial, 0.0, 0.0, KN, MU, state)
+    v0, _, v1, _ = breakpoint_functions(opening, trial, 0.0, 0.0, KN, MU, lift, state)
     assert (v0, v1) == values
     # They are linear in opening and trial shear: their rates are what they change by.
     for change, shift in ((0.125, 0.0), (0.0, 0.25), (-0.5, 0.75)):
-        _, r0, _, r1 = breakpoint_functions(opening, trial, change, shift, KN, MU, state)
-        w0, _, w1, _ = breakpoint_functions(opening + change, trial + shift, 0.0, 0.0, KN, MU, state)
+        _, r0, _, r1 = breakpoint_functions(opening, trial, change, shift, KN, MU, lift, state)
+        w0, _, w1, _ = breakpoint_functions(opening + change, trial + shift, 0.0, 0.0, KN, MU, lift, state)
         assert r0 == w0 - v0
-        assert r1 == (w1 - v1 if state != OPEN else 1.0)
+        assert r1 == w1 - v1
 
 
 @pytest.mark.parametrize("state", [SLIP_PLUS, SLIP_MINUS])
 def test_a_smooth_point_that_slips_can_only_open(state: int) -> None:
-    assert breakpoint_functions(-1.0, 0.75, 0.25, 0.5, KN, 0.0, state) == (2.0, -0.5, *NONE)
+    assert breakpoint_functions(-1.0, 0.75, 0.25, 0.5, KN, 0.0, LIFT, state) == (2.0, -0.5, *NONE)
 
 
 @pytest.mark.parametrize(
@@ -89,7 +93,8 @@ Points = list[tuple[int, float, float, float, float]]
 
 def arrays(points: Points) -> list[Any]:
     columns = [np.array([point[k] for point in points], dtype=float) for k in range(1, 5)]
-    return [*columns, np.full(len(points), KN), np.full(len(points), MU), np.array([point[0] for point in points])]
+    springs = [np.full(len(points), value) for value in (KN, MU, LIFT)]
+    return [*columns, *springs, np.array([point[0] for point in points])]
 
 
 def following(points: Points, **limits: Any) -> tuple[float, int, int]:
@@ -201,19 +206,21 @@ def test_of_both_breakpoints_of_a_point_the_nearer_is_coming() -> None:
 def test_a_point_that_just_touches_sticks_only_before_anything_moved(virgin: bool, expected: int) -> None:
     state = np.full(3, -1)
     opening = np.array([0.0, 1e-300, -1e-300])
-    classify(opening, np.array([0.0, 0.0, 1.0]), np.full(3, KN), np.full(3, MU), state, virgin)
+    classify(opening, np.array([0.0, 0.0, 1.0]), np.full(3, KN), np.full(3, MU), np.zeros(3), state, virgin)
     assert state.tolist() == [expected, OPEN, SLIP_PLUS]
 
 
 def test_a_point_at_the_limit_of_friction_sticks() -> None:
     state = np.full(3, -1)
-    classify(np.full(3, -1.0), np.array([1.0, -1.0, 1.0]), np.full(3, KN), np.array([MU, MU, 0.0]), state, False)
+    classify(
+        np.full(3, -1.0), np.array([1.0, -1.0, 1.0]), np.full(3, KN), np.array([MU, MU, 0.0]), np.zeros(3), state, False
+    )
     assert state.tolist() == [STICK, STICK, SLIP_PLUS]
 
 
 def test_states_give_the_same_forces_at_their_breakpoint_only() -> None:
     def same(state: int, other: int, opening: float, trial: float, tolerance: float = 1e-9) -> bool:
-        one = [np.array([value]) for value in (opening, trial, KN, MU)]
+        one = [np.array([value]) for value in (opening, trial, KN, MU, LIFT)]
         return same_forces(*one, np.array([state]), np.array([other]), tolerance)
 
     assert same(STICK, STICK, -1.0, 9.0)
@@ -224,8 +231,8 @@ def test_states_give_the_same_forces_at_their_breakpoint_only() -> None:
     assert not same(STICK, SLIP_PLUS, -1.0, 1.25, tolerance=0.25)
     assert same(OPEN, SLIP_PLUS, 0.0, 1.0)
     assert not same(OPEN, SLIP_PLUS, -0.25, 1.0, tolerance=0.5)
-    assert point_forces(-0.25, 1.0, KN, MU, SLIP_PLUS) == (0.5, 0.25)
-    assert point_forces(-0.25, 1.0, KN, MU, SLIP_MINUS) == (0.5, -0.25)
+    assert point_forces(-0.25, 1.0, KN, MU, LIFT, SLIP_PLUS) == (0.5, 0.25)
+    assert point_forces(-0.25, 1.0, KN, MU, LIFT, SLIP_MINUS) == (0.5, -0.25)
 
 
 def test_displacements_and_gaps_advance_along_their_rates() -> None:
@@ -239,9 +246,10 @@ def test_fastest_rates_of_all_gaps_and_of_those_whose_forces_change_elastically(
     state = np.array([OPEN, SLIP_PLUS, STICK])
     kt = np.array([0.5, 0.5, 0.5])
 
-    def rates(opening: list[float], trial: list[float]) -> tuple[float, float]:
-        return strain_rates(np.array(opening), np.array(trial), kt, state)
+    def rates(opening: list[float], trial: list[float], lift: float = 0.0) -> tuple[float, float]:
+        return strain_rates(np.array(opening), np.array(trial), kt, np.full(3, lift), state)
 
     assert rates([8.0, -2.0, 1.0], [0.0, 0.0, 0.0]) == (8.0, 2.0)  # an open gap carries nothing
     assert rates([0.0, 1.0, 0.0], [3.0, -4.0, 1.0]) == (8.0, 2.0)  # slips are trials over kt; one that slips is free
     assert rates([0.0, 0.0, 0.0], [0.0, 0.0, -3.0]) == (6.0, 6.0)
+    assert rates([0.0, 2.0, 0.0], [0.0, 4.0, 0.0], lift=0.5) == (8.0, 0.0)  # one that lifts as it slips is free

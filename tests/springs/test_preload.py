@@ -23,7 +23,7 @@ def test_springs_carry_the_given_forces_before_anything_moves() -> None:
     model = build_model(wall, GapSettings())
     follower = preloaded(model, make_factor(model), safe.point.multiplier * problem.unit_multiplier, forces)
     normal, shear = np.empty(model.n_points), np.empty(model.n_points)
-    gap_forces(follower.opening, follower.trial, model.kn, model.mu, follower.state, normal, shear)
+    gap_forces(follower.opening, follower.trial, model.kn, model.mu, model.lift, follower.state, normal, shear)
     carried = model.end_forces(normal, shear)
     assert np.abs(carried - forces).max() <= 1e-9 * wall.force_scale
     assert (normal > 0.0).all()

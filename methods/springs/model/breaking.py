@@ -31,7 +31,7 @@ def joints_at_strength(
     if not assembly.breaks:
         return np.empty(0, dtype=np.int64)
     normal, shear = np.empty_like(opening), np.empty_like(opening)
-    gap_forces(opening, trial, model.kn, model.mu, state, normal, shear)
+    gap_forces(opening, trial, model.kn, model.mu, model.lift, state, normal, shear)
     slacks = assembly.law.slacks(model.end_forces(normal, shear)) / model.force
     opens, slips = slacks[:, :2].min(axis=1) <= within, slacks[:, 2:].min(axis=1) <= within
     has_shear_strength = slacks[:, 2:].max(axis=1) > within

@@ -67,6 +67,7 @@ def tangent_defect(
     position: FloatArray,
     kn: FloatArray,
     mu: FloatArray,
+    lift: FloatArray,
     state: IntArray,
     opening: FloatArray,
     trial: FloatArray,
@@ -79,7 +80,7 @@ def tangent_defect(
         k = interface[p]
         end1 = end2 = slip = 0.0
         while p < total and interface[p] == k:
-            normal, shear = point_forces(opening[p], trial[p], kn[p], mu[p], state[p])
+            normal, shear = point_forces(opening[p], trial[p], kn[p], mu[p], lift[p], state[p])
             end1 -= (1.0 - position[p]) * normal
             end2 -= position[p] * normal
             slip += shear

@@ -210,7 +210,7 @@ class SparseFactor:
     def _factorise_blocks(self, state: IntArray, added: FloatArray, bordered: Sequence[int]) -> bool:
         model = self.model
         self._lu.values[:] = 0.0
-        springs = model.interface, model.position, model.kn, model.kt, model.mu
+        springs = model.interface, model.position, model.kn, model.kt, model.mu, model.lift
         add_tangent(self._slot, model.rows, *springs, state, self._lu.values)
         self._lu.values[self._diagonal] += added
         for border in bordered:

@@ -45,6 +45,7 @@ def add_tangent(
     kn: FloatArray,
     kt: FloatArray,
     mu: FloatArray,
+    lift: FloatArray,
     state: IntArray,
     values: FloatArray,
 ) -> None:
@@ -54,12 +55,12 @@ def add_tangent(
         if state[p] == OPEN:
             continue
         k = interface[p]
-        nn, tt, tn = tangent_coefficients(kn[p], kt[p], mu[p], state[p])
+        nn, tt, tn, nt = tangent_coefficients(kn[p], kt[p], mu[p], lift[p], state[p])
         for j in range(6):
             row_n[j] = (1.0 - position[p]) * rows[k, 0, j] + position[p] * rows[k, 1, j]
         for i in range(6):
             left_n = row_n[i] * nn + rows[k, 2, i] * tn
-            left_t = rows[k, 2, i] * tt
+            left_t = rows[k, 2, i] * tt + row_n[i] * nt
             for j in range(6):
                 values[slot[k, 6 * i + j]] += left_n * row_n[j] + left_t * rows[k, 2, j]
 
@@ -72,6 +73,7 @@ def rank_one_change(
     kn: FloatArray,
     kt: FloatArray,
     mu: FloatArray,
+    lift: FloatArray,
     point: int,
     old: int,
     new: int,
@@ -81,7 +83,7 @@ def rank_one_change(
     """The change a b' of the tangent when a point changes its state, into a and b (6,)."""
     k, x = interface[point], position[point]
     row_n = (1.0 - x) * rows[k, 0] + x * rows[k, 1]
-    flip_vectors(row_n, rows[k, 2], kn[point], kt[point], mu[point], old, new, a, b)
+    flip_vectors(row_n, rows[k, 2], kn[point], kt[point], mu[point], lift[point], old, new, a, b)
 
 
 @compiled
@@ -93,6 +95,7 @@ def add_changes(
     kn: FloatArray,
     kt: FloatArray,
     mu: FloatArray,
+    lift: FloatArray,
     changes: IntArray,
     columns: FloatArray,
 ) -> int:
@@ -101,7 +104,7 @@ def add_changes(
     first = len(columns)
     for c in range(len(changes)):
         point, old, new = changes[c]
-        rank_one_change(rows, interface, position, kn, kt, mu, point, old, new, a, b)
+        rank_one_change(rows, interface, position, kn, kt, mu, lift, point, old, new, a, b)
         index = unknown[interface[point]]
         for j in range(6):
             columns[index[j], c] += a[j]

@@ -40,16 +40,17 @@ class WallModel:
             other block's, with coefficients 0.
         rows: (m, 3, 6) coefficients of (opening at end 1, at end 2, slip).
         interface: (P,) interface of each point; position: (P,) in [0, 1] from end 1.
-        kn, kt, mu: (P,) stiffnesses and friction.
+        kn, kt, mu: (P,) stiffnesses and friction; psi: (P,) dilatancy, by which a slip lifts a point.
         history: (P,) initial h = T0 - kt s0; initial_opening: (P,) at no displacement, negative where a point carries
             compression before anything has moved.
+        middle: (P,) shear that a point bears besides its own, as part of the dead load: the middle of a bar's range.
         dead, live: (N,) dimensionless loads.
         inertia: (N,) dimensionless masses for slow motion.
         footing: (N,) stiffness of every block against the ground that a singular tangent is factorised with.
         column_start, row_index: CSC pattern of the tangent; slot: (m, 36) where each interface adds to its values.
         force, length, displacement: what one unit inside is worth outside.
-        cohesive: (k,) interfaces with a cohesion spring, which are the last k of the points, with rows of their own
-            behind the m.
+        cohesive: (k,) interfaces with a cohesion spring, and then ties and props: the last k of the points, with rows
+            of their own behind the m.
         options: of all that is done with the model.
         deadline: of the run in which it is made; all that goes on for long asks for it.
     """
@@ -63,8 +64,10 @@ class WallModel:
     kn: FloatArray
     kt: FloatArray
     mu: FloatArray
+    psi: FloatArray
     history: FloatArray
     initial_opening: FloatArray
+    middle: FloatArray
     dead: FloatArray
     live: FloatArray
     inertia: FloatArray
@@ -102,9 +105,37 @@ class WallModel:
         return self.n_points - len(self.cohesive)
 
     @cached_property
+    def n_updated(self) -> int:
+        """The number of gap points whose friction history is updated: all but ties and props, which come last.
+
+        A tie that has been slack bears nothing until it is as long as before.
+        """
+        return self.n_points - int(self.assembly.is_bar.sum())
+
+    def updated(self, history: FloatArray, before: FloatArray) -> FloatArray:
+        """The history (P,) after an update from one `before` it."""
+        return np.concatenate([history[: self.n_updated], before[self.n_updated :]])
+
+    def bar_tensions(self, trial: FloatArray) -> FloatArray:
+        """Tensions of ties and props beyond their prestress [force], at trial shears tau (P,)."""
+        last = slice(self.n_updated, None)
+        limit = -self.mu[last] * self.kn[last] * self.initial_opening[last]
+        return self.force * (np.clip(trial[last], -limit, limit) + self.middle[last])
+
+    @cached_property
     def law(self) -> JointLaw:
         """The law of the gap points."""
-        return JointLaw(self.mu, np.zeros(self.n_points))
+        return JointLaw(self.mu, self.psi)
+
+    @cached_property
+    def lift(self) -> FloatArray:
+        """(P,) opening psi / kt by which a unit of shear beyond friction lifts a point."""
+        return self.psi / self.kt
+
+    @cached_property
+    def dilates(self) -> bool:
+        """Whether a slip lifts any point. Its friction history is then not updated: the lift would have to be too."""
+        return bool(self.psi.any())
 
     def strains(self, u: FloatArray) -> tuple[FloatArray, FloatArray]:
         """Openings and slips (P,) of the gap points at displacements u (N,)."""
@@ -117,14 +148,14 @@ class WallModel:
         """States (P,) of the gap points at displacements u with friction history h (P,)."""
         opening, slip = self.strains(u)
         state = np.empty(self.n_points, dtype=np.int64)
-        classify(opening, self.kt * slip + history, self.kn, self.mu, state, virgin)
+        classify(opening, self.kt * slip + history, self.kn, self.mu, self.lift, state, virgin)
         return state
 
     def forces(self, u: FloatArray, history: FloatArray, state: IntArray) -> tuple[FloatArray, FloatArray]:
         """Compression N and internal shear T (P,) of points held in the given states."""
         opening, slip = self.strains(u)
         normal, shear = np.empty(self.n_points), np.empty(self.n_points)
-        gap_forces(opening, self.kt * slip + history, self.kn, self.mu, state, normal, shear)
+        gap_forces(opening, self.kt * slip + history, self.kn, self.mu, self.lift, state, normal, shear)
         return normal, shear
 
     def end_forces(self, normal: FloatArray, shear: FloatArray) -> FloatArray:
@@ -134,7 +165,7 @@ class WallModel:
             return self.force * equivalent_end_forces(self.position, self.interface, normal, shear, count)
         dry = slice(self.n_contacts)
         ends = equivalent_end_forces(self.position[dry], self.interface[dry], normal[dry], shear[dry], count)
-        ends[self.cohesive, 2] -= shear[self.n_contacts :]
+        ends[self.cohesive, 2] -= shear[self.n_contacts :] + self.middle[self.n_contacts :]
         ends *= self.force
         ends[:, :2] -= self.assembly.law.constant[:, :2]  # the clamping, which the springs bear besides
         return ends
@@ -150,7 +181,17 @@ class WallModel:
         """dead * dead load + multiplier * live load minus the internal forces of gaps g, tau (P,): (N,)."""
         out = dead * self.dead + multiplier * self.live
         tangent_defect(
-            self.unknown, self.rows, self.interface, self.position, self.kn, self.mu, state, opening, trial, out
+            self.unknown,
+            self.rows,
+            self.interface,
+            self.position,
+            self.kn,
+            self.mu,
+            self.lift,
+            state,
+            opening,
+            trial,
+            out,
         )
         return out
 
@@ -161,7 +202,9 @@ class WallModel:
     def tangent(self, state: IntArray, shift: float = 0.0, regularised: bool = False) -> sp.csc_matrix:
         """The sparse tangent (N, N) in the given states, with what is `added` to its diagonal."""
         values = np.zeros(len(self.row_index))
-        add_tangent(self.slot, self.rows, self.interface, self.position, self.kn, self.kt, self.mu, state, values)
+        add_tangent(
+            self.slot, self.rows, self.interface, self.position, self.kn, self.kt, self.mu, self.lift, state, values
+        )
         matrix = sp.csc_matrix((values, self.row_index, self.column_start), shape=(self.n_unknowns, self.n_unknowns))
         if shift or regularised:
             matrix.setdiag(matrix.diagonal() + self.added(shift, regularised))
@@ -170,12 +213,14 @@ class WallModel:
     def change(self, point: int, old: int, new: int) -> tuple[IntArray, FloatArray, FloatArray]:
         """The rank-one change a b' of the tangent when a point changes its state: (unknowns, a, b), all (6,)."""
         a, b = np.empty(6), np.empty(6)
-        rank_one_change(self.rows, self.interface, self.position, self.kn, self.kt, self.mu, point, old, new, a, b)
+        rank_one_change(
+            self.rows, self.interface, self.position, self.kn, self.kt, self.mu, self.lift, point, old, new, a, b
+        )
         return self.unknown[self.interface[point]], a, b
 
     def add_changes(self, changes: Sequence[tuple[int, int, int]], columns: FloatArray) -> int:
         """Add the vectors a of changes (point, old, new) to the columns of (N, k); returns the first row concerned."""
-        springs = self.rows, self.interface, self.position, self.kn, self.kt, self.mu
+        springs = self.rows, self.interface, self.position, self.kn, self.kt, self.mu, self.lift
         return add_changes(self.unknown, *springs, np.array(changes), columns)
 
     def block_displacements(self, u: FloatArray) -> FloatArray:
@@ -211,12 +256,12 @@ def build_model(
     place[order] = np.arange(len(order))
     unknown, rows = _kinematic_rows(assembly, place, length)
     xi, weights = gap_points(settings.rule, settings.points)
-    m, q = assembly.n_interfaces, settings.points
-    interface = np.repeat(np.arange(m), q)
+    joints, q = np.flatnonzero(~assembly.is_bar), settings.points
+    interface = np.repeat(joints, q)
     if settings.weighting == "point":
-        kn = np.tile(weights * q, m)
+        kn = np.tile(weights * q, len(joints))
     else:
-        kn = np.tile(weights, m) * np.repeat(assembly.length / length, q)
+        kn = np.tile(weights, len(joints)) * np.repeat(assembly.length[joints] / length, q)
     n = 3 * len(order)
     start, row_index, slot = _pattern(unknown, rows, n)
     scale = np.array([1.0, 1.0, 1.0 / length]) / force
@@ -228,6 +273,7 @@ def build_model(
     regularised = (
         options.regularisation.stiffness * np.stack([np.ones_like(lever), np.ones_like(lever), lever], axis=1).ravel()
     )
+    law = assembly.law.with_friction(np.minimum(assembly.friction, friction_cap))
     stiffness = settings.normal_stiffness or 1000.0 * force / length
     model = WallModel(
         assembly=assembly,
@@ -235,12 +281,14 @@ def build_model(
         unknown=unknown,
         rows=rows,
         interface=interface,
-        position=np.tile(xi, m),
+        position=np.tile(xi, len(joints)),
         kn=kn,
         kt=kn * settings.stiffness_ratio,
-        mu=np.minimum(assembly.friction, friction_cap)[interface],
-        history=np.zeros(m * q),
-        initial_opening=np.zeros(m * q),
+        mu=law.friction[interface],
+        psi=law.dilatancy[interface],
+        history=np.zeros(len(interface)),
+        initial_opening=np.zeros(len(interface)),
+        middle=np.zeros(len(interface)),
         dead=(assembly.dead[order] * scale).ravel(),
         live=(assembly.live[order] * scale).ravel(),
         inertia=inertia,
@@ -252,7 +300,10 @@ def build_model(
         length=length,
         displacement=force / stiffness,
     )
-    return with_strength(model) if assembly.strong else model
+    if not assembly.strong:
+        return model
+    given = assembly.bar_stiffness / stiffness
+    return with_strength(model, np.where(np.isnan(given), settings.points, given))
 
 
 def load_scale(model: WallModel, multiplier: float) -> float:

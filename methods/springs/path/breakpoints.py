@@ -1,7 +1,7 @@
 """The search for the next breakpoint along a straight piece of the path.
 
 Inside a cell of states these functions stay positive:
-    open: g (closes into slip);  slip: N (opens), sign tau - mu N (sticks);  stick: mu N -+ tau (slips).
+    open: g -+ lift tau (closes);  slip: N (opens), sign tau + mu kn g (sticks);  stick: -mu kn g -+ tau (slips).
 The search is Harris' two-pass ratio test (1973): of the breakpoints met within a hair of the first, the one crossed
 fastest is taken, which keeps the pivots away from zero.
 """
@@ -13,25 +13,38 @@ import numpy as np
 from harness.model.assembly import FloatArray, IntArray
 from methods.numerics.compiled import compiled
 from methods.numerics.vectors import largest
-from methods.springs.model.gap_law import OPEN, SLIP_MINUS, SLIP_PLUS, STICK, shear_limit
+from methods.springs.model.gap_law import OPEN, SLIP_MINUS, SLIP_PLUS, STICK, shear_limit, slip_compression
 
 
 @compiled
 def breakpoint_functions(
-    opening: float, trial: float, opening_rate: float, trial_rate: float, kn: float, mu: float, state: int
+    opening: float,
+    trial: float,
+    opening_rate: float,
+    trial_rate: float,
+    kn: float,
+    mu: float,
+    lift: float,
+    state: int,
 ) -> tuple[float, float, float, float]:
     """Values and rates (value 0, rate 0, value 1, rate 1) of both breakpoint functions of a point; rate 1 for none."""
     if state == OPEN:
-        return kn * opening, kn * opening_rate, 1.0, 1.0
-    normal, normal_rate = -kn * opening, -kn * opening_rate
-    limit, limit_rate = shear_limit(mu, normal), shear_limit(mu, normal_rate)
+        lifted, lifted_rate = lift * trial, lift * trial_rate
+        return (
+            kn * (opening - lifted),
+            kn * (opening_rate - lifted_rate),
+            kn * (opening + lifted),
+            kn * (opening_rate + lifted_rate),
+        )
+    limit, limit_rate = shear_limit(mu, -kn * opening), shear_limit(mu, -kn * opening_rate)
     if state == STICK:
         return limit - trial, limit_rate - trial_rate, limit + trial, limit_rate + trial_rate
+    sign = 1.0 if state == SLIP_PLUS else -1.0
+    normal = slip_compression(opening, trial, kn, mu, lift, sign)
+    normal_rate = slip_compression(opening_rate, trial_rate, kn, mu, lift, sign)
     if mu == 0.0:
         return normal, normal_rate, 1.0, 1.0
-    if state == SLIP_PLUS:
-        return normal, normal_rate, trial - limit, trial_rate - limit_rate
-    return normal, normal_rate, -trial - limit, -trial_rate - limit_rate
+    return normal, normal_rate, sign * trial - limit, sign * trial_rate - limit_rate
 
 
 @compiled
@@ -52,6 +65,7 @@ def next_breakpoint(
     trial_rate: FloatArray,
     kn: FloatArray,
     mu: FloatArray,
+    lift: FloatArray,
     state: IntArray,
     tolerance: float,
     noise: float,
@@ -63,7 +77,7 @@ def next_breakpoint(
 
     Args:
         opening, trial: (P,) g and tau now; opening_rate, trial_rate: (P,) their rates.
-        kn, mu: (P,) of the points; state: (P,) states.
+        kn, mu, lift: (P,) of the points; state: (P,) states.
         tolerance: how far (dimensionless force) a breakpoint may be overrun by the choice among near ties.
         noise: rates of breakpoint functions below this share of the fastest gap rate count as zero, if below `floor`.
         barred_point, barred_state: the change just made the other way round, which is not taken back at once.
@@ -78,7 +92,7 @@ def next_breakpoint(
     found = 0
     for p in range(count):
         v0, r0, v1, r1 = breakpoint_functions(
-            opening[p], trial[p], opening_rate[p], trial_rate[p], kn[p], mu[p], state[p]
+            opening[p], trial[p], opening_rate[p], trial_rate[p], kn[p], mu[p], lift[p], state[p]
         )
         near = False
         if r0 < -least and max(v0, 0.0) <= -r0 * best:
@@ -102,7 +116,7 @@ def next_breakpoint(
     best *= 1.0 + 1e-14
     for p in within[:found]:
         v0, r0, v1, r1 = breakpoint_functions(
-            opening[p], trial[p], opening_rate[p], trial_rate[p], kn[p], mu[p], state[p]
+            opening[p], trial[p], opening_rate[p], trial_rate[p], kn[p], mu[p], lift[p], state[p]
         )
         if r0 < -least and -r0 > speed and max(v0, 0.0) <= -r0 * best:
             at = max(v0, 0.0) / -r0
@@ -110,9 +124,10 @@ def next_breakpoint(
             if p != barred_point or new != barred_state:
                 step, point, target, speed = at, p, new, -r0
         if r1 < -least and -r1 > speed and max(v1, 0.0) <= -r1 * best:
-            new = target_state(state[p], 1, trial[p])
+            at = max(v1, 0.0) / -r1
+            new = target_state(state[p], 1, trial[p] + at * trial_rate[p])
             if p != barred_point or new != barred_state:
-                step, point, target, speed = max(v1, 0.0) / -r1, p, new, -r1
+                step, point, target, speed = at, p, new, -r1
     return step, point, target
 
 
@@ -124,6 +139,7 @@ def coming_breakpoints(
     trial_rate: FloatArray,
     kn: FloatArray,
     mu: FloatArray,
+    lift: FloatArray,
     state: IntArray,
     points: IntArray,
     targets: IntArray,
@@ -140,7 +156,7 @@ def coming_breakpoints(
     steps = np.empty(limit)
     for p in range(len(state)):
         v0, r0, v1, r1 = breakpoint_functions(
-            opening[p], trial[p], opening_rate[p], trial_rate[p], kn[p], mu[p], state[p]
+            opening[p], trial[p], opening_rate[p], trial_rate[p], kn[p], mu[p], lift[p], state[p]
         )
         at, which = np.inf, 0
         if r0 < 0.0:
@@ -188,15 +204,16 @@ def live_rate(load: FloatArray, u: FloatArray) -> float:
 
 @compiled
 def strain_rates(
-    opening_rate: FloatArray, trial_rate: FloatArray, kt: FloatArray, state: IntArray
+    opening_rate: FloatArray, trial_rate: FloatArray, kt: FloatArray, lift: FloatArray, state: IntArray
 ) -> tuple[float, float]:
     """The fastest rate of any gap, and the fastest of those that change a force elastically."""
     fastest = elastic = 0.0
     for p in range(len(state)):
         opening, slip = abs(opening_rate[p]), abs(trial_rate[p] / kt[p])
         fastest = max(fastest, opening, slip)
-        if state[p] != OPEN:
-            elastic = max(elastic, opening)
         if state[p] == STICK:
-            elastic = max(elastic, slip)
+            elastic = max(elastic, opening, slip)
+        elif state[p] != OPEN:
+            sign = 1.0 if state[p] == SLIP_PLUS else -1.0
+            elastic = max(elastic, abs(opening_rate[p] - sign * lift[p] * trial_rate[p]))
     return fastest, elastic

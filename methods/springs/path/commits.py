@@ -41,8 +41,8 @@ def committed_step(follower: PathFollower, ahead: float) -> PathFollower | None:
             point_strains(model.unknown, model.rows, model.interface, model.position, step, opening_rate, slip_rate)
             opening += opening_rate
             trial += model.kt * slip_rate
-            classify(opening, trial, model.kn, model.mu, landed, False)
-            if same_forces(opening, trial, model.kn, model.mu, state, landed, near):
+            classify(opening, trial, model.kn, model.mu, model.lift, landed, False)
+            if same_forces(opening, trial, model.kn, model.mu, model.lift, state, landed, near):
                 opening, trial = model.strains(u)
                 trial = model.kt * trial + history
                 if largest(model.out_of_balance(opening, trial, state, multiplier)) > options.balanced * follower.scale:

@@ -16,7 +16,7 @@ from methods.numerics.block_kernels import COLUMNS
 from methods.numerics.vectors import largest
 from methods.springs.model.breaking import joints_at_strength
 from methods.springs.model.factor import Change, Factor, SingularTangent
-from methods.springs.model.gap_law import OPEN, SLIP_PLUS, STICK, gap_forces, shear_limit
+from methods.springs.model.gap_law import OPEN, SLIP_PLUS, STICK, gap_forces, shear_limit, slip_compression
 from methods.springs.model.wall_model import WallModel, load_scale
 from methods.springs.path.breakpoints import advance, coming_breakpoints, live_rate, next_breakpoint, strain_rates
 from methods.springs.path.direction import PathDirection
@@ -97,7 +97,7 @@ class PathFollower:
 
     def may_commit(self) -> bool:
         """Whether a commit changes anything, and the factor is that of the tangent itself."""
-        return self.n_slip > 0 and not self.direction.bordered
+        return self.n_slip > 0 and not (self.direction.bordered or self.model.dilates)
 
     def refresh(self, crossed: tuple[Change, float] | None = None) -> None:
         """Factorise afresh, solve for the direction again, on over the breakpoint crossed, and remove the drift."""
@@ -140,16 +140,18 @@ class PathFollower:
         return joints_at_strength(self.model, self.opening, self.trial, self.state, within)
 
     def commit(self) -> FloatArray:
-        """The history h = T - kt s (P,) after the present shears are frozen in."""
+        """The history h = T - kt s (P,) after the present shears are frozen in; that of before where slips lift."""
         model = self.model
+        if model.dilates:
+            return self.history
         normal, shear = np.empty_like(self.trial), np.empty_like(self.trial)
-        gap_forces(self.opening, self.trial, model.kn, model.mu, self.state, normal, shear)
-        return shear - (self.trial - self.history)
+        gap_forces(self.opening, self.trial, model.kn, model.mu, model.lift, self.state, normal, shear)
+        return model.updated(shear - (self.trial - self.history), self.history)
 
     def is_mechanism(self) -> bool:
         """Whether no force changes along the present piece (rates of forces negligible beside the fastest)."""
         way = self.direction
-        strain, elastic = strain_rates(way.opening_rate, way.trial_rate, self.model.kt, self.state)
+        strain, elastic = strain_rates(way.opening_rate, way.trial_rate, self.model.kt, self.model.lift, self.state)
         return elastic <= self.options.mechanism.elastic * strain
 
     def run(
@@ -189,6 +191,7 @@ class PathFollower:
             way.trial_rate,
             model.kn,
             model.mu,
+            model.lift,
             self.state,
             self.options.breakpoints.force * self.scale,
             self.options.breakpoints.rate,
@@ -243,7 +246,8 @@ class PathFollower:
         ahead = step * fastest
         if ahead < tests.least * size or not self.is_mechanism() or live_rate(model.live, way.velocity) <= 0.0:
             return False
-        if way.opening_rate[self.state == OPEN].min(initial=0.0) < -tests.elastic * fastest:
+        parting = way.opening_rate - model.lift * abs(way.trial_rate)
+        if parting[self.state == OPEN].min(initial=0.0) < -tests.elastic * fastest:
             return False
         if ahead > tests.far * size:
             return True
@@ -267,7 +271,8 @@ class PathFollower:
         elif record.first_limit is None and self.multiplier < record.peak * (1.0 - 1e-9):
             record.first_limit = record.peak
         if record.events % note == 0:
-            record.add(self.multiplier, live_rate(self.model.live, self.u), self.n_slip, self.n_open)
+            bars = self.model.bar_tensions(self.trial) if self.model.n_updated < self.model.n_points else ()
+            record.add(self.multiplier, live_rate(self.model.live, self.u), self.n_slip, self.n_open, bars)
         record.keep(self.load_step)
 
     def _flip(self, point: int, new: int) -> None:
@@ -290,7 +295,7 @@ class PathFollower:
         model, way = self.model, self.direction
         points, targets = np.empty(COLUMNS - 1, dtype=np.int64), np.empty(COLUMNS - 1, dtype=np.int64)
         gaps = self.opening, self.trial, way.opening_rate, way.trial_rate
-        found = coming_breakpoints(*gaps, model.kn, model.mu, self.state, points, targets)
+        found = coming_breakpoints(*gaps, model.kn, model.mu, model.lift, self.state, points, targets)
         coming = zip(points[:found].tolist(), targets[:found].tolist(), strict=True)
         return [change, *((p, int(self.state[p]), new) for p, new in coming if p != change[0])]
 
@@ -303,9 +308,10 @@ class PathFollower:
     def _breakpoint_rate(self, point: int, old: int, new: int) -> float:
         """b'v of a change of state and the velocity v of the present piece."""
         model, way = self.model, self.direction
-        pressed = model.kn[point] * way.opening_rate[point]
+        slip = old if new in (OPEN, STICK) else new
+        kn, mu, opening, trial = model.kn[point], model.mu[point], way.opening_rate[point], way.trial_rate[point]
         if OPEN in (old, new):
-            return float(pressed)
-        slip = new if old == STICK else old
-        limit = shear_limit(model.mu[point], pressed)
-        return float(way.trial_rate[point] + (limit if slip == SLIP_PLUS else -limit))
+            sign = 1.0 if slip == SLIP_PLUS else -1.0
+            return float(-slip_compression(opening, trial, kn, mu, model.lift[point], sign))
+        limit = shear_limit(mu, kn * opening)
+        return float(trial + (limit if slip == SLIP_PLUS else -limit))

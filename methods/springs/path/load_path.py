@@ -80,6 +80,12 @@ def _committed(follower: PathFollower, interval: float, record: PathRecord) -> P
         follower.refresh()
         return None
     record.peak = max(record.peak, after.multiplier)
-    record.add(after.multiplier, float(follower.model.live @ after.u), after.n_slip, after.n_open)
+    record.add(
+        after.multiplier,
+        float(follower.model.live @ after.u),
+        after.n_slip,
+        after.n_open,
+        after.model.bar_tensions(after.trial),
+    )
     record.keep(after.load_step)
     return successor(after, follower)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from enum import StrEnum
 
@@ -48,6 +48,7 @@ class PathRecord:
     displacement: list[float] = field(default_factory=list)
     slipping: list[int] = field(default_factory=list)
     open: list[int] = field(default_factory=list)
+    bars: list[list[float]] = field(default_factory=list)
     peak: float = -np.inf
     first_limit: float | None = None
     events: int = 0
@@ -65,12 +66,20 @@ class PathRecord:
                 self._every *= 2
         self._met += 1
 
-    def add(self, multiplier: float, displacement: float, slipping: int, n_open: int) -> None:
-        """Append one point of the path."""
+    def add(
+        self,
+        multiplier: float,
+        displacement: float,
+        slipping: int,
+        n_open: int,
+        bars: Sequence[float] | FloatArray = (),
+    ) -> None:
+        """Append one point of the path; `bars` are tensions (k,) beyond the prestress of ties and props [force]."""
         self.multiplier.append(multiplier)
         self.displacement.append(displacement)
         self.slipping.append(slipping)
         self.open.append(n_open)
+        self.bars.append([float(tension) for tension in bars])
 
 
 @dataclass(frozen=True, eq=False)

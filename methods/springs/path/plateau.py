@@ -91,7 +91,7 @@ def _collapse_state(
     velocity: FloatArray,
 ) -> PlateauState:
     normal, shear = np.empty_like(opening), np.empty_like(opening)
-    gap_forces(opening, trial, model.kn, model.mu, state, normal, shear)
+    gap_forces(opening, trial, model.kn, model.mu, model.lift, state, normal, shear)
     assembly = model.assembly
     forces = model.end_forces(normal, shear)
     field = model.block_displacements(velocity)
@@ -118,7 +118,7 @@ def _solve_last_piece(model: WallModel, shot: PathSnapshot) -> PlateauState:
         beyond = _beyond_yield(model, opening, trial, state)
         if not beyond.any():
             break
-        classify(opening, trial, model.kn, model.mu, landed, False)
+        classify(opening, trial, model.kn, model.mu, model.lift, landed, False)
         state[beyond] = landed[beyond]
     mechanism = factor.solve(-tangent[:, [fastest]].toarray().ravel())
     if not np.isfinite(mechanism).all():
@@ -174,7 +174,7 @@ def _regular(model: WallModel, state: IntArray) -> SuperLU:
 def _beyond_yield(model: WallModel, opening: FloatArray, trial: FloatArray, state: IntArray) -> BoolArray:
     """(P,) points whose forces in these states are tensile or exceed friction."""
     normal, shear = np.empty_like(opening), np.empty_like(opening)
-    gap_forces(opening, trial, model.kn, model.mu, state, normal, shear)
+    gap_forces(opening, trial, model.kn, model.mu, model.lift, state, normal, shear)
     borne = model.law.by_friction(normal)
     return np.asarray(
         (normal < -model.options.collapse.certificate) | (np.abs(shear) > borne + model.options.collapse.certificate)
@@ -221,7 +221,7 @@ def _with_column(matrix: sp.csc_matrix, k: int, column: FloatArray) -> sp.csc_ma
 
 
 def check(assembly: Assembly, multiplier: float, forces: FloatArray, mechanism: FloatArray) -> PlateauState:
-    """Measure how exactly forces and mechanism form a non-associated collapse state (zero dilatancy).
+    """Measure how exactly forces and mechanism form a collapse state with the flow of the joints.
 
     Forces are relative to a mean block weight, rates to the fastest block, or to as much of it as the live load's work
     is of the sum of its terms: rounding of an idle motion is no mechanism. Complementarity is the work of contact
@@ -243,23 +243,28 @@ def check(assembly: Assembly, multiplier: float, forces: FloatArray, mechanism: 
     share = power / (float(abs(live) @ abs(velocity)) or 1.0)
     power = power if share > IDLE else 0.0
     speed = float(np.abs(velocity * lengths).max()) * min(1.0, max(share, IDLE)) or 1.0
-    strength = assembly.law.strength(forces)
-    tension = assembly.law.constant[:, :2]
+    law = assembly.law
+    opened, slipped = law.rates(rates)[:, :2], np.abs(rates[:, 2])
+    slacks, forwards = law.slacks(forces), rates[:, 2] > 0.0
+    strength = law.by_friction(forces[:, 0] + forces[:, 1]) + np.where(forwards, law.constant[:, 2], law.constant[:, 3])
+    tension = law.constant[:, :2]
     size = max(assembly.load_unit, abs(multiplier))
-    against = strength + np.sign(rates[:, 2]) * forces[:, 2]
+    against = np.where(forwards, slacks[:, 2], slacks[:, 3])
     pressed = forces[:, :2] + tension
-    idle = float(np.abs(pressed * rates[:, :2]).sum() + np.abs(against * rates[:, 2]).sum())
+    idle = float(np.abs(pressed * opened).sum() + np.abs(against * rates[:, 2]).sum())
     pressing = np.column_stack([pressed, against]) / scale
-    motion = np.abs(rates) / speed
+    motion = np.abs(np.column_stack([opened, slipped])) / speed
     residuals = {
         "both": float(np.minimum(np.abs(pressing), motion).max()),
         "equilibrium": float(np.abs(balance).max()) / scale,
-        "yield": max(0.0, -float(assembly.law.slacks(forces).min())) / scale,
-        "dilatancy": max(0.0, -float(rates[:, :2].min())) / speed,
+        "yield": max(0.0, -float(slacks.min())) / scale,
+        "dilatancy": max(0.0, -float(opened.min())) / speed,
         "complementarity": idle / (power * size) if power > 0.0 else np.inf,
     }
-    # what joints take: n . opening = -(T / 2) opening where they open, s slip = -(mu (n1 + n2) + c A) |slip|
-    taken = float(np.sum(strength * np.abs(rates[:, 2]))) + float(np.sum(tension * np.maximum(rates[:, :2], 0.0)))
+    # what joints take: n . opening = -(T / 2) opening where they open beyond the lift of their slip, whose own work is
+    # -(mu N + c A) |slip| + psi N |slip|
+    resists = strength - law.dilatancy * (forces[:, 0] + forces[:, 1])
+    taken = float(np.sum(resists * slipped)) + float(np.sum(tension * np.maximum(opened, 0.0)))
     work = float(taken - dead @ velocity) / power if power else float("inf")
     residuals["work"] = abs(work - multiplier) / size if power > 0.0 else 1.0
     return PlateauState(multiplier, work, forces, mechanism, residuals)

@@ -84,6 +84,5 @@ def settled(
 ) -> bool:
     """Whether the two sets of states give the same forces at u."""
     opening, slip = model.strains(u)
-    return same_forces(
-        opening, model.kt * slip + history, model.kn, model.mu, state, landed, model.options.breakpoints.force * scale
-    )
+    trial, near = model.kt * slip + history, model.options.breakpoints.force * scale
+    return same_forces(opening, trial, model.kn, model.mu, model.lift, state, landed, near)

@@ -1,15 +1,16 @@
 """Slow motion of a wall to rest, under friction limits that lag behind.
 
 Where Newton cycles the wall moves in implicit steps against forces of inertia, sigma M du, with sigma lowered as it
-settles. In one increment du of the motion the friction limits c of the gap points are fixed (Tresca), so that du is
-the minimum of a convex function,
+settles. In one increment du of the motion the shear c = (mu - psi) N that slip dissipates at the gap points is fixed
+(Tresca), so that du is the minimum of a convex function,
 
-    sum kn min(g, 0)^2 / 2 + sum f(tau) + sigma du' M du / 2 - loads' du,   f' = min(max(tau, -c), c), tau = kt s + h,
+    sum min over e of [kn min(g - psi |e|, 0)^2 / 2 + (tau - kt e)^2 / (2 kt) + c |e|] + sigma du' M du / 2 - loads' du
 
-which Newton with a line search finds. After it the limits go half of their way to mu N; a motion that commits its
-friction history also freezes the shears in. Near rest plain Newton finds the equilibrium; where its tangent is
-singular, as in a statically determinate wall, the wall is at rest when neither forces of inertia nor limits move any
-more. There the law of the gap points holds as it does on the exact path. A wall that falls comes to a steady motion.
+with tau = kt s + h, which Newton with a line search finds. After it the limits c go half of their way to (mu - psi) N;
+a motion that commits its friction history also freezes the shears in, where slips do not lift. Near rest plain Newton
+finds the equilibrium; where its tangent is singular, as in a statically determinate wall, the wall is at rest when
+neither forces of inertia nor limits move any more. There the law of the gap points holds as it does on the exact path.
+A wall that falls comes to a steady motion.
 
 On walls of many irregular blocks the exact path goes to and fro over tens of thousands of breakpoints on its way up.
 There the load is raised in finite steps instead, each until the wall has come to rest again.
@@ -22,10 +23,10 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from harness.model.assembly import FloatArray
+from harness.model.assembly import FloatArray, IntArray
 from methods.numerics.vectors import largest
 from methods.springs.model.factor import Factor, SingularTangent, make_factor, refactor_any
-from methods.springs.model.gap_law import STICK
+from methods.springs.model.gap_law import STICK, frozen_forces
 from methods.springs.model.point_loops import point_strains
 from methods.springs.model.wall_model import WallModel, load_scale
 from methods.springs.rest.newton import Equilibrium, newton
@@ -52,8 +53,8 @@ class PseudoTransient:
             start: where the wall is, in equilibrium or not; the virgin state where nothing is displaced.
             commits: whether the shears are frozen in after every increment, as a friction history is committed.
         """
-        self.model, self.factor, self.commits = model, factor, commits
-        self._resisting = replace(model, kn=model.kn.copy(), kt=model.kt.copy())
+        self.model, self.factor, self.commits = model, factor, commits and not model.dilates
+        self._resisting = replace(model, kn=model.kn.copy(), mu=model.psi)
         self._factor = make_factor(self._resisting)
         self._stick = np.full(model.n_points, STICK)
         self._rest = start
@@ -101,7 +102,7 @@ class PseudoTransient:
                 continue
             increments += 1
             rate = after.u - now.u
-            lag = _limits(model, after.opening) - now.limit
+            lag = self._dissipated(after) - now.limit
             inertia, change = sigma * largest(model.inertia * rate), largest(lag)
             history = self._history(after, now.limit + lag)
             if max(inertia, change) < rest.still * scale:
@@ -134,13 +135,17 @@ class PseudoTransient:
 
     def _moment(self, u: FloatArray, history: FloatArray) -> _Moment:
         """The moment at displacements u (N,) under a history h (P,)."""
-        opening, slip = self.model.strains(u)
-        limit = _limits(self.model, opening)
-        return self._committed(_Moment(u, opening, self.model.kt * slip + history, limit), limit)
+        model = self.model
+        opening, slip = model.strains(u)
+        normal, _ = model.forces(u, history, model.states(u, history))
+        limit = model.law.dissipated(normal)
+        return self._committed(_Moment(u, opening, model.kt * slip + history, limit), limit)
 
     def _committed(self, moment: _Moment, limit: FloatArray) -> _Moment:
         """The moment under new friction limits c (P,), with its shears frozen in if the motion commits them."""
-        trial = np.clip(moment.trial, -limit, limit) if self.commits else moment.trial
+        trial = moment.trial
+        if self.commits:
+            trial = self.model.updated(np.clip(trial, -limit, limit), trial)
         return replace(moment, trial=trial, limit=limit)
 
     def _history(self, moment: _Moment, limit: FloatArray) -> FloatArray:
@@ -159,7 +164,8 @@ class PseudoTransient:
             u = self.factor.solve(model.residual(start.u, start.multiplier, start.history, state))
         except SingularTangent:
             return moment
-        return self._committed(moment, _limits(model, model.strains(u)[0]))
+        pressed = np.minimum(model.strains(u)[0], 0.0)
+        return self._committed(moment, model.law.dissipated(-model.kn * pressed))
 
     def _increment(
         self, now: _Moment, multiplier: float, sigma: float, ahead: FloatArray
@@ -177,10 +183,10 @@ class PseudoTransient:
         balanced = options.balanced * load_scale(model, multiplier) + rounding
         for count in range(1, options.steps + 1):
             model.deadline.ask()
-            np.multiply(model.kn, opening < 0.0, out=resisting.kn)
-            np.multiply(model.kt, np.abs(trial) < now.limit, out=resisting.kt)
+            state, pressed, _ = self._frozen(opening, trial, now.limit)
+            np.multiply(model.kn, pressed < 0.0, out=resisting.kn)
             try:
-                self._factor.refactor(self._stick, sigma)
+                self._factor.refactor(state, sigma)
                 step = self._factor.solve(residual)
             except SingularTangent:
                 return None, count
@@ -209,10 +215,20 @@ class PseudoTransient:
 
     def _out_of_balance(self, now: _Moment, multiplier: float, opening: FloatArray, trial: FloatArray) -> FloatArray:
         """Loads minus internal forces (N,) at openings g and trial shears tau (P,) under the limits of now."""
-        shear = np.clip(trial, -now.limit, now.limit)
-        return self.model.out_of_balance(np.minimum(opening, 0.0), shear, self._stick, multiplier)
+        _, pressed, shear = self._frozen(opening, trial, now.limit)
+        return self.model.out_of_balance(pressed, shear, self._stick, multiplier)
 
+    def _frozen(
+        self, opening: FloatArray, trial: FloatArray, limit: FloatArray
+    ) -> tuple[IntArray, FloatArray, FloatArray]:
+        """States, openings of the normal springs and shears (P,) at gaps g, tau under limits c (P,)."""
+        model = self.model
+        state = np.empty(model.n_points, dtype=np.int64)
+        pressed, shear = np.empty_like(opening), np.empty_like(opening)
+        frozen_forces(opening, trial, limit, model.kn, model.kt, model.psi, state, pressed, shear)
+        return state, pressed, shear
 
-def _limits(model: WallModel, opening: FloatArray) -> FloatArray:
-    """Friction limits mu N (P,) at openings g (P,)."""
-    return model.law.by_friction(np.maximum(-model.kn * opening, 0.0))
+    def _dissipated(self, moment: _Moment) -> FloatArray:
+        """The limits c = (mu - psi) N (P,) that the compressions at a moment lead to."""
+        _, pressed, _ = self._frozen(moment.opening, moment.trial, moment.limit)
+        return self.model.law.dissipated(-self.model.kn * pressed)

@@ -1,0 +1,171 @@
+"""The capacity curve: the multiplier that a wall bears against its displacement, on updated geometry.
+
+The collapse begins at the associated maximum of the wall as drawn. The blocks follow its mechanism by finite rotations
+about joints that have opened, and at every point the multiplier is found again in the wall as it stands there
+(`methods.la.capacity`). It falls to zero at the ultimate displacement, beyond which the wall falls under its dead load.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from drystone.settling import check_simple
+from drystone.walls import Wall
+from harness.engine.settled_judge import judge_moved_collapse, judge_settled_fall
+from harness.model.assembly import Assembly, FloatArray
+from harness.model.errors import InputError
+from harness.model.result import Judgement
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+    from methods.la.settling import SettlingSteps
+
+
+@dataclass(frozen=True, eq=False)
+class CapacityCurve:
+    """The multiplier of the live load against the displacement of a wall. k points.
+
+    Attributes:
+        assembly: the wall as drawn.
+        control: what the displacement is of, in words.
+        displacement: (k,) of it [length].
+        multiplier: (k,) greatest in the wall as it stands there.
+        places: (k, n, 3) displacements [length] and rotations [rad] of the blocks.
+        ultimate: displacement at which the multiplier is zero [length], or None.
+        judgements: (k,) of the points, and where there is one of the fall a hair beyond.
+        reason: why it was followed no further; empty where it falls.
+    """
+
+    assembly: Assembly
+    control: str
+    displacement: FloatArray
+    multiplier: FloatArray
+    places: FloatArray
+    ultimate: float | None
+    judgements: tuple[Judgement, ...]
+    reason: str
+
+    @property
+    def accepted(self) -> bool:
+        """Whether the wall was followed until it falls, and the judge accepts every point and the fall."""
+        return self.ultimate is not None and all(each.accepted for each in self.judgements)
+
+    @property
+    def sentence(self) -> str:
+        """What was found, and what the judge says."""
+        number = len(self.judgements)
+        rejected = [each.sentence for each in self.judgements if not each.accepted]
+        said = f"The judge accepts {'the state' if number == 1 else f'all {number} states'}."
+        if rejected:
+            said = f"The judge rejects {len(rejected)} of {number} states: {rejected[0]}"
+        begins = f"The multiplier is {self.multiplier[0]:.7g} as drawn"
+        if self.ultimate is None:
+            return (
+                f"{begins} and {self.multiplier[-1]:.7g} at the displacement {self.displacement[-1]:.7g} of "
+                f"{self.control}. {self.reason} {said}"
+            )
+        return (
+            f"{begins} and falls to zero at the displacement {self.ultimate:.7g} of {self.control}, beyond which the "
+            f"wall falls under its dead load. {said}"
+        )
+
+    def as_json(self) -> dict[str, Any]:
+        """JSON values."""
+        return {
+            "control": self.control,
+            "displacement": self.displacement.tolist(),
+            "multiplier": self.multiplier.tolist(),
+            "ultimate": self.ultimate,
+            "places": self.places[-1].tolist(),
+            "judge": [each.model_dump(mode="json") for each in self.judgements],
+            "reason": self.reason,
+        }
+
+    def as_csv(self) -> str:
+        """One row a point."""
+        import pandas as pd
+
+        return str(pd.DataFrame({"displacement": self.displacement, "multiplier": self.multiplier}).to_csv(index=False))
+
+    def plot(self) -> Figure:
+        """The multiplier against the displacement, and the wall where it last bears a load."""
+        from reports.drawing.settling import settled_figure
+
+        labels = (f"displacement of {self.control}", "multiplier")
+        return settled_figure(self.assembly, self.places[-1], (self.displacement, self.multiplier), labels)
+
+
+def capacity(
+    wall: Wall, block: str | None = None, tolerance: float = 1e-9, steps: SettlingSteps | None = None
+) -> CapacityCurve | str:
+    """Follow the collapse of a wall on updated geometry until its multiplier is zero; or why this cannot be begun.
+
+    Args:
+        wall: of dry joints, with a live load.
+        block: whose centroid is the control point; None: the mean displacement of the live load along itself.
+        tolerance: the largest residual that the judge accepts.
+        steps: between two points; None: a hundredth of a block, at most a fiftieth.
+
+    Raises:
+        InputError: no block is called so or the wall has no live load; strength, bars, loads beside the centroids, or
+            supports that move.
+    """
+    from methods.la.capacity import with_multiplier
+    from methods.la.moved_wall import MovedWall
+    from methods.la.settling import SettlingSteps, settle
+
+    assembly = wall.assembly
+    _check(assembly, block)
+    steps = SettlingSteps(first=0.01, longer=1.2, longest=0.02) if steps is None else steps
+    found = settle(MovedWall.at_rest(assembly), steps, with_multiplier)
+    if isinstance(found, str):
+        return WHY.get(found, f"The linear programme of the greatest multiplier is {found}.")
+    places = np.array([point.wall.places for point in found.points])
+    said = [
+        judge_moved_collapse(assembly, point.wall.places, point.value, point.forces, point.mechanism, tolerance)
+        for point in found.points
+    ]
+    last = found.points[-1]
+    if found.fall is not None and found.mechanism is not None:
+        said.append(judge_settled_fall(assembly, 0.0, found.fall.places, found.mechanism, tolerance, bore=last.forces))
+    displacement = np.array([_control(assembly, block, each) for each in places])
+    return CapacityCurve(
+        assembly,
+        "the live load" if block is None else f"block {block}",
+        displacement,
+        np.array([point.value for point in found.points]),
+        places,
+        None if found.fall is None else float(displacement[-1]),
+        tuple(said),
+        found.reason,
+    )
+
+
+WHY = {
+    "falls": "The wall falls under its dead load as drawn.",
+    "unbounded": "The live load cannot make the wall collapse.",
+}
+"""Why a curve cannot be begun, by how the programme of the greatest multiplier ended."""
+
+
+def _control(assembly: Assembly, block: str | None, places: FloatArray) -> float:
+    """Displacement of the centroid of a block, or mean one of the live load along itself [length]."""
+    if block is not None:
+        return float(np.hypot(*places[assembly.block_ids.index(block), :2]))
+    live = assembly.live[:, :2]
+    return float((live * places[:, :2]).sum() / np.hypot(live[:, 0], live[:, 1]).sum())
+
+
+def _check(assembly: Assembly, block: str | None) -> None:
+    """Refuse what is not followed. Raises InputError."""
+    if not assembly.has_live_load:
+        raise InputError("the wall has no live load, so that it has no multiplier", "Give a live load", "loads.live")
+    if np.any(assembly.support_motion):
+        raise InputError("the wall has settlements", "Ask `drystone reaction --until-collapse`, or leave them out")
+    if block is not None and block not in assembly.block_ids:
+        raise InputError(f'no block is called "{block}"', "Name a block of this wall", "--block")
+    check_simple(assembly, assembly.dead, assembly.live)
