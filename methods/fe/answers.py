@@ -7,11 +7,13 @@ from typing import Any
 import numpy as np
 
 from harness.model.assembly import FloatArray
+from harness.model.breakpoints import CHANGE, CHANGES, JOINT, NO_JOINT
 from harness.model.errors import first_few
 from harness.model.method import Answer, Finding, Status
 from methods.fe.convex_steps import ConvexResult
 from methods.fe.histories import HistoryResult
 from methods.fe.load_steps import load_steps
+from methods.springs.model.gap_law import OPEN, STICK
 from methods.springs.model.wall_model import WallModel
 from methods.springs.path.path_record import PathEnd, PathRecord
 from methods.springs.path.plateau import PlateauState
@@ -175,16 +177,28 @@ def collapse_answer(model: WallModel, results: list[HistoryResult], factorisatio
 
 
 def compact(model: WallModel, record: PathRecord) -> dict[str, list[float]]:
-    """Some of the points of a path, evenly picked, the last one kept."""
+    """Some of the points of a path, evenly picked, the last one kept, with what changes there where that is known."""
     count = len(record.multiplier)
     pick = np.unique(np.linspace(0, count - 1, min(count, PATH_POINTS)).astype(int)) if count else np.array([], int)
     scale = model.displacement / (float(np.abs(model.live.reshape(-1, 3)[:, :2]).sum()) or 1.0)
+    changes = [record.change[i] for i in pick]
     return {
         "multiplier": [record.multiplier[i] for i in pick],
         "live_displacement": [record.displacement[i] * scale for i in pick],
         "slipping_points": [float(record.slipping[i]) for i in pick],
         "open_points": [float(record.open[i]) for i in pick],
-    }
+    } | (_breakpoints(model, changes) if any(changes) else {})
+
+
+def _breakpoints(model: WallModel, changes: list[tuple[int, int, int] | None]) -> dict[str, list[float]]:
+    """Columns of a path that say which joint changes, and how (`harness.model.breakpoints`)."""
+    found = [(NO_JOINT, NO_JOINT)] * len(changes)
+    for k, change in enumerate(changes):
+        if change is not None:
+            point, old, new = change
+            what = "opens" if new == OPEN else "closes" if old == OPEN else "sticks" if new == STICK else "slides"
+            found[k] = int(model.interface[point]), CHANGES.index(what)
+    return {JOINT: [float(joint) for joint, _ in found], CHANGE: [float(what) for _, what in found]}
 
 
 def bracket_answer(result: ConvexResult, forces: FloatArray, details: dict[str, Any]) -> Answer:

@@ -106,8 +106,9 @@ def css(thinner: float | None = None) -> str:
         rules.append(f"svg .{role}.shaft {{ fill: none; }}")
         edge = "none" if look.dash is None else _colour(look.stroke, thinner)
         rules.append(f"svg .{role}.head {{ stroke: {edge}; stroke-dasharray: none; }}")
+    hidden = "" if thinner else " visibility: var(--letters, visible);"
     letters, ink = ("Arial, sans-serif", COLOURS["ink"]) if thinner else ("var(--sans)", "var(--ink)")
-    rules.append(f"svg.wall text {{ font-family: {letters}; fill: {ink}; text-anchor: middle; }}")
+    rules.append(f"svg.wall text {{ font-family: {letters}; fill: {ink}; text-anchor: middle;{hidden} }}")
     paper = _colour("paper", thinner)
     above = f"paint-order: stroke; stroke: {paper}; stroke-width: 24px; pointer-events: none;"
     rules.append(f"svg.wall text.said {{ {above} }}")

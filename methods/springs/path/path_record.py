@@ -41,6 +41,7 @@ class PathRecord:
     """Multiplier against live displacement, with the limit points passed.
 
     Attributes:
+        change: of every point the gap point that changes there, its state before and after; None where none does.
         steps: points kept whole, spread evenly over those met; most: up to twice as many are, 0: none.
     """
 
@@ -48,6 +49,7 @@ class PathRecord:
     displacement: list[float] = field(default_factory=list)
     slipping: list[int] = field(default_factory=list)
     open: list[int] = field(default_factory=list)
+    change: list[tuple[int, int, int] | None] = field(default_factory=list)
     peak: float = -np.inf
     first_limit: float | None = None
     events: int = 0
@@ -65,12 +67,20 @@ class PathRecord:
                 self._every *= 2
         self._met += 1
 
-    def add(self, multiplier: float, displacement: float, slipping: int, n_open: int) -> None:
+    def add(
+        self,
+        multiplier: float,
+        displacement: float,
+        slipping: int,
+        n_open: int,
+        change: tuple[int, int, int] | None = None,
+    ) -> None:
         """Append one point of the path."""
         self.multiplier.append(multiplier)
         self.displacement.append(displacement)
         self.slipping.append(slipping)
         self.open.append(n_open)
+        self.change.append(change)
 
 
 @dataclass(frozen=True, eq=False)
