@@ -81,8 +81,8 @@ def _load_displacement(item: CaseResults, result: Result, moved: list[float], lo
     caption = f"{result.method}: the multiplier along the path over the work-conjugate displacement of the live load"
     if shown < len(loads):
         caption += "; the plateau continues beyond the right edge"
-    more = steps.listed(chart, changes, wall) if changes else ""
-    return Markup("{}. {}").format(caption, more), charts.svg(chart)
+    more = Markup(" {}").format(steps.listed(chart, changes, wall)) if changes else ""
+    return Markup("{}.{}").format(caption, more), charts.svg(chart)
 
 
 def _until_plateau(moved: list[float], loads: list[float]) -> int:

@@ -125,6 +125,18 @@ def test_cracks_open_with_the_slider_and_are_closed_at_rest(browser: Browser, re
     assert all(far > 2.0 * near for near, far in zip(areas[1], areas[2], strict=True))
 
 
+@pytest.mark.parametrize("size", [DESKTOP, WIDE], ids=["desktop", "wide"])
+def test_no_table_is_wider_than_its_box(browser: Browser, report: Path, size: Any):
+    opened = Opened(browser, report, size)
+    opened.see_everything()
+    found = opened.page.locator(".scroll").evaluate_all(
+        "all => all.map((box) => [box.scrollWidth - box.clientWidth, box.getAttribute('aria-label')])"
+    )
+    opened.context.close()
+    assert len(found) > 5
+    assert [entry for entry in found if entry[0] > 1] == []
+
+
 def test_menu_stays_in_sight_and_leads_back_to_the_top(browser: Browser, report: Path):
     opened = Opened(browser, report)
     opened.page.locator("a[href='#provenance']").first.click()
