@@ -290,8 +290,8 @@ def _look(series: Series, number: int) -> tuple[Markup, Markup, str, str]:
         name = f"s{number % COLOURS}"
         line, marker = Markup('class="line {}"').format(name), Markup('class="mark {}"').format(name)
         return line, marker, DASHES[number % len(DASHES)], MARKERS[number % len(MARKERS)]
-    line = Markup('class="line" style="stroke:{}"').format(series.mark.colour)
-    marker = Markup('class="mark" style="stroke:{0};fill:{0}"').format(series.mark.colour)
+    line = Markup('class="line" style="color:{}"').format(series.mark.colour)
+    marker = Markup('class="mark" style="color:{}"').format(series.mark.colour)
     return line, marker, series.mark.dashes, series.mark.shape
 
 
