@@ -43,7 +43,8 @@ def gallery_page(folder: Path) -> None:
         raise GalleryError(f"kinds of `drystone new` and of the gallery differ: {set(SHOWN) ^ set(STARTS)}")
     pictures = folder / "gallery"
     pictures.mkdir(exist_ok=True)
-    parts = ["# Gallery", "", "Parametric walls and how they collapse, each made and drawn by the commands above it.", ""]
+    first = "Parametric walls and how they collapse, each made and drawn by the commands above it."
+    parts = ["# Gallery", "", first, ""]
     for kind, numbers in SHOWN.items():
         make = f"drystone new {kind} {numbers}".strip() + f" -o {kind}.json"
         draw = f"drystone show {kind}.json -o {kind}.svg --dimensions"

@@ -77,7 +77,8 @@ def _groups(
     full, used = thrust_lines.at_friction_limit(assembly, forces), percent_used(assembly, forces)
     points, width = frame.place(found.point), [_width(frame, share) for share in (found.size / found.size.max())]
     ends = frame.place(thrust_lines.drawn_ends(assembly, found))
-    arrows = _arrows(frame, ends, np.array(width))
+    heads = _heads(frame, ends, np.array(width))
+    arrows = _arrows(ends, np.array(width), heads)
     lines = _through_blocks(frame, assembly, found)
     drawn: list[Group | Text] = []
     for k, p in enumerate(found.interface.tolist()):
@@ -91,7 +92,7 @@ def _groups(
         share = used[p] if used[p] >= 0 else None
         drawn.append(Group(tuple(parts), joint=p, values=(*forces[p].tolist(), share)))
     if "forces" in layers and len(found.size) <= thrust_lines.LABELLED:
-        drawn.extend(_sizes(ends, np.array(width), found.size))
+        drawn.extend(_sizes(ends, np.array(width), heads, found.size))
     return drawn
 
 
@@ -102,12 +103,17 @@ def percent_used(assembly: Assembly, forces: FloatArray) -> list[int]:
     return [int(percent) for percent in np.where(thrust_lines.at_friction_limit(assembly, forces), 100, below)]
 
 
-def _arrows(frame: Frame, ends: FloatArray, width: FloatArray) -> FloatArray:
-    """Outlines (p, 7, 2) of arrows of a width (p,) from tails to tips (p, 2, 2), the tips first."""
+def _heads(frame: Frame, ends: FloatArray, width: FloatArray) -> FloatArray:
+    """Lengths (p,) of the heads of arrows of a width (p,) from tails to tips (p, 2, 2), half of the arrow at most."""
+    return np.minimum(np.maximum(0.2 * frame.block, 1.7 * width), 0.5 * np.linalg.norm(ends[:, 1] - ends[:, 0], axis=1))
+
+
+def _arrows(ends: FloatArray, width: FloatArray, heads: FloatArray) -> FloatArray:
+    """Outlines (p, 7, 2) of arrows of a width (p,) with heads of a length (p,) from tails to tips, the tips first."""
     tail, tip = ends[:, 0], ends[:, 1]
     way = (tip - tail) / np.linalg.norm(tip - tail, axis=1)[:, None]
     across = np.column_stack([-way[:, 1], way[:, 0]])
-    head = np.minimum(np.maximum(0.2 * frame.block, 1.7 * width), 0.5 * np.linalg.norm(tip - tail, axis=1))[:, None]
+    head = heads[:, None]
     neck, wide, half = tip - head * way, 0.4 * head * across, 0.5 * width[:, None] * across
     return np.stack([tip, neck + wide, neck + half, tail + half, tail - half, neck - half, neck - wide], axis=1)
 
@@ -122,14 +128,15 @@ def _through_blocks(frame: Frame, assembly: Assembly, found: shapes.Thrusts) -> 
     return frame.place(np.stack([first, point, second], axis=1))
 
 
-def _sizes(ends: FloatArray, width: FloatArray, sizes: FloatArray) -> list[Text]:
+def _sizes(ends: FloatArray, width: FloatArray, heads: FloatArray, sizes: FloatArray) -> list[Text]:
     """The sizes of forces beside their arrows (p, 2, 2), of the largest first, where one covers no arrow and no other.
 
     A number stands on either side of the middle of its arrow, or of its upper or lower part, as near as it can.
     """
     share = np.linspace(0.0, 1.0, 25)[:, None, None]
     drawn = ((1.0 - share) * ends[:, 0] + share * ends[:, 1]).reshape(-1, 2)  # points of all arrows
-    beside = np.tile(0.5 * width + CLEAR, len(share))
+    to_tip = (1.0 - share[:, :, 0]) * np.linalg.norm(ends[:, 1] - ends[:, 0], axis=1)
+    beside = CLEAR + np.where(to_tip < heads, 0.4 * to_tip, 0.5 * width).ravel()
     placed: list[Text] = []
     centres, halves = np.empty((0, 2)), np.empty((0, 2))
     for k in np.argsort(-sizes, kind="stable").tolist():
