@@ -105,7 +105,8 @@ def percent_used(assembly: Assembly, forces: FloatArray) -> list[int]:
 
 def _heads(frame: Frame, ends: FloatArray, width: FloatArray) -> FloatArray:
     """Lengths (p,) of the heads of arrows of a width (p,) from tails to tips (p, 2, 2), half of the arrow at most."""
-    return np.minimum(np.maximum(0.2 * frame.block, 1.7 * width), 0.5 * np.linalg.norm(ends[:, 1] - ends[:, 0], axis=1))
+    half = 0.5 * np.linalg.norm(ends[:, 1] - ends[:, 0], axis=1)
+    return np.asarray(np.minimum(np.maximum(0.2 * frame.block, 1.7 * width), half))
 
 
 def _arrows(ends: FloatArray, width: FloatArray, heads: FloatArray) -> FloatArray:
