@@ -23,6 +23,8 @@ SHOWN = {
     "matera": "",
 }
 """Every kind of `drystone new`, with the numbers it is shown with."""
+METHOD = "fe"
+"""Method of the mechanisms: the path of the springs ends in one on every kind of wall."""
 
 
 class GalleryError(Exception):
@@ -30,7 +32,7 @@ class GalleryError(Exception):
 
 
 def gallery_page(folder: Path) -> None:
-    """A page with every kind of wall, the commands that make and draw it, and the drawing.
+    """A page with every kind of wall, the commands that make it and draw it and its mechanism, and both drawings.
 
     Raises:
         GalleryError: a command fails, or a kind of wall is not shown.
@@ -41,13 +43,17 @@ def gallery_page(folder: Path) -> None:
         raise GalleryError(f"kinds of `drystone new` and of the gallery differ: {set(SHOWN) ^ set(STARTS)}")
     pictures = folder / "gallery"
     pictures.mkdir(exist_ok=True)
-    parts = ["# Gallery", "", "Parametric walls, each made and drawn by the two commands above it.", ""]
+    first = "Parametric walls and how they collapse, each made and drawn by the commands above it."
+    parts = ["# Gallery", "", first, ""]
     for kind, numbers in SHOWN.items():
         make = f"drystone new {kind} {numbers}".strip() + f" -o {kind}.json"
         draw = f"drystone show {kind}.json -o {kind}.svg --dimensions"
-        for command in (make, draw):
+        move = f"drystone figure {kind}.json --methods {METHOD} --kind mechanism -o {kind}-mechanism.svg"
+        for command in (make, draw, move):
             _run(command, pictures)
-        parts += [f"## {kind}", "", "```", make, draw, "```", "", f"![The wall {kind}](gallery/{kind}.svg)", ""]
+        parts += [f"## {kind}", "", "```", make, draw, move, "```", ""]
+        parts += [f"![The wall {kind}](gallery/{kind}.svg)", ""]
+        parts += [f"![How the wall {kind} collapses, by {METHOD}](gallery/{kind}-mechanism.svg)", ""]
     (folder / "gallery.md").write_text("\n".join(parts), encoding="utf-8")
 
 

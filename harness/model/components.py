@@ -14,6 +14,7 @@ from typing import Any
 import numpy as np
 
 from harness.model.assembly import OF_BLOCKS, Assembly, BoolArray, FloatArray, IntArray
+from harness.model.breakpoints import of_whole_wall
 from harness.model.deadline import OutOfTime, best_so_far
 from harness.model.details import MOVING_FORCES, AnswerDetails
 from harness.model.errors import first_few
@@ -166,6 +167,7 @@ def joined(assembly: Assembly, parts: list[Component], answers: list[Answer], be
         sentence=_sentence(parts, answers, deciding),
         mechanism=_mechanism(assembly, parts[deciding], chosen),
         forces=None,
+        path=of_whole_wall(chosen.path, parts[deciding].interfaces),
         iterations=sum(each.iterations for each in answers),
         details=chosen.details | _moving_forces(assembly, parts[deciding], chosen) | _details(parts, answers, deciding),
     )

@@ -8,11 +8,13 @@ import numpy as np
 
 from harness.model.assembly import FloatArray
 from harness.model.bars import path_column
+from harness.model.breakpoints import CHANGE, CHANGES, JOINT, NO_JOINT
 from harness.model.errors import first_few
 from harness.model.method import Answer, Finding, Status
 from methods.fe.convex_steps import ConvexResult
 from methods.fe.histories import HistoryResult
 from methods.fe.load_steps import load_steps
+from methods.springs.model.gap_law import OPEN, STICK
 from methods.springs.model.wall_model import WallModel
 from methods.springs.path.path_record import PathEnd, PathRecord
 from methods.springs.path.plateau import PlateauState
@@ -181,17 +183,30 @@ def collapse_answer(model: WallModel, results: list[HistoryResult], factorisatio
 
 
 def compact(model: WallModel, record: PathRecord) -> dict[str, list[float]]:
-    """Some of the points of a path, evenly picked, the last one kept."""
+    """Some of the points of a path, evenly picked, the last one kept, with what changes there where that is known."""
     count = len(record.multiplier)
     pick = np.unique(np.linspace(0, count - 1, min(count, PATH_POINTS)).astype(int)) if count else np.array([], int)
     bars = [model.assembly.joint[p] for p in np.flatnonzero(model.assembly.is_bar)]
     scale = model.displacement / (float(np.abs(model.live.reshape(-1, 3)[:, :2]).sum()) or 1.0)
-    return {
+    changes = [record.change[i] for i in pick]
+    columns = {
         "multiplier": [record.multiplier[i] for i in pick],
         "live_displacement": [record.displacement[i] * scale for i in pick],
         "slipping_points": [float(record.slipping[i]) for i in pick],
         "open_points": [float(record.open[i]) for i in pick],
     } | {path_column(name): [record.bars[i][k] for i in pick] for k, name in enumerate(bars)}
+    return columns | (_breakpoints(model, changes) if any(changes) else {})
+
+
+def _breakpoints(model: WallModel, changes: list[tuple[int, int, int] | None]) -> dict[str, list[float]]:
+    """Columns of a path that say which joint changes, and how (`harness.model.breakpoints`); a bar is no joint."""
+    found = [(NO_JOINT, NO_JOINT)] * len(changes)
+    for k, change in enumerate(changes):
+        if change is not None and not model.assembly.is_bar[model.interface[change[0]]]:
+            point, old, new = change
+            what = "opens" if new == OPEN else "closes" if old == OPEN else "sticks" if new == STICK else "slides"
+            found[k] = int(model.interface[point]), CHANGES.index(what)
+    return {JOINT: [float(joint) for joint, _ in found], CHANGE: [float(what) for _, what in found]}
 
 
 def bracket_answer(result: ConvexResult, forces: FloatArray, details: dict[str, Any]) -> Answer:

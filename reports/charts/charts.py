@@ -72,6 +72,7 @@ class Chart:
         zero_y: whether the upright axis begins at zero.
         levels: names and values of level lines.
         whole: whether the level axis counts, so that only whole numbers stand at it.
+        dots: places (x, y) that are marked on the lines.
     """
 
     title: str
@@ -83,6 +84,7 @@ class Chart:
     zero_y: bool = False
     levels: list[tuple[str, float]] = field(default_factory=list)
     whole: bool = False
+    dots: list[tuple[float, float]] = field(default_factory=list)
 
     @property
     def per_row(self) -> int:
@@ -192,18 +194,39 @@ def csv_of(chart: Chart) -> str:
     return stream.getvalue()
 
 
+@dataclass(frozen=True)
+class Plot:
+    """Where a chart draws: rows of its legend, upper edge and height of the plot, and its axes."""
+
+    rows: int
+    top: int
+    height: int
+    across: Axis
+    up: Axis
+
+    @classmethod
+    def of(cls, chart: Chart) -> Plot:
+        """The plot of a chart, as wide as its values."""
+        rows = math.ceil(len(chart.series) / chart.per_row) if len(chart.series) > 1 else 0
+        top, height = TOP + rows * ROW, HEIGHT + rows * ROW
+        xs = [value for series in chart.series for value in series.x]
+        ys = [value for series in chart.series for value in [*series.y, *series.low, *series.high]]
+        ys += [value for _, value in chart.levels]
+        across = Axis(xs, LEFT, WIDTH - RIGHT, log=chart.log_x)
+        if chart.whole:
+            across.ticks = [value for value in across.ticks if value == round(value)]
+        return cls(rows, top, height, across, Axis(ys, height - BOTTOM, top, log=chart.log_y, zero=chart.zero_y))
+
+    def dots(self, chart: Chart) -> list[tuple[float, float]]:
+        """Where the dots of the chart stand, in units of its drawing."""
+        places = [(self.across.place(x), self.up.place(y)) for x, y in chart.dots]
+        return [(x, y) for x, y in places if x is not None and y is not None]
+
+
 def svg(chart: Chart) -> Markup:
     """The chart as an inline SVG element, a `Drawing`."""
-    rows = math.ceil(len(chart.series) / chart.per_row) if len(chart.series) > 1 else 0
-    top = TOP + rows * ROW
-    height = HEIGHT + rows * ROW
-    xs = [value for series in chart.series for value in series.x]
-    ys = [value for series in chart.series for value in [*series.y, *series.low, *series.high]]
-    ys += [value for _, value in chart.levels]
-    across = Axis(xs, LEFT, WIDTH - RIGHT, log=chart.log_x)
-    if chart.whole:
-        across.ticks = [value for value in across.ticks if value == round(value)]
-    up = Axis(ys, height - BOTTOM, top, log=chart.log_y, zero=chart.zero_y)
+    frame = Plot.of(chart)
+    rows, top, height, across, up = frame.rows, frame.top, frame.height, frame.across, frame.up
     parts = [
         Markup('<svg class="chart" viewBox="0 0 {} {}" role="img" aria-label="{}">').format(WIDTH, height, chart.title),
         _axes(chart, across, up, height, top),
@@ -213,6 +236,9 @@ def svg(chart: Chart) -> Markup:
         parts.append(_series(series, number, across, up))
         if rows:
             parts.append(_legend(series, number, chart.per_row))
+    if chart.dots:
+        dots = "".join(f"M{x:.1f} {y:.1f}h0" for x, y in frame.dots(chart))
+        parts.append(Markup('<path class="dots-on" d="{}"/><path class="here" d=""/>').format(dots))
     parts.append(Markup("</svg>"))
     drawing = DrawnChart(Markup("").join(parts))
     drawing.chart = chart
@@ -264,8 +290,8 @@ def _look(series: Series, number: int) -> tuple[Markup, Markup, str, str]:
         name = f"s{number % COLOURS}"
         line, marker = Markup('class="line {}"').format(name), Markup('class="mark {}"').format(name)
         return line, marker, DASHES[number % len(DASHES)], MARKERS[number % len(MARKERS)]
-    line = Markup('class="line" style="stroke:{}"').format(series.mark.colour)
-    marker = Markup('class="mark" style="stroke:{0};fill:{0}"').format(series.mark.colour)
+    line = Markup('class="line" style="color:{}"').format(series.mark.colour)
+    marker = Markup('class="mark" style="color:{}"').format(series.mark.colour)
     return line, marker, series.mark.dashes, series.mark.shape
 
 

@@ -10,7 +10,7 @@ from harness.model.comparison import CaseResults
 from harness.model.details import AnswerDetails
 from harness.model.displaced import carried, released
 from harness.model.result import Result
-from reports.charts import charts
+from reports.charts import charts, steps
 from reports.charts.styles import mark_of
 from reports.drawing.svg import inline
 from reports.drawing.wall_drawing import displaced_drawing
@@ -66,7 +66,9 @@ def _load_displacement(item: CaseResults, result: Result, moved: list[float], lo
         loads[0] > 0.0
     ):  # the first point of a path is a breakpoint: up to there the wall is linear, from no live load on
         moved, loads = [0.0, *moved], [0.0, *loads]
-    shown = _until_plateau(moved, loads)
+    shown, wall = _until_plateau(moved, loads), item.case.assembly
+    added = len(loads) - len(result.path["multiplier"])
+    changes = steps.first_changes(result, wall, shown - added)
     chart = charts.Chart(
         title=f"Multiplier against live displacement, {result.method}",
         x_label=f"displacement of the live load [{item.case.wall.units.length}]",
@@ -74,11 +76,13 @@ def _load_displacement(item: CaseResults, result: Result, moved: list[float], lo
         series=[charts.Series(result.method, moved[:shown], loads[:shown], marks=False, mark=mark_of(result))],
         zero_y=True,
         levels=levels,
+        dots=[(moved[step.place + added], loads[step.place + added]) for step in changes],
     )
     caption = f"{result.method}: the multiplier along the path over the work-conjugate displacement of the live load"
     if shown < len(loads):
         caption += "; the plateau continues beyond the right edge"
-    return f"{caption}.", charts.svg(chart)
+    more = Markup(" {}").format(steps.listed(chart, changes, wall)) if changes else ""
+    return Markup("{}.{}").format(caption, more), charts.svg(chart)
 
 
 def _until_plateau(moved: list[float], loads: list[float]) -> int:

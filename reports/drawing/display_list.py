@@ -84,10 +84,16 @@ class Frame:
 
 @dataclass(frozen=True)
 class Polygons:
-    """Closed outlines (k, 2), those with holes as of `harness.model.rings`."""
+    """Closed outlines (k, 2), those with holes as of `harness.model.rings`.
+
+    Attributes:
+        rest: a line (2, 2) for each outline of four corners that opens as the wall moves, where it is before; empty
+            where they do not open.
+    """
 
     role: str
     outlines: tuple[FloatArray, ...]
+    rest: tuple[FloatArray, ...] = ()
 
 
 @dataclass(frozen=True)
@@ -227,7 +233,7 @@ def _joined(first: Shape, second: Shape) -> Shape | None:
         return None
     match first, second:
         case Polygons(), Polygons():
-            return replace(first, outlines=first.outlines + second.outlines)
+            return replace(first, outlines=first.outlines + second.outlines, rest=first.rest + second.rest)
         case Lines(), Lines() if (first.width, first.dash) == (second.width, second.dash):
             return replace(first, points=first.points + second.points)
         case Circles(), Circles() if first.radius == second.radius:

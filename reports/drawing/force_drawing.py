@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 from collections.abc import Collection
 
 import numpy as np
@@ -32,6 +33,8 @@ from reports.memo import memo
 WIDEST, THINNEST = 0.16, 0.02
 """Width of the largest and of the smallest force, in block sizes."""
 LAYERS = ("forces", "thrust")
+CLEAR = 12.0
+"""Least distance of a number from an arrow, in drawing units."""
 WORTH = 0.05
 """Share of the largest force from which a force has a number."""
 
@@ -69,27 +72,27 @@ def _width(frame: Frame, share: float) -> float:
 
 def _groups(
     frame: Frame, assembly: Assembly, found: shapes.Thrusts, forces: FloatArray, layers: Collection[str]
-) -> list[Group]:
-    """A group for each interface that carries force."""
+) -> list[Group | Text]:
+    """A group for each interface that carries force, and the sizes of forces over all of them."""
     full, used = thrust_lines.at_friction_limit(assembly, forces), percent_used(assembly, forces)
     points, width = frame.place(found.point), [_width(frame, share) for share in (found.size / found.size.max())]
-    arrows = _arrows(frame, frame.place(thrust_lines.drawn_ends(assembly, found)), np.array(width))
+    ends = frame.place(thrust_lines.drawn_ends(assembly, found))
+    heads = _heads(frame, ends, np.array(width))
+    arrows = _arrows(ends, np.array(width), heads)
     lines = _through_blocks(frame, assembly, found)
-    level = abs(assembly.normal[found.interface, 1]) > 0.5
-    said = _sizes(frame, points, found.size, level) if len(found.size) <= thrust_lines.LABELLED else {}
-    drawn = []
+    drawn: list[Group | Text] = []
     for k, p in enumerate(found.interface.tolist()):
         parts: list[Shape] = []
         if "forces" in layers:
             parts.append(Polygons("full" if full[p] else "force", (arrows[k],)))
-            if k in said:
-                parts.append(said[k])
             if full[p]:
                 parts.append(Circles("ring", points[k][None], max(0.05 * frame.block, 0.5 * width[k] + 9)))
         if "thrust" in layers:
             parts.append(Lines("thrust", (lines[k],), width[k]))
         share = used[p] if used[p] >= 0 else None
         drawn.append(Group(tuple(parts), joint=p, values=(*forces[p].tolist(), share)))
+    if "forces" in layers and len(found.size) <= thrust_lines.LABELLED:
+        drawn.extend(_sizes(ends, np.array(width), heads, found.size))
     return drawn
 
 
@@ -100,12 +103,18 @@ def percent_used(assembly: Assembly, forces: FloatArray) -> list[int]:
     return [int(percent) for percent in np.where(thrust_lines.at_friction_limit(assembly, forces), 100, below)]
 
 
-def _arrows(frame: Frame, ends: FloatArray, width: FloatArray) -> FloatArray:
-    """Outlines (p, 7, 2) of arrows of a width (p,) from tails to tips (p, 2, 2), the tips first."""
+def _heads(frame: Frame, ends: FloatArray, width: FloatArray) -> FloatArray:
+    """Lengths (p,) of the heads of arrows of a width (p,) from tails to tips (p, 2, 2), half of the arrow at most."""
+    half = 0.5 * np.linalg.norm(ends[:, 1] - ends[:, 0], axis=1)
+    return np.asarray(np.minimum(np.maximum(0.2 * frame.block, 1.7 * width), half))
+
+
+def _arrows(ends: FloatArray, width: FloatArray, heads: FloatArray) -> FloatArray:
+    """Outlines (p, 7, 2) of arrows of a width (p,) with heads of a length (p,) from tails to tips, the tips first."""
     tail, tip = ends[:, 0], ends[:, 1]
     way = (tip - tail) / np.linalg.norm(tip - tail, axis=1)[:, None]
     across = np.column_stack([-way[:, 1], way[:, 0]])
-    head = np.maximum(0.2 * frame.block, 1.7 * width)[:, None]
+    head = heads[:, None]
     neck, wide, half = tip - head * way, 0.4 * head * across, 0.5 * width[:, None] * across
     return np.stack([tip, neck + wide, neck + half, tail + half, tail - half, neck - half, neck - wide], axis=1)
 
@@ -120,22 +129,32 @@ def _through_blocks(frame: Frame, assembly: Assembly, found: shapes.Thrusts) -> 
     return frame.place(np.stack([first, point, second], axis=1))
 
 
-def _sizes(frame: Frame, points: FloatArray, sizes: FloatArray, level: np.ndarray) -> dict[int, Text]:
-    """The sizes of forces beside them, of the largest first, as long as one has room beside those before it."""
-    placed: dict[int, Text] = {}
-    boxes: list[tuple[float, float, float, float]] = []
+def _sizes(ends: FloatArray, width: FloatArray, heads: FloatArray, sizes: FloatArray) -> list[Text]:
+    """The sizes of forces beside their arrows (p, 2, 2), of the largest first, where one covers no arrow and no other.
+
+    A number stands on either side of the middle of its arrow, or of its upper or lower part, as near as it can.
+    """
+    share = np.linspace(0.0, 1.0, 25)[:, None, None]
+    drawn = ((1.0 - share) * ends[:, 0] + share * ends[:, 1]).reshape(-1, 2)  # points of all arrows
+    to_tip = (1.0 - share[:, :, 0]) * np.linalg.norm(ends[:, 1] - ends[:, 0], axis=1)
+    beside = CLEAR + np.where(to_tip < heads, 0.4 * to_tip, 0.5 * width).ravel()
+    placed: list[Text] = []
+    centres, halves = np.empty((0, 2)), np.empty((0, 2))
     for k in np.argsort(-sizes, kind="stable").tolist():
         if sizes[k] < WORTH * sizes.max():
             break
         text = numbers.given(float(sizes[k]), 3)
-        across, up = (0.09, 0.05) if level[k] else (0.0, 0.1)
-        x, y = float(points[k, 0]) + across * frame.block, float(points[k, 1]) - up * frame.block
-        wide = 0.6 * LETTERS * len(text)  # of a figure of the widest of our fonts
-        left = x if level[k] else x - 0.5 * wide
-        box = (left, left + wide, y - 0.8 * LETTERS, y)
-        if not any(box[0] < b[1] and b[0] < box[1] and box[2] < b[3] and b[2] < box[3] for b in boxes):
-            boxes.append(box)
-            placed[k] = Text("said", (x, y), text, LETTERS, "start" if level[k] else "middle")
+        half = np.array([0.3 * len(text), 0.4]) * LETTERS  # of figures of the widest of our fonts
+        step = ends[k, 1] - ends[k, 0]
+        across = np.array([-step[1], step[0]]) / np.linalg.norm(step)
+        away = across * (0.5 * width[k] + 2.0 * CLEAR + float(abs(across) @ half))
+        for part, side in itertools.product((0.5, 0.2, 0.8), (-1.0, 1.0)):
+            centre = ends[k, 0] + part * step + side * away
+            covers = np.linalg.norm(np.maximum(abs(drawn - centre) - half, 0.0), axis=1) < beside
+            if not covers.any() and not (abs(centres - centre) < halves + half).all(axis=1).any():
+                centres, halves = np.vstack([centres, centre]), np.vstack([halves, half])
+                placed.append(Text("said", (float(centre[0]), float(centre[1] + half[1])), text, LETTERS))
+                break
     return placed
 
 

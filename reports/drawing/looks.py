@@ -16,6 +16,7 @@ COLOURS = {
     "stone": "#f3f0e9",
     "faulty": "#f6ded2",
     "amber": "#b07a00",
+    "crack": "#d9b8e0",
 }
 """Names of colours; those of the page's style sheet follow its variables."""
 VARIABLES = ("ink", "paper", "blue", "rust", "plum")
@@ -74,6 +75,7 @@ LOOKS = {
     "rock": Look("blue"),
     "open": Look("plum"),
     "hinge": Look("", "blue"),
+    "crack": Look("", "crack"),
     "force": Look("", "blue"),
     "full": Look("", "rust"),
     "ring": Look("rust", "", 10),
@@ -105,10 +107,12 @@ def css(thinner: float | None = None) -> str:
         rules.append(f"svg .{role}.shaft {{ fill: none; }}")
         edge = "none" if look.dash is None else _colour(look.stroke, thinner)
         rules.append(f"svg .{role}.head {{ stroke: {edge}; stroke-dasharray: none; }}")
+    hidden = "" if thinner else " visibility: var(--letters, visible);"
     letters, ink = ("Arial, sans-serif", COLOURS["ink"]) if thinner else ("var(--sans)", "var(--ink)")
-    rules.append(f"svg.wall text {{ font-family: {letters}; fill: {ink}; text-anchor: middle; }}")
+    rules.append(f"svg.wall text {{ font-family: {letters}; fill: {ink}; text-anchor: middle;{hidden} }}")
     paper = _colour("paper", thinner)
-    rules.append(f"svg.wall text.said {{ paint-order: stroke; stroke: {paper}; stroke-width: 24px; }}")
+    above = f"paint-order: stroke; stroke: {paper}; stroke-width: 24px; pointer-events: none;"
+    rules.append(f"svg.wall text.said {{ {above} }}")
     rules.append("svg .thrust { display: none; }")
     return "\n".join(rules)
 

@@ -22,6 +22,7 @@ ROLE = {
     joints.OPEN: "open",
     joints.DILATANT: "dilatant",
 }
+OPENED = (joints.ROCK, joints.BOTH, joints.OPEN)
 HEAVY = (joints.SLIDE, joints.BOTH, joints.DILATANT)
 ELSEWHERE = 0.004
 """Share of the wall's longer side from which a block of the second mechanism stands elsewhere: half a line's width."""
@@ -50,6 +51,7 @@ def moved_wall(assembly: Assembly, result: Result, scale: float | None = None) -
     placed = drawn.frame.place_all(assembly.polygons)
     motions = _motions(drawn.frame, assembly, scale * mechanism)
     drawn.parts.append(Polygons("ghost", chosen(placed, moves)))
+    drawn.parts.extend(_cracks(drawn.frame, assembly, result, scale))
     for role, members in (("held", assembly.fixed), ("still", ~assembly.fixed & ~moves), ("moves", moves)):
         for k in np.flatnonzero(members).tolist():
             motion, values = (motions[k], tuple(mechanism[k].tolist())) if moves[k] else (None, ())
@@ -68,6 +70,7 @@ def loaded_mechanism(case: Case, result: Result) -> DisplayList:
     drawn = DisplayList(frame, f"Mechanism of {result.case} by {result.method}, with its loads")
     moves = shapes.moving(assembly, mechanism) & ~assembly.fixed
     drawn.parts.append(Polygons("ghost", chosen(frame.place_all(assembly.polygons), moves)))
+    drawn.parts.extend(_cracks(frame, assembly, result, scale))
     placed = frame.place_all(shapes.displaced(assembly, mechanism, scale))
     for role, members in (("held", assembly.fixed), ("still", ~assembly.fixed & ~moves), ("moves", moves)):
         drawn.parts.append(Polygons(role, chosen(placed, members)))
@@ -136,6 +139,18 @@ def _joints_of_one(
             ends = shapes.moved_ends(assembly, mechanism, scales[number], np.flatnonzero(members))
             drawn.append(Lines(role, tuple(frame.place(ends)), width, 0.9 * size if number else None))
     return drawn
+
+
+def _cracks(frame: Frame, assembly: Assembly, result: Result, scale: float) -> list[Shape]:
+    """What lies between the faces of joints that open, shaded: the crack pattern."""
+    states = np.array(joints.joint_states(assembly, result) or [], dtype=object)
+    opened = np.flatnonzero(np.isin(states, OPENED))
+    if not len(opened) or assembly.n_interfaces > DRAWN_INTERFACES:
+        return []
+    mechanism = np.asarray(result.mechanism, dtype=float)
+    outlines = frame.place(shapes.separated_faces(assembly, mechanism, scale, opened))
+    ends = frame.place(np.stack([assembly.end1[opened], assembly.end2[opened]], axis=1))
+    return [Polygons("crack", tuple(outlines), tuple(ends))]
 
 
 def _mark_size(frame: Frame) -> float:

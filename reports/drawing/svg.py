@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 
+import numpy as np
 from markupsafe import Markup, escape
 
 from harness.model.assembly import FloatArray
@@ -81,6 +82,8 @@ def _short(turn: float) -> str:
 
 def _element(shape: Shape, more: str = "") -> str:
     match shape:
+        case Polygons() if shape.rest:
+            return f'<path class="{shape.role}"{more} data-rest="{_steps(shape.rest)}" d="{_steps(shape.outlines)}"/>'
         case Polygons():
             rings = [ring for outline in shape.outlines for ring in rings_of(outline)]
             return f'<path class="{shape.role}"{more} d="{_data(rings, "z")}"/>' if rings else ""
@@ -103,6 +106,15 @@ def _element(shape: Shape, more: str = "") -> str:
             said = f"<title>{escape(shape.title)}</title>" if shape.title else ""
             role = f' class="{shape.role}"' if shape.role else ""
             return f"<text{role}{more} {place}{side}>{escape(shape.text)}{said}</text>"
+
+
+def _steps(lines: Iterable[FloatArray]) -> str:
+    """Path data of lines (k, 2) in whole units, two numbers for every point, so that a script can move each of them."""
+    parts = []
+    for line in lines:
+        (x, y), *steps = np.diff(np.rint(line), axis=0, prepend=0.0).astype(int).tolist()
+        parts.append(f"M{x} {y}{''.join(f'l{dx} {dy}' for dx, dy in steps)}")
+    return "".join(parts)
 
 
 def _data(lines: Iterable[FloatArray], end: str = "") -> str:

@@ -129,13 +129,21 @@ def displaced(assembly: Assembly, mechanism: FloatArray, scale: float) -> list[F
     return np.split(moved, np.cumsum([len(polygon) for polygon in assembly.polygons])[:-1])
 
 
-def moved_ends(assembly: Assembly, mechanism: FloatArray, scale: float, chosen: IntArray) -> FloatArray:
-    """Both contact points (p, 2, 2) of some interfaces, moved with their block a."""
+def moved_ends(
+    assembly: Assembly, mechanism: FloatArray, scale: float, chosen: IntArray, blocks: IntArray | None = None
+) -> FloatArray:
+    """Both contact points (p, 2, 2) of some interfaces, moved with the blocks (m,) given, their block a by default."""
     points = np.stack([assembly.end1[chosen], assembly.end2[chosen]], axis=1)
-    block = assembly.block_a[chosen]
+    block = (assembly.block_a if blocks is None else blocks)[chosen]
     arm = points - assembly.centroid[block][:, None]
     turned = mechanism[block, 2][:, None, None] * np.stack([-arm[..., 1], arm[..., 0]], axis=-1)
     return np.asarray(points + scale * (mechanism[block, :2][:, None] + turned))
+
+
+def separated_faces(assembly: Assembly, mechanism: FloatArray, scale: float, chosen: IntArray) -> FloatArray:
+    """Outlines (p, 4, 2) between the faces of some interfaces: both contact points with block a, back with block b."""
+    faces = [moved_ends(assembly, mechanism, scale, chosen, side) for side in (assembly.block_a, assembly.block_b)]
+    return np.concatenate([faces[0], faces[1][:, ::-1]], axis=1)
 
 
 def moving(assembly: Assembly, mechanism: FloatArray, smallest: float = 1e-3) -> np.ndarray:

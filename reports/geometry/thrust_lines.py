@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import math
 from collections.abc import Sequence
 
@@ -24,6 +25,9 @@ SMALLEST = 2e-3
 REACH = 0.36
 """Half of the length of a resultant that is drawn, in block sizes: two in neighbouring joints do not run into each
 other."""
+
+SHORTEST = 0.4
+"""Share of its length that an arrow keeps at least where it is shortened because a greater force crosses it."""
 
 LABELLED = 45
 """Up to so many forces carry their size; more would cover each other."""
@@ -62,7 +66,41 @@ def drawn_ends(assembly: Assembly, found: Thrusts) -> FloatArray:
     leaves = (way * to_free).sum(axis=1) > 0.0  # the arrow starts at the joint, as that of a block which is held down
     before = np.where(held, np.where(leaves, 0.0, 2.0 * length), length)[:, None]
     after = np.where(held, np.where(leaves, 2.0 * length, 0.0), length)[:, None]
-    return np.stack([found.point - before * way, found.point + after * way], axis=1)
+    ends = np.stack([found.point - before * way, found.point + after * way], axis=1)
+    share = _shares_without_crossing(assembly, found, ends)[:, None, None]
+    return found.point[:, None] + share * (ends - found.point[:, None])
+
+
+def _shares_without_crossing(assembly: Assembly, found: Thrusts, ends: FloatArray) -> FloatArray:
+    """Shares (p,) of their length that arrows (p, 2, 2) are drawn with: of two that cross, the smaller stops short."""
+    first, second = _neighbours(assembly, found)
+    smaller = np.where(found.size[first] <= found.size[second], first, second)
+    greater = first + second - smaller
+    step, other = (ends[k, 1] - ends[k, 0] for k in (smaller, greater))
+    apart = ends[greater, 0] - ends[smaller, 0]
+    turn = step[:, 0] * other[:, 1] - step[:, 1] * other[:, 0]
+    with np.errstate(divide="ignore", invalid="ignore"):
+        on_smaller = (apart[:, 0] * other[:, 1] - apart[:, 1] * other[:, 0]) / turn
+        on_greater = (apart[:, 0] * step[:, 1] - apart[:, 1] * step[:, 0]) / turn
+    cross = (abs(on_smaller - 0.5) < 0.5) & (abs(on_greater - 0.5) < 0.5)
+    place = ends[smaller, 0] + np.where(cross, on_smaller, 0.0)[:, None] * step
+    centre = found.point[smaller]
+    reach = np.linalg.norm(ends[smaller] - centre[:, None], axis=2).max(axis=1)
+    share = np.clip(0.8 * np.linalg.norm(place - centre, axis=1) / reach, SHORTEST, 1.0)
+    shares = np.ones(len(found.size))
+    np.minimum.at(shares, smaller[cross], share[cross])
+    return shares
+
+
+def _neighbours(assembly: Assembly, found: Thrusts) -> tuple[np.ndarray, np.ndarray]:
+    """Pairs (q,), (q,) of forces that act on one block."""
+    touching: list[list[int]] = [[] for _ in range(assembly.n_blocks)]
+    for k, p in enumerate(found.interface.tolist()):
+        touching[assembly.block_a[p]].append(k)
+        touching[assembly.block_b[p]].append(k)
+    pairs = [pair for forces in touching for pair in itertools.combinations(forces, 2)]
+    listed = np.array(pairs, dtype=np.int64).reshape(-1, 2)
+    return listed[:, 0], listed[:, 1]
 
 
 def friction_used(assembly: Assembly, forces: FloatArray) -> FloatArray:

@@ -80,7 +80,7 @@ def render(run: ComparisonRun, *, data_folder: str, listed: Sequence[ResultColum
     run = run_in_order(run)
     rows = tables.run_rows(run)
     shown = tables.overview_columns(run)
-    scripts = [_static(name) for name in ("table.js", "move.js")]
+    scripts = [_static(name) for name in ("table.js", "move.js", "steps.js")]
     fields, drawings = fields_drawn(run, DRAWING_BUDGET), PageDrawings(INLINE)
     sections = _sections(run, rows, fields, drawings)
     first, overview = glance(run), overview_plot(run)

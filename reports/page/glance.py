@@ -326,4 +326,5 @@ def largest_walls(run: ComparisonRun) -> str:
         blocks = max((r.blocks for r in runs if r.status is Status.OK and r.judge.accepted is not False), default=0)
         ours.append(str(blocks))
     theirs = ", ".join(f"{row.largest} ({row.method.upper()})" for row in said)
-    return f"Largest walls, in blocks: {theirs} in the paper, {', '.join(ours)} in this comparison."
+    here = f"{ours[0]} (all)" if len(set(ours)) == 1 else ", ".join(ours)
+    return f"Largest walls, in blocks: {theirs} in the paper, {here} in this comparison."

@@ -16,7 +16,7 @@ from reports.drawing.display_list import DisplayList
 from reports.drawing.svg import body, element
 from reports.geometry import shapes
 
-BLOCK, JOINT = 30, 38
+BLOCK, JOINT = 42, 38
 """Bytes that a block of a mechanism and a joint with its force take in a page, packed, about."""
 
 

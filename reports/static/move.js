@@ -32,11 +32,21 @@
       const { a, b, c, d, e, f } = group.transform.baseVal.consolidate().matrix;
       return [group, [a - 1, b, c, d - 1, e, f]];
     });
+    /* What lies between the faces of a joint opens from a line: both are a point and steps from it, as numbers. */
+    const steps = (data) => data.split("M").slice(1).map((line) => line.match(/-?\d+/g).map(Number));
+    const cracks = [...svg.querySelectorAll("[data-rest]")].map((crack) => [crack, steps(crack.dataset.rest), steps(crack.getAttribute("d"))]);
     const { x, y, width, height } = svg.viewBox.baseVal;
     const box = [x, y, width, height];
     return (k) => {
       for (const [group, [a, b, c, d, e, f]] of groups) {
         group.setAttribute("transform", `matrix(${[1 + k * a, k * b, k * c, 1 + k * d, k * e, k * f].join(" ")})`);
+      }
+      for (const [crack, rest, open] of cracks) {
+        const placed = open.map((corners, i) => {
+          const [x, y, across, up] = rest[i];
+          return [x, y, across, up, 0, 0, -across, -up].map((from, j) => (j === 2 ? "l" : " ") + (from + k * (corners[j] - from)));
+        });
+        crack.setAttribute("d", placed.map((corners) => `M${corners.join("")}z`).join(""));
       }
       /* Room for what moves further than the margin of the drawing. */
       const room = Math.max(0, k - 1) * REACH;

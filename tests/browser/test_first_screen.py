@@ -38,6 +38,26 @@ COVERED = """() => [...document.querySelectorAll("svg.wall, svg.chart")].flatMap
   return out;
 })"""
 
+CROSSED = """() => [...document.querySelectorAll(".panel svg.wall")].flatMap((svg) => {
+  const arrows = [...svg.querySelectorAll("path:is(.force, .full)")].filter((p) => p.checkVisibility());
+  return [...svg.querySelectorAll("text.said")].filter((t) => t.checkVisibility()).filter((text) => {
+    const box = text.getBBox();
+    /* The letters stand in the middle half of the box of their line. */
+    const points = [0.05, 0.35, 0.65, 0.95].flatMap((x) => [0.35, 0.6].map((y) =>
+      new DOMPoint(box.x + x * box.width, box.y + y * box.height)));
+    return arrows.some((arrow) => points.some((point) => arrow.isPointInFill(point)));
+  }).map((text) => `${svg.getAttribute("aria-label")}: ${text.textContent}`);
+})"""
+AREAS = """all => all.map((path) => {
+  const numbers = path.getAttribute("d").match(/-?[0-9.]+(e-?[0-9]+)?/g).map(Number);
+  let area = 0;
+  for (let i = 0; i < numbers.length; i += 8) {
+    const [, , a, b, c, d, e, f] = numbers.slice(i, i + 8);
+    area += Math.abs(a * (b + d) - b * (a + c) + (a + c) * (b + d + f) - (b + d) * (a + c + e)) / 2;
+  }
+  return area;
+})"""
+
 
 @pytest.mark.parametrize("size", [DESKTOP, WIDE], ids=["desktop", "wide"])
 def test_first_screen_holds_the_three_mechanisms_at_one_scale_beside_the_papers_values(
@@ -76,6 +96,45 @@ def test_labels_cover_neither_each_other_nor_the_edge(browser: Browser, report: 
     found = opened.page.evaluate(COVERED)
     opened.context.close()
     assert found == []
+
+
+def test_no_number_of_a_force_lies_over_an_arrow(browser: Browser, report: Path):
+    opened = Opened(browser, report)
+    opened.see_everything()
+    found = opened.page.evaluate(CROSSED)
+    numbers = opened.page.locator(".panel text.said").count()
+    opened.context.close()
+    assert numbers > 20
+    assert found == []
+
+
+def test_cracks_open_with_the_slider_and_are_closed_at_rest(browser: Browser, report: Path):
+    opened = Opened(browser, report)
+    opened.see_everything()
+    areas = []
+    for amplitude in (0, 100, 300):
+        opened.page.locator("#case-1 input[type=range]").evaluate(
+            "(slider, to) => { slider.value = to; slider.dispatchEvent(new Event('input', {bubbles: true})); }",
+            amplitude,
+        )
+        areas.append(opened.page.locator("#case-1 [data-kind=mechanism] path.crack").evaluate_all(AREAS))
+    opened.context.close()
+    assert len(areas[0]) > 0
+    assert max(areas[0]) < 1e-6
+    assert min(areas[1]) > 0.0
+    assert all(far > 2.0 * near for near, far in zip(areas[1], areas[2], strict=True))
+
+
+@pytest.mark.parametrize("size", [DESKTOP, WIDE], ids=["desktop", "wide"])
+def test_no_table_is_wider_than_its_box(browser: Browser, report: Path, size: Any):
+    opened = Opened(browser, report, size)
+    opened.see_everything()
+    found = opened.page.locator(".scroll").evaluate_all(
+        "all => all.map((box) => [box.scrollWidth - box.clientWidth, box.getAttribute('aria-label')])"
+    )
+    opened.context.close()
+    assert len(found) > 5
+    assert [entry for entry in found if entry[0] > 1] == []
 
 
 def test_menu_stays_in_sight_and_leads_back_to_the_top(browser: Browser, report: Path):

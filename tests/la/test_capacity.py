@@ -120,7 +120,7 @@ def test_what_is_followed_no_further_is_said():
     ("more", "words"),
     [
         ({"loads": {}}, "no live load"),
-        ({"cohesion": 2.0}, "joints with strength"),
+        ({"cohesion": 2.0}, "joints with cohesion"),
         ({"loads": {"live": {"points": [{"block": "1", "at": [0, 1.8], "force": [1, 0]}]}}}, "beside|not act at its"),
     ],
 )

@@ -48,6 +48,7 @@ class Read:
         lines: the points of each line; of a staircase its corners.
         bars: (x, low, high) of every bar.
         marks: the points that carry a mark.
+        at: the values at a place of the drawing.
     """
 
     def __init__(self, text: str, *, log_x: bool = False, log_y: bool = False) -> None:
@@ -55,6 +56,8 @@ class Read:
         across = _scale(re.findall(r'<text x="([\d.]+)" y="[\d.]+" class="mid">([^<]*)<', svg), log=log_x)
         heights = re.findall(r'<text x="[\d.]+" y="([\d.]+)" class="end">([^<]*)<', svg)
         up = _scale([(str(float(base) - 4.0), label) for base, label in heights], log=log_y)  # half a digit below
+
+        self.at = lambda x, y: (across(x), up(y))
 
         def points(path: str) -> Points:
             corners = re.sub(r"H([\d.]+)V([\d.]+)", r"L\1 \2", path)

@@ -17,7 +17,7 @@ from harness.model.method import Finding
 from harness.model.result import Result
 from reports.charts import curves, dots
 from reports.charts.overview import overview_plot, wall_plot
-from reports.drawing.display_list import Group, Text
+from reports.drawing.display_list import Text
 from reports.drawing.force_drawing import force_drawing
 from reports.findings.agreement import agreement
 from reports.labels import numbers
@@ -119,6 +119,7 @@ def test_largest_walls_count_accepted_runs_only():
         "Largest walls, in blocks: 440 (FE), 50 (LA), 220 (DE) in the paper, "
         f"{count['large']}, {count['small']}, {count['small']} in this comparison."
     )
+    assert largest_walls(run_of(items[0])).endswith(f"in the paper, {count['small']} (all) in this comparison.")
 
 
 def own(multiplier: float, name: str = "") -> CaseResults:
@@ -241,8 +242,7 @@ def test_numbers_stand_at_forces_of_a_twentieth_of_the_largest_and_beside_each_o
     def said(*sizes: float) -> list[str]:
         result.forces = [(0.5 * size, 0.5 * size, 0.0) for size in sizes]
         drawn = force_drawing(case, result.model_copy())
-        groups = [part for part in drawn.parts if isinstance(part, Group)]
-        return [part.text for group in groups for part in group.parts if isinstance(part, Text)]
+        return [part.text for part in drawn.parts if isinstance(part, Text) and part.role == "said"]
 
     assert case.assembly.n_interfaces == 2
     assert said(1.0, 0.06) == ["1", "0.06"]

@@ -126,4 +126,21 @@ def test_no_arrow_of_a_force_enters_a_support():
         ends = thrust_lines.drawn_ends(wall, found)
         supports = [shapely.Polygon(wall.polygons[k]).buffer(-1e-6) for k in np.flatnonzero(wall.fixed)]
         assert not any(shapely.LineString(arrow).intersects(held) for arrow in ends for held in supports)
-        np.testing.assert_allclose(np.linalg.norm(ends[:, 1] - ends[:, 0], axis=1), 0.72 * wall.length_scale)
+        length = np.linalg.norm(ends[:, 1] - ends[:, 0], axis=1) / wall.length_scale
+        assert length.max() == pytest.approx(0.72)
+        assert length.min() >= 0.72 * thrust_lines.SHORTEST - 1e-9
+
+
+@pytest.mark.parametrize("sizes", [(3.0, 2.0), (2.0, 3.0)])
+def test_of_two_arrows_that_cross_the_smaller_stops_short_of_the_greater(sizes: tuple[float, float]):
+    wall = wall_case(stack(2)).assembly
+    joint = int(np.flatnonzero(~wall.fixed[wall.block_a] & ~wall.fixed[wall.block_b])[0])
+    x, unit = float(wall.end1[joint, 0]), wall.length_scale
+    points = np.array([[x - 0.2 * unit, 1.0], [x + 0.2 * unit, 1.0]])
+    towards = np.array([[0.6, -0.8], [-0.6, -0.8]])  # they meet 0.333 units of length from both points
+    found = shapes.Thrusts(np.array([joint, joint]), points, towards * np.array(sizes)[:, None], np.array(sizes))
+    arrows = [shapely.LineString(arrow) for arrow in thrust_lines.drawn_ends(wall, found)]
+    assert not arrows[0].intersects(arrows[1])
+    lengths = [arrow.length / unit for arrow in arrows]
+    assert lengths[np.argmax(sizes)] == pytest.approx(0.72), "the greater keeps its length"
+    assert lengths[np.argmin(sizes)] == pytest.approx(2.0 * 0.8 * 0.2 / 0.6)

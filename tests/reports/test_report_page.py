@@ -66,7 +66,7 @@ def page(source: str) -> Page:
 
 def test_names_from_a_file_never_become_markup(page: Page):
     names = [name for name, _ in page.elements]
-    assert names.count("script") == 3, "the data, and the two scripts of the page"
+    assert names.count("script") == 4, "the data, and the three scripts of the page"
     assert "img" not in names
     assert not [attrs for _, attrs in page.elements if any(key.startswith("on") for key in attrs)]
     assert samples.SCRIPT in page.text
@@ -240,7 +240,7 @@ def test_policy_names_the_scripts_of_the_page_by_their_hash(source: str, page: P
     assert policy is not None
     (scripts,) = re.findall(r"script-src ([^;]*)", policy)
     run = re.findall(r"<script>(.*?)</script>", source, flags=re.DOTALL)
-    assert len(run) == 2
+    assert len(run) == 3
     assert scripts.split() == [build.script_hash(script) for script in run]
     assert "unsafe-inline" not in scripts
 

@@ -109,7 +109,7 @@ def test_methods_are_drawn_as_in_the_report_and_in_the_order_of_the_study():
     rows, grid = families_over_friction(1), ["friction"]
     marks = {name: mark_named(name, load_method(name).traits) for name in ("la", "fe")}
     page = render(StudyPage("A study", "", "c", "now", rows, grid, tables_of(rows, *grid), marks=marks))
-    legend = re.findall(r'class="line" style="stroke:(#\w+)" stroke-dasharray="[^"]*" d="M\d+ \d+h26"/>', page)
+    legend = re.findall(r'class="line" style="color:(#\w+)" stroke-dasharray="[^"]*" d="M\d+ \d+h26"/>', page)
     assert legend == [marks["la"].colour, marks["fe"].colour]
     assert mark_named("x", Traits(colour="#123456", marker="s")).shape != mark_named("x", Traits(marker="o")).shape
 

@@ -41,8 +41,8 @@ def test_chart_draws_the_mark_of_its_method_whatever_its_place():
     other = charts.Series("x", [1.0, 2.0], [2.0, 1.0])
     for drawn in ([series, other], [other, series]):
         page = str(charts.svg(charts.Chart("t", "x", "y", drawn)))
-        assert page.count('style="stroke:#a8431e" stroke-dasharray="7 3"') == 2
-        assert page.count('style="stroke:#a8431e;fill:#a8431e"') == 3
+        assert page.count('style="color:#a8431e" stroke-dasharray="7 3"') == 2
+        assert page.count('class="mark" style="color:#a8431e"') == 3
         assert page.count(styles.SHAPES["s"]) == 3
 
 

@@ -218,7 +218,7 @@ class PathFollower:
         if model.assembly.breaks and len(self.at_strength()):
             return PathEnd.BROKEN
         record.events += 1
-        self._note(record, note)
+        self._note(record, note, (point, int(self.state[point]), new))
         if self.multiplier < record.peak - turn * max(abs(record.peak), 1e-3):
             return PathEnd.TURNED_DOWN
         rising = way.speed > 0.0
@@ -265,14 +265,14 @@ class PathFollower:
         self.largest = advance(self.u, velocity, *gaps, step)
         self.multiplier += speed * step
 
-    def _note(self, record: PathRecord, note: int) -> None:
+    def _note(self, record: PathRecord, note: int, change: Change | None = None) -> None:
         if self.multiplier > record.peak:
             record.peak = self.multiplier
         elif record.first_limit is None and self.multiplier < record.peak * (1.0 - 1e-9):
             record.first_limit = record.peak
         if record.events % note == 0:
             bars = self.model.bar_tensions(self.trial) if self.model.n_updated < self.model.n_points else ()
-            record.add(self.multiplier, live_rate(self.model.live, self.u), self.n_slip, self.n_open, bars)
+            record.add(self.multiplier, live_rate(self.model.live, self.u), self.n_slip, self.n_open, bars, change)
         record.keep(self.load_step)
 
     def _flip(self, point: int, new: int) -> None:

@@ -41,6 +41,7 @@ class PathRecord:
     """Multiplier against live displacement, with the limit points passed.
 
     Attributes:
+        change: of every point the gap point that changes there, its state before and after; None where none does.
         steps: points kept whole, spread evenly over those met; most: up to twice as many are, 0: none.
     """
 
@@ -49,6 +50,7 @@ class PathRecord:
     slipping: list[int] = field(default_factory=list)
     open: list[int] = field(default_factory=list)
     bars: list[list[float]] = field(default_factory=list)
+    change: list[tuple[int, int, int] | None] = field(default_factory=list)
     peak: float = -np.inf
     first_limit: float | None = None
     events: int = 0
@@ -73,6 +75,7 @@ class PathRecord:
         slipping: int,
         n_open: int,
         bars: Sequence[float] | FloatArray = (),
+        change: tuple[int, int, int] | None = None,
     ) -> None:
         """Append one point of the path; `bars` are tensions (k,) beyond the prestress of ties and props [force]."""
         self.multiplier.append(multiplier)
@@ -80,6 +83,7 @@ class PathRecord:
         self.slipping.append(slipping)
         self.open.append(n_open)
         self.bars.append([float(tension) for tension in bars])
+        self.change.append(change)
 
 
 @dataclass(frozen=True, eq=False)
