@@ -1,8 +1,9 @@
-"""How often `la` misses a lower state that something else finds: `python -m benchmarks la_missed [WALLS [SECONDS]]`.
+"""How often `la` misses a lower state that something else finds.
 
-WALLS (300) random walls of ten kinds by turns, of 14 to 40 blocks, until SECONDS (1500) of CPU are spent. The answer at
-normal effort stands beside that at deep effort, that of `la-paper` where it is installed, and the states of the
-mechanisms that `la` finds at friction 5 % lower and higher. Each of them is a collapse state that any search may find.
+Run as `python -m benchmarks la_missed [WALLS [SECONDS [SEED]]]`: WALLS (300) random walls of ten kinds by turns, of 14
+to 40 blocks, until SECONDS (1500) of CPU are spent. The answer at normal effort stands beside that at deep effort, that
+of `la-paper` where it is installed, and the states of the mechanisms that `la` finds at friction 5 % lower and higher.
+Each of them is a collapse state that any search may find. Another SEED (0) draws other walls.
 """
 
 from __future__ import annotations
@@ -16,7 +17,7 @@ from typing import Any
 
 import numpy as np
 
-from benchmarks.walls import PUSH, arch, courses_of_stones, drawn, pushed, random_wall
+from benchmarks.walls import arch, courses_of_stones, drawn, pushed, random_wall
 from cases.start import STARTS
 from cases.useful import irregular_stones
 from harness.model.assembly import Assembly
@@ -136,11 +137,11 @@ KINDS: dict[str, Callable[[np.random.Generator], Assembly]] = {
 }
 
 
-def walls(kind: str) -> Iterator[Assembly]:
+def walls(kind: str, seed: int) -> Iterator[Assembly]:
     """Walls of a kind that are of the sizes taken and have a live load, without end."""
-    for seed in itertools.count():
+    for number in itertools.count():
         try:
-            wall = KINDS[kind](np.random.default_rng([seed, 56, list(KINDS).index(kind)]))
+            wall = KINDS[kind](np.random.default_rng([number, 56 + seed, list(KINDS).index(kind)]))
         except InputError:
             continue
         if wall.n_free in BLOCKS and wall.has_live_load:
@@ -200,14 +201,16 @@ def run(kind: str, wall: Assembly, number: int, tally: Tally) -> None:
 def main(arguments: Sequence[str] | None = None) -> int:
     """Print the misses and their number."""
     given = list(sys.argv[1:] if arguments is None else arguments)
-    count, seconds = (float(a) for a in [*given, *["300", "1500"][len(given) :]])
-    sources, tally, began = {kind: walls(kind) for kind in KINDS}, Tally(), time.process_time()
+    count, seconds, seed = (int(a) for a in [*given, *["300", "1500", "0"][len(given) :]])
+    sources, tally, began = {kind: walls(kind, seed) for kind in KINDS}, Tally(), time.process_time()
     print("| wall | blocks | `la` | lower |\n|---|---|---|---|")
-    for number in range(int(count)):
+    for number in range(count):
         if time.process_time() - began > seconds:
             break
         kind = list(KINDS)[number % len(KINDS)]
         run(kind, next(sources[kind]), number // len(KINDS), tally)
+        if kind == list(KINDS)[-1]:
+            print(f"{tally.walls} walls, {time.process_time() - began:.0f} CPU s", file=sys.stderr, flush=True)
     print(f"missed {len(tally.missed)} of {tally.walls} walls; {tally.without} more have no multiplier")
     print(f"la: {tally.seconds:.0f} CPU s of {time.process_time() - began:.0f}")
     return 0
