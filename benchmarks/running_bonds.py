@@ -1,7 +1,7 @@
 """Values and CPU seconds of the families on running bonds: `python -m benchmarks running_bonds [BRICKS ...]`.
 
 Bricks of 0.4 by 0.2, friction 0.65, twice as many courses as bricks a course; without arguments 105, 210, 465 and 990
-bricks. `de` is left out above 465. Of `la` the time after which its value was known stands too. Start-up and
+bricks. `de` is left out above 465. Of `la` the time after which its value was reached stands too. Start-up and
 compilation are apart.
 """
 
@@ -23,9 +23,9 @@ METHODS = ("fe", "la-associated", "la", "de")
 
 
 def told(method: str, answer: Answer) -> str:
-    """What stands beside the value: the bracket of `de`, when `la` knew its value."""
+    """What stands beside the value: the bracket of `de`, when `la` reached its value."""
     if method == "la" and answer.multiplier is not None:
-        return f"known after {first_below(answer, (1.0 + SAME) * answer.multiplier):.2f} s"
+        return f"reached after {first_below(answer, (1.0 + SAME) * answer.multiplier):.2f} s"
     if answer.bracket is None or method != "de" or answer.multiplier is None:
         return ""
     low, high = answer.bracket
