@@ -25,9 +25,10 @@ from methods.la.least import least_of
 from methods.la.search import LimitAnalysis
 from methods.la.settings import AssociatedSettings, SearchSettings
 from methods.la.sources import explore
-from methods.la.sources.arcs import ArcPaths
+from methods.la.sources.arcs import NEAR, ArcPaths
 from methods.la.sources.budget import Budget, SearchLimits
 from methods.la.sources.search import Choices, Search
+from methods.la.sources.springs import LowPrestress
 from tests.la.bodies import running_bond
 
 
@@ -186,3 +187,16 @@ def test_least_state_is_the_most_exact_of_those_that_differ_by_rounding_only() -
     assert max(residuals(problem, state).values()) < max(residuals(problem, rough).values())
     assert least_of(problem, [rough, state]) is state
     assert least_of(problem, [rough, state, lower]) is lower
+
+
+def test_springs_of_gravity_are_left_out_where_paths_by_arc_length_arrive_on_large_walls() -> None:
+    """They took as long as the rest of the search on 990 bricks, and ended higher wherever the others arrived."""
+    problem = make_problem(running_bond(14, 7, 0.175, 0.65))
+    gravity = LowPrestress(vertices_up_to=10, gravity_alone=100)
+    breakpoints = []
+    for sources in ([gravity], [ArcPaths(least=100, near=NEAR[1:2]), gravity]):
+        search = Search(problem, NewtonMatrix(problem), budget=Budget(SearchLimits(descents=0)))
+        explore(search, sources)
+        assert search.record.known
+        breakpoints.append(search.budget.spent.breakpoints)
+    assert breakpoints[0] > 0 == breakpoints[1]

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 
+import numpy as np
+
 from harness.model.assembly import FloatArray
 from methods.de.engines.engine import Engine
 from methods.de.holds.load_step import LoadStep, State, hold, least_motion, settle
@@ -19,9 +21,9 @@ class BracketTuning:
         wide: relative width of [held, moving] above which undecided holds make the search look for a lower moving
             state.
         rounds: bisections at most, each above the highest multiplier held so far.
-        creeping: accuracy below a state that could not be told: just under collapse a wall creeps, and narrower costs
-            much.
-        cheap: contact updates up to which a search keeps to the full accuracy even so.
+        creeping: accuracy of a search that is no longer cheap: just under collapse a wall creeps, just above it moves
+            slowly, and narrower costs much.
+        cheap: contact updates up to which a search keeps to the full accuracy.
         growth: factor on load steps after one that could not be told.
         patience: multiple of the length of a hold that the dead load has.
         halved: residual of a motion, or live load as a part of the dead load, in residuals that show a motion, up to
@@ -216,7 +218,7 @@ class BracketSearch:
         told = found.moving == high
         while not self._spent():
             cheap = self.engine.steps * self.engine.interfaces < self._options.cheap
-            accuracy = self.settings.accuracy if told or cheap else max(self.settings.accuracy, self._options.creeping)
+            accuracy = self.settings.accuracy if cheap else max(self.settings.accuracy, self._options.creeping)
             left = min(found.moving_residual, high / self.unit)
             vanishing = left <= self._options.halved * least_motion(self.settings)
             found.nothing = found.held == 0.0 and told and vanishing
@@ -232,14 +234,18 @@ class BracketSearch:
             self._raise_upper_end(high)
 
     def _raise_upper_end(self, high: float) -> None:
-        """The lowest state not held was undecided: find the lowest state above it that moves, by growing steps."""
+        """The lowest state not held was undecided: find the lowest state above it that moves, by growing steps.
+
+        None is asked below a multiplier that could not be told either.
+        """
         found = self.found
         step = self._options.creeping * high
         multiplier = high + step
         while not self._spent() and multiplier <= self.settings.load_cap * self.unit:
             if found.moving is not None and multiplier >= found.moving:
                 return
-            if self._try(multiplier).state is State.MOVING:
+            doubtful = any(multiplier <= m < (found.moving or np.inf) for m in found.undecided)
+            if not doubtful and self._try(multiplier).state is State.MOVING:
                 return
             step *= self._options.growth
             multiplier += step

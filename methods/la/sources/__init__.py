@@ -7,7 +7,7 @@ from contextlib import suppress
 from dataclasses import replace
 
 from harness.model.assembly import FloatArray
-from methods.la.sources.arcs import ArcPaths
+from methods.la.sources.arcs import FAR, ArcPaths
 from methods.la.sources.blocks import JoinedBlocks, SingleBlocks
 from methods.la.sources.friction_continuation import FrictionContinuation
 from methods.la.sources.given import GivenMechanisms
@@ -20,17 +20,20 @@ from methods.numerics.failures import SingularMatrix
 __all__ = ["SOURCES", "Source", "explore", "from_motions"]
 
 SOURCES: tuple[Source, ...] = (
-    ReducedFriction(factors=(0.3,)),
-    ShiftedAssociated(least=1001, most=6000),
-    ReducedFriction(factors=(0.6, 0.0)),
+    ReducedFriction(factors=(0.3,), most=2000),
+    ReducedFriction(factors=(0.6, 0.0), most=2000),
+    ReducedFriction(factors=(0.6,), least=2001),
+    ArcPaths(),
+    LowPrestress(least=2001),
     CentralPath(most=1000),
     RandomStarts(),
     FrictionContinuation(),
-    ArcPaths(),
+    ReducedFriction(factors=(0.3, 0.0), least=2001, anyway=False),
     TrescaMechanisms(),
     CentralPath(anyway=False),
-    LowPrestress(),
+    LowPrestress(most=2000),
     SingleBlocks(),
+    ArcPaths(near=FAR, far=(), anyway=False),
     ShiftedAssociated(),
     AnalyticCentre(),
     JoinedBlocks(),

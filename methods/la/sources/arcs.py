@@ -39,10 +39,14 @@ class ArcStart:
     most_steps: int
 
 
-NEAR_PATH = (10.0, (1e-6, 1e-8), 600)
-"""Spread, gaps and most steps of leads near the central path."""
-FAR_PATH = (np.inf, (1e-8, 1e-9, 1e-10), 2000)
-"""Those of leads with the weights of their start."""
+_NEAR_PATH = (10.0, (1e-6, 1e-8), 600)
+_FAR_PATH = (np.inf, (1e-8, 1e-9, 1e-10), 2000)
+"""Spread, gaps and most steps of paths near the central one, and of those with the weights of their start."""
+
+NEAR = (ArcStart(0.3, 1e-3, *_NEAR_PATH), ArcStart(0.3, 1e-2, *_NEAR_PATH), ArcStart(0.45, 1e-2, *_NEAR_PATH))
+"""Beginnings near the central path, which end low but do not always arrive."""
+FAR = (ArcStart(0.15, 1e-2, *_FAR_PATH), ArcStart(0.3, 1e-3, *_FAR_PATH), ArcStart(0.0, 1e-2, *_FAR_PATH))
+"""Beginnings with the weights of their start, for where the others do not arrive."""
 
 
 @dataclass(frozen=True)
@@ -51,40 +55,32 @@ class ArcPaths:
 
     Attributes:
         least: interfaces from which they are followed.
-        near: leads near the central path, which end low but do not always arrive.
-        far: leads with the weights of their start, tried where no other led to a state, and from `many` blocks on.
+        near: beginnings of the paths; far: those from `many` blocks on.
         many: moving blocks on which a path near the central one folds a thousand times and more.
+        anyway: whether they are followed though a state is known.
     """
 
     name: ClassVar[str] = "paths by arc length"
     least: int = 1001
-    near: tuple[ArcStart, ...] = (
-        ArcStart(0.3, 1e-2, *NEAR_PATH),
-        ArcStart(0.45, 1e-2, *NEAR_PATH),
-        ArcStart(0.3, 1e-3, *NEAR_PATH),
-    )
-    far: tuple[ArcStart, ...] = (
-        ArcStart(0.15, 1e-2, *FAR_PATH),
-        ArcStart(0.3, 1e-3, *FAR_PATH),
-        ArcStart(0.0, 1e-2, *FAR_PATH),
-    )
+    near: tuple[ArcStart, ...] = NEAR
+    far: tuple[ArcStart, ...] = FAR
     many: int = 2000
+    anyway: bool = True
 
     def applies(self, problem: Problem) -> bool:
         """On walls too large for descents."""
         return problem.n_interfaces >= self.least
 
     def states(self, search: Search) -> Iterator[CollapseState]:
-        """One state a lead that arrives; none where no associated mechanism tells the part that moves."""
-        if search.associated.state is None:
+        """One state a path that arrives; none where no associated mechanism tells the part that moves."""
+        if search.associated.state is None or (search.record.known and not self.anyway):
             return
         region = moving_region(search.problem, search.associated.state.velocities)
-        far_only = region.problem.n_velocities // 3 > self.many
-        for arc_start in self.far if far_only else self.near + self.far:
+        for arc_start in self.far if region.problem.n_velocities // 3 > self.many else self.near:
             known = search.record.known
-            if (known and arc_start in self.far and not far_only) or not search.budget.steps_left(known):
+            if (known and not self.anyway) or not search.budget.steps_left(known):
                 return
-            with suppress(SingularMatrix):  # It ends one lead, not the search.
+            with suppress(SingularMatrix):  # It ends one path, not the search.
                 state = _end_of(arc_start, search, region)
                 if state is not None:
                     yield state

@@ -22,24 +22,25 @@ class ReducedFriction:
     Attributes:
         factors: on that friction, tried in order.
         pool: mechanisms of the smoother wall that are tried on the wall itself.
-        most: interfaces above which Newton's path of the whole wall stalls at folds.
-        all_up_to: interfaces up to which every factor is tried, instead of the first that leads to a state.
+        least, most: interfaces between which it is tried; above 6,000 Newton's path of the whole wall stalls at folds.
+        anyway: whether a factor is tried though a state is known.
     """
 
     name: ClassVar[str] = "reduced friction in unloaded joints"
     factors: tuple[float, ...] = (0.3, 0.6, 0.0)
     pool: int = 24
+    least: int = 0
     most: int = 6000
-    all_up_to: int = 2000
+    anyway: bool = True
 
     def applies(self, problem: Problem) -> bool:
         """On walls on which Newton's path arrives, with joints that the dead load does not press."""
-        return problem.n_interfaces <= self.most and bool(problem.unloaded_joints.any())
+        return self.least <= problem.n_interfaces <= self.most and bool(problem.unloaded_joints.any())
 
     def states(self, search: Search) -> Iterator[CollapseState]:
         """One state a factor, or more where none is known and only forces of the smoother wall lead to one."""
         for factor in self.factors:
-            if search.record.known and search.problem.n_interfaces > self.all_up_to:
+            if search.record.known and not self.anyway:
                 return
             guide = with_reduced_friction(search.problem, factor)
             if guide is not None:

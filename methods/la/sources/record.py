@@ -76,6 +76,10 @@ class Record:
         ends = (min((state.multiplier for state in states), default=float("inf")) for states in self.ends)
         return sum(end <= self.least + LEAST_IMPROVEMENT for end in ends)
 
+    def led_to_state(self, source: str) -> bool:
+        """Whether a source of this name led to a state."""
+        return any(tried.source == source and tried.states for tried in self.tried)
+
     @contextmanager
     def trying(self, source: str, spent: Work) -> Iterator[Tried]:
         """Note what is found and spent in this time as of a source; `spent` is the count that goes on."""

@@ -27,6 +27,7 @@ from harness.model.assembly import FloatArray
 from methods.la.core.problem import Problem
 from methods.la.core.state import CollapseState, friction_work, moving_contacts
 from methods.la.interior.interior_point import PathSettings, follow_path, start_point
+from methods.la.sources.arcs import ArcPaths
 from methods.la.sources.gravity import Gravity, gravity_of
 from methods.la.sources.record import LEAST_IMPROVEMENT
 from methods.la.sources.reduced_friction import with_reduced_friction
@@ -87,7 +88,7 @@ class LowPrestress:
     gives the evidence for the limits below.
 
     Attributes:
-        most: interfaces above which the path of gravity takes minutes.
+        least, most: interfaces between which it is tried; above 6,000 the path of gravity takes minutes.
         vertices_up_to: interfaces up to which paths start from pure vertices. Above, none is begun on walls of
             right-angled joints where gravity ends above the least known state. Gravity is no such sign where joints
             have many directions.
@@ -95,7 +96,8 @@ class LowPrestress:
             strategies as `agreeing` ended at it.
         rubs: share of the work of the live load that friction takes in such a state; rounding leaves 1e-15.
         gravity_alone: interfaces above which there is no other path, because updated histories need many breakpoints
-            and gain little.
+            and gain little; and none on walls of right-angled joints where paths by arc length led to states, which are
+            lower.
         vertex: shares of a vertex, of gravity's forces and of central ones up to there.
         mixtures: above, in turn. Pure vertices have many forces at zero or at the limit of friction, and on walls of
             hundreds of blocks their paths seldom end; a tenth of central forces takes them off their limits.
@@ -103,6 +105,7 @@ class LowPrestress:
     """
 
     name: ClassVar[str] = "springs with low prestress"
+    least: int = 0
     most: int = 6000
     vertices_up_to: int = 200
     rubs: float = 1e-6
@@ -120,12 +123,15 @@ class LowPrestress:
 
     def applies(self, problem: Problem) -> bool:
         """On dry joints that slide without lifting, as springs do."""
-        return problem.n_interfaces <= self.most and not problem.dilates and problem.law.is_cone
+        return self.least <= problem.n_interfaces <= self.most and not problem.dilates and problem.law.is_cone
 
     def states(self, search: Search) -> Iterator[CollapseState]:
         """One state a path that ends, until the breakpoints are spent."""
         right_angled = _right_angled(search.problem, search.choices.springs.right)
         known = search.record.least
+        alone = search.problem.n_interfaces > self.gravity_alone
+        if right_angled and alone and search.record.led_to_state(ArcPaths.name):
+            return
         for k, state in ends(search, self._starts(search)):
             yield state
             if k == 0 and right_angled and self._gravity_is_enough(search, known, state.multiplier):
@@ -181,18 +187,15 @@ class ShiftedAssociated:
     """The path from forces somewhat before the end of the associated one, where no state is known yet.
 
     Attributes:
-        least, most: interfaces between which it is tried at this place of the order.
         left: where the associated path is left; full steps meet the equilibrium at a gap of half a percent or so.
     """
 
     name: ClassVar[str] = "springs from shifted associated forces"
-    least: int = 0
-    most: float = np.inf
     left: PathSettings = field(default_factory=lambda: PathSettings(dilatancy=1.0, gap=0.1, residual=1e-7))
 
     def applies(self, problem: Problem) -> bool:
         """On dry joints that slide without lifting, as springs do."""
-        return self.least <= problem.n_interfaces <= self.most and not problem.dilates and problem.law.is_cone
+        return not problem.dilates and problem.law.is_cone
 
     def states(self, search: Search) -> Iterator[CollapseState]:
         """One state at most; none where statics allows any load."""
