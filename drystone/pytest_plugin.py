@@ -29,10 +29,10 @@ def pytest_collect_file(file_path: Path, parent: pytest.Collector) -> pytest.Col
         return None
     if tier not in ("quick", "full"):
         raise pytest.UsageError(f'drystone = "{tier}" in the configuration: the tier is quick or full')
-    return CaseFile.from_parent(parent, path=file_path)
+    return CaseTests.from_parent(parent, path=file_path)
 
 
-class CaseFile(pytest.File):
+class CaseTests(pytest.File):
     """A case with its checked references."""
 
     def collect(self) -> Iterator[pytest.Item]:
@@ -51,14 +51,14 @@ class CaseFile(pytest.File):
         except InputError as error:
             raise self.CollectError(str(error)) from None
         for run in plan.gated:
-            held = Held(run)
+            held = HeldRun(run)
             for number, reference in enumerate(run.references):
                 settings = "".join(f" {key}={value}" for key, value in sorted(run.settings.items()))
                 name = f"{reference.id}[{run.method}{settings}]"
-                yield Reference.from_parent(self, name=name, held=held, number=number)
+                yield ReferenceTest.from_parent(self, name=name, held=held, number=number)
 
 
-class Held:
+class HeldRun:
     """The lines of one run, which is made when the first of them is asked for."""
 
     def __init__(self, run: Run) -> None:
@@ -72,10 +72,10 @@ class Held:
         return held(Plan([self._run], []), None, 1).lines
 
 
-class Reference(pytest.Item):
+class ReferenceTest(pytest.Item):
     """A checked reference that a method is held to."""
 
-    def __init__(self, *, held: Held, number: int, **given: Any) -> None:
+    def __init__(self, *, held: HeldRun, number: int, **given: Any) -> None:
         super().__init__(**given)
         self._held = held
         self._number = number

@@ -37,12 +37,12 @@ READ = ("factor {}", "reaction {}", "bound {} -o o.json", "domain {}", "figure {
         "export {} -o o.csv", "compare {} --methods la", "run la {}", "judge {} long.json")  # fmt: skip
 ASKED = [
     *(each.format(name) for each in READ for name in ("product.json", "names.json", "nested.json")),
-    *(f"run {method} {name}" for method, name in (("fe", "tied.json"), ("de", "tied.json"), ("la", "crushed.json"))),
+    *("run de-soft tied.json", "run de tied.json", "run la crushed.json"),
     "factor crushed.json",
-    "domain tied.json --method fe",
-    "figure tied.json --methods fe -o o.pdf",
+    "domain tied.json --method de",
+    "figure tied.json --methods de -o o.pdf",
     "animate tied.json --method de -o o.gif",
-    "export tied.json --method fe -o o.vtu",
+    "export tied.json --method de -o o.vtu",
     "run la cases.json",
     "run la w.json --live 1e308,1e308",
     "run la w.json --seconds 1e308",

@@ -253,6 +253,7 @@ def with_contacts(
         constant=np.zeros((len(rows), 4)),
         crushing=np.full(len(rows), np.inf),
         brittle=np.zeros(len(rows), dtype=bool),
+        bar_stiffness=np.zeros(len(rows)),
         joint=tuple("bed" if flat else "head" for flat in level),
     ), single
 

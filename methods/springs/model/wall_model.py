@@ -144,6 +144,11 @@ class WallModel:
         opening += self.initial_opening
         return opening, slip
 
+    def interface_of(self, point: int) -> int:
+        """The interface of a gap point, of a cohesion spring the one whose cohesion it bears."""
+        row, count = int(self.interface[point]), self.assembly.n_interfaces
+        return row if row < count else int(self.cohesive[row - count])
+
     def states(self, u: FloatArray, history: FloatArray, virgin: bool = False) -> IntArray:
         """States (P,) of the gap points at displacements u with friction history h (P,)."""
         opening, slip = self.strains(u)
