@@ -17,7 +17,7 @@ BROWSER := $(shell command -v chromium 2>/dev/null)
 
 test: $(READY)  ## pass the tests
 	$(if $(BROWSER),,@echo "chromium is not installed: the browser tests are left out")
-	$(RUN)/python -m pytest -n 2 --dist loadfile -o faulthandler_timeout=600 -o faulthandler_exit_on_timeout=true -m "not slow$(if $(BROWSER),, and not browser)"
+	$(RUN)/python -m pytest -n 2 --dist worksteal -o faulthandler_timeout=600 -o faulthandler_exit_on_timeout=true -m "not slow$(if $(BROWSER),, and not browser)"
 
 full: $(READY)  ## every test and every reference, the slow ones too
 	$(RUN)/python -m pytest
