@@ -191,7 +191,7 @@ class Bench:
         """This table with the rows of another one, as others publish it.
 
         Raises:
-            InputError: columns are missing, or it is of another set or version.
+            InputError: columns are missing, it is of another set, version or walls, or a cell cannot be of its column.
         """
         import pandas as pd
 
@@ -208,6 +208,10 @@ class Bench:
                     "Join tables of one set and version",
                     source=name,
                 )
+        strange = next((column for column, wrong in _wrong_cells(other, set(self.table["wall"])) if wrong.any()), None)
+        if strange is not None:
+            problem = f"column {strange} has a cell that cannot be in it"
+            raise InputError(problem, "Give a table of `drystone bench -o`", source=name)
         kept = other[list(self.table.columns)].astype(self.table.dtypes.to_dict())
         return Bench(pd.concat([self.table, kept], ignore_index=True))
 
@@ -216,6 +220,21 @@ class Bench:
         from reports.drawing.profile import profile_figure
 
         return profile_figure(self.profile(), self.complete)
+
+
+def _wrong_cells(table: pd.DataFrame, walls: set[str]) -> Iterator[tuple[str, Any]]:
+    """Columns of a table of others, each with which of its cells cannot be in it: other walls, no flag, no number."""
+    import pandas as pd
+
+    yield "wall", ~table["wall"].isin(walls)
+    yield "method", table["method"].isna()
+    for column in ("answered", "correct", "exact", "proved"):
+        yield column, ~table[column].map(lambda cell: isinstance(cell, bool | np.bool_))
+    for column in ("multiplier", "lower", "upper", "cpu_seconds", "wall_seconds", "speed_seconds", "speed_spread"):
+        numbers = pd.to_numeric(table[column], errors="coerce")
+        yield column, (numbers.isna() & table[column].notna()) | (numbers < 0.0) | np.isinf(numbers)
+    for column in ("blocks", "interfaces", "peak_memory_bytes"):
+        yield column, ~(pd.to_numeric(table[column], errors="coerce").between(0, 2**53))
 
 
 def rows_of(chosen: WallSet, compared: Comparison, speed: Speed) -> pd.DataFrame:

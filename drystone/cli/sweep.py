@@ -37,6 +37,7 @@ from harness.engine.sweep.quick import quick_study
 from harness.engine.sweep.study import Study, read_study
 from harness.model.errors import InputError
 from harness.model.library import library
+from harness.model.writing import check_output
 
 OUT = Path("out")
 
@@ -88,10 +89,14 @@ def sweep_(what: str, dry_run: bool, scheduler: str | None, jobs: int, store: Pa
     if dry_run:
         _tell_plan(asked, runs, store, jobs, rest["as_json"])
         return
+    folder = rest["output"] or OUT / asked.name
+    check_output(folder / "runs.csv")
+    if not rest["no_report"]:
+        check_output(folder.with_suffix(".html"))
     with open_store(store) as opened:
         executor = _executor(scheduler, jobs)
         rows = rows_of(asked, runs, opened, executor, fresh=fresh, telling=partial(progress, quiet=rest["as_json"]))
-    _leave(Sweep(asked, rows), rest["output"] or OUT / asked.name, rest)
+    _leave(Sweep(asked, rows), folder, rest)
 
 
 def _study(what: str, rest: dict[str, Any]) -> tuple[Study, Path | None]:

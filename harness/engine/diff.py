@@ -63,7 +63,8 @@ def read_answers(path: Path) -> Answers:
         InputError: a file that is neither, or a store without a comparison.
     """
     if not path.is_file():
-        raise InputError("there is no such file", "Give a result store (.sqlite) or a baseline (.json)", "", str(path))
+        problem = "it is not a regular file" if path.exists() else "there is no such file"
+        raise InputError(problem, "Give a result store (.sqlite) or a baseline (.json)", "", str(path))
     with path.open("rb") as stream:
         is_store = stream.read(len(_SQLITE)) == _SQLITE
     if not is_store:

@@ -15,7 +15,7 @@ from pathlib import Path
 from typing import Any
 
 from harness.engine.store_faults import OTHER_FILE, WAIT_SECONDS, cause
-from harness.engine.store_seal import DAMAGE, EDITED, digest_of, opened, sealed, unpacked
+from harness.engine.store_seal import DAMAGE, digest_of, environment_of, opened, sealed, unpacked
 from harness.model.errors import InputError
 from harness.model.json_text import LARGEST_FILE, MOST_NESTED, json_of, nested_deeper
 from harness.model.result import Result
@@ -191,10 +191,8 @@ class Store:
         try:
             if size > LARGEST_FILE:
                 raise ValueError(f"{size:,} characters")
-            text = opened(text, (key, method, case, tolerance, shared), fields)
-            if shared is not None and environment is not None and digest_of(environment)[:16] != shared:
-                raise ValueError(EDITED)
-            whole = json.loads(text) | json.loads(environment or "{}") | unpacked(fields)
+            text = opened(text, (key, method, case, tolerance, shared), fields or b"")
+            whole = json.loads(text) | environment_of(shared, environment) | unpacked(fields)
             if nested_deeper(whole, MOST_NESTED):
                 raise ValueError(f"it is nested more than {MOST_NESTED} deep")
             return Result.model_validate(whole, strict=False), float(tolerance)
@@ -254,7 +252,7 @@ class Store:
                     continue
                 try:
                     if shared not in environments:
-                        environments[shared] = json.loads(content or "{}")
+                        environments[shared] = environment_of(shared, content)
                     whole = opened(text, (key, method, case, tolerance, shared))
                     found[key] = json.loads(whole) | environments[shared]
                 except (ValueError, TypeError, RecursionError) as error:

@@ -57,6 +57,25 @@ def opened(text: Any, row: tuple[Any, ...], fields: bytes | None = None) -> str:
     return whole
 
 
+def environment_of(name: str | None, content: str | None) -> dict[str, Any]:
+    """The environment that runs share, as JSON values. A run of an earlier release names none.
+
+    Args:
+        name: what the run calls it, of its digest; content: as it is kept, None where it is not.
+
+    Raises:
+        ValueError: it is not there, or was changed since.
+    """
+    if name is None:
+        return {}
+    if content is None:
+        raise ValueError("the environment it was made in is not there any more")
+    if digest_of(content)[:16] != name:
+        raise ValueError(EDITED)
+    values: dict[str, Any] = json.loads(content)
+    return values
+
+
 def unpacked(fields: bytes | None) -> dict[str, Any]:
     """Compressed fields as JSON values.
 

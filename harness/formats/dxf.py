@@ -175,8 +175,8 @@ class _Reading:
         ):
             self.lines.append((points, layer))
         elif self._across(path, points):
-            planes = ", ".join(f"--plane {name}" for name, axes in PLANES.items() if axes != self.axes)
-            self.drawing.left_out[f'{kind} on layer "{layer}": it lies in another plane (say {planes})'] += 1
+            planes = " or ".join(f"--plane {name}" for name, axes in PLANES.items() if axes != self.axes)
+            self.drawing.left_out[f'{kind} on layer "{layer}": it lies in another plane (import it with {planes})'] += 1
         else:
             self.drawing.add(kind, points, layer=layer)
 

@@ -110,11 +110,14 @@ def read_csv(path: Path, _asked: Asked) -> Drawing:
     """
     text = read_text(path)
     dialect = ";" if text.partition("\n")[0].count(";") else ","
+    table = csv.DictReader(io.StringIO(text, newline=None), delimiter=dialect)
     rows = [
         {(name or "").strip().lower(): uncelled(value) for name, value in row.items() if isinstance(value, str)}
-        for row in csv.DictReader(io.StringIO(text, newline=None), delimiter=dialect)
+        for row in table
     ]
     drawing = Drawing()
+    if table.fieldnames and not rows:
+        raise InputError("no row stands below the names of its columns", "Give a row a vertex", source=str(path))
     columns = set(rows[0]) if rows else set()
     if "wkt" in columns:
         for number, row in enumerate(rows, start=1):

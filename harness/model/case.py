@@ -93,6 +93,14 @@ class CaseFile(Strict):
     errata: list[Erratum] = Field(default_factory=list, description="gaps and errors of the source")
     references: list[Reference] = Field(default_factory=list, description="reference values")
 
+    @model_validator(mode="after")
+    def _one_id_each(self) -> CaseFile:
+        ids = [reference.id for reference in self.references]
+        twice = next((name for name in ids if ids.count(name) > 1), None)
+        if twice is not None:
+            raise ValueError(f'two references are called "{twice}"; give each an id of its own')
+        return self
+
 
 @dataclass(frozen=True)
 class Case:

@@ -19,15 +19,29 @@ def check_output(path: Path) -> Path:
     """The path that an output is written to, links followed.
 
     Raises:
-        InputError: something stands there that is no regular file: a folder, a device, a pipe.
+        InputError: something stands there that is no regular file: a folder, a device, a pipe; the folder can be
+            neither made nor written to; or no file can have such a name.
     """
-    target = path.resolve()
-    if target.exists() and not target.is_file():
+    try:
+        target = path.resolve()
+        there = target.exists()
+        folder = next(each for each in target.parents if each.exists())
+    except (OSError, RuntimeError) as error:  # too long, or links in a ring
+        raise InputError(
+            f"nothing can be written there ({getattr(error, 'strerror', None) or 'links in a ring'})",
+            "Give another name",
+            source=str(path),
+        ) from None
+    if there and not target.is_file():
         raise InputError(
             "it is not a regular file, and only regular files are replaced",
             "Give the name of a new file",
             source=str(path),
         )
+    if not folder.is_dir():
+        raise InputError(f'"{folder}" is no folder', "Give a name in a folder", source=str(path))
+    if not os.access(folder, os.W_OK):
+        raise InputError(f'nothing can be written in the folder "{folder}"', "Name another one", source=str(path))
     return target
 
 

@@ -494,3 +494,8 @@ def test_leaves_of_numbers_without_a_short_common_multiple_do_not_take_long() ->
     with pytest.raises(CertificateError):
         verify(document, seconds=2.0)
     assert time.process_time() - began < 4.0
+
+
+@pytest.mark.parametrize("change", [{"blocks": [None]}, {"leaves": [[]]}, {"leaves": [7]}, {"state": None}])
+def test_parts_of_another_form_are_refused_in_words_of_a_certificate(change: dict[str, Any]) -> None:
+    assert refused(tree() | change).startswith("a part of it is not of the form of a certificate")

@@ -308,6 +308,18 @@ def test_a_quantity_that_is_computed_with_takes_numbers_only(tmp_path: Path, wor
     assert "is no number" in done.stderr
 
 
+@pytest.mark.parametrize("place", ["file", "/dev/full", "ring", "file/t"])
+def test_tables_that_can_stand_nowhere_are_refused_before_the_runs(tmp_path: Path, place: str):
+    (tmp_path / "file").write_text("old")
+    (tmp_path / "ring").symlink_to("ring")
+    words = ("slide", "--vary", "friction=0.3", "--methods", "la-associated", "-o", place, "--store", "s.sqlite")
+    done = drystone("sweep", *words, cwd=tmp_path)
+    assert (done.returncode, "Traceback" in done.stderr) == (2, False), done.stderr
+    assert "is no folder" in done.stderr or "links in a ring" in done.stderr
+    assert {path.name for path in tmp_path.iterdir()} == {"file", "ring"}
+    assert (tmp_path / "file").read_text() == "old"
+
+
 def test_the_command_leaves_tables_and_a_page_and_says_what_it_would_do(tmp_path: Path):
     (tmp_path / "wall.json").write_text(json.dumps(wall_data(stack(2))))
     words = ("sweep", "wall.json", "--vary", "friction=0.1:0.5:5", "--methods", "la-associated")

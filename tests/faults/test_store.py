@@ -125,26 +125,33 @@ EDITS = {
     "tolerance": "UPDATE run SET tolerance = 0.009",
     "method": "UPDATE run SET method = 'fe'",
     "fields of another": "UPDATE run SET fields = (SELECT fields FROM run WHERE method = 'la-associated')",
+    "fields taken out": "UPDATE run SET fields = NULL",
     "row of another": "UPDATE run SET result = (SELECT result FROM run WHERE method = 'la-associated')",
     "environment": "UPDATE environment SET content = replace(content, 'seeks_least', 'seeks_least')||' '",
+    "environment taken out": "DELETE FROM environment",
 }
+
+
+ENVIRONMENT = ("environment", "environment taken out")
 
 
 @pytest.mark.parametrize("how", list(EDITS))
 def test_what_was_edited_by_hand_is_told_and_not_believed(store: Path, how: str):
     read_all(store, read_only=True)
-    change(store, EDITS[how] + (" WHERE method = 'la'" if "environment" not in how else ""))
+    change(store, EDITS[how] + (" WHERE method = 'la'" if how not in ENVIRONMENT else ""))
     with pytest.raises(InputError, match=r"the result of .* on made-up in it: it is damaged"):
         read_all(store, read_only=True)
     told_in_one_sentence(report(store), "damaged", "--fresh")
 
 
-@pytest.mark.parametrize("how", ["multiplier, text", "judgement", "seconds", "tolerance", "row of another"])
+@pytest.mark.parametrize(
+    "how", ["multiplier, text", "judgement", "seconds", "tolerance", "row of another", *ENVIRONMENT]
+)
 def test_a_study_does_not_believe_an_edited_row_either(store: Path, how: str):
     with open_store(store, read_only=True) as opened:
         keys = {row[0] for row in opened.table()}
         assert len(opened.summaries(keys)) == 2
-    change(store, EDITS[how] + " WHERE method = 'la'")
+    change(store, EDITS[how] + (" WHERE method = 'la'" if how not in ENVIRONMENT else ""))
     with open_store(store, read_only=True) as opened, pytest.raises(InputError, match="it is damaged"):
         opened.summaries(keys)
 

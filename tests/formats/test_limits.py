@@ -46,6 +46,12 @@ def test_drawings_that_cannot_be_read_are_refused_in_time(name: str) -> None:
     assert time.process_time() - began < spoiled.SECONDS
 
 
+def test_a_table_of_column_names_alone_is_refused_for_its_rows(tmp_path: Path) -> None:
+    (tmp_path / "t.csv").write_text("block,x,y\n")
+    with pytest.raises(InputError, match="no row stands below the names of its columns"):
+        import_drawing(tmp_path / "t.csv")
+
+
 def test_line_ends_of_old_computers_are_line_ends() -> None:
     assert boxes(import_drawing(DATA / "cr.csv")) == [(0, 0, 1, 1), (0, 1, 1, 2)]
 

@@ -96,6 +96,31 @@ def test_table_of_another_set_is_not_joined(change: dict, said: str):
         Bench(TABLE).joined(TABLE.drop(columns="wall"), "other.csv")
 
 
+WRONG: dict[str, list[object]] = {
+    "wall": ["zz", math.nan],
+    "method": [math.nan],
+    "answered": ["no", 0.5],
+    "correct": ["False", math.nan],
+    "exact": [2],
+    "multiplier": ["much", -5.0, math.inf],
+    "cpu_seconds": [-1.0, "fast"],
+    "peak_memory_bytes": ["1 GB", 1e30, math.nan],
+}
+
+
+@pytest.mark.parametrize(("column", "cell"), [(column, cell) for column, cells in WRONG.items() for cell in cells])
+def test_table_with_a_cell_that_cannot_be_in_its_column_is_not_joined(column: str, cell: object):
+    table = TABLE.astype({column: object})
+    table.loc[1, column] = cell
+    with pytest.raises(InputError, match=rf"other\.csv: column {column} has a cell that cannot be in it"):
+        Bench(TABLE).joined(table, "other.csv")
+
+
+def test_table_read_back_from_its_file_is_joined(tmp_path: Path):
+    TABLE.to_csv(tmp_path / "t.csv", index=False)
+    assert len(Bench(TABLE).joined(pd.read_csv(tmp_path / "t.csv"), "t.csv").table) == 2 * len(TABLE)
+
+
 def test_speed_of_a_machine_has_a_spread():
     speed = machine_speed(5)
     assert 0.0 < speed.seconds < 60.0

@@ -38,6 +38,20 @@ def test_a_case_is_called_as_its_folder_is(tmp_path: Path):
         read_case(tmp_path)
 
 
+def test_every_reference_of_a_case_has_an_id_of_its_own(tmp_path: Path):
+    place = folder(tmp_path)
+    reference = (
+        '[[references]]\nid = "{}"\ntype = "exact"\nvalue = 0.5\ntolerance = 1e-9\ntolerance_reason = "."\n'
+        'applies_to = ["la"]\nsource = "a test"\nrequirement = "It is half."\n'
+    )
+    alone = (place / "case.toml").read_text()
+    (place / "case.toml").write_text(alone + reference.format("one") + reference.format("two"))
+    assert [item.id for item in read_case(place).file.references] == ["one", "two"]
+    (place / "case.toml").write_text(alone + reference.format("one") + reference.format("one"))
+    with pytest.raises(InputError, match='two references are called "one"'):
+        read_case(place)
+
+
 @pytest.mark.parametrize(
     ("words", "expected"),
     [("A wall, 3rd", "a-wall--3rd"), ("Mauer \u00fc", "mauer"), ("--", "wall"), ("", "wall"), ("x9", "x9")],

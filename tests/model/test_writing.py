@@ -33,6 +33,30 @@ def test_nothing_but_a_regular_file_is_replaced(kind: str, tmp_path: Path) -> No
     assert (path.stat().st_mode, path.stat().st_ino) == (before.st_mode, before.st_ino)
 
 
+@pytest.mark.parametrize(
+    ("name", "said"),
+    [
+        ("a" * 300 + ".json", "too long"),
+        ("a/" * 2_100 + "x.json", "too long"),
+        ("ring.json", "links in a ring"),
+        ("ring.json/x.json", "links in a ring"),
+        ("file/x.json", "is no folder"),
+        ("file/below/x.json", "is no folder"),
+    ],
+    ids=lambda name: name[:9],
+)
+def test_a_name_that_no_file_can_have_is_refused_before_the_work_begins(name: str, said: str, tmp_path: Path) -> None:
+    (tmp_path / "file").write_text("old")
+    (tmp_path / "ring.json").symlink_to("ring.json")
+    (tmp_path / "wall.json").write_text(wall_json(Wall.model_validate(wall_data(stack(2)))))
+    with pytest.raises(InputError, match=said):
+        write_whole(tmp_path / name, "text")
+    done = drystone("bound", "wall.json", "-o", name, cwd=tmp_path)
+    assert (done.returncode, "Traceback" in done.stderr, said in done.stderr) == (2, False, True), done.stderr
+    assert {path.name for path in tmp_path.iterdir()} == {"file", "ring.json", "wall.json"}
+    assert (tmp_path / "file").read_text() == "old"
+
+
 def test_a_link_to_a_file_stays_a_link_and_its_file_is_written(tmp_path: Path) -> None:
     (tmp_path / "file").write_text("old")
     (tmp_path / "link").symlink_to(tmp_path / "file")

@@ -33,7 +33,9 @@ def refusal_of(error: Exception) -> CertificateError:
     """The refusal of a certificate that an error stopped the reading of."""
     if isinstance(error, CertificateError):
         return error
-    return CertificateError(f"it has no {error}" if isinstance(error, KeyError) else str(error))
+    if isinstance(error, KeyError):
+        return CertificateError(f"it has no {error}")
+    return CertificateError(f"a part of it is not of the form of a certificate ({error})")
 
 
 def number(value: Any) -> Fraction:
