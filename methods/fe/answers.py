@@ -201,12 +201,11 @@ def compact(model: WallModel, record: PathRecord) -> dict[str, list[float]]:
 def _breakpoints(model: WallModel, changes: list[tuple[int, int, int] | None]) -> dict[str, list[float]]:
     """Columns of a path that say which joint changes, and how (`harness.model.breakpoints`); a bar is no joint."""
     found = [(NO_JOINT, NO_JOINT)] * len(changes)
-    joint = np.concatenate([model.interface[: model.n_contacts], model.cohesive])  # of every gap point
     for k, change in enumerate(changes):
-        if change is not None and not model.assembly.is_bar[joint[change[0]]]:
-            point, old, new = change
+        if change is not None and not model.assembly.is_bar[change[0]]:
+            joint, old, new = change
             what = "opens" if new == OPEN else "closes" if old == OPEN else "sticks" if new == STICK else "slides"
-            found[k] = int(joint[point]), CHANGES.index(what)
+            found[k] = joint, CHANGES.index(what)
     return {JOINT: [float(joint) for joint, _ in found], CHANGE: [float(what) for _, what in found]}
 
 

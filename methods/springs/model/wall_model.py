@@ -104,6 +104,11 @@ class WallModel:
         """The number of gap points that may open: all but the cohesion springs, which come last."""
         return self.n_points - len(self.cohesive)
 
+    def joint_of(self, point: int) -> int:
+        """The joint or bar, a row of the assembly, to which a gap point or a cohesion spring belongs."""
+        after = point - self.n_contacts
+        return int(self.interface[point] if after < 0 else self.cohesive[after])
+
     @cached_property
     def n_updated(self) -> int:
         """The number of gap points whose friction history is updated: all but ties and props, which come last.

@@ -272,7 +272,8 @@ class PathFollower:
             record.first_limit = record.peak
         if record.events % note == 0:
             bars = self.model.bar_tensions(self.trial) if self.model.n_updated < self.model.n_points else ()
-            record.add(self.multiplier, live_rate(self.model.live, self.u), self.n_slip, self.n_open, bars, change)
+            joint = None if change is None else (self.model.joint_of(change[0]), *change[1:])
+            record.add(self.multiplier, live_rate(self.model.live, self.u), self.n_slip, self.n_open, bars, joint)
         record.keep(self.load_step)
 
     def _flip(self, point: int, new: int) -> None:

@@ -41,7 +41,7 @@ class PathRecord:
     """Multiplier against live displacement, with the limit points passed.
 
     Attributes:
-        change: of every point the gap point that changes there, its state before and after; None where none does.
+        change: of every point the joint or bar that changes there, its state before and after; None where none does.
         steps: points kept whole, spread evenly over those met; most: up to twice as many are, 0: none.
     """
 
