@@ -102,7 +102,7 @@ def test_spring_of_cohesion_is_named_by_its_joint_and_a_tie_by_none() -> None:
 
 def test_path_of_brittle_joints_names_joints_of_the_wall() -> None:
     """Joints that break take their springs of cohesion away, and the path goes on with other numbers of springs."""
-    wall = assembly(running_bond(4, 2), {"default": 0.6, "cohesion": 2.0, "tensile_strength": 1.0, "after": "residual"})
+    wall = assembly(running_bond(6, 4), {"default": 0.6, "cohesion": 2.0, "tensile_strength": 1.0, "after": "residual"})
     found = load_method("fe").solve(wall, GapSpringsSettings())
     steps = breakpoints(found.path, wall.n_interfaces)
     assert steps
