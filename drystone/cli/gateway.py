@@ -48,7 +48,7 @@ def gateway(
 ) -> None:
     """Answer clients of UM-Bridge with the collapse multiplier of CASE, a template whose quantities they choose.
 
-    The model is called "drystone". Its input are the values of all --vary, in their order; its outputs are the
+    The model is called "drystone". Its inputs are the values of all --vary, in their order; its outputs are the
     multiplier, the bound below which no collapse state lies (0 without a proof), and the judge's residual.
     """
     check_methods([method], "--method")

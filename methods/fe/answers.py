@@ -202,10 +202,8 @@ def _breakpoints(model: WallModel, changes: list[tuple[int, int, int] | None]) -
     """Columns of a path that say which joint changes, and how (`harness.model.breakpoints`); a bar is no joint."""
     found = [(NO_JOINT, NO_JOINT)] * len(changes)
     for k, change in enumerate(changes):
-        if change is None:
-            continue
-        joint, old, new = change
-        if not model.assembly.is_bar[joint]:
+        if change is not None and not model.assembly.is_bar[change[0]]:
+            joint, old, new = change
             what = "opens" if new == OPEN else "closes" if old == OPEN else "sticks" if new == STICK else "slides"
             found[k] = joint, CHANGES.index(what)
     return {JOINT: [float(joint) for joint, _ in found], CHANGE: [float(what) for _, what in found]}

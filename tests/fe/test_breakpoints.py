@@ -10,6 +10,7 @@ from harness.model.breakpoints import CHANGES, Breakpoint, breakpoints
 from harness.model.method import load_method
 from methods.fe.settings import GapSpringsSettings, NewtonSettings
 from tests.known_walls import box, of_blocks
+from tests.la.test_ties import tied
 from tests.walls import assembly, running_bond, stack
 
 
@@ -84,3 +85,25 @@ def test_path_without_breakpoints_names_none() -> None:
 def test_columns_of_another_wall_name_only_joints_that_there_are() -> None:
     path = {"changing_joint": [0.0, 7.0, -1.0, 2.0], "change": [0.0, 0.0, -1.0, 9.0]}
     assert breakpoints(path, 3) == [Breakpoint(0, 0, "opens")]
+
+
+def test_spring_of_cohesion_is_named_by_its_joint_and_a_tie_by_none() -> None:
+    """Springs of cohesion and bars come after the gap points. Without friction, all that slides is the cohesion."""
+    joint = {"default": 0.0, "cohesion": 5.0}
+    glued = steps_of(assembly(stack(2), joint))
+    assert "slides" in {step.change for step in glued}
+    assert {step.joint for step in glued} <= {0, 1}
+    wall = tied(2.0, stiffness=10.0)
+    foot = int(np.flatnonzero(~wall.is_bar)[0])
+    steps = steps_of(wall)
+    assert steps
+    assert {step.joint for step in steps} == {foot}
+
+
+def test_path_of_brittle_joints_names_joints_of_the_wall() -> None:
+    """Joints that break take their springs of cohesion away, and the path goes on with other numbers of springs."""
+    wall = assembly(running_bond(6, 4), {"default": 0.6, "cohesion": 2.0, "tensile_strength": 1.0, "after": "residual"})
+    found = load_method("fe").solve(wall, GapSpringsSettings())
+    steps = breakpoints(found.path, wall.n_interfaces)
+    assert steps
+    assert all(0 <= step.joint < wall.n_interfaces for step in steps)
