@@ -14,7 +14,7 @@ from drystone.analysis import Result
 from drystone.comparing import compare
 from drystone.walls import Wall, build_wall
 from harness.engine.run import Limits
-from harness.engine.sweep.paths import setting_of, with_values
+from harness.engine.sweep.paths import has_number, setting_of, with_values
 from harness.model.errors import InputError, MissingPackage
 from harness.model.method import Finding
 
@@ -35,7 +35,7 @@ class TemplateWall:
         settings: of the method, where not the defaults.
 
     Raises:
-        InputError: a name that the wall does not have, or several load cases.
+        InputError: a name under which the wall has no number, or several load cases.
     """
 
     wall: Wall
@@ -52,7 +52,11 @@ class TemplateWall:
                 raise InputError(f'"{name}" is a setting of a method', "Vary quantities of the wall", "--vary")
         if self.wall.load_cases:
             raise InputError("it has several load cases", "Choose one with --load-case NAME", "load_cases")
-        with_values(self.wall.document(), dict.fromkeys(self.names, 1.0))
+        document = self.wall.document()
+        with_values(document, dict.fromkeys(self.names, 1.0))
+        for name in self.names:
+            if not has_number(document, name):
+                raise InputError(f'the wall has no number "{name}"', "Write one in the wall, then vary it", "--vary")
 
     def __call__(self, values: Sequence[float]) -> tuple[float, float, float]:
         """What the method finds at these parameters.
@@ -68,6 +72,9 @@ class TemplateWall:
         Raises:
             InputError: the values make no wall, or there is no accepted answer with a multiplier.
         """
+        for name, value in zip(self.names, values, strict=True):
+            if isinstance(value, bool) or not isinstance(value, int | float):
+                raise InputError(f"{value!r} is no number", "Give one for each parameter", name)
         given = dict(zip(self.names, map(float, values), strict=True))
         wall = build_wall(with_values(self.wall.document(), given), self.wall.name)
         (found,) = compare(

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from typing import Annotated, Literal
 
 from pydantic import Field, model_validator
@@ -53,6 +54,8 @@ class Passive(Strict):
     def _one_coefficient(self) -> Passive:
         if (self.coefficient is None) == (self.friction_angle is None):
             raise ValueError("passive fill gives either friction_angle or coefficient")
+        if self.friction_angle is not None and math.sin(math.radians(self.friction_angle)) == 1.0:
+            raise ValueError("a friction_angle that rounds to 90 degrees gives passive fill no finite K_p")
         return self
 
 

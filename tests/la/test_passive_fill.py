@@ -193,6 +193,24 @@ def test_arch_of_the_library_with_and_without_passive_fill_is_that_of_a_programm
     assert values[1] > 3.0 * values[0]
 
 
+@pytest.mark.parametrize("level", [0.45, 0.428380842])
+def test_arch_of_few_stones_with_full_dilatancy_bears_the_associated_maximum(level: float):
+    """No path of the search ended at a state of this wall; the forces of the associated maximum fit its mechanism."""
+    resists = {"mobilised": 0.93413468, "coefficient": 3.48925345}
+    arch = {
+        "format": "wall/1",
+        "unit_weight": 20.0,
+        "friction": {"default": 0.5261532688, "dilatancy": 0.5261532688},
+        "pattern": {"type": "ring", "inner_radius": 0.9, "outer_radius": 1.0730222414, "count": 7},
+        "loads": {
+            "dead": {"fills": [{"level": level, "unit_weight": 6.6976124, "passive": resists}]},
+            "live": {"body": [{"per_weight": [-1.0, 0.0]}]},
+        },
+    }
+    wall = built(arch)
+    assert asked("la", wall) == pytest.approx(asked("la-associated", wall), rel=EXACT)
+
+
 def test_judge_rejects_fill_that_pulls_presses_too_much_or_presses_what_moves_away():
     wall = built(block(0.2, between=None))
     result, judgement = answered(load_method("la-associated"), wall)
@@ -238,6 +256,7 @@ def test_every_other_method_refuses_it_by_name():
         ({"passive": {"mobilised": 0.5}}, "either friction_angle or coefficient"),
         ({"passive": {"mobilised": 1.5, "coefficient": 3}}, "less than or equal to 1"),
         ({"passive": {"coefficient": 3}}, "mobilised"),
+        ({"passive": {"mobilised": 0.5, "friction_angle": 89.9999999999}}, "no finite K_p"),
         ({"unit_weight": 0.0}, "without weight resists nothing"),
         ({"between": [1.5, 3.0]}, "looks sideways below its level 0.6"),
     ],

@@ -49,10 +49,26 @@ def test_a_client_asks_for_multipliers_and_is_told_of_errors(url: str):
         assert 0.0 <= residual < 1e-9
     with pytest.raises(Exception, match="InvalidOutput"):
         model([[-1.0, 20.0]])
+    for wrong in ("a", None, [0.2], True):
+        with pytest.raises(Exception, match="InvalidOutput"):
+            model([[wrong, 20.0]])
     assert model([[0.2, 20.0]])[0] == [pytest.approx(0.2, abs=1e-9)]
 
 
-@pytest.mark.parametrize("names", [(), ("friction", "friction"), ("blocks[99].x",), ("settings.la.effort",)])
+@pytest.mark.parametrize(
+    "names",
+    [
+        (),
+        ("friction", "friction"),
+        ("blocks[99].x",),
+        ("settings.la.effort",),
+        ("nosuch",),
+        ("la.effort",),
+        ("blocks",),
+        ("format",),
+        ("loads.live.body[0].per_weight",),
+    ],
+)
 def test_parameters_that_the_wall_does_not_have_are_refused(names: tuple[str, ...]):
     with pytest.raises(InputError):
         TemplateWall(drystone.library_wall("slide"), names)

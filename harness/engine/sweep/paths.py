@@ -50,6 +50,17 @@ def with_values(data: Mapping[str, Any], values: Mapping[str, Any]) -> dict[str,
     return changed
 
 
+def has_number(data: Mapping[str, Any], name: str) -> bool:
+    """Whether data of a wall have a number where a name leads; short names always mean one."""
+    here: Any = data
+    for field, index in STEP.findall(name) if name not in RULES else ():
+        try:
+            here = here[field or int(index)]
+        except (KeyError, IndexError, TypeError):
+            return False
+    return name in RULES or (isinstance(here, int | float) and not isinstance(here, bool))
+
+
 def _put(data: dict[str, Any], path: str, value: Any) -> None:
     steps = [match.group(1) or int(match.group(2)) for match in STEP.finditer(path)]
     if not steps or "".join(f"[{step}]" if isinstance(step, int) else f".{step}" for step in steps).lstrip(".") != path:

@@ -11,7 +11,7 @@ from methods.la.sources.arcs import FAR, ArcPaths
 from methods.la.sources.blocks import JoinedBlocks, SingleBlocks
 from methods.la.sources.friction_continuation import FrictionContinuation
 from methods.la.sources.given import GivenMechanisms
-from methods.la.sources.paths import CentralPath, RandomStarts, ReducedFriction, TrescaMechanisms
+from methods.la.sources.paths import AssociatedForces, CentralPath, RandomStarts, ReducedFriction, TrescaMechanisms
 from methods.la.sources.search import Search
 from methods.la.sources.source import Source
 from methods.la.sources.springs import AnalyticCentre, LowPrestress, ShiftedAssociated
@@ -36,6 +36,7 @@ SOURCES: tuple[Source, ...] = (
     ArcPaths(near=FAR, far=(), anyway=False),
     ShiftedAssociated(),
     AnalyticCentre(),
+    AssociatedForces(),
     JoinedBlocks(),
 )
 """The soonest state first, then lower ones; what is for walls on which nothing is known stands behind the others."""

@@ -1,4 +1,4 @@
-"""States at the ends of central paths: with smoother unloaded joints, of the wall itself, from random starts."""
+"""States at the ends of central paths: with smoother unloaded joints, of the wall itself, associated, random starts."""
 
 from __future__ import annotations
 
@@ -80,6 +80,28 @@ class CentralPath:
             state = search.interior()
             if state is not None:
                 yield state
+
+
+@dataclass(frozen=True)
+class AssociatedForces:
+    """The forces of the associated maximum, where no state is known: its mechanism fits them if joints dilate by their
+    friction (duality of linear programmes), however degenerate the wall.
+    """
+
+    name: ClassVar[str] = "associated forces"
+
+    def applies(self, problem: Problem) -> bool:
+        """On every wall."""
+        return True
+
+    def states(self, search: Search) -> Iterator[CollapseState]:
+        """One state."""
+        greatest = search.associated.state
+        if greatest is None or search.record.known:
+            return
+        state = search.nearest_state(search.problem.slacks(greatest.forces))
+        if state is not None:
+            yield state
 
 
 @dataclass(frozen=True)
