@@ -77,18 +77,18 @@ def released(assembly: Assembly, reaction: float, greatest: bool) -> ReleasedWal
     ground, guide = assembly.n_blocks, _guide(assembly, carrier, motion)
     bars = assembly.bars
     strong = np.full(2, STRONG * assembly.force_scale)
-    guided = Bars(
-        names=(*bars.names, "guide 1", "guide 2"),
-        kinds=(*bars.kinds, "prop", "prop"),
-        block_a=np.append(place[bars.block_a], [ground, ground]),
-        block_b=np.append(place[bars.block_b], [carrier, carrier]),
-        end1=np.vstack([bars.end1, guide[:, 0]]),
-        end2=np.vstack([bars.end2, guide[:, 1]]),
-        prestress=np.append(bars.prestress, np.zeros(2)),
-        least=np.append(bars.least, -strong),
-        greatest=np.append(bars.greatest, strong),
-        stiffness=np.append(bars.stiffness, np.full(2, np.nan)),
+    guides = Bars(
+        names=("guide 1", "guide 2"),
+        kinds=("prop", "prop"),
+        block_a=np.array([ground, ground]),
+        block_b=np.array([carrier, carrier]),
+        end1=guide[:, 0],
+        end2=guide[:, 1],
+        prestress=np.zeros(2),
+        least=-strong,
+        greatest=strong,
     )
+    guided = replace(bars, block_a=place[bars.block_a], block_b=place[bars.block_b]).followed_by(guides)
     size = assembly.length_scale
     square = assembly.polygons[carrier].min(axis=0) - 3.0 * size + size * np.array([[0, 0], [1, 0], [1, 1], [0, 1.0]])
     none = np.zeros((1, 3))

@@ -36,6 +36,10 @@ _none = partial(np.zeros, (0,))
 _no_points = partial(np.zeros, (0, 2))
 
 
+ARRAYS = ("block_a", "block_b", "end1", "end2", "prestress", "least", "greatest", "stiffness")
+"""Fields of `Bars` that are arrays, an entry a bar."""
+
+
 @dataclass(frozen=True, eq=False)
 class Bars:
     """k ties and props.
@@ -78,22 +82,14 @@ class Bars:
 
     def chosen(self, kept: IntArray, place: IntArray) -> Bars:
         """These bars (j,) alone, on blocks numbered by `place` (n,)."""
-        return Bars(
-            tuple(self.names[k] for k in kept),
-            tuple(self.kinds[k] for k in kept),
-            place[self.block_a[kept]],
-            place[self.block_b[kept]],
-            *(getattr(self, name)[kept] for name in ("end1", "end2", "prestress", "least", "greatest", "stiffness")),
-        )
+        arrays: dict[str, Any] = {name: getattr(self, name)[kept] for name in ARRAYS}
+        arrays |= {name: place[arrays[name]] for name in ("block_a", "block_b")}
+        return Bars(tuple(self.names[k] for k in kept), tuple(self.kinds[k] for k in kept), **arrays)
 
     def followed_by(self, others: Bars) -> Bars:
         """These bars and then others."""
-        arrays = ("block_a", "block_b", "end1", "end2", "prestress", "least", "greatest")
-        return Bars(
-            self.names + others.names,
-            self.kinds + others.kinds,
-            *(np.concatenate([getattr(self, name), getattr(others, name)]) for name in arrays),
-        )
+        arrays: dict[str, Any] = {name: np.concatenate([getattr(self, name), getattr(others, name)]) for name in ARRAYS}
+        return Bars(self.names + others.names, self.kinds + others.kinds, **arrays)
 
     def copied(self) -> Bars:
         """The same bars in arrays of their own."""

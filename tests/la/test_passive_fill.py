@@ -15,6 +15,7 @@ import drystone
 from harness.engine.judge import answered, judge
 from harness.engine.symmetry import mirrored
 from harness.model.assembly import Assembly
+from harness.model.bars import ARRAYS, Bars
 from harness.model.build import build
 from harness.model.details import BAR_FORCES
 from harness.model.errors import InputError
@@ -283,3 +284,16 @@ def test_command_prints_what_the_fill_bears(tmp_path: Path):
     wall = drystone.read_wall(path)
     again = drystone.build_wall(wall.document(explicit=True), "again")
     np.testing.assert_array_equal(again.assembly.bars.least, wall.assembly.bars.least)
+
+
+TIE = {"from": {"block": "block", "at": [0.5, 0.8]}, "to": {"block": "base", "at": [-2.0, -0.5]}, "yield_force": 2.0}
+
+
+def test_bars_beside_passive_fill_keep_their_stiffness_and_all_else():
+    bars = built(block(0.2) | {"ties": [TIE | {"stiffness": 750.0}]}).bars
+    assert bars.kinds == ("tie", "fill")
+    np.testing.assert_array_equal(bars.stiffness, [750.0, np.nan])
+    assert set(ARRAYS) == {name for name, value in vars(Bars()).items() if isinstance(value, np.ndarray)}
+    both = bars.followed_by(bars)
+    for name in ARRAYS:
+        np.testing.assert_array_equal(getattr(both, name), np.concatenate([getattr(bars, name)] * 2))
