@@ -24,12 +24,16 @@ def pytest_addoption(parser: pytest.Parser) -> None:
 
 def pytest_collect_file(file_path: Path, parent: pytest.Collector) -> pytest.Collector | None:
     """The collector of a `case.toml`, where it was asked for."""
-    tier = parent.config.getoption("--drystone") or parent.config.getini("drystone")
+    tier = _tier(parent.config)
     if not tier or file_path.name != "case.toml":
         return None
     if tier not in ("quick", "full"):
         raise pytest.UsageError(f'drystone = "{tier}" in the configuration: the tier is quick or full')
     return CaseTests.from_parent(parent, path=file_path)
+
+
+def _tier(config: pytest.Config) -> Any:
+    return config.getoption("--drystone") or config.getini("drystone")
 
 
 class CaseTests(pytest.File):
@@ -45,9 +49,8 @@ class CaseTests(pytest.File):
         from harness.engine.plan import find_cases
         from harness.model.errors import InputError
 
-        tier = self.config.getoption("--drystone") or self.config.getini("drystone")
         try:
-            plan = planned(find_cases([str(self.path.parent)], None, ()), tier)
+            plan = planned(find_cases([str(self.path.parent)], None, ()), _tier(self.config))
         except InputError as error:
             raise self.CollectError(str(error)) from None
         for run in plan.gated:

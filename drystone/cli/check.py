@@ -59,7 +59,7 @@ def check(
 
     The full tier also checks the certificates beside the cases, in fractions and against the wall.
     """
-    chosen = find_cases(cases, suite or ("" if cases or folders else "all"), folders)
+    chosen = find_cases(cases, suite, folders, otherwise="all")
     for case in chosen:
         warn(case)
     plan = planned(chosen, tier)
@@ -107,7 +107,7 @@ def baseline(
     """Show how today's values stand to the recorded ones (exit code 1 if one is worse), or record them."""
     if action == "update" and not reason.strip():
         raise InputError("an update of the baseline needs a reason", 'Give --reason "..."', "baseline")
-    chosen = find_cases(cases, suite or ("" if cases or folders else "all"), folders)
+    chosen = find_cases(cases, suite, folders, otherwise="all")
     recorded_in = path or shipped_cases() / "baseline.json"
     recorded = recording.read_baseline(recorded_in)
     runs = [run for case in chosen for run in plan_case(case, None, Limits())]

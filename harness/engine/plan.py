@@ -152,13 +152,16 @@ def check_shares(method: Method, processes: int) -> None:
         )
 
 
-def find_cases(words: Sequence[str], suite: str | None, folders: Sequence[Path]) -> list[Case]:
+def find_cases(
+    words: Sequence[str], suite: str | None, folders: Sequence[Path], otherwise: str = "small"
+) -> list[Case]:
     """The cases a user names: ids, wall files, case folders, or a whole suite.
 
     Args:
-        words: ids of cases or paths; with none and no suite, suite "small" is meant.
+        words: ids of cases or paths.
         suite: name of a suite, "all" for every case.
-        folders: further folders of cases besides those shipped.
+        folders: further folders of cases besides those shipped; with no words and no suite, their cases are meant.
+        otherwise: the suite that is meant with none of these.
 
     Raises:
         InputError: an unknown id or suite, or a file that cannot be read.
@@ -171,7 +174,7 @@ def find_cases(words: Sequence[str], suite: str | None, folders: Sequence[Path])
         return _told_apart(list({Path(case.origin).resolve(): case for case in reversed(found)}.values())[::-1])
     cases = [read_case(folder) for folder in library.values()]
     own = {path.resolve() for path in folders}
-    wanted = suite or ("" if folders else "small")
+    wanted = suite or ("" if folders else otherwise)
     chosen = [
         case
         for case in cases

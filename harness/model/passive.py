@@ -15,7 +15,7 @@ from collections.abc import Iterator, Sequence
 import numpy as np
 import shapely
 
-from harness.model.assembly import BoolArray, FloatArray
+from harness.model.assembly import BoolArray, FloatArray, IntArray
 from harness.model.bars import Bars
 from harness.model.errors import InputError
 from harness.model.fill import NO_FACE, heights, highest_faces
@@ -98,7 +98,8 @@ def _sums(fill: Fill, chosen: BoolArray, laid: Laid, thickness: Sequence[float])
     outlines = outlines_of(laid.polygons)
     joints = _on_edges(outlines, laid)
     sums: dict[tuple[int, int], FloatArray] = defaultdict(lambda: np.zeros(4))
-    for edge, side, ends in [*_below_the_sky(fill, outlines), *_upright(fill, outlines)]:
+    highest = highest_faces(outlines, fill.between)
+    for edge, side, ends in [*_below_the_sky(outlines, *highest), *_upright(fill, outlines, *highest)]:
         block = int(outlines.block[edge])
         if chosen[block]:
             sums[block, side] += _pressed(fill.level, ends) * thickness[block]
@@ -121,9 +122,8 @@ def _pressed(level: float, ends: FloatArray) -> FloatArray:
     return np.array([force, force * at[0], force * at[1], bottom - top])
 
 
-def _below_the_sky(fill: Fill, outlines: Outlines) -> Iterator[Strip]:
-    """Parts of the inclined faces that the sky sees."""
-    x, face = highest_faces(outlines, fill.between)
+def _below_the_sky(outlines: Outlines, x: FloatArray, face: IntArray) -> Iterator[Strip]:
+    """Parts of the inclined faces that the sky sees; `x`, `face` as of `highest_faces`."""
     for left, right, edge in zip(x[:-1], x[1:], face.tolist(), strict=True):
         if edge == NO_FACE or _is_upright(outlines, edge):
             continue
@@ -133,9 +133,8 @@ def _below_the_sky(fill: Fill, outlines: Outlines) -> Iterator[Strip]:
             yield edge, 1 if y[0] > y[1] else -1, np.column_stack([places, y])
 
 
-def _upright(fill: Fill, outlines: Outlines) -> Iterator[Strip]:
-    """Parts of the upright faces that are above the highest face just beside them."""
-    x, face = highest_faces(outlines, fill.between)
+def _upright(fill: Fill, outlines: Outlines, x: FloatArray, face: IntArray) -> Iterator[Strip]:
+    """Parts of the upright faces above the highest face just beside them; `x`, `face` as of `highest_faces`."""
     for edge in range(len(outlines.block)):
         if not _is_upright(outlines, edge):
             continue

@@ -118,6 +118,8 @@ class WallModel:
 
     def bar_tensions(self, trial: FloatArray) -> FloatArray:
         """Tensions of ties and props beyond their prestress [force], at trial shears tau (P,)."""
+        if self.n_updated == self.n_points:
+            return np.empty(0)
         last = slice(self.n_updated, None)
         limit = -self.mu[last] * self.kn[last] * self.initial_opening[last]
         return self.force * (np.clip(trial[last], -limit, limit) + self.middle[last])

@@ -271,7 +271,7 @@ class PathFollower:
         elif record.first_limit is None and self.multiplier < record.peak * (1.0 - 1e-9):
             record.first_limit = record.peak
         if record.events % note == 0:
-            bars = self.model.bar_tensions(self.trial) if self.model.n_updated < self.model.n_points else ()
+            bars = self.model.bar_tensions(self.trial)
             of_joint = None if change is None else (self.model.interface_of(change[0]), *change[1:])
             record.add(self.multiplier, live_rate(self.model.live, self.u), self.n_slip, self.n_open, bars, of_joint)
         record.keep(self.load_step)
