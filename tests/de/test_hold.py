@@ -84,6 +84,14 @@ def test_loads_move_a_block_by_what_friction_does_not_take(multiplier, moves):
     assert by_power(wall, load, lifted, forces) is None
 
 
+@pytest.mark.parametrize(("rises", "moves"), [(0.305, True), (0.35, False)])
+def test_a_field_on_which_the_loads_lose_work_is_no_fall_however_near_to_a_mechanism(rises, moves):
+    wall, slide, _ = block(0.3)
+    slide[wall.free[0], 1] = rises
+    # The slide gains 0.31 times the weight, the rise loses what it is; both lie near the dilatant mechanism.
+    assert (by_virtual_work(wall, wall.dead + 0.31 * wall.live, slide) is not None) == moves
+
+
 @pytest.mark.parametrize("multiplier", [0.0, 0.1, 0.2999999, 0.3000001, 0.31, -0.1])
 def test_statics_bears_what_virtual_work_cannot_move(multiplier):
     wall, slide, _ = block(0.3)

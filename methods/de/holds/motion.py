@@ -3,9 +3,9 @@
 A wall that has not come to rest may still do so: it creeps, relaxes slowly, or its contacts chatter. None of that is a
 fall. A measured field of velocities shows one in either of three ways.
 
-*Virtual work*: the field, made admissible for dilatant flow, is a mechanism on which the loads do work. Then no forces
-within yield bear them (Farkas' lemma; D. C. Drucker, Coulomb friction, plasticity and limit loads, 1954), whatever the
-history, and the multiplier of the loads lies above that of the mechanism.
+*Virtual work*: the loads do work on the field, and also on it once it is made admissible for dilatant flow. Then no
+forces within yield bear them (Farkas' lemma; D. C. Drucker, Coulomb friction, plasticity and limit loads, 1954),
+whatever the history, and the multiplier of the loads lies above that of the mechanism.
 
 *Power*: the motion goes on, and the loads give it more than friction at yield takes under the normal forces that were
 measured with it, and more than contacts that part or penetrate under force account for. A wall that slides may move
@@ -115,7 +115,9 @@ class StaticLimit:
 
 
 def by_virtual_work(assembly: Assembly, load: FloatArray, field: FloatArray, near: float = 0.3) -> HeldMotion | None:
-    """The motion, where the field made admissible for dilatant flow gains work of the loads; else None.
+    """The motion, where the loads do work on the field, and on it made admissible for dilatant flow; else None.
+
+    A field on which they lose work is no fall yet, however near to a mechanism that proves one.
 
     Args:
         assembly: the wall.
@@ -125,7 +127,7 @@ def by_virtual_work(assembly: Assembly, load: FloatArray, field: FloatArray, nea
             whose motion is shown; that no forces bear the load is true of any mechanism.
     """
     size = _size(assembly, field)
-    if not (np.isfinite(size) and size > 0.0):
+    if not (np.isfinite(size) and size > 0.0 and _power(assembly, load, field) > 0.0):
         return None
     found = dilatant_mechanism(assembly, load, field / size, near)
     return None if found is None else HeldMotion(MotionProof.VIRTUAL_WORK, field)
@@ -140,7 +142,7 @@ def by_power(assembly: Assembly, load: FloatArray, field: FloatArray, forces: Fl
         forces: (m, 3) contact forces (n1, n2, s) measured with it [force].
     """
     rates = (assembly.kinematic_matrix @ field[assembly.free].ravel()).reshape(-1, 3)
-    given = float(np.sum(load[assembly.free] * field[assembly.free]))
+    given = _power(assembly, load, field)
     friction = float(
         np.sum(assembly.law.strength(np.maximum(forces[:, :2], assembly.law.least_normal)) * np.abs(rates[:, 2]))
     )
@@ -158,8 +160,12 @@ def by_travel(assembly: Assembly, load: FloatArray, travelled: FloatArray, reach
         reach: in length scales.
     """
     far = float(np.abs(travelled[:, :2]).max(initial=0.0)) >= reach * assembly.length_scale
-    work = float(np.sum(load[assembly.free] * travelled[assembly.free]))
-    return HeldMotion(MotionProof.TRAVEL, travelled) if far and work > 0.0 else None
+    return HeldMotion(MotionProof.TRAVEL, travelled) if far and _power(assembly, load, travelled) > 0.0 else None
+
+
+def _power(assembly: Assembly, load: FloatArray, field: FloatArray) -> float:
+    """Power of the loads on the free blocks, or their work on displacements [force x length]."""
+    return float(np.sum(load[assembly.free] * field[assembly.free]))
 
 
 def _size(assembly: Assembly, field: FloatArray) -> float:
