@@ -12,7 +12,7 @@ from harness.model.case import Reference
 
 SUITES = ("strength",)
 METHODS = ("la", "la-associated", "fe")
-LAWS = "elementary statics of joints that lose their strength at once when they open or slip"
+_LAWS = "elementary statics of joints that lose their strength at once when they open or slip"
 
 
 def _values(found: dict[str, float], source: str, requirement: dict[str, str]) -> list[Reference]:
@@ -50,7 +50,7 @@ def blocks() -> Iterator[Recipe]:
         references = _values(found, f"{formula} whole, {dry} broken", requirement)
         content = block.wall(f"brittle joint, {strength}", after="residual")
         yield recipe(
-            f"brittle-block-{block.does}", content, references, Remarks(LAWS, summary, SUITES, methods=METHODS)
+            f"brittle-block-{block.does}", content, references, Remarks(_LAWS, summary, SUITES, methods=METHODS)
         )
 
 
@@ -102,7 +102,7 @@ def side_by_side() -> Iterator[Recipe]:
         "brittle-beside-plain",
         content,
         _values(found, source, requirement),
-        Remarks(LAWS, summary, SUITES, methods=METHODS),
+        Remarks(_LAWS, summary, SUITES, methods=METHODS),
     )
 
 
@@ -146,7 +146,7 @@ def bonded_wall() -> Iterator[Recipe]:
         "Whole, its joints would bear 0.9833; dry, it collapses at 0.5580 (least known). Joints break one after the "
         "other from .18 on, and those at the base let the wall go at 0.6939."
     )
-    yield recipe("brittle-wall-21", content, references, Remarks(LAWS, summary, SUITES, methods=METHODS))
+    yield recipe("brittle-wall-21", content, references, Remarks(_LAWS, summary, SUITES, methods=METHODS))
 
 
 def recipes() -> Iterator[Recipe]:

@@ -11,7 +11,7 @@ from collections.abc import Iterator
 import cases.recipe as r
 from cases.recipe import BOND_21, STATICS, Recipe, Remarks, exact, push, recipe, wall
 
-MILANKOVITCH = (
+_MILANKOVITCH = (
     "M. Milankovitch, Theorie der Druckkurven, Zeitschrift fur Mathematik und Physik 55 (1907) 1-27; "
     "J. Heyman, The safety of masonry arches, International Journal of Mechanical Sciences 11 (1969) 363-385"
 )
@@ -77,7 +77,7 @@ def inclines() -> Iterator[Recipe]:
         yield recipe(name, content, references, Remarks(STATICS, summary, (*SUITES, "small")))
 
 
-def two_frictions() -> Iterator[Recipe]:
+def _two_frictions() -> Iterator[Recipe]:
     """The paper's block with other numbers: a range of collapse states and the one gap springs choose."""
     rough, smooth, height = 0.8, 0.2, 0.4
     least = smooth
@@ -260,7 +260,7 @@ def _semicircle_slack(count: int, thickness: float) -> float:
     return slack
 
 
-def thin_arches() -> Iterator[Recipe]:
+def _thin_arches() -> Iterator[Recipe]:
     """Semicircles of 10, 20 and 40 voussoirs half a per cent thinner and thicker than the least thickness."""
     for count in (10, 20, 40):
         least = minimum_thickness(count)
@@ -286,7 +286,7 @@ def thin_arches() -> Iterator[Recipe]:
                 "The thrust line runs through the extrados at crown and springings and just touches the intrados at "
                 f"the haunch: thrust H = sum w (Ro - x) / Ro, least thickness {least:.6f} of the mean radius."
             )
-            remarks = Remarks(MILANKOVITCH, summary, (*SUITES, "stability"), kind="stability")
+            remarks = Remarks(_MILANKOVITCH, summary, (*SUITES, "stability"), kind="stability")
             yield recipe(f"heyman-arch-{count}-{word}", content, r.finding(word, source, sentence), remarks)
 
 
@@ -337,5 +337,5 @@ def running_bonds() -> Iterator[Recipe]:
 
 def recipes() -> Iterator[Recipe]:
     """Every closed form."""
-    for family in (blocks, inclines, two_frictions, overhangs, columns, thin_arches, running_bonds):
+    for family in (blocks, inclines, _two_frictions, overhangs, columns, _thin_arches, running_bonds):
         yield from family()

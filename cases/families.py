@@ -17,15 +17,15 @@ from harness.model.wall import Wall
 PROPORTIONS = (1.0, 1.5, 2.0, 2.5, 3.0, 4.0)
 """Length over height of a brick."""
 
-FRICTIONS = tuple(round(0.1 * tenths, 1) for tenths in range(2, 13))
+_FRICTIONS = tuple(round(0.1 * tenths, 1) for tenths in range(2, 13))
 
 Start = Literal["half", "full"]
 STARTS: tuple[Start, ...] = ("half", "full")
 """How the bottom course begins: half-full-full-half, or three whole bricks. Both have 21 bricks in six courses."""
 
 PAPER = "C. Baggio, P. Trovalusci, Computer Methods in Structural Masonry 3, 1995, pp. 184-194"
-PROTOTYPES = "Drystone, prototypes before release 0.1"
-CODES = "two public gap-spring codes, both 0.56522 at friction 0.65 and 0.75; 13/23 is the vertex they round to"
+_PROTOTYPES = "Drystone, prototypes before release 0.1"
+_CODES = "two public gap-spring codes, both 0.56522 at friction 0.65 and 0.75; 13/23 is the vertex they round to"
 
 
 def wall_21(proportion: float = 2.0, friction: float = 0.65, start: Start = "half") -> Wall:
@@ -70,7 +70,7 @@ class Member:
 
 def family(
     proportions: tuple[float, ...] = PROPORTIONS,
-    frictions: tuple[float, ...] = FRICTIONS,
+    frictions: tuple[float, ...] = _FRICTIONS,
     starts: tuple[Start, ...] = STARTS,
 ) -> Iterator[Member]:
     """Every wall of a grid, friction running fastest."""
@@ -135,7 +135,7 @@ def _parted(friction: float, known: Known) -> list[Reference]:
             "regression",
             known.associated,
             ["la-associated"],
-            f"{PROTOTYPES}: two independent linear programmes",
+            f"{_PROTOTYPES}: two independent linear programmes",
             f"The associated maximum is {known.associated}.",
             tolerance=1e-6,
             tolerance_reason="six digits recorded",
@@ -146,7 +146,7 @@ def _parted(friction: float, known: Known) -> list[Reference]:
             "regression",
             known.least,
             ["la"],
-            f"{PROTOTYPES}: exact collapse state {known.fraction}, checked in rational arithmetic",
+            f"{_PROTOTYPES}: exact collapse state {known.fraction}, checked in rational arithmetic",
             f"LA finds a collapse state at least as low as {known.fraction}.",
             relation="at_most",
             tolerance=1e-6,
@@ -158,7 +158,7 @@ def _parted(friction: float, known: Known) -> list[Reference]:
             "regression",
             13 / 23,
             ["la-tresca"],
-            f"{PROTOTYPES}: fixed point of a sequence of programmes with frozen friction bounds, 0.565217",
+            f"{_PROTOTYPES}: fixed point of a sequence of programmes with frozen friction bounds, 0.565217",
             "The Tresca sequence stops at 13/23, above the least collapse state known.",
             tolerance=1e-5,
             tolerance_reason="six digits recorded",
@@ -168,7 +168,7 @@ def _parted(friction: float, known: Known) -> list[Reference]:
             "regression",
             13 / 23,
             ["de"],
-            f"{PROTOTYPES}: pymunk within 0.4 % of the state with unloaded head joints",
+            f"{_PROTOTYPES}: pymunk within 0.4 % of the state with unloaded head joints",
             "DE lies within 0.5 % of 13/23, the state with unloaded head joints.",
             tolerance=0.005 * 13 / 23,
             tolerance_reason=r.DE_REASON,
@@ -181,7 +181,7 @@ def _parted(friction: float, known: Known) -> list[Reference]:
                 "published",
                 known.plateau,
                 ["fe"],
-                CODES,
+                _CODES,
                 "FE gives 13/23, as the two codes.",
                 tolerance=1e-8,
                 tolerance_reason="exact continuation ends on a vertex; the codes print five digits",

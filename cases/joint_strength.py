@@ -11,11 +11,11 @@ from cases.recipe import BOND_21, STATICS, Recipe, Remarks, exact, push, recipe,
 from harness.model.case import Reference
 from harness.model.wall import Wall
 
-BONDED = (
+_BONDED = (
     "A. Orduna, P. B. Lourenco, Cap model for limit analysis and strengthening of masonry structures, Journal of "
     "Structural Engineering 129 (2003) 1367-1375"
 )
-DRUCKER = (
+_DRUCKER = (
     "D. C. Drucker, Coulomb friction, plasticity, and limit loads, Journal of Applied Mechanics 21 (1954) 71-74: the "
     "limit of associated flow is unique"
 )
@@ -63,7 +63,7 @@ UNIT_WEIGHT = 20.0
 BLOCKS = (BondedBlock("slides", 1.0, 0.2, 0.5, 1.0, 0.0), BondedBlock("topples", 0.4, 2.0, 1.0, 8.0, 4.0))
 
 
-def bonded_blocks() -> Iterator[Recipe]:
+def _bonded_blocks() -> Iterator[Recipe]:
     """One block with cohesion slides at mu + c A / W, one with tensile strength topples at (b / h)(1 + T / W)."""
     for block in BLOCKS:
         value, does, formula = round(block.peak, 14), block.does, block.formula
@@ -71,7 +71,7 @@ def bonded_blocks() -> Iterator[Recipe]:
         source = f"{STATICS}: lambda = {formula}, A = b t, T = f_t A, t = 1 m"
         references = exact(value, source, f"The block {does} at {formula} = {value:g}.")
         summary = f"Pushed by a multiple of its weight, it {does} at {formula}; without strength it would at less."
-        remarks = Remarks(BONDED, summary, ("strength",))
+        remarks = Remarks(_BONDED, summary, ("strength",))
         yield recipe(f"bonded-block-{does}", block.wall(f"joint with {strength}"), references, remarks)
 
 
@@ -114,11 +114,11 @@ def bonded_wall() -> Iterator[Recipe]:
         "Dry, the wall collapses at 0.5579978 (least known) and 0.584461 (associated). Cohesion as large as the weight "
         "of a twentieth of a brick length adds 8 and 6 %; real joints are brittle, so rely on the dry values."
     )
-    remarks = Remarks(BONDED, summary, ("strength",))
+    remarks = Remarks(_BONDED, summary, ("strength",))
     yield recipe("bonded-wall-21", content, references, remarks)
 
 
-def dilatant_wall() -> Iterator[Recipe]:
+def _dilatant_wall() -> Iterator[Recipe]:
     """The 21-brick wall whose slips lift by the friction: associated flow, so that all methods have one multiplier."""
     methods = ("la", "la-associated", "fe")
     content = wall(
@@ -145,10 +145,10 @@ def dilatant_wall() -> Iterator[Recipe]:
         "With the dilatancy of the friction the flow is associated and the limit unique (Drucker 1954), whatever the "
         "self-stress and the stiffness of joints; dry stone lifts by less and collapses at 0.5579978 (least known)."
     )
-    yield recipe("dilatant-wall-21", content, references, Remarks(DRUCKER, summary, ("strength",), methods=methods))
+    yield recipe("dilatant-wall-21", content, references, Remarks(_DRUCKER, summary, ("strength",), methods=methods))
 
 
-def crushing_piers() -> Iterator[Recipe]:
+def _crushing_piers() -> Iterator[Recipe]:
     """Piers on a joint that crushes at its toe overturn at b / h - gamma b / f_c; one has tensile strength besides."""
     unit, width, strength = 20.0, 0.4, 200.0
     for name, height, more in (
@@ -180,10 +180,10 @@ def crushing_piers() -> Iterator[Recipe]:
             "It turns about the inner edge of the strip that is crushed, not about its corner: less than b / h by "
             "gamma b / f_c."
         )
-        yield recipe(name, content, references, Remarks(BONDED, summary, ("strength",), methods=ASSOCIATED))
+        yield recipe(name, content, references, Remarks(_BONDED, summary, ("strength",), methods=_ASSOCIATED))
 
 
-def crushing_walls() -> Iterator[Recipe]:
+def _crushing_walls() -> Iterator[Recipe]:
     """The 21-brick wall and a semicircular arch whose joints crush: second-order cone programmes of other code."""
     ring = {"type": "ring", "inner_radius": 0.9, "outer_radius": 1.1, "count": 20}
     for name, title, friction, pattern, length, ratio, value, digits in (
@@ -205,10 +205,10 @@ def crushing_walls() -> Iterator[Recipe]:
             digits,
         )
         summary = "Crushing at the hinges of the mechanism lowers the associated maximum."
-        yield recipe(name, content, references, Remarks(BONDED, summary, ("strength",), methods=ASSOCIATED))
+        yield recipe(name, content, references, Remarks(_BONDED, summary, ("strength",), methods=_ASSOCIATED))
 
 
-ASSOCIATED = ("la-associated", "la-associated-cvxpy")
+_ASSOCIATED = ("la-associated", "la-associated-cvxpy")
 
 
 def _by_associated(value: float, source: str, requirement: str, tolerance: float) -> list[Reference]:
@@ -219,7 +219,7 @@ def _by_associated(value: float, source: str, requirement: str, tolerance: float
             "associated",
             "exact",
             value,
-            list(ASSOCIATED),
+            list(_ASSOCIATED),
             source,
             requirement,
             tolerance=tolerance,
@@ -231,5 +231,5 @@ def _by_associated(value: float, source: str, requirement: str, tolerance: float
 
 def recipes() -> Iterator[Recipe]:
     """Every case of joints with strength."""
-    for family in (bonded_blocks, bonded_wall, dilatant_wall, crushing_piers, crushing_walls):
+    for family in (_bonded_blocks, bonded_wall, _dilatant_wall, _crushing_piers, _crushing_walls):
         yield from family()

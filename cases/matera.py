@@ -24,7 +24,7 @@ SPAN = 6.0
 VAULT_THICKNESS = 0.25
 PAPER = "C. Baggio, P. Trovalusci, Computer Methods in Structural Masonry 3, 1995, pp. 184-194, application"
 OWN = "Drystone 0.1, this geometry"
-GEOMETRY = (
+_GEOMETRY = (
     "The paper gives the geometry of wall and vault in figures that are not available. Number and size of stones, "
     "cavity, rise of the vault, friction 0.6 and the added weight are ours, chosen so that the multipliers lie near "
     "those of the text: 0.30, 0.90 and 1.35 vault weights."
@@ -211,7 +211,7 @@ class Variant:
     found: Found
 
 
-VARIANTS = (
+_VARIANTS = (
     Variant(
         "matera-poor",
         "Sassi di Matera: three bonding stones badly placed",
@@ -253,14 +253,14 @@ VARIANTS = (
 
 def recipes() -> Iterator[Recipe]:
     """A poor wall, the same with more weight on it, and a good one; the last also in full."""
-    for variant in VARIANTS:
+    for variant in _VARIANTS:
         content = matera_wall(variant.masonry, variant.title, full=variant.full)
         remarks = Remarks(
             PAPER,
             f"{variant.summary} Vault weights carried are {DEAD_PART:g} (dead) + lambda; the paper reports "
             f"{variant.paper:.2f} for such a wall.",
             ("matera",),
-            errata=(GEOMETRY,),
+            errata=(_GEOMETRY,),
         )
         yield recipe(variant.name, content, _references(variant), remarks)
 

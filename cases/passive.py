@@ -16,7 +16,7 @@ RING = (
 )
 
 
-def pushed_block() -> Recipe:
+def _pushed_block() -> Recipe:
     """A block that slides into fill beside it bears friction and the passive force."""
     width, height, weight, gamma, level, share, phi, friction = 1.0, 0.8, 16.0, 18.0, 0.6, 0.5, 30.0, 0.2
     sine = math.sin(math.radians(phi))
@@ -48,7 +48,7 @@ def pushed_block() -> Recipe:
     return recipe("passive-block", content, [closed], Remarks(STATICS, summary, ("ties",), methods=METHODS))
 
 
-def filled_arch(*, passive: bool) -> Recipe:
+def _filled_arch(*, passive: bool) -> Recipe:
     """An arch whose voussoirs do not slide, under fill with a growing load on its left haunch."""
     count, inner, outer, haunch, value = 16, 0.9, 1.1, 120.0, 51.793549 if passive else 16.800887
     fill: dict[str, Any] = {"level": 1.3, "unit_weight": 16.0}
@@ -85,6 +85,6 @@ def filled_arch(*, passive: bool) -> Recipe:
 
 def recipes() -> Iterator[Recipe]:
     """Every case in passive fill, and the arch without it."""
-    yield pushed_block()
-    yield filled_arch(passive=True)
-    yield filled_arch(passive=False)
+    yield _pushed_block()
+    yield _filled_arch(passive=True)
+    yield _filled_arch(passive=False)

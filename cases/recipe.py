@@ -9,7 +9,7 @@ from typing import Any, Literal
 from harness.model.case import CaseFile, Erratum, Reference, ReferenceType
 from harness.model.wall import Wall
 
-STATIC = ("la", "la-associated", "fe")
+_STATIC = ("la", "la-associated", "fe")
 """Methods that give one exact number where theory has one."""
 
 ROUND_OFF = 1e-9
@@ -78,7 +78,7 @@ def exact(
             "closed-form",
             "exact",
             value,
-            STATIC,
+            _STATIC,
             source,
             requirement,
             tolerance=ROUND_OFF * scale,
@@ -102,7 +102,7 @@ def exact(
 def finding(word: str, source: str, requirement: str, *, gate_de: bool = True) -> list[Reference]:
     """The references of a stability case: the finding of limit analysis and FE, and that of DE."""
     return [
-        reference(word, "exact", word, STATIC, source, requirement, quantity="finding", gate=True),
+        reference(word, "exact", word, _STATIC, source, requirement, quantity="finding", gate=True),
         reference(f"{word}-de", "exact", word, ["de"], source, f"DE: {requirement}", quantity="finding", gate=gate_de),
     ]
 

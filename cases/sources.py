@@ -27,14 +27,14 @@ Values of kind *finding* say whether the wall stands under its dead load. `at mo
 collapse state may lie below.
 """
 
-TABLES: tuple[tuple[str, tuple[ReferenceType, ...], str], ...] = (
+_TABLES: tuple[tuple[str, tuple[ReferenceType, ...], str], ...] = (
     ("Verification", (ReferenceType.EXACT, ReferenceType.BOUND), "Closed forms, counts and bounds."),
     ("Benchmark", (ReferenceType.PUBLISHED,), "Values computed by others, as printed."),
     ("Validation", (ReferenceType.MEASURED,), "Values found by experiments."),
     ("Regression", (ReferenceType.REGRESSION,), "Our own values."),
 )
 
-NO_MEASUREMENT = (
+_NO_MEASUREMENT = (
     "No experiment whose absolute value could be read is in the library yet. The paper's tilting-table test of its\n"
     "21-brick wall is known only as about 20 % below the computed load, and stands as an erratum of `wall-21`. The\n"
     "arches of Borri and Carozzi were tested with mortar, so their experiments are no references for dry joints.\n"
@@ -45,7 +45,7 @@ def sources_text(root: Path) -> str:
     """The content of `SOURCES.md` for the cases below `root`."""
     files = [read_case(folder).file for folder in case_folders([root]).values()]
     parts = [HEAD]
-    for title, kinds, sentence in TABLES:
+    for title, kinds, sentence in _TABLES:
         rows = [_row(file, item) for file in files for item in file.references if item.type in kinds]
         parts.append(f"\n## {title}\n\n{sentence}\n\n")
         if rows:
@@ -54,7 +54,7 @@ def sources_text(root: Path) -> str:
             )
             parts += rows
         else:
-            parts.append(NO_MEASUREMENT)
+            parts.append(_NO_MEASUREMENT)
     parts.append("\n## Works cited\n\n" + "".join(_works(files)))
     parts.append(
         "\n## Errata\n\nWhat sources leave open, or state otherwise than we find.\n\n" + "".join(_errata(files))

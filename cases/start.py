@@ -18,7 +18,7 @@ from cases.useful import irregular_stones
 from harness.model.errors import InputError, did_you_mean
 from harness.model.wall import Wall
 
-CLOSER = 0.25
+_CLOSER = 0.25
 """Least length of a stone as a part of a whole one: a quarter bat, the smallest that masons lay."""
 
 Openings = Sequence[tuple[float, float]]
@@ -36,7 +36,7 @@ def _english(course: int) -> tuple[float, tuple[float, ...]]:
     return (1.0, (0.0,)) if course % 2 else (0.5, (0.25,))
 
 
-BONDS: dict[str, Callable[[int], tuple[float, tuple[float, ...]]]] = {
+_BONDS: dict[str, Callable[[int], tuple[float, tuple[float, ...]]]] = {
     "running": _running,
     "flemish": _flemish,
     "english": _english,
@@ -52,14 +52,14 @@ def laid(bond: str, course: int, left: float, right: float) -> list[float]:
     Raises:
         InputError: an unknown bond.
     """
-    if bond not in BONDS:
+    if bond not in _BONDS:
         raise InputError(
-            f'no bond is called "{bond}"', f"{did_you_mean(bond, BONDS)} There are: {', '.join(BONDS)}".strip()
+            f'no bond is called "{bond}"', f"{did_you_mean(bond, _BONDS)} There are: {', '.join(_BONDS)}".strip()
         )
-    period, places = BONDS[bond](course)
+    period, places = _BONDS[bond](course)
     first, last = math.floor(left / period) - 1, math.ceil(right / period) + 1
     joints = sorted(period * number + place for number in range(first, last + 1) for place in places)
-    inside = [joint for joint in joints if left + CLOSER - 1e-9 <= joint <= right - CLOSER + 1e-9]
+    inside = [joint for joint in joints if left + _CLOSER - 1e-9 <= joint <= right - _CLOSER + 1e-9]
     return [left, *inside, right]
 
 
@@ -288,7 +288,7 @@ def buttress() -> Wall:
     return stepped_buttress()
 
 
-def two_leaf(
+def _two_leaf(
     courses: int = 12, leaf: float = 0.25, cavity: float = 0.15, through: int = 4, course_height: float = 0.25
 ) -> Wall:
     """The section of a wall of two leaves with a through stone in the first and every `through`-th course above it."""
@@ -338,7 +338,7 @@ STARTS: dict[str, Callable[..., Wall]] = {
     "portal": portal,
     "facade": facade,
     "buttress": buttress,
-    "two-leaf": two_leaf,
+    "two-leaf": _two_leaf,
     "stack": stack,
     "matera": matera,
 }

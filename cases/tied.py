@@ -21,7 +21,7 @@ def _box(name: str, left: float, bottom: float, right: float, top: float, **more
     return {"id": name, "polygon": [(left, bottom), (right, bottom), (right, top), (left, top)], **more}
 
 
-def held_blocks() -> Iterator[Recipe]:
+def _held_blocks() -> Iterator[Recipe]:
     """A slender block that is pushed topples at b / h + 2 T_y z / (W h), held by a tie or by a prop at the height z."""
     width, height, weight, strength, level, gap = 0.4, 2.0, 16.0, 2.0, 1.8, 0.6
     value = round(width / height + 2.0 * strength * level / (weight * height), 14)
@@ -61,7 +61,7 @@ def held_blocks() -> Iterator[Recipe]:
         yield recipe(f"{kind}-block", content, references, Remarks(STATICS, summary, SUITES, methods=METHODS))
 
 
-def tied_arches() -> Iterator[Recipe]:
+def _tied_arches() -> Iterator[Recipe]:
     """A semicircle of 20 voussoirs on rollers stands if and only if its tie bears the least thrust."""
     count, thickness, thrust, unit = 20, 0.15, 0.1756349, 20.0
     inner, outer = 1.0 - thickness / 2, 1.0 + thickness / 2
@@ -107,5 +107,5 @@ def tied_arches() -> Iterator[Recipe]:
 
 def recipes() -> Iterator[Recipe]:
     """Every case with ties or props."""
-    yield from held_blocks()
-    yield from tied_arches()
+    yield from _held_blocks()
+    yield from _tied_arches()

@@ -17,7 +17,7 @@ from harness.model.wall import Wall
 OWN = "Drystone 0.1, dimensions of our own"
 
 
-def opening_with_lintel() -> Wall:
+def _opening_with_lintel() -> Wall:
     """A wall of running bond with a window under a lintel."""
     whole, halves = [1.0] * 5, [0.5, 1.0, 1.0, 1.0, 1.0, 0.5]
     return wall(
@@ -129,7 +129,7 @@ def buttress() -> Wall:
     )
 
 
-def flying_arch() -> Wall:
+def _flying_arch() -> Wall:
     """A quarter-circle flyer of six stones from a pier to a wall that does not move; the ground is tilted outward."""
     inner, outer, angle = 2.0, 2.4, 75.0
     cosine, sine = math.cos(math.radians(180.0 - angle)), math.sin(math.radians(180.0 - angle))
@@ -163,7 +163,7 @@ def flying_arch() -> Wall:
     )
 
 
-def two_leaf_section() -> Wall:
+def _two_leaf_section() -> Wall:
     """The section of a wall of two leaves with a through stone in every fourth course, tilted."""
     headers, leaf1, leaf2 = [3.0], [1.0, -0.6, 1.4], [1.4, -0.6, 1.0]
     return wall(
@@ -183,7 +183,7 @@ def two_leaf_section() -> Wall:
 TABLE: tuple[tuple[str, Wall, float, float, float, str], ...] = (
     (
         "opening-lintel",
-        opening_with_lintel(),
+        _opening_with_lintel(),
         0.4977573925,
         0.4751008967,
         0.4775080877,
@@ -215,7 +215,7 @@ TABLE: tuple[tuple[str, Wall, float, float, float, str], ...] = (
     ),
     (
         "flying-arch",
-        flying_arch(),
+        _flying_arch(),
         0.2905156935,
         0.2905156935,
         0.2905156935,
@@ -223,7 +223,7 @@ TABLE: tuple[tuple[str, Wall, float, float, float, str], ...] = (
     ),
     (
         "two-leaf-section",
-        two_leaf_section(),
+        _two_leaf_section(),
         0.2227450980,
         0.2227450980,
         0.2227450980,

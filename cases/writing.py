@@ -17,7 +17,7 @@ WIDTH = 118
 """Longest line of JSON that is kept on one line."""
 
 
-def case_text(file: CaseFile) -> str:
+def _case_text(file: CaseFile) -> str:
     """The content of `case.toml`, fields at their defaults left out."""
     data = file.model_dump(mode="json", exclude_defaults=True)
     errata = data.pop("errata", [])
@@ -35,7 +35,7 @@ def wall_text(wall: Wall) -> str:
 
 def case_files(file: CaseFile, wall: Wall) -> dict[str, str]:
     """The two files of a case by their path below `cases/`."""
-    return {f"{file.id}/case.toml": case_text(file), f"{file.id}/{file.wall}": wall_text(wall)}
+    return {f"{file.id}/case.toml": _case_text(file), f"{file.id}/{file.wall}": wall_text(wall)}
 
 
 def write_files(files: dict[str, str], root: Path) -> list[str]:

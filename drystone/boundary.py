@@ -23,7 +23,7 @@ from harness.model.assembly import FloatArray
 from harness.model.method import Finding, Status
 from harness.model.result import Result
 
-PARALLEL = 1e-9
+_PARALLEL = 1e-9
 """Sine of an angle between two directions that is rounding."""
 SAME = 1e-6
 """Relative distance of two points from the edge of the other up to which both edges are one: a thousand times what the
@@ -177,7 +177,7 @@ class Boundary:
         meeting = np.array([-difference[1], difference[0]])
         meeting *= np.sign(_cross(a.direction, meeting)) or 1.0
         meeting /= np.hypot(*meeting)
-        at_a, at_b = _cross(a.direction, meeting) <= PARALLEL, _cross(meeting, b.direction) <= PARALLEL
+        at_a, at_b = _cross(a.direction, meeting) <= _PARALLEL, _cross(meeting, b.direction) <= _PARALLEL
         if at_a or at_b:
             self.vertices.append(a if at_a else b)  # the edge of one ends at the other, or in its direction
             return []
@@ -248,7 +248,7 @@ class Boundary:
         sides: list[FloatArray | None] = []
         for a, b in zip(corners, [*corners[1:], *corners[:1]], strict=True):
             turn = _cross(a.direction, b.direction)
-            opposite = abs(turn) <= PARALLEL and float(a.direction @ b.direction) < 0.0
+            opposite = abs(turn) <= _PARALLEL and float(a.direction @ b.direction) < 0.0
             if a.bounded or b.bounded:
                 sides.append(self._line_through(a, b) if turn > 0.0 else None)
             elif opposite and (line := self._line_through(a, b)) is not None:
@@ -262,7 +262,7 @@ class Boundary:
 
         The mechanism at a vertex may be any mixture of those of its two edges, therefore the points between come first.
         """
-        for least in (PARALLEL, -PARALLEL):
+        for least in (_PARALLEL, -_PARALLEL):
             lines = [
                 point.normal
                 for point in self.found

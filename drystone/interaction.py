@@ -34,7 +34,7 @@ if TYPE_CHECKING:
 
 FINEST = 1e-6
 """Accuracy of a polygon unless another is asked: a thousand times what the judge tolerates of an associated state."""
-LIVE = ((1.0, 0.0), (0.0, -1.0))
+_LIVE = ((1.0, 0.0), (0.0, -1.0))
 """The loads of a wall without load cases: its weight to the right, and its weight downwards."""
 
 
@@ -113,8 +113,8 @@ class LoadPair:
                 )
             found = [load_cases_of(case, name)[0] for name in names]
         else:
-            names = [f"{x:g},{y:g} of the weight" for x, y in live or LIVE]
-            found = [with_live_load(case, x, y) for x, y in live or LIVE]
+            names = [f"{x:g},{y:g} of the weight" for x, y in live or _LIVE]
+            found = [with_live_load(case, x, y) for x, y in live or _LIVE]
         return cls((names[0], names[1]), (found[0], found[1]))
 
 

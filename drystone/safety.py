@@ -29,9 +29,9 @@ from harness.model.method import Finding, Status, load_method
 from harness.model.reading import validate
 from harness.model.result import Result
 
-WITHOUT_SELF_STRESS = ("fe", "de")
+_WITHOUT_SELF_STRESS = ("fe", "de")
 """Methods that load a wall from rest, so that its joints carry no self-stress but what the loads cause."""
-NONE_WITHOUT = f"and none of {', '.join(WITHOUT_SELF_STRESS)}, which would find that, takes this wall"
+_NONE_WITHOUT = f"and none of {', '.join(_WITHOUT_SELF_STRESS)}, which would find that, takes this wall"
 
 
 @dataclass(frozen=True)
@@ -141,10 +141,10 @@ class FactorOfSafety:
                 return
             yield f"The judge accepted an equilibrium within yield at {self.lower:.8g}."
             if self.stands.traits.any_self_stress:
-                without = " and ".join(takers(self.wall.case, WITHOUT_SELF_STRESS))
+                without = " and ".join(takers(self.wall.case, _WITHOUT_SELF_STRESS))
                 yield (
                     "Joints may carry any self-stress in it: a wall whose joints slide without dilatancy can fall "
-                    f"earlier, {f'so ask {without} too' if without else NONE_WITHOUT}."
+                    f"earlier, {f'so ask {without} too' if without else _NONE_WITHOUT}."
                 )
         if self.falls is not None:
             at = "without friction" if math.isinf(self.upper) else f"at {self.upper:.8g} and above"

@@ -18,7 +18,7 @@ from harness.model.foreign.program_method import description_of, method_of
 from harness.model.foreign.register import add_entry, methods_file, program_of
 from harness.model.writing import write_whole
 
-LANGUAGES = ("python", "c", "javascript")
+_LANGUAGES = ("python", "c", "javascript")
 
 
 def words_of(command: str) -> list[str]:
@@ -88,7 +88,7 @@ def _describes_itself(name: str, entry: dict[str, Any], path: Path) -> bool:
 
 @click.command()
 @click.argument("name")
-@click.option("--language", type=click.Choice(LANGUAGES), default="python", show_default=True)
+@click.option("--language", type=click.Choice(_LANGUAGES), default="python", show_default=True)
 @catching
 def new_method(name: str, language: str) -> None:
     """Write a method that works, with its tests, into a new folder NAME: the place to begin one of your own.

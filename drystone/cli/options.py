@@ -26,9 +26,9 @@ from harness.model.load_cases import load_cases_of
 from harness.model.writing import check_output
 
 STORE = Path("out/drystone.sqlite")
-REPORT = Path("out/report.html")
+_REPORT = Path("out/report.html")
 
-REMEDIES = {
+_REMEDIES = {
     errno.EMFILE: "Raise the limit on open files of this process (ulimit -n) to 64 or more",
     errno.ENFILE: "End other programs: the machine has reached its limit of open files",
     errno.ENOSPC: "Free room on the disk and repeat the command: finished runs are kept",
@@ -40,7 +40,7 @@ REMEDIES = {
 """What can be done about errors of the operating system."""
 
 INPUT_ERROR = 2
-INTERRUPTED = 130
+_INTERRUPTED = 130
 
 
 def catching(command: Callable[..., Any]) -> Callable[..., Any]:
@@ -58,7 +58,7 @@ def catching(command: Callable[..., Any]) -> Callable[..., Any]:
             sys.exit(INPUT_ERROR)
         except KeyboardInterrupt:
             click.echo("drystone: interrupted; finished runs are kept in the store", err=True)
-            sys.exit(INTERRUPTED)
+            sys.exit(_INTERRUPTED)
         except BrokenPipeError:
             os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
             sys.exit(0)
@@ -77,7 +77,7 @@ def say(text: str, *, err: bool = False) -> None:
 def _of_the_system(error: OSError) -> str:
     """An error of the operating system as a sentence that names the file, and what can be done where that is known."""
     where = f"{error.filename}: " if error.filename else ""
-    remedy = REMEDIES.get(error.errno or 0, "")
+    remedy = _REMEDIES.get(error.errno or 0, "")
     return f"{where}{error.strerror or error}" + (f". {remedy}" if remedy else "")
 
 
@@ -200,7 +200,7 @@ memory_option = click.option(
     help="Memory limit of one run [MiB].",
 )  # fmt: skip
 report_option = click.option(
-    "--report", type=OUTPUT, default=REPORT, show_default=True, help="Where the report is written."
+    "--report", type=OUTPUT, default=_REPORT, show_default=True, help="Where the report is written."
 )
 junit_option = click.option("--junit", type=OUTPUT, help="Also write the outcomes as JUnit XML to this file.")
 live_option = click.option(

@@ -36,7 +36,7 @@ from harness.model.load_cases import named_loads
 from harness.model.method import Status, load_method
 from harness.model.result import Result
 
-SEVERITY = (INPUT_ERROR, 1, 3, 0)
+_SEVERITY = (INPUT_ERROR, 1, 3, 0)
 """Exit codes, the gravest first: of several load cases the gravest is that of the command."""
 
 
@@ -123,7 +123,7 @@ def run(
         if len(cases) > 1:
             say(envelope(cases, results).sentence)
     codes = [_code(result) for result in results]
-    sys.exit(min(codes, key=SEVERITY.index))
+    sys.exit(min(codes, key=_SEVERITY.index))
 
 
 def _code(result: Result) -> int:

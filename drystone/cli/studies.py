@@ -22,7 +22,7 @@ from harness.engine.sweep.study import Whole, read_study
 from harness.model.errors import InputError
 from harness.model.reading import validate
 
-LINE_SECONDS = 10.0
+_LINE_SECONDS = 10.0
 """How often progress is told where there is no terminal."""
 
 
@@ -133,7 +133,7 @@ def progress(total: int, *, quiet: bool) -> Iterator[Told]:
         def tell(stored: bool) -> None:
             nonlocal last
             counts["stored" if stored else "made"] += 1
-            if not quiet and time.monotonic() - last > LINE_SECONDS:
+            if not quiet and time.monotonic() - last > _LINE_SECONDS:
                 last = time.monotonic()
                 done = counts["stored"] + counts["made"]
                 print(f"{done:,} of {total:,} runs, {words()}", file=sys.stderr, flush=True)

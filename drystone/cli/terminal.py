@@ -108,7 +108,7 @@ def print_comparison(compared: ComparisonRun, report: Path | None, columns: Sequ
     for case in compared.cases:
         for sentence in _strength(case):
             console.print(escape(sentence), highlight=False)
-    print_envelopes(envelopes(compared.cases))
+    _print_envelopes(envelopes(compared.cases))
     broken = violations(compared)
     gated = sum(item.gate for case in compared.cases for result in case.results for item in result.comparisons)
     gates = sum(gate.passed is not None for case in compared.cases for gate in case.gates)
@@ -124,7 +124,7 @@ def print_comparison(compared: ComparisonRun, report: Path | None, columns: Sequ
         print(visible(f"Report: {report}"))
 
 
-def print_envelopes(found: Sequence[Envelope]) -> None:
+def _print_envelopes(found: Sequence[Envelope]) -> None:
     """A table for every wall of several load cases, a row a load case, with a sentence a method on which governs."""
     for wall, mine in by_wall(found).items():
         print(visible(f"Load cases of {wall}:"))

@@ -36,7 +36,7 @@ from harness.model.foreign.program_method import ProgramMethod
 from harness.model.method import Finding, Method, Status, method_names
 from harness.model.result import Judgement, Result
 
-WIDEST_BRACKET = 0.01
+_WIDEST_BRACKET = 0.01
 """Relative width of the widest bracket around a closed form with which a method conforms."""
 
 
@@ -121,7 +121,7 @@ class ConformanceCheck:
         return CheckFound(self.group, self.name, self.requirement, outcome, sentence, max(seconds, 0.0))
 
 
-def slack_of(method: Method) -> float:
+def _slack_of(method: Method) -> float:
     """Relative error a multiplier may have: the stated one for methods that measure, rounding for the others.
 
     A calculating method with a bracket conforms if that holds the value within the method's tolerance.
@@ -144,7 +144,7 @@ def _answer(method: Method, wall: Assembly) -> tuple[Result, Judgement]:
 
 def _closed_form(form: ClosedForm) -> Callable[[Method], str]:
     def check(method: Method) -> str:
-        return _fault(*_answer(method, assembly_of(form.wall, form.name)), form.multiplier, slack_of(method))
+        return _fault(*_answer(method, assembly_of(form.wall, form.name)), form.multiplier, _slack_of(method))
 
     return check
 
@@ -158,7 +158,7 @@ def _fault(result: Result, judgement: Judgement, expected: float, slack: float) 
     if result.bracket is not None and not result.traits.brackets:
         low, high = result.bracket
         wider = judgement.tolerance * abs(expected)
-        if low - wider <= expected <= high + wider and high - low <= WIDEST_BRACKET * abs(expected):
+        if low - wider <= expected <= high + wider and high - low <= _WIDEST_BRACKET * abs(expected):
             return ""
     if abs(result.multiplier / expected - 1.0) > slack:
         return f"multiplier {result.multiplier!r} instead of {expected!r}"
@@ -184,7 +184,7 @@ def _view(name: str) -> Callable[[Method], str]:
         wall, plain = _taken(method)
         if plain.multiplier is None:
             return f"{plain.status}, {plain.finding}: {plain.sentence}"
-        return _fault(*_answer(method, VIEWS[name](wall)), plain.multiplier, slack_of(method))
+        return _fault(*_answer(method, VIEWS[name](wall)), plain.multiplier, _slack_of(method))
 
     return check
 
@@ -219,7 +219,7 @@ def _leaves_the_wall(method: Method) -> str:
 
 
 def _takes_odd_names(method: Method) -> str:
-    return _fault(*_answer(method, assembly_of(odd_names())), 0.3, slack_of(method))
+    return _fault(*_answer(method, assembly_of(odd_names())), 0.3, _slack_of(method))
 
 
 def _isolated(method: Method, wall: dict[str, Any], seconds: float, mebibytes: int) -> Result:
@@ -262,7 +262,7 @@ def _same_in_a_process_of_its_own(method: Method) -> str:
     )
 
 
-ENDED = (Status.OK, Status.NOT_CONVERGED, Status.TIMEOUT)
+_ENDED = (Status.OK, Status.NOT_CONVERGED, Status.TIMEOUT)
 
 
 def suite() -> Iterator[ConformanceCheck]:
@@ -284,13 +284,13 @@ def suite() -> Iterator[ConformanceCheck]:
         "limits",
         "time",
         "A run of over 90 blocks ends within 2 s or is stopped.",
-        _keeps_to_limits(2.0, 4096, ENDED),
+        _keeps_to_limits(2.0, 4096, _ENDED),
     )
     yield ConformanceCheck(
         "limits",
         "memory",
         "A run under a limit of 256 MiB answers, or is ended as one without memory.",
-        _keeps_to_limits(5.0, 256, (*ENDED, Status.OUT_OF_MEMORY)),
+        _keeps_to_limits(5.0, 256, (*_ENDED, Status.OUT_OF_MEMORY)),
     )
     yield ConformanceCheck("manners", "repeats", "The same wall has the same answer to the last bit.", _repeats)
     yield ConformanceCheck("manners", "leaves-the-wall", "The arrays of the wall are not changed.", _leaves_the_wall)

@@ -20,13 +20,13 @@ class ClosedForm:
     formula: str
 
 
-def of_pattern(pattern: dict[str, Any], friction: Any, **more: Any) -> dict[str, Any]:
+def _of_pattern(pattern: dict[str, Any], friction: Any, **more: Any) -> dict[str, Any]:
     """A wall of a pattern under a tilt, as JSON data."""
     live = {"live": {"body": [{"per_weight": [1, 0]}]}}
     return {"format": "wall/1", "unit_weight": 20.0, "friction": friction, "pattern": pattern, "loads": live} | more
 
 
-def stack_of(count: int, **more: Any) -> dict[str, Any]:
+def _stack_of(count: int, **more: Any) -> dict[str, Any]:
     """A stack of blocks 0.3 x 0.2."""
     return {"type": "stack", "width": 0.3, "height": 0.2, "count": count} | more
 
@@ -37,26 +37,26 @@ def bond_of(count: int, bricks: int) -> dict[str, Any]:
 
 
 CLOSED_FORMS = (
-    ClosedForm("slide", of_pattern(stack_of(1), 0.4), 0.4, "mu"),
-    ClosedForm("topple", of_pattern(stack_of(1), 3.0), 1.5, "b / h"),
-    ClosedForm("stack-topples", of_pattern(stack_of(5), 0.7), 0.3, "b / (n h)"),
-    ClosedForm("stack-slides", of_pattern(stack_of(5), 0.25), 0.25, "mu"),
-    ClosedForm("bond-slides", of_pattern(bond_of(4, 3), 0.3), 0.3, "mu"),
+    ClosedForm("slide", _of_pattern(_stack_of(1), 0.4), 0.4, "mu"),
+    ClosedForm("topple", _of_pattern(_stack_of(1), 3.0), 1.5, "b / h"),
+    ClosedForm("stack-topples", _of_pattern(_stack_of(5), 0.7), 0.3, "b / (n h)"),
+    ClosedForm("stack-slides", _of_pattern(_stack_of(5), 0.25), 0.25, "mu"),
+    ClosedForm("bond-slides", _of_pattern(bond_of(4, 3), 0.3), 0.3, "mu"),
 )
 WITH_FEATURES = (
-    ClosedForm("cohesion", of_pattern(stack_of(1), 0.4, cohesion=0.4), 0.5, "mu + c b / W"),
-    ClosedForm("dilatancy", of_pattern(stack_of(1), {"default": 0.4, "dilatancy": 0.2}), 0.4, "mu, whatever psi"),
+    ClosedForm("cohesion", _of_pattern(_stack_of(1), 0.4, cohesion=0.4), 0.5, "mu + c b / W"),
+    ClosedForm("dilatancy", _of_pattern(_stack_of(1), {"default": 0.4, "dilatancy": 0.2}), 0.4, "mu, whatever psi"),
 )
 """Walls that a method may refuse."""
 VIEWED = {
-    "arch": of_pattern({"type": "ring", "inner_radius": 1.0, "outer_radius": 1.3, "count": 5}, 0.6),
-    "stack": of_pattern(stack_of(3, offsets=[0.0, 0.03, -0.02]), 0.6),
+    "arch": _of_pattern({"type": "ring", "inner_radius": 1.0, "outer_radius": 1.3, "count": 5}, 0.6),
+    "stack": _of_pattern(_stack_of(3, offsets=[0.0, 0.03, -0.02]), 0.6),
 }
 """Walls that are seen otherwise: the second for a method that refuses the first."""
-PRESSED = of_pattern(stack_of(2), 0.5, loads={"live": {"body": [{"per_weight": [0, -1]}]}})
-STANDING = of_pattern(stack_of(3), 0.5, loads={})
-FALLING = of_pattern(stack_of(2, offsets=[0.0, 0.2]), 0.5)
-LARGE = (of_pattern(bond_of(25, 10), 0.65), of_pattern(stack_of(100), 0.65))
+PRESSED = _of_pattern(_stack_of(2), 0.5, loads={"live": {"body": [{"per_weight": [0, -1]}]}})
+STANDING = _of_pattern(_stack_of(3), 0.5, loads={})
+FALLING = _of_pattern(_stack_of(2, offsets=[0.0, 0.2]), 0.5)
+LARGE = (_of_pattern(bond_of(25, 10), 0.65), _of_pattern(_stack_of(100), 0.65))
 """Walls of 263 and 100 blocks for limits of time and memory: the second for a method that refuses the first."""
 
 

@@ -22,15 +22,15 @@ from harness.engine.run import TimedResult
 from harness.engine.worker import Task
 from harness.model.errors import InputError
 
-AHEAD = 4
+_AHEAD = 4
 """Runs that wait at the scheduler for each thread of a worker, so that none is idle."""
 CONNECT_SECONDS = 15.0
 """How long a scheduler is waited for at first."""
-RETURN_SECONDS = 300.0
+_RETURN_SECONDS = 300.0
 """How long a scheduler that was lost is waited for."""
 LOST = (OSError, RuntimeError)
 """What closing a client raises where the scheduler is gone: a connection closed or silent, an event loop that ended."""
-MISSING = "it needs Dask: pip install 'drystone[cluster]'"
+_MISSING = "it needs Dask: pip install 'drystone[cluster]'"
 
 CODE = "code of "
 Identity = dict[str, str]
@@ -62,7 +62,7 @@ class ClusterExecutor:
         try:
             import distributed
         except ImportError:
-            raise InputError("a scheduler is named", MISSING, "--scheduler") from None
+            raise InputError("a scheduler is named", _MISSING, "--scheduler") from None
         self._library: Any = distributed
         self._address = address
         self._connect(CONNECT_SECONDS).close()
@@ -72,7 +72,7 @@ class ClusterExecutor:
         ours = identity(methods)
         coming, left = iter(jobs), dict[int, Job]()
         while True:
-            client = self._connect(RETURN_SECONDS)
+            client = self._connect(_RETURN_SECONDS)
             try:
                 self._same_everywhere(client, ours, methods)
                 yield from self._through(client, coming, left, ours)
@@ -93,14 +93,14 @@ class ClusterExecutor:
 
         def submit(job: Job) -> None:
             left[job.number] = job
-            future = client.submit(make_run, job.task, job.case, ours, key=f"run-{job.number}-{job.case}", pure=False)
+            future = client.submit(_make_run, job.task, job.case, ours, key=f"run-{job.number}-{job.case}", pure=False)
             under_way[future] = job.number
             ended.add(future)
 
         ended = self._library.as_completed(raise_errors=False)
         for job in list(left.values()):
             submit(job)
-        room = AHEAD * max(1, sum(client.nthreads().values()))
+        room = _AHEAD * max(1, sum(client.nthreads().values()))
         for job in itertools.islice(coming, max(0, room - len(under_way))):
             submit(job)
         while under_way:
@@ -134,7 +134,7 @@ class ClusterExecutor:
 
     def _same_everywhere(self, client: Any, ours: Identity, methods: Collection[str]) -> None:
         """Refuse workers of other code or versions before anything is run."""
-        client.wait_for_workers(1, timeout=RETURN_SECONDS)
+        client.wait_for_workers(1, timeout=_RETURN_SECONDS)
         for worker, theirs in client.run(identity, list(methods), on_error="return").items():
             if not isinstance(theirs, dict):
                 raise InputError(f"the worker {worker} has no Drystone of this kind ({theirs})", REMEDY, "--scheduler")
@@ -161,7 +161,7 @@ REMEDY = "Install the same release, with the same versions, on every machine"
 _slots: dict[str, Slots] = {}
 
 
-def make_run(task: Task, case: str, theirs: Identity) -> TimedResult:
+def _make_run(task: Task, case: str, theirs: Identity) -> TimedResult:
     """Make one run in a child process of this worker.
 
     Args:

@@ -75,13 +75,13 @@ def read_answers(path: Path) -> Answers:
         compared = recall(store)
     if compared is None:
         raise InputError("no comparison is in the store", "Run `drystone compare` with it first", source=str(path))
-    return answers_of(compared, str(path))
+    return _answers_of(compared, str(path))
 
 
 _SQLITE = b"SQLite format 3\0"
 
 
-def answers_of(compared: ComparisonRun, name: str) -> Answers:
+def _answers_of(compared: ComparisonRun, name: str) -> Answers:
     """The answers of a comparison."""
     rows = {
         (item.case.id, result.method): Answered(

@@ -20,10 +20,10 @@ from harness.model.answer_check import checked
 from harness.model.method import Method, allowing, check_takes, prepared
 from harness.model.reading import validate
 
-RUNS_A_CHILD = 500
+_RUNS_A_CHILD = 500
 """Runs after which a child process is replaced, so that nothing grows without end."""
 
-WARM_BLOCKS = 200
+_WARM_BLOCKS = 200
 """Blocks of a wall above which every run has a process of its own: its cost is nothing beside such a run."""
 
 
@@ -146,7 +146,7 @@ class Slots:
 
     def give_back(self, child: Child) -> None:
         """Take a child that has ended its run: keep it, or end it where another must make the next."""
-        if child.reusable and child.runs < RUNS_A_CHILD:
+        if child.reusable and child.runs < _RUNS_A_CHILD:
             self._idle.append(child)
         else:
             child.end()
@@ -166,4 +166,4 @@ def _owner(task: Task) -> str:
 
 
 def _small(task: Task) -> bool:
-    return task.assembly.n_blocks <= WARM_BLOCKS
+    return task.assembly.n_blocks <= _WARM_BLOCKS

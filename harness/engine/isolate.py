@@ -34,10 +34,10 @@ from harness.model.method import Answer, Finding, Status
 LOOK_SECONDS, LOOKS_AT_CHILDREN = 0.05, 10
 """How often memory and time of a run are looked at, and at which look those of what it started as well."""
 
-LOADING_SECONDS = 300.0
+_LOADING_SECONDS = 300.0
 """Wall time in which a method must be loaded, its kernels compiled if they never were; no run is charged for it."""
 
-LONG_SECONDS = 10.0
+_LONG_SECONDS = 10.0
 """A child that made a run this long makes no other: starting one costs nothing beside it, and its memory is clean."""
 
 
@@ -253,7 +253,7 @@ class Child:
         """The run whose record is a line. What a method has changed in its process may have written anything."""
         try:
             record = json.loads(line)
-            reusable = record["reusable"] is True and record["wall_seconds"] < LONG_SECONDS
+            reusable = record["reusable"] is True and record["wall_seconds"] < _LONG_SECONDS
             measured = run.measured(record | {"answer": checked(Answer(**record["answer"]), run.task.assembly)})
         except (InputError, ValueError, TypeError, KeyError, RecursionError):
             self._kill()
@@ -296,7 +296,7 @@ class _RunningJob:
         self.task, self.case = task, case
         self.begun = datetime.now(UTC).isoformat(timespec="seconds")
         self._clock = time.perf_counter()
-        self._deadline = self._clock + LOADING_SECONDS
+        self._deadline = self._clock + _LOADING_SECONDS
         self._pid = pid
         self._looks, self._next_look = 0, self._clock + LOOK_SECONDS
         self._cpu_before: float | None = None

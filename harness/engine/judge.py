@@ -229,14 +229,14 @@ def answered(method: Method, assembly: Assembly, **settings: Any) -> tuple[Resul
 
 WITHOUT_END = 1e-12
 """Largest residual of forces that balance the live load alone: what is violated by more ends, if far away."""
-GAPS = ("complementarity", "virtual_work", "dilatancy")
+_GAPS = ("complementarity", "virtual_work", "dilatancy")
 """Residuals that are the distance between what the forces bear and what the mechanism takes."""
-CRUSHING_GAP = 1e-6
+_CRUSHING_GAP = 1e-6
 """Largest such residual of a wall whose joints crush: its yield domain is round, and forces and mechanism of lines that
 approach it are both admissible, and differ by as much. The error of the multiplier is no more."""
 COARSEST = 1e-2
 """Largest tolerance that shows something: a hundredth of the loads. Ten times the coarsest of the library's methods."""
-MOVED_FAR = " Its blocks rest so far from where they were drawn that this shows nothing of the wall as drawn."
+_MOVED_FAR = " Its blocks rest so far from where they were drawn that this shows nothing of the wall as drawn."
 
 
 def _judge_collapse(
@@ -258,7 +258,7 @@ def _judge_collapse(
         return said
     residuals = collapse_residuals(assembly, forces, at, mechanism, result.flow, beyond)
     residuals["multiplier"] = apart(multiplier, at)
-    wider = dict.fromkeys(GAPS, CRUSHING_GAP) if assembly.crushes else None
+    wider = dict.fromkeys(_GAPS, _CRUSHING_GAP) if assembly.crushes else None
     said = decide(residuals, tolerance, f"The collapse state ({result.flow} flow) was", wider=wider)
     if said.accepted:
         size = max(assembly.load_unit, abs(multiplier))
@@ -291,7 +291,7 @@ def _judge_bracket(assembly: Assembly, forces: FloatArray | None, result: Result
     residuals["multiplier"] = apart(lower, at) if lower > at else 0.0
     said = decide(residuals, tolerance, what)
     if said.accepted and far:
-        said.accepted, said.sentence = None, said.sentence + MOVED_FAR
+        said.accepted, said.sentence = None, said.sentence + _MOVED_FAR
     elif said.accepted and result.bracket is None:
         said.accepted = None
         said.sentence += " It gives no bracket: how far above them the wall collapses was not measured."
@@ -324,7 +324,7 @@ def _judge_standing(assembly: Assembly, forces: FloatArray | None, result: Resul
         return said_of(tolerance, None, NO_FORCES)
     said = decide(residuals, tolerance, f"{what} were")
     if said.accepted and far:
-        said.accepted, said.sentence = None, said.sentence + MOVED_FAR
+        said.accepted, said.sentence = None, said.sentence + _MOVED_FAR
     elif said.accepted and assembly.has_live_load:
         said.accepted = None
         said.sentence = "The wall stands under its dead load; the answer proves no multiplier of the live load."

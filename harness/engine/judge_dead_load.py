@@ -18,7 +18,7 @@ IMMENSE = 1e7
 A fall is proved unless the wall stands by such forces. Falls that methods find leave at least ten times more."""
 
 
-MOST_OPEN = 4.0
+_MOST_OPEN = 4.0
 """Largest multiplier that a wall at its limit can have, in load units times the accuracy of its numbers.
 
 A block that turns about its corner leaves three times its weight open; more is a motion beside the point."""
@@ -61,7 +61,7 @@ def judge_limit(
         residuals["virtual_work"] *= within * assembly.load_unit / told
     said = decide(residuals, within, f"{what} was")
     at = _multiplier_of(assembly, mechanism)
-    if said.accepted or not 0.0 < abs(at) <= min(told, MOST_OPEN * within * assembly.load_unit):
+    if said.accepted or not 0.0 < abs(at) <= min(told, _MOST_OPEN * within * assembly.load_unit):
         return said
     return decide(
         collapse_residuals(assembly, forces, at, mechanism, "associated", beyond),

@@ -42,7 +42,7 @@ TOLERANCE_ALONE = 0.1
 """Of a field without: it may stand for a displacement of a quarter of a block, in which contacts of blocks that
 turn and slide seem to close by the product of both."""
 
-NOISE = 1e-4
+_NOISE = 1e-4
 """Speed of a component, beside the fastest of the wall, up to which its measured motion is the noise of rest."""
 
 
@@ -101,7 +101,7 @@ def motion_residuals(
         assembly: the wall; mechanism, multiplier: as for `motion_faults`.
         forces: (m, 3) contact forces (n1, n2, s) measured with the motion [force], or None.
     """
-    supports, parts = moving_parts(assembly, mechanism, NOISE)
+    supports, parts = moving_parts(assembly, mechanism, _NOISE)
     loaded = replace(assembly, dead=assembly.dead + multiplier * assembly.live)
     gross = gross_power(loaded, mechanism)
     lost = max(0.0, -power(loaded.dead, mechanism)) / gross if gross > 0.0 else 0.0

@@ -5,7 +5,7 @@ So what acts on a block counts up to the loads of its component, and a block doe
 
 F        sum of the magnitudes of load and contact forces on a block, at most the loads of its component
 own      its own load; that of a block without load is the smallest of its component
-small    the least of F and `PASSED_ON` x own: what an unbalanced force or a violation of yield is measured by
+small    the least of F and `_PASSED_ON` x own: what an unbalanced force or a violation of yield is measured by
 rounding an unbalanced force within `ROUNDING` F, and within `OF_OWN` x own, is measured by F alone: light blocks
          that bear heavy ones are in equilibrium to the digits of the heavy ones
 """
@@ -26,7 +26,7 @@ UNLOADED = 1e-6
 
 Rounding leaves forces of 1e-16 to 1e-14 of that sum (measured on walls with weightless blocks), which then count as
 1e-10 to 1e-8."""
-PASSED_ON = 1e3
+_PASSED_ON = 1e3
 """Forces on a block, in its own loads, up to which its equilibrium is held to them.
 
 Distinct elements hold equilibrium to a millionth: so a thousandth of a block's own load may be unbalanced at most."""
@@ -36,7 +36,7 @@ OF_OWN = 2e-3
 """Share of a block's own load up to which rounding of the forces on it is let pass: weights that differ by 1e12."""
 NO_LOAD = 1e-13
 """Share of the loads of its component up to which a load is none: rounding of a multiplier that is zero."""
-EXACTLY = 1e3
+_EXACTLY = 1e3
 """Contact forces, in loads of the component, from which on their sums are made in fractions.
 
 Below it rounding of the sums is 1e-13 of the loads, a thousandth of the strictest tolerance."""
@@ -88,12 +88,12 @@ class Measures:
     def relative(self, amount: FloatArray, acting: FloatArray, own: FloatArray) -> FloatArray:
         """Amounts (k,) of force, relative to what is small where they arise (k,)."""
         rounding = amount <= np.minimum(ROUNDING * acting, OF_OWN * own)
-        small = np.where(own > 0.0, np.minimum(acting, PASSED_ON * own), acting)
+        small = np.where(own > 0.0, np.minimum(acting, _PASSED_ON * own), acting)
         return np.asarray(amount / np.where(rounding, acting, small))
 
     def immense(self, assembly: Assembly) -> IntArray:
         """Indices (k,) of the free blocks whose contact forces are immense beside the loads of their component."""
-        return np.flatnonzero(~assembly.fixed & (self.contact > EXACTLY * self.loads))
+        return np.flatnonzero(~assembly.fixed & (self.contact > _EXACTLY * self.loads))
 
 
 def magnitudes(assembly: Assembly, load: FloatArray) -> FloatArray:

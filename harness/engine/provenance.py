@@ -89,15 +89,15 @@ def code_version(method: str) -> str:
     point = next((point for point in method_points() if point.name == method), None)
     program = program_named(method)
     if program is not None:
-        return sources_version("harness.model", others=[program.version])
+        return _sources_version("harness.model", others=[program.version])
     if point is None:
         raise KeyError(method)
     packages = sorted({point.module.split(".")[0], "harness.model"})
     others = [f"{name}={number}" for name, number in sorted(versions().items()) if name not in ("commit", "drystone")]
-    return sources_version(*packages, others=others)
+    return _sources_version(*packages, others=others)
 
 
-def sources_version(*packages: str, others: Sequence[str] = ()) -> str:
+def _sources_version(*packages: str, others: Sequence[str] = ()) -> str:
     """Hash over the sources of packages or modules, and over other texts that stand for code."""
     digest = hashlib.sha256()
     for package in packages:
@@ -122,7 +122,7 @@ JUDGE = tuple(
 @functools.cache
 def judge_version() -> str:
     """Hash over the sources of the judge, for results that are kept with its word."""
-    return sources_version(*JUDGE)
+    return _sources_version(*JUDGE)
 
 
 def _sources(package: str) -> list[Path]:

@@ -47,14 +47,14 @@ AT_REST = 1e-12
 
 Live work is none up to this share of what the live loads would do along the motions of their blocks."""
 
-NO_WORK = 1e-12
+_NO_WORK = 1e-12
 """Share of all live work up to which that of a block is rounding of its rest: one of 1e12 weights moved by 1e-48."""
 MOVED = 5e-3
 """Displacement, in sizes of a block, and rotation [rad] up to which a wall at rest shows what it bears as drawn.
 
 Loads shift against the joints by as much, which changes a multiplier by a share of about this size: the accuracy that
 methods state. The library's soft joints give by a thousandth at most."""
-TURNED = 0.5
+_TURNED = 0.5
 """Difference of a unit normal from that of its joint from on which it is that of another face."""
 OVERLAP = 0.1
 """Depth, in sizes of a block, up to which soft blocks overlap at a contact point."""
@@ -101,7 +101,7 @@ def force_residuals(
     balance[:, 2] /= assembly.radius
     unbalanced = measures.relative(abs(balance).max(axis=1), measures.acting, measures.own)
     normal, shear = forces[:, :2], forces[:, 2]
-    tension, cohesion = own_strength(assembly)
+    tension, cohesion = _own_strength(assembly)
     excess = np.maximum(-shear - cohesion[:, 0], shear - cohesion[:, 1]) - assembly.friction * normal.sum(axis=1)
     broken = np.maximum(0.0, np.maximum((-normal - tension).max(axis=1), excess))
     if assembly.crushes:
@@ -119,7 +119,7 @@ def force_residuals(
     return found
 
 
-def own_strength(assembly: Assembly) -> tuple[FloatArray, FloatArray]:
+def _own_strength(assembly: Assembly) -> tuple[FloatArray, FloatArray]:
     """(m, 2) tension T/2 that each end bears, and (m, 2) cohesion c A against negative and against positive shear."""
     return assembly.constant[:, :2], assembly.constant[:, 2:]
 
@@ -133,7 +133,7 @@ def dissipated_by_strength(assembly: Assembly, opening: FloatArray, slip: FloatA
             crush.
         slip: (m,) slips.
     """
-    tension, cohesion = own_strength(assembly)
+    tension, cohesion = _own_strength(assembly)
     ways = np.maximum(np.column_stack([slip, -slip]), 0.0)
     if assembly.crushes:
         tension = np.where(np.isfinite(assembly.crushing)[:, None], 0.0, tension)
@@ -193,7 +193,7 @@ def displaced_fault(assembly: Assembly, state: DisplacedState) -> str:
     if (abs(np.hypot(*state.normal.T) - 1.0) > AT_REST).any():
         return "a normal is not a unit vector"
     onto_b = np.where(state.onto == b, 1.0, -1.0)[:, None]
-    if (abs(state.normal - onto_b * assembly.normal[state.interface]).max(axis=1, initial=0.0) > TURNED).any():
+    if (abs(state.normal - onto_b * assembly.normal[state.interface]).max(axis=1, initial=0.0) > _TURNED).any():
         return "a force acts across a face that does not belong to its joint"
     for p, point, force in zip(state.interface, state.point, state.force, strict=True):
         for block in (int(assembly.block_a[p]), int(assembly.block_b[p])):
@@ -300,7 +300,7 @@ def _largest_working(assembly: Assembly, mechanism: FloatArray) -> float:
     """The largest live load of a block that does work [force], by its share along the motion (n, 3) of that block."""
     speed = np.hypot(*mechanism[:, :2].T) + abs(mechanism[:, 2]) * assembly.radius
     work = abs((assembly.live * mechanism).sum(axis=1))
-    does = work > NO_WORK * work.sum()
+    does = work > _NO_WORK * work.sum()
     return float((work[does] / speed[does]).max(initial=0.0))
 
 
@@ -336,7 +336,7 @@ def _mechanism_residuals(
     normal, shear = forces[:, :2], forces[:, 2]
     strength = assembly.friction * normal.sum(axis=1)
     forward, backward = np.maximum(slip, 0.0), np.maximum(-slip, 0.0)
-    tension, cohesion = own_strength(assembly)
+    tension, cohesion = _own_strength(assembly)
     slack_normal = normal + tension
     slack_forward, slack_backward = strength + shear + cohesion[:, 0], strength - shear + cohesion[:, 1]
     stays = abs(slack_normal * opening)

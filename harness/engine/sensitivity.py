@@ -20,11 +20,11 @@ from harness.model.wall import Detection, Wall
 
 WIDEST = 0.1
 """Greatest tolerance tried, in typical block sizes: 25 mm of mortar between bricks of 250 mm."""
-A_DECADE = 8
+_A_DECADE = 8
 """Tolerances tried in a decade: neighbours differ by a third, less than surveys do."""
 
 
-MOST_LOOKED = 2000
+_MOST_LOOKED = 2000
 """Blocks of a wall whose tolerances are looked through unasked; for others `drystone validate` does it."""
 FINEST = 0.01
 """Tolerances finer than this part of the greatest one tried, a thousandth of a block, add nothing to the width of a
@@ -64,7 +64,7 @@ def over_tolerance(wall: Wall, method: Method | None = None) -> list[Plateau]:
     size = typical_block_size(wall)
     decades = np.log10(WIDEST / DEFAULT_TOLERANCE)
     tried = []
-    for tolerance in np.geomspace(DEFAULT_TOLERANCE * size, WIDEST * size, round(decades * A_DECADE) + 1).tolist():
+    for tolerance in np.geomspace(DEFAULT_TOLERANCE * size, WIDEST * size, round(decades * _A_DECADE) + 1).tolist():
         allowed = {"tolerance": tolerance, "greatest_gap": None, "greatest_overlap": None}
         try:
             found: Assembly | str = build(
@@ -100,7 +100,7 @@ def suggested(plateaus: list[Plateau]) -> tuple[float, Plateau] | None:
 
 def advised(looked: Inspection) -> float | None:
     """A tolerance for the near misses of a wall [length]; None where it has none, too many blocks, or other faults."""
-    if len(looked.names) > MOST_LOOKED or not any(mark.near_miss for mark in looked.marks):
+    if len(looked.names) > _MOST_LOOKED or not any(mark.near_miss for mark in looked.marks):
         return None
     try:
         advice = suggested(over_tolerance(looked.wall))

@@ -31,10 +31,10 @@ from harness.model.geometry import shapes_of
 from harness.model.limit import gross_power
 from harness.model.result import Judgement, fastest_vertex, relative_velocities
 
-MEETS = 1e-9
+_MEETS = 1e-9
 """Distance, in sizes of a block, up to which the two points of an end meet: pins are closed to 1e-13."""
-UNCOUNTABLE = f"Its numbers are not finite, or larger than {COUNTABLE:g}."
-DEPTH = 1e-9
+_UNCOUNTABLE = f"Its numbers are not finite, or larger than {COUNTABLE:g}."
+_DEPTH = 1e-9
 """Depth of a common area, in sizes of a block, that is rounding of places."""
 
 
@@ -68,7 +68,7 @@ def judge_settled(
         tolerance: the largest residual that is acceptable.
     """
     if not all(countable(each) for each in (displacement, places, reaction, forces)):
-        return said_of(tolerance, False, UNCOUNTABLE)
+        return said_of(tolerance, False, _UNCOUNTABLE)
     moved = _put_together(assembly, displacement, places)
     wall = moved.assembly
     parted = float(abs(np.where(moved.meets, 0.0, forces[:, :2])).max(initial=0.0))
@@ -103,7 +103,7 @@ def judge_moved_collapse(
         tolerance: the largest residual that is acceptable.
     """
     if not all(countable(each) for each in (places, multiplier, forces, mechanism)):
-        return said_of(tolerance, False, UNCOUNTABLE)
+        return said_of(tolerance, False, _UNCOUNTABLE)
     moved = _put_together(assembly, 0.0, places)
     wall = moved.assembly
     parted = float(abs(np.where(moved.meets, 0.0, forces[:, :2])).max(initial=0.0))
@@ -139,7 +139,7 @@ def judge_settled_fall(
         bore: (m, 3) contact forces where it last stood; blocks lifted off what bore them fall anywhere.
     """
     if not all(countable(each) for each in (displacement, places, mechanism, bore)):
-        return said_of(tolerance, False, UNCOUNTABLE)
+        return said_of(tolerance, False, _UNCOUNTABLE)
     moved = _put_together(assembly, displacement, places)
     wall = moved.assembly
     borne = bore[:, :2] * assembly.n_free > tolerance * assembly.force_scale
@@ -175,7 +175,7 @@ def _put_together(assembly: Assembly, displacement: float, places: FloatArray) -
     pairs = [[of(side, end) for side in (assembly.block_a, assembly.block_b)] for end in (assembly.end1, assembly.end2)]
     apart = np.column_stack([b - a for a, b in pairs])
     gap, shift = ((apart * axis.conj()[:, None]).real for axis in (normal, tangent))
-    meets = gap <= MEETS * size
+    meets = gap <= _MEETS * size
     middle = [0.5 * (a + b) for a, b in pairs]
     along = assembly.length * tangent
     first = np.where(~meets[:, 0] & meets[:, 1], middle[1] - along, middle[0])
@@ -201,7 +201,7 @@ def _put_together(assembly: Assembly, displacement: float, places: FloatArray) -
     closed = max(0.0, float((-gap).max(initial=0.0)))
     residuals = {
         "supports": _off_their_way(assembly, displacement, places) / size,
-        "interpenetration": max(closed, _depth(parts, assembly.fixed, DEPTH * size)) / size,
+        "interpenetration": max(closed, _depth(parts, assembly.fixed, _DEPTH * size)) / size,
         "sliding": float(abs(np.where(meets, shift, 0.0)).max(initial=0.0)) / size,
     }
     return _Moved(wall, meets, gap, residuals)

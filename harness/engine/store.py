@@ -59,7 +59,7 @@ FIELDS = ("forces", "mechanism", "states", "path", "details")
 ENVIRONMENT = ("versions", "machine", "traits", "limits")
 """Parts of a result that many runs share, kept once: limits and traits in each of 100,000 rows of 21 bricks made the
 file 210 MB instead of 140, as two of them filled a page instead of three."""
-SOME_KEYS = 500
+_SOME_KEYS = 500
 """Up to so many results are looked for one by one; above, the whole table is read."""
 
 
@@ -241,7 +241,7 @@ class Store:
         found: dict[str, dict[str, Any]] = {}
         environments: dict[str, dict[str, Any]] = {}
         with self._told():
-            some = sorted(keys) if len(keys) <= SOME_KEYS else None
+            some = sorted(keys) if len(keys) <= _SOME_KEYS else None
             query = (
                 "SELECT key, method, case_id, tolerance, result, run.environment, environment.content "
                 "FROM run LEFT JOIN environment ON environment.id = run.environment"

@@ -12,7 +12,7 @@ from pydantic import ValidationError
 
 from harness.model.json_text import LARGEST_FILE
 
-SEAL = re.compile(r',"seal":"([0-9a-f]{32})([0-9a-f]{32})"\}\Z')
+_SEAL = re.compile(r',"seal":"([0-9a-f]{32})([0-9a-f]{32})"\}\Z')
 """End of a text that is kept: the digest of what lies beside it, and that of both. It tells an edit, not a forger."""
 
 
@@ -20,7 +20,7 @@ DAMAGE = (ValidationError, ValueError, TypeError, RecursionError, zlib.error)
 """What reading a result raises where another hand has changed it."""
 
 
-EDITED = "it was changed after it was stored: its digest is another"
+_EDITED = "it was changed after it was stored: its digest is another"
 
 
 def digest_of(text: str | bytes) -> str:
@@ -45,7 +45,7 @@ def opened(text: Any, row: tuple[Any, ...], fields: bytes | None = None) -> str:
     """
     if not isinstance(text, str):
         raise ValueError("it is no text")
-    seal = SEAL.search(text)
+    seal = _SEAL.search(text)
     if seal is None:
         return text
     beside, all_of_it = seal.groups()
@@ -53,7 +53,7 @@ def opened(text: Any, row: tuple[Any, ...], fields: bytes | None = None) -> str:
     if digest_of(repr((row, beside, whole)))[:32] != all_of_it or (
         fields is not None and digest_of(fields)[:32] != beside
     ):
-        raise ValueError(EDITED)
+        raise ValueError(_EDITED)
     return whole
 
 
@@ -71,7 +71,7 @@ def environment_of(name: str | None, content: str | None) -> dict[str, Any]:
     if content is None:
         raise ValueError("the environment it was made in is not there any more")
     if digest_of(content)[:16] != name:
-        raise ValueError(EDITED)
+        raise ValueError(_EDITED)
     values: dict[str, Any] = json.loads(content)
     return values
 

@@ -13,7 +13,7 @@ from harness.model.displaced import DisplacedState
 from harness.model.method import Finding, Status
 from harness.model.result import Comparison, Result, Verdict
 
-BOUND_TOLERANCE = 1e-6
+_BOUND_TOLERANCE = 1e-6
 """Tolerance of bounds between methods, of the multiplier or of the unit of the load: solver accuracy, with a margin."""
 
 
@@ -122,7 +122,7 @@ def theory_gates(results: CaseResults) -> list[Gate]:
         limit = upper.multiplier if upper.bracket is None else upper.bracket[1]
         if value is None or limit is None:
             return
-        slack = (BOUND_TOLERANCE + lower.traits.held_accuracy) * max(unit, abs(limit))
+        slack = (_BOUND_TOLERANCE + lower.traits.held_accuracy) * max(unit, abs(limit))
         gates.append(
             Gate(
                 name=name,
@@ -177,7 +177,7 @@ def _moves_no_lower(results: CaseResults, usable: dict[str, Result], moved: Resu
     value = 0.0 if moved.finding is Finding.FALLS else AnswerDetails(moved.details).lowest_moving
     if known is None or known.multiplier is None or value is None:
         return None
-    slack = moved.traits.accuracy * abs(known.multiplier) + BOUND_TOLERANCE
+    slack = moved.traits.accuracy * abs(known.multiplier) + _BOUND_TOLERANCE
     return Gate(
         name=f"{moved.method}-moves-no-lower",
         statement=f"no wall moves below the least multiplier, and {why}",
@@ -196,7 +196,7 @@ def _unique(results: CaseResults, usable: dict[str, Result]) -> tuple[Result | N
     bounding = next((result for result in collapses if result.traits.bounds_above), None)
     if least is None or bounding is None or least.multiplier is None or bounding.multiplier is None:
         return None, ""
-    equal = abs(bounding.multiplier - least.multiplier) <= BOUND_TOLERANCE * max(
+    equal = abs(bounding.multiplier - least.multiplier) <= _BOUND_TOLERANCE * max(
         _unit(results), abs(bounding.multiplier)
     )
     if not equal or _slips(results, least) or _slips(results, bounding):
@@ -215,4 +215,4 @@ def _slips(results: CaseResults, result: Result) -> bool:
         return True
     wall, motion = results.case.assembly, np.asarray(result.mechanism, dtype=float)
     rates = (wall.kinematic_matrix @ motion[wall.free].ravel()).reshape(-1, 3)
-    return bool(np.abs(rates[:, 2]).max(initial=0.0) > BOUND_TOLERANCE * np.abs(rates).max(initial=0.0))
+    return bool(np.abs(rates[:, 2]).max(initial=0.0) > _BOUND_TOLERANCE * np.abs(rates).max(initial=0.0))

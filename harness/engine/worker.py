@@ -50,10 +50,10 @@ from harness.model.method import (
 from harness.model.reading import validate
 from harness.model.run_context import running_in
 
-LAST_WORDS = (0.05, 5.0)
+_LAST_WORDS = (0.05, 5.0)
 """Share of the time limit, and at most so many seconds, that are left to a method to say how far it came."""
 
-ALARM = 0.25
+_ALARM = 0.25
 """Share of that time after which a method that does not ask for its deadline is stopped wherever it is."""
 
 
@@ -91,7 +91,7 @@ class Task:
 LOADED, REPLACE = b"loaded", b"replace"
 """What a child says besides its records: the method is loaded and begins; another process must make this run."""
 
-MOST_SAID = 500
+_MOST_SAID = 500
 """Characters that are told of an error."""
 
 
@@ -190,7 +190,7 @@ def _record(task: Task, method: Method | None, failure: Answer | None) -> dict[s
         with contextlib.suppress(OSError, ValueError):  # its output may be closed
             traceback.print_exc()
         answer = _failure(
-            Status.CRASHED, f"The method raised {type(error).__name__}: {visible(str(error))[:MOST_SAID]}"
+            Status.CRASHED, f"The method raised {type(error).__name__}: {visible(str(error))[:_MOST_SAID]}"
         )
     kept = [] if method is None else method.processes_kept()
     cpu, wall = cpu_seconds(kept) - before, time.perf_counter() - started
@@ -304,11 +304,11 @@ def _warned_of_the_limit(seconds: float, begun: float) -> Iterator[None]:
 
     The alarm rings in Python, or when a library call returns to it; a run that was stopped before does not hear it.
     """
-    share, most = LAST_WORDS
+    share, most = _LAST_WORDS
     last_words = min(share * seconds, most)
     deadline = Deadline(begun + seconds - last_words)
     signal.signal(signal.SIGALRM, lambda *_: deadline.stop())
-    left = deadline.at + ALARM * last_words - time.perf_counter()
+    left = deadline.at + _ALARM * last_words - time.perf_counter()
     signal.setitimer(signal.ITIMER_REAL, max(left, 1e-6))
     try:
         with answering_by(deadline):

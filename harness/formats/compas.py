@@ -18,7 +18,7 @@ from harness.model.assembly import FloatArray
 from harness.model.errors import InputError
 from harness.model.json_text import read_json
 
-SUPPORT = ("is_support", "is_fixed", "fixed")
+_SUPPORT = ("is_support", "is_fixed", "fixed")
 
 
 def read_compas(path: Path, asked: Asked) -> Drawing:
@@ -28,7 +28,7 @@ def read_compas(path: Path, asked: Asked) -> Drawing:
         InputError: no COMPAS JSON, or a face of vertices that are not there.
     """
     data = read_json(path)
-    if not looks_like_compas(data):
+    if not _looks_like_compas(data):
         raise InputError("it is no COMPAS JSON", "A wall needs no import: give it to `drystone run`")
     solids = list(_solids(data, {}, np.eye(4)))
     plane, at = asked.plane or "xz", asked.at
@@ -44,7 +44,7 @@ def read_compas(path: Path, asked: Asked) -> Drawing:
     level = float(0.5 * (heights.min() + heights.max())) if at is None else at
     for number, (points, faces, said) in enumerate(solids):
         name = str(said.get("key") or said.get("name") or said.get("node") or number)
-        more: dict[str, Any] = {"name": name, "fixed": any(bool(said.get(word)) for word in SUPPORT)}
+        more: dict[str, Any] = {"name": name, "fixed": any(bool(said.get(word)) for word in _SUPPORT)}
         if np.ptp(points[:, across]) == 0.0:
             for face in faces:
                 drawing.add("flat block", points[face][:, [first, second]], **more)
@@ -63,13 +63,13 @@ def read_compas(path: Path, asked: Asked) -> Drawing:
     return drawing
 
 
-def looks_like_compas(data: Any) -> bool:
+def _looks_like_compas(data: Any) -> bool:
     """Whether JSON data is an object of COMPAS, or lists and dictionaries of such."""
     if isinstance(data, dict) and data.get("format") != "wall/1":
         return "dtype" in data or any(
-            looks_like_compas(item) for item in data.values() if isinstance(item, list | dict)
+            _looks_like_compas(item) for item in data.values() if isinstance(item, list | dict)
         )
-    return isinstance(data, list) and any(looks_like_compas(item) for item in data[:1])
+    return isinstance(data, list) and any(_looks_like_compas(item) for item in data[:1])
 
 
 def _cut(face: FloatArray, across: int, level: float) -> FloatArray | None:
@@ -92,12 +92,12 @@ def _solids(
     if not isinstance(value, dict):
         return
     data = value.get("data", value)
-    told = said | {key: value[key] for key in ("name", *SUPPORT) if value.get(key) is not None}
+    told = said | {key: value[key] for key in ("name", *_SUPPORT) if value.get(key) is not None}
     if isinstance(data, dict):
-        told |= {key: data[key] for key in ("name", *SUPPORT) if data.get(key) is not None}
+        told |= {key: data[key] for key in ("name", *_SUPPORT) if data.get(key) is not None}
         attributes = data.get("attributes")
         if isinstance(attributes, dict):
-            told |= {key: attributes[key] for key in ("name", *SUPPORT) if attributes.get(key) is not None}
+            told |= {key: attributes[key] for key in ("name", *_SUPPORT) if attributes.get(key) is not None}
         matrix = data.get("transformation")
         if isinstance(matrix, dict):
             placed = placed @ np.asarray(matrix.get("data", matrix)["matrix"], float)

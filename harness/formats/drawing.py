@@ -18,7 +18,7 @@ Ring = Iterable[Sequence[float]]
 LINES, CROSSES = "lines that close", "it crosses itself"
 """Words of an account that a reader looks for."""
 
-SPIKE = 0.01
+_SPIKE = 0.01
 """An outline that crosses itself is mended if that changes its area by less than this part: rounding folds the tip of a
 thin corner over, and no more."""
 
@@ -27,18 +27,18 @@ LARGEST = 1e100
 MOST_PAIRS = 300_000
 """Pairs of parts of an outline, of lines or of outlines that may cross, at most: finding where they do takes a second
 or two then, and grows with their square. Parts of a drawing of stones meet a few others each."""
-A_PART = 50
+_A_PART = 50
 """Pairs for each part that are looked into whatever their number: stones have a dozen neighbours."""
-MOST_CLOSED = 10_000
+_MOST_CLOSED = 10_000
 """Areas that lines close at most: a facade has a few thousand stones, crossing lines of a grid close millions."""
-ASK_FOR_POLYLINES = "Draw each stone as a closed polyline, or as lines that meet"
+_ASK_FOR_POLYLINES = "Draw each stone as a closed polyline, or as lines that meet"
 
 MOST_COPIES = 20_000
 """Entities that blocks and clones of a drawing stand for at most, written out: copies of copies grow without bound."""
 PLANES = {"xz": (0, 2, 1), "yz": (1, 2, 0), "xy": (0, 1, 2)}
 """Axes of a plane and the axis across it."""
 
-SAME_OUTLINE = 0.98
+_SAME_OUTLINE = 0.98
 """Two outlines whose common area is at least this part of their union are one outline drawn twice.
 
 A second pass of a CAD program, or a hatch over its border, differs by rounding only; two stones that bear on each other
@@ -131,7 +131,7 @@ class Drawing:
         _check_edges(polygon, f"{kind}{where}: its edges")
         if not shape.is_valid:
             whole = max(shapely.get_parts(shapely.make_valid(shape)), key=shapely.area)
-            if whole.geom_type != "Polygon" or abs(whole.area - shape.area) > SPIKE * shape.area:
+            if whole.geom_type != "Polygon" or abs(whole.area - shape.area) > _SPIKE * shape.area:
                 self.left_out[f"{kind}{where}: {CROSSES} near {shapely.is_valid_reason(shape)}"] += 1
                 return
             self.notes.append(f"{kind}{where} mended: {CROSSES} by a spike near {shapely.is_valid_reason(shape)}")
@@ -189,10 +189,10 @@ class Drawing:
             _check_pairs(np.concatenate([_segments(line, closed=False) for line in mine]), f'lines on layer "{layer}"')
             faces, _, dangles, _ = shapely.polygonize_full([shapely.union_all([shapely.MultiLineString(mine)])])
             closed = shapely.get_num_geometries(faces)
-            if closed > MOST_CLOSED:
+            if closed > _MOST_CLOSED:
                 raise InputError(
-                    f"its lines close {closed:,} areas, and at most {MOST_CLOSED:,} are taken for stones",
-                    f"{ASK_FOR_POLYLINES}, without grids and hatching",
+                    f"its lines close {closed:,} areas, and at most {_MOST_CLOSED:,} are taken for stones",
+                    f"{_ASK_FOR_POLYLINES}, without grids and hatching",
                     f'layer "{layer}"',
                 )
             for face in shapely.get_parts(faces):
@@ -212,7 +212,7 @@ class Drawing:
         i, j = shapely.STRtree(shapes).query(shapes, predicate="intersects")
         i, j = i[i < j], j[i < j]
         common, area = shapely.area(shapely.intersection(shapes[i], shapes[j])), shapely.area(shapes)
-        twice = set(j[common >= SAME_OUTLINE * (area[i] + area[j] - common)].tolist())
+        twice = set(j[common >= _SAME_OUTLINE * (area[i] + area[j] - common)].tolist())
         if twice:
             x, y = self.outlines[min(twice)].polygon.mean(axis=0)
             self.left_out[f"outline drawn twice, first near ({x:g}, {y:g})"] += len(twice)
@@ -228,7 +228,7 @@ class Drawing:
             told = "; ".join(f"{count} x {what}" for what, count in self.left_out.items())
             raise InputError(
                 "no closed outline is in it" + (f" ({told})" if told else ""),
-                ASK_FOR_POLYLINES,
+                _ASK_FOR_POLYLINES,
                 source=source,
             )
         return self
@@ -243,7 +243,7 @@ class Drawing:
 
 
 def _cleaned(points: Ring, what: str) -> FloatArray:
-    return without_repeats(finite(np.array([tuple(point)[:2] for point in points], float).reshape(-1, 2), what))
+    return _without_repeats(finite(np.array([tuple(point)[:2] for point in points], float).reshape(-1, 2), what))
 
 
 def finite(points: FloatArray, what: str) -> FloatArray:
@@ -279,7 +279,7 @@ def _check_pairs(parts: np.ndarray, what: str) -> None:
     Raises:
         InputError: there are more pairs whose boxes meet than is looked into.
     """
-    most = max(MOST_PAIRS, A_PART * len(parts))
+    most = max(MOST_PAIRS, _A_PART * len(parts))
     if len(parts) ** 2 <= most:
         return
     tree, found = shapely.STRtree(parts), 0
@@ -324,7 +324,7 @@ def without_comments(text: str) -> str:
     return " ".join([*kept, text[begin:]])
 
 
-def without_repeats(polygon: FloatArray) -> FloatArray:
+def _without_repeats(polygon: FloatArray) -> FloatArray:
     """A polygon (k, 2) without vertices that repeat the one before, the last one's repetition of the first included."""
     if len(polygon) == 0:
         return polygon

@@ -33,7 +33,7 @@ UNIT_WEIGHT = 20.0
 """Taken where nothing is said: round values of dry stone [-, kN/m3], and told as taken wherever the answer is shown."""
 
 
-FINE = 0.02
+_FINE = 0.02
 """Steps of rounding up to this part of a stone's size are taken for such; coarser ones are the module of the bond."""
 MOST = 0.95
 """Part of the coordinates that lie on a grid when they are taken for rounded; mended corners lie beside it."""
@@ -42,7 +42,7 @@ NEAR = 0.1
 wide, and its stones 75 to 500 mm high."""
 
 
-MOST_REASON = 200
+_MOST_REASON = 200
 """Letters of what a parser says is wrong."""
 MOST_TOLD = 8
 """Kinds of things left out that a warning names; the account has all."""
@@ -237,7 +237,7 @@ def _read(path: Path, mapping: Mapping) -> Drawing:
     except InputError:
         raise
     except Exception as error:  # parsers of other people's formats fail in as many ways as they have lines
-        reason = " ".join(str(error).split())[:MOST_REASON] or type(error).__name__
+        reason = " ".join(str(error).split())[:_MOST_REASON] or type(error).__name__
         raise InputError(
             f"it is no {path.suffix.lower()} that can be read ({reason})",
             "Save it again from the program that made it",
@@ -257,7 +257,7 @@ def _heard() -> Iterator[list[str]]:
     ):
         yield told
     words = [str(item.message) for item in caught if not issubclass(item.category, RuntimeWarning | DeprecationWarning)]
-    told += [f"its reader warns: {text[:MOST_REASON]}" for text in words]
+    told += [f"its reader warns: {text[:_MOST_REASON]}" for text in words]
 
 
 def _in_words(live: tuple[float, float]) -> str:
@@ -336,7 +336,7 @@ def _tolerance(outlines: list[Outline], mapping: Mapping) -> tuple[float | None,
         return mapping.tolerance, [f"joints: faces up to {mapping.tolerance:g} apart, as given"]
     size = _size(outlines)
     points = np.concatenate([item.polygon for item in outlines])
-    for exponent in range(math.floor(math.log10(FINE * size)), math.ceil(math.log10(1e-6 * size)), -1):
+    for exponent in range(math.floor(math.log10(_FINE * size)), math.ceil(math.log10(1e-6 * size)), -1):
         step = 10.0**exponent
         on_grid = abs(points - np.round(points / step) * step) <= 1e-9 * step + 1e-15 * abs(points).max()
         if on_grid.mean() >= MOST:

@@ -18,7 +18,7 @@ from harness.model.errors import InputError
 from harness.model.json_text import read_text
 
 _WIDTH = re.compile(r"\s*([0-9.]+)\s*(mm|cm|in)\s*")
-MOST_CHORDS = 256
+_MOST_CHORDS = 256
 """Chords of one curved segment at most."""
 
 
@@ -93,4 +93,4 @@ def _chords(segment: svg.Curve, accuracy: float) -> int:
         )
         for k in range(1, 16)
     )
-    return max(1, math.ceil(min(MOST_CHORDS, 8.0 * math.sqrt(sag / accuracy))))
+    return max(1, math.ceil(min(_MOST_CHORDS, 8.0 * math.sqrt(sag / accuracy))))

@@ -15,18 +15,18 @@ from harness.formats.drawing import MOST_COPIES, Drawing, without_comments
 from harness.model.errors import InputError
 
 LABEL = "{http://www.inkscape.org/namespaces/inkscape}label"
-HREFS = ("href", "{http://www.w3.org/1999/xlink}href")
+_HREFS = ("href", "{http://www.w3.org/1999/xlink}href")
 SHAPES = {"rect", "circle", "ellipse", "line", "polyline", "polygon", "path"}
-GROUPS = {"g", "a", "svg", "switch"}
-WITHOUT_OUTLINE = {"text", "image", "foreignObject"}
-INHERITED = {"visibility": "visible", "fill": "black", "stroke": "none", "fill-opacity": "1", "stroke-opacity": "1"}
+_GROUPS = {"g", "a", "svg", "switch"}
+_WITHOUT_OUTLINE = {"text", "image", "foreignObject"}
+_INHERITED = {"visibility": "visible", "fill": "black", "stroke": "none", "fill-opacity": "1", "stroke-opacity": "1"}
 """Properties that are handed down, with their initial values."""
-PROPERTIES = {"display", "opacity", *INHERITED}
-MOST_DEEP = 100
+_PROPERTIES = {"display", "opacity", *_INHERITED}
+_MOST_DEEP = 100
 """Depth of elements within elements; a drawing has some ten."""
-MOST_MATCHES = 5_000_000
+_MOST_MATCHES = 5_000_000
 """Elements times rules of style that are compared."""
-PIXELS = {"": 1.0, "px": 1.0, "mm": 96.0 / 25.4, "cm": 96.0 / 2.54, "in": 96.0, "pt": 96.0 / 72.0, "pc": 16.0}
+_PIXELS = {"": 1.0, "px": 1.0, "mm": 96.0 / 25.4, "cm": 96.0 / 2.54, "in": 96.0, "pt": 96.0 / 72.0, "pc": 16.0}
 _LENGTH = re.compile(r"\s*([-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?)\s*(px|mm|cm|in|pt|pc|)\s*")
 _COMPOUND = re.compile(r"(\*|[\w-]+)?((?:[.#][\w-]+)*)")
 
@@ -44,7 +44,7 @@ def shown(root: Element, drawing: Drawing) -> Element:
     named = {element.get("id", ""): element for element in above}
     viewer = _Viewer(drawing, named, _styles(above, drawing), _box(root))
     picture = Element("{http://www.w3.org/2000/svg}svg")
-    picture.extend(list(viewer.children(root, INHERITED | viewer.style(root), ())))
+    picture.extend(list(viewer.children(root, _INHERITED | viewer.style(root), ())))
     return picture
 
 
@@ -58,8 +58,8 @@ def _above(root: Element) -> dict[Element, Element | None]:
     level, depth = [root], 0
     while level:
         depth += 1
-        if depth > MOST_DEEP:
-            raise InputError(f"its elements are nested more than {MOST_DEEP} deep", "Ungroup them")
+        if depth > _MOST_DEEP:
+            raise InputError(f"its elements are nested more than {_MOST_DEEP} deep", "Ungroup them")
         below = [(child, element) for element in level for child in element]
         above.update(below)
         level = [child for child, _ in below]
@@ -85,7 +85,7 @@ class _Viewer:
         """The shown children of an element, for the properties that are handed down to them."""
         inner = list(element)
         if _tag(element) == "switch":
-            inner = [child for child in inner if _tag(child) in GROUPS | SHAPES | {"use"}][:1]
+            inner = [child for child in inner if _tag(child) in _GROUPS | SHAPES | {"use"}][:1]
         for child in inner:
             made = self.one(child, state, (*deep, element))
             if made is not None:
@@ -94,15 +94,15 @@ class _Viewer:
     def one(self, element: Element, state: Style, deep: tuple[Element, ...]) -> Element | None:
         """An element as it is shown, or nothing."""
         tag, own = _tag(element), self.style(element)
-        if tag in WITHOUT_OUTLINE:
+        if tag in _WITHOUT_OUTLINE:
             self.drawing.left_out[f"{tag}: no outline"] += 1
-        if tag not in GROUPS | SHAPES | {"use"}:
+        if tag not in _GROUPS | SHAPES | {"use"}:
             return None
-        if len(deep) > MOST_DEEP:
-            raise InputError(f"its elements are nested more than {MOST_DEEP} deep", "Ungroup them")
+        if len(deep) > _MOST_DEEP:
+            raise InputError(f"its elements are nested more than {_MOST_DEEP} deep", "Ungroup them")
         if self._cloning:
             self._count()
-        state = state | {name: value for name, value in own.items() if name in INHERITED and value != "inherit"}
+        state = state | {name: value for name, value in own.items() if name in _INHERITED and value != "inherit"}
         for name in ("clip-path", "mask"):
             if element.get(name, "none") != "none" or f"{name}:" in element.get("style", "").replace(" ", ""):
                 self.drawing.notes.append(f"a {name} is not evaluated: parts that it hides are read as shown")
@@ -115,7 +115,7 @@ class _Viewer:
             return self._clone(element, state, deep)
         if tag in SHAPES:
             kept = {
-                name: value for name, value in element.attrib.items() if name not in {"style", "class", *PROPERTIES}
+                name: value for name, value in element.attrib.items() if name not in {"style", "class", *_PROPERTIES}
             }
             if self._cloning:
                 kept.pop("id", None)  # a name is that of the original
@@ -128,7 +128,7 @@ class _Viewer:
 
     def _clone(self, use: Element, state: Style, deep: tuple[Element, ...]) -> Element | None:
         """The element that a `use` refers to, in its place."""
-        link = next((use.get(name, "") for name in HREFS if use.get(name)), "")
+        link = next((use.get(name, "") for name in _HREFS if use.get(name)), "")
         target = self.named.get(link.removeprefix("#")) if link.startswith("#") else None
         if target is None:
             raise InputError(
@@ -141,7 +141,7 @@ class _Viewer:
         if _tag(target) in ("symbol", "svg"):
             self._count()
             inner = _group(self._placed(use, target, use))
-            own = state | {name: value for name, value in self.style(target).items() if name in INHERITED}
+            own = state | {name: value for name, value in self.style(target).items() if name in _INHERITED}
             inner.extend(list(self.children(target, own, deep)))
             group.append(inner)
         else:
@@ -220,7 +220,7 @@ def _length(element: Element, name: str, otherwise: float | None = 0.0) -> float
     """A length of an element in user units; `otherwise` where it gives none, or a share of its window."""
     text = element.get(name, "")
     found = _LENGTH.fullmatch(text)
-    return float(found[1]) * PIXELS[found[2]] if found else otherwise
+    return float(found[1]) * _PIXELS[found[2]] if found else otherwise
 
 
 def _numbers(text: str) -> list[float]:
@@ -239,11 +239,11 @@ def _box(root: Element) -> tuple[float, float] | None:
 def _styles(above: dict[Element, Element | None], drawing: Drawing) -> dict[Element, Style]:
     """What is said of every element itself: by attributes, style sheets and its `style`, the later first."""
     rules = _rules("\n".join(element.text or "" for element in above if _tag(element) == "style"), drawing)
-    if len(rules) * len(above) > MOST_MATCHES:
+    if len(rules) * len(above) > _MOST_MATCHES:
         raise InputError("it has too many rules of style", "Save it as plain SVG")
     styles = {}
     for element in above:
-        own = {name: element.get(name, "").strip() for name in PROPERTIES if name in element.attrib}
+        own = {name: element.get(name, "").strip() for name in _PROPERTIES if name in element.attrib}
         for selector, said in rules:
             if _matches(selector, element, above):
                 own |= said
@@ -297,7 +297,7 @@ def _declared(text: str) -> Style:
     """The properties that a style declares, of those that concern what is shown."""
     pairs = (item.partition(":") for item in text.split(";"))
     said = {name.strip().lower(): value.replace("!important", "").strip() for name, _, value in pairs}
-    return {name: value for name, value in said.items() if name in PROPERTIES and value}
+    return {name: value for name, value in said.items() if name in _PROPERTIES and value}
 
 
 def _matches(selector: Selector, element: Element, above: dict[Element, Element | None]) -> bool:

@@ -20,7 +20,7 @@ from harness.model.method import Answer, Finding, Status
 
 DEEPEST = 33
 """Depth to which details may be nested. One that holds a result may have `json_text.MOST_NESTED` levels in all."""
-FLOWS = ("non-associated", "associated", "approximate")
+_FLOWS = ("non-associated", "associated", "approximate")
 """Flow rules that an answer may name."""
 NUMBERS = "iuf"
 """Kinds of NumPy's types that are real numbers."""
@@ -78,7 +78,7 @@ class _Residual(BaseModel, defer_build=True):
     forces: list[Triple] | None = None
     forces_multiplier: float | None = None
     mechanism: list[Triple] | None = None
-    flow: str = FLOWS[0]
+    flow: str = _FLOWS[0]
     details: dict[str, Any] = Field(default_factory=dict)
 
 
@@ -135,8 +135,10 @@ def checked(answer: Any, assembly: Assembly) -> Answer:
         path=_path(answer.path),
         details=_details(answer.details, assembly),
     )
-    if found.flow not in FLOWS:
-        raise AnswerFault(f'The method answers with the flow rule "{found.flow}", which is none of {", ".join(FLOWS)}.')
+    if found.flow not in _FLOWS:
+        raise AnswerFault(
+            f'The method answers with the flow rule "{found.flow}", which is none of {", ".join(_FLOWS)}.'
+        )
     if found.finding.has_multiplier and found.status is Status.OK and found.multiplier is None:
         raise AnswerFault("The method reports a collapse without a multiplier.")
     return found

@@ -34,7 +34,7 @@ IntArray = NDArray[np.int64]
 BoolArray = NDArray[np.bool_]
 
 OF_BLOCKS = ("polygons", "centroid", "weight", "fixed", "dead", "live", "support_motion")
-OF_JOINTS = (
+_OF_JOINTS = (
     "block_a",
     "block_b",
     "end1",
@@ -122,7 +122,7 @@ class Assembly:
             object.__setattr__(self, "bar_stiffness", np.zeros(len(self.joint)))
         if not len(self.support_motion):
             object.__setattr__(self, "support_motion", np.zeros((len(self.block_ids), 3)))
-        for names, count in ((OF_BLOCKS, len(self.block_ids)), (OF_JOINTS, len(self.joint))):
+        for names, count in ((OF_BLOCKS, len(self.block_ids)), (_OF_JOINTS, len(self.joint))):
             for name in names:
                 if len(getattr(self, name)) != count:
                     raise ValueError(f"{name} has {len(getattr(self, name))} entries for {count}")
@@ -142,12 +142,12 @@ class Assembly:
     def with_joints(self, kept: IntArray | BoolArray) -> Assembly:
         """The same blocks with these interfaces alone, by index in this order or by a mask (m,)."""
         index = np.arange(self.n_interfaces)[kept]
-        arrays = {name: getattr(self, name)[index] for name in OF_JOINTS}
+        arrays = {name: getattr(self, name)[index] for name in _OF_JOINTS}
         return replace(self, joint=tuple(self.joint[p] for p in index), **arrays)
 
     def copied(self) -> Assembly:
         """The same wall in arrays of its own: what a method does to them changes no other."""
-        names = (*OF_BLOCKS, *OF_JOINTS)
+        names = (*OF_BLOCKS, *_OF_JOINTS)
         arrays = {name: getattr(self, name).copy() for name in names if name != "polygons"}
         polygons = tuple(polygon.copy() for polygon in self.polygons)
         return replace(self, polygons=polygons, bars=self.bars.copied(), **arrays)

@@ -29,7 +29,7 @@ from harness.model.names import faults_of_wall
 from harness.model.plausibility import contact_warnings, force_warnings, interface_warnings, near_misses
 from harness.model.wall import Block, Inset, Interface, Wall
 
-MOST_MOVED = 1_000_000
+_MOST_MOVED = 1_000_000
 """Pairs of a settlement and a support that it moves, a second of work."""
 SMALLEST = float(np.finfo(float).tiny / np.finfo(float).eps)
 """Least sum of loads, whatever its unit: a share of it as small as rounding still has all its digits."""
@@ -151,7 +151,7 @@ def build(wall: Wall, name: str = "wall", laid: Laid | None = None) -> Built:
     return Built(assembly, tuple(warnings), explicit, partial(_joint_thickness, wall, blocks, assembly))
 
 
-MOST_CRUSHING = 1e5
+_MOST_CRUSHING = 1e5
 """Crushing force of a joint, in dead loads, above which the pressed strip is thinner than a hundred-thousandth of it.
 
 A multiplier changes by that share, and the rates at which such a joint closes are lost to rounding."""
@@ -182,11 +182,11 @@ def _check_sizes(assembly: Assembly) -> None:
             f"interface between {between}",
         )
     crushing = np.where(np.isfinite(assembly.crushing), assembly.crushing, 0.0)
-    if crushing.max(initial=0.0) > MOST_CRUSHING * assembly.force_scale:
+    if crushing.max(initial=0.0) > _MOST_CRUSHING * assembly.force_scale:
         joint = int(crushing.argmax())
         between = f"{assembly.block_ids[assembly.block_a[joint]]} and {assembly.block_ids[assembly.block_b[joint]]}"
         raise InputError(
-            f"it crushes under more than {MOST_CRUSHING:g} times the dead load, which changes no digit of an answer",
+            f"it crushes under more than {_MOST_CRUSHING:g} times the dead load, which changes no digit of an answer",
             "Check the units: compressive strength is in force/length^2 of the file; or leave it out",
             f"interface between {between}",
         )
@@ -213,8 +213,8 @@ def _support_motion(wall: Wall, laid: Laid) -> FloatArray:
         if chosen is None or not len(chosen):
             raise InputError(f'no block is in a group "{settlement.group}"', "Name a group of fixed blocks", place)
         moved += len(chosen)
-        if moved > MOST_MOVED:
-            problem = f"it and those before it move more than {MOST_MOVED:,} supports in all"
+        if moved > _MOST_MOVED:
+            problem = f"it and those before it move more than {_MOST_MOVED:,} supports in all"
             raise InputError(problem, "Add up those of the same supports", place)
         if not laid.fixed[chosen].all():
             name = laid.blocks[int(chosen[np.argmin(laid.fixed[chosen])])].id

@@ -20,7 +20,7 @@ from harness.model.method import method_names
 from harness.model.reading import parse_wall, read_document, validate
 from harness.model.wall import Wall
 
-LARGEST_CASE_FILE = 2**20
+_LARGEST_CASE_FILE = 2**20
 """Bytes of a case.toml at most: the library's longest has 5,046."""
 
 
@@ -172,7 +172,7 @@ def read_case(folder: Path) -> Case:
     path = folder / "case.toml"
     if not path.exists():
         raise InputError("there is no case.toml", "A case is a folder with case.toml and wall.json", source=str(folder))
-    file = validate(CaseFile, read_toml(path, LARGEST_CASE_FILE), str(path))
+    file = validate(CaseFile, read_toml(path, _LARGEST_CASE_FILE), str(path))
     if file.id != folder.name:
         raise InputError(f'id is "{file.id}" in a folder called "{folder.name}"', "Give both one name", "id", str(path))
     wall_path = folder / file.wall

@@ -167,7 +167,7 @@ RESULTS: tuple[ResultColumn, ...] = (
 )
 """Columns of results.csv, results.parquet and `Comparison.to_pandas`, in their order."""
 
-IN_TABLES: tuple[ResultColumn, ...] = (
+_IN_TABLES: tuple[ResultColumn, ...] = (
     ResultColumn(
         "bracket",
         "Float64",
@@ -186,7 +186,7 @@ IN_TABLES: tuple[ResultColumn, ...] = (
 
 def chosen(*names: str) -> tuple[ResultColumn, ...]:
     """Columns of results by their names, in this order."""
-    by_name = {column.name: column for column in (*RESULTS, *IN_TABLES)}
+    by_name = {column.name: column for column in (*RESULTS, *_IN_TABLES)}
     return tuple(by_name[name] for name in names)
 
 

@@ -23,12 +23,12 @@ from harness.model.rings import rings_of
 
 TIMES = 10.0
 """The same in greatest gaps: a drawing with joints of 2 mm and one of 15 has lost that one."""
-MOST_NEAR = 10_000_000
+_MOST_NEAR = 10_000_000
 """Pairs of a vertex and a face within sight of it, those of its own block too: each takes some 50 bytes, and a wall of
 100,000 blocks has about 3 million."""
 CHUNK = 1_000_000
 """Pairs that are looked up at once."""
-FIRST = 16
+_FIRST = 16
 """Vertices that are looked up first, when it is not known how many faces one has in sight."""
 
 
@@ -124,10 +124,10 @@ class Edges:
         # All are counted before any distance is computed, which takes ten times as long.
         first, found, pairs = 0, 0, []
         while first < count:
-            last = min(count, first + max(1, CHUNK * first // max(found, 1) if first else FIRST))
+            last = min(count, first + max(1, CHUNK * first // max(found, 1) if first else _FIRST))
             vertex, edge = self._tree.query(boxes[first:last])
             found += len(vertex)
-            if found > MOST_NEAR:
+            if found > _MOST_NEAR:
                 raise InputError(
                     f"its outlines have {count:,} vertices, and {last:,} of them have about {found / last:.0f} faces "
                     f"each within {distance:.3g}, too many to find the joints among them",

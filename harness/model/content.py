@@ -10,7 +10,7 @@ import numpy as np
 from harness.model.assembly import Assembly
 from harness.model.wall import Wall
 
-REMARKS = ("$schema", "comment", "title", "metadata", "doubts")
+_REMARKS = ("$schema", "comment", "title", "metadata", "doubts")
 """Fields of a wall that decide no answer."""
 STEP = 1.37e-6
 """Values are rounded to this part of their size. No round number of a drawing lies on the edge between two steps."""
@@ -63,5 +63,5 @@ def content_of(assembly: Assembly) -> str:
 
 def hash_of(wall: Wall) -> str:
     """A hash of all that is written of a wall and decides an answer: titles, remarks and doubts do not enter."""
-    written = {name: value for name, value in wall.document().items() if name not in REMARKS}
+    written = {name: value for name, value in wall.document().items() if name not in _REMARKS}
     return hashlib.sha256(json.dumps(written, sort_keys=True, allow_nan=False).encode()).hexdigest()

@@ -12,21 +12,21 @@ from typing import TypeVar
 Item = TypeVar("Item")
 Made = TypeVar("Made")
 
-MOST_FAULTS = 100
+_MOST_FAULTS = 100
 """Lines about one file that are told; the rest are counted."""
-LIKE_MEANING = {"polygon": ("vertices", "corners", "points", "coordinates", "coords", "outline", "shape")}
+_LIKE_MEANING = {"polygon": ("vertices", "corners", "points", "coordinates", "coords", "outline", "shape")}
 """Words of other formats for fields of a wall."""
-MOST_ALIKE = 3
+_MOST_ALIKE = 3
 """Elements with the same fault that are told one by one."""
 MOST_NAMED = 20
 """Names that a sentence lists."""
 MOST_WORDED = 500
 """Faults of one input that are put into words; the rest are counted."""
-MOST_HINTED = 20
+_MOST_HINTED = 20
 """Unknown names of one kind for which one that may have been meant is looked for."""
-MOST_COMPARED = 2000
+_MOST_COMPARED = 2000
 """Names that an unknown one is compared with, in the search for the one that was meant."""
-MOST_LETTERS = 500_000
+_MOST_LETTERS = 500_000
 """Pairs of letters that are compared in that search, a tenth of a second of work."""
 
 
@@ -122,16 +122,16 @@ class InputFaults(InputError):
             same = (fault.source, fault.problem, fault.remedy, number if fault.spot or not fault.element else None)
             alike.setdefault(same, []).append(fault)
         lines = [line for faults in alike.values() for line in self._lines(faults)]
-        more = [f"and {len(lines) - MOST_FAULTS} lines more"] if len(lines) > MOST_FAULTS else []
+        more = [f"and {len(lines) - _MOST_FAULTS} lines more"] if len(lines) > _MOST_FAULTS else []
         more += [f"and {self.more} faults more"] * (self.more > 0)
-        return "\n  ".join([head, *lines[:MOST_FAULTS], *more])
+        return "\n  ".join([head, *lines[:_MOST_FAULTS], *more])
 
     def _lines(self, alike: Sequence[InputError]) -> list[str]:
         """Faults that differ by their element alone: a line each, or one line where there are many."""
         source = "" if alike[0].source == self.source else alike[0].source
-        if len(alike) <= MOST_ALIKE:
+        if len(alike) <= _MOST_ALIKE:
             return [visible(_sentence(fault, source)) for fault in alike]
-        places = first_few([fault.element for fault in alike], MOST_ALIKE)
+        places = first_few([fault.element for fault in alike], _MOST_ALIKE)
         return [visible(_sentence(InputError(alike[0].problem, alike[0].remedy, places), source))]
 
     def __reduce__(self) -> tuple[type[InputError], tuple[object, ...]]:
@@ -193,9 +193,9 @@ def did_you_mean(word: str, known: Iterable[str]) -> str:
 @lru_cache(maxsize=128)  # a field that is misspelled is so in all blocks
 def _did_you_mean(word: str, known: tuple[str, ...]) -> str:
     names = {name.lower(): name for name in known}
-    names |= {other: names[name] for name, others in LIKE_MEANING.items() if name in names for other in others}
+    names |= {other: names[name] for name, others in _LIKE_MEANING.items() if name in names for other in others}
     letters = accumulate((len(name) * len(word) for name in names), initial=0)
-    compared = [name for name, before in zip(names, letters, strict=False) if before <= MOST_LETTERS]
+    compared = [name for name, before in zip(names, letters, strict=False) if before <= _MOST_LETTERS]
     near = get_close_matches(word.lower(), compared, n=1, cutoff=0.6)
     return f'Did you mean "{names[near[0]]}"?' if near else ""
 
@@ -209,12 +209,12 @@ class Hints:
 
     def __init__(self, known: Iterable[str]) -> None:
         self._all = sorted(known)
-        self._left = MOST_HINTED
+        self._left = _MOST_HINTED
 
     def of(self, word: str) -> str:
         """The question whether another name was meant; empty where none is near, or after many such words."""
         self._left -= 1
-        return did_you_mean(word, self._all[:MOST_COMPARED]) if self._left >= 0 else ""
+        return did_you_mean(word, self._all[:_MOST_COMPARED]) if self._left >= 0 else ""
 
     def there(self, most: int) -> str:
         """So many of the names in words."""

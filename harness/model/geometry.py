@@ -14,15 +14,15 @@ from harness.model.rings import rings_of
 
 NEAR = 0.02
 """Gap or overlap, in typical block sizes, that may be the accuracy of a drawing: 5 mm between bricks of 250 mm."""
-READ_A_VERTEX = 20
+_READ_A_VERTEX = 20
 """Times that a vertex is read, on the average, in the comparison of blocks that meet. A block of a wall has 6
 neighbours, 8 in a grid, and each pair reads the vertices of both."""
-READ_BESIDES = 2_000_000
+_READ_BESIDES = 2_000_000
 """Vertices read besides, a few seconds of work: a fan of 600 wedges about one point, or 400 blocks on a ground of
 5,000 vertices."""
-PAIRS_A_BLOCK = 10
+_PAIRS_A_BLOCK = 10
 """Pairs of blocks that touch or overlap, a block: a block of a wall has 6 neighbours."""
-PAIRS_BESIDES = 10_000
+_PAIRS_BESIDES = 10_000
 """Such pairs besides, of which the common area is computed where blocks are known to overlap, a second of work."""
 CHUNK = 32
 """Geometries that are looked up at once: what is found beyond a limit is at most what so many find."""
@@ -148,7 +148,7 @@ def overlapping(shapes: np.ndarray, fixed: BoolArray, tolerance: float) -> tuple
         return nothing
     wanted = ~(fixed[i] & fixed[j])
     i, j = i[wanted], j[wanted]
-    if len(i) > PAIRS_A_BLOCK * len(shapes) + PAIRS_BESIDES:
+    if len(i) > _PAIRS_A_BLOCK * len(shapes) + _PAIRS_BESIDES:
         raise InputError(
             f"they share an area of {common:.3g} in all, and {len(i):,} pairs of the {len(shapes):,} touch or overlap, "
             "too many to say which",
@@ -169,7 +169,7 @@ def _meeting(shapes: np.ndarray) -> tuple[IntArray, IntArray]:
         InputError: their common areas would take more vertices to compute than the limit allows.
     """
     tree, vertices = shapely.STRtree(shapes), shapely.get_num_coordinates(shapes)
-    most = READ_A_VERTEX * int(vertices.sum()) + READ_BESIDES
+    most = _READ_A_VERTEX * int(vertices.sum()) + _READ_BESIDES
     found, read = [], 0
     for first in range(0, len(shapes), CHUNK):
         i, j = tree.query(shapes[first : first + CHUNK], predicate="intersects")
@@ -200,7 +200,7 @@ def _check_crossings(shapes: np.ndarray, i: IntArray, j: IntArray) -> None:
         InputError: as a comb across another has.
     """
     vertices = shapely.get_num_coordinates(shapes)
-    many = vertices[i] * vertices[j] > READ_A_VERTEX * (vertices[i] + vertices[j])
+    many = vertices[i] * vertices[j] > _READ_A_VERTEX * (vertices[i] + vertices[j])
     if not many.any():
         return
     rings = shapely.get_rings(shapes[np.union1d(i[many], j[many])])
@@ -208,7 +208,7 @@ def _check_crossings(shapes: np.ndarray, i: IntArray, j: IntArray) -> None:
     onward = ring[1:] == ring[:-1]
     edges = shapely.linestrings(np.stack([points[:-1][onward], points[1:][onward]], axis=1))
     # To look at an edge that crosses costs as much as to read five vertices or more.
-    most = (READ_A_VERTEX * len(edges)) // 5 + READ_BESIDES // READ_A_VERTEX
+    most = (_READ_A_VERTEX * len(edges)) // 5 + _READ_BESIDES // _READ_A_VERTEX
     tree = shapely.STRtree(edges)
     for predicate in (None, "crosses"):  # where few boxes of edges meet, few edges do, and boxes cost a twentieth
         found = 0

@@ -16,19 +16,19 @@ from harness.model.wall import Block, Wall
 
 LONGEST = 200
 """Letters of a name that a sentence repeats."""
-GREATEST_FRICTION = 2.0
+_GREATEST_FRICTION = 2.0
 """Coefficient beyond which an angle in degrees is likelier: stone on stone has .4 to .8, 2 is a face of 63 degrees."""
-NO_SLIDING = 100.0
+_NO_SLIDING = 100.0
 """Coefficient from which on a file says in so many words that no joint slides, as Heyman supposed."""
-SMALLEST_ANGLE = 2.0
+_SMALLEST_ANGLE = 2.0
 """Angle [degrees] below which a coefficient is likelier: .65 degrees is .011, and wet ice has .03."""
-UNIT_WEIGHTS = (5.0, 35.0)
+_UNIT_WEIGHTS = (5.0, 35.0)
 """Unit weights of masonry [kN/m3]: pumice and adobe have 6 and more, basalt 30."""
 SIZES = (0.05, 250.0)
 """Extent of a wall [m]: a model on a tilting table has 0.1 and more, the highest masonry stands 170 high."""
-SMALL_BLOCK = 1e-3
+_SMALL_BLOCK = 1e-3
 """Size of a block in extents of the wall below which it is worth a warning."""
-SMALL_LOAD = 1e-6
+_SMALL_LOAD = 1e-6
 """Share of the live load in the dead load, or the other way round, below which one of them is hardly meant."""
 
 
@@ -52,7 +52,7 @@ def input_warnings(wall: Wall, blocks: list[Block], assembly: Assembly) -> list[
 
 def _friction_slips(wall: Wall, assembly: Assembly) -> list[str]:
     sentences = []
-    odd = (assembly.friction > GREATEST_FRICTION) & (assembly.friction < NO_SLIDING)
+    odd = (assembly.friction > _GREATEST_FRICTION) & (assembly.friction < _NO_SLIDING)
     if odd.any():
         value = float(assembly.friction[odd][0])
         meant = ""
@@ -65,7 +65,7 @@ def _friction_slips(wall: Wall, assembly: Assembly) -> list[str]:
         angles += [wall.friction.friction_angle, *(rule.friction_angle for rule in wall.friction.rules)]
     if isinstance(wall.interfaces, list):
         angles += [interface.friction_angle for interface in wall.interfaces]
-    small = [angle for angle in angles if angle is not None and 0.0 < angle < SMALLEST_ANGLE]
+    small = [angle for angle in angles if angle is not None and 0.0 < angle < _SMALLEST_ANGLE]
     if small:
         sentences.append(
             f"friction_angle is {small[0]:g} degrees, a coefficient of {math.tan(math.radians(small[0])):.2g}: a "
@@ -149,22 +149,22 @@ def _unit_weight_slips(wall: Wall, blocks: list[Block]) -> list[str]:
         given = block.unit_weight if block.unit_weight is not None else wall.unit_weight
         if given is None or block.weight is not None or block.fixed or given == 0.0:
             continue
-        if not UNIT_WEIGHTS[0] <= given * per_unit <= UNIT_WEIGHTS[1]:
+        if not _UNIT_WEIGHTS[0] <= given * per_unit <= _UNIT_WEIGHTS[1]:
             odd.setdefault(given, block.id)
     if not odd:
         return []
     value, block_id = next(iter(odd.items()))
     converted = f"{value:g} {name}" + (f", which is {value * per_unit:.4g} kN/m3" if name != "kN/m3" else "")
     remedy = "the unit?"
-    if units.unit_weight is None and UNIT_WEIGHTS[0] <= value <= UNIT_WEIGHTS[1]:
+    if units.unit_weight is None and _UNIT_WEIGHTS[0] <= value <= _UNIT_WEIGHTS[1]:
         remedy = 'if it is meant per cubic metre, add "unit_weight": "kN/m3" to units'
-    elif UNIT_WEIGHTS[0] <= value * KILONEWTONS["kg"] <= UNIT_WEIGHTS[1]:
+    elif _UNIT_WEIGHTS[0] <= value * KILONEWTONS["kg"] <= _UNIT_WEIGHTS[1]:
         remedy = 'if it is a density, add "unit_weight": "kg/m3" to units'
     elif value == 1.0 and not wall.units_declared:
         remedy = 'if the wall has no units, say "units": {"length": "1", "force": "1"}'
     return [
-        f'the unit weight of block "{block_id}" is {converted}, and masonry has {UNIT_WEIGHTS[0]:g} to '
-        f"{UNIT_WEIGHTS[1]:g} kN/m3: {remedy}"
+        f'the unit weight of block "{block_id}" is {converted}, and masonry has {_UNIT_WEIGHTS[0]:g} to '
+        f"{_UNIT_WEIGHTS[1]:g} kN/m3: {remedy}"
     ]
 
 
@@ -181,7 +181,7 @@ def _size_slips(wall: Wall, blocks: list[Block], assembly: Assembly) -> list[str
             sentences.append(f"the wall is {shown} across ({given}): the unit of length?")
     begins = np.cumsum([0, *(len(polygon) for polygon in free[:-1])])
     sizes = (np.maximum.reduceat(points, begins) - np.minimum.reduceat(points, begins)).max(axis=1)
-    small = np.flatnonzero(sizes < SMALL_BLOCK * extent)
+    small = np.flatnonzero(sizes < _SMALL_BLOCK * extent)
     if len(small):
         names = [name for name, still in zip(assembly.block_ids, assembly.fixed, strict=True) if not still]
         sentences.append(
@@ -194,11 +194,11 @@ def _size_slips(wall: Wall, blocks: list[Block], assembly: Assembly) -> list[str
 def _load_slips(assembly: Assembly) -> list[str]:
     dead = float(np.abs(assembly.dead[:, :2]).sum())
     live = float(np.abs(assembly.live[:, :2]).sum())
-    if 0.0 < live < SMALL_LOAD * dead:
+    if 0.0 < live < _SMALL_LOAD * dead:
         return [
             f"the live load is {live / dead:.1g} of the dead load, and a multiplier as large as the inverse: units, or "
             "a weight too large?"
         ]
-    if 0.0 < dead < SMALL_LOAD * live:
+    if 0.0 < dead < _SMALL_LOAD * live:
         return [f"the dead load is {dead / live:.1g} of the live load: units, or a weight too small?"]
     return []

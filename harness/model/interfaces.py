@@ -19,7 +19,7 @@ from harness.model.wall import Detection, Interface
 
 DEFAULT_TOLERANCE = 1e-6
 """Greatest gap and overlap of the faces of a joint, in typical block sizes, where a wall does not say."""
-LEAST_CONTACT = 0.01
+_LEAST_CONTACT = 0.01
 """Least length of a contact, in typical block sizes, where the gap may be larger: 3 mm on a brick of 300."""
 
 
@@ -43,7 +43,7 @@ def limits_of(detection: Detection, size: float) -> JointLimits:
         gap=gap,
         overlap=detection.greatest_overlap or detection.tolerance or DEFAULT_TOLERANCE * size,
         angle=math.radians(detection.greatest_angle),
-        length=detection.least_contact or min(gap, LEAST_CONTACT * size),
+        length=detection.least_contact or min(gap, _LEAST_CONTACT * size),
         sight=detection.sight or max(TIMES * gap, geometry.NEAR * size),
     )
 

@@ -27,7 +27,7 @@ MOST_NESTED = 40
 """Depth of a JSON document. A wall needs 7 levels; beyond some 200 its readers and writers reach their own limits."""
 
 
-HALF_CHARACTER = re.compile(r"\\u[dD][89a-fA-F]")
+_HALF_CHARACTER = re.compile(r"\\u[dD][89a-fA-F]")
 """An escape that is one half of a surrogate pair."""
 
 
@@ -201,7 +201,7 @@ def json_of(text: str, source: str, most_values: int = MOST_VALUES) -> Any:
         raise too_deep from None
     if nested_deeper(data, MOST_NESTED):
         raise too_deep
-    if HALF_CHARACTER.search(text):
+    if _HALF_CHARACTER.search(text):
         _refuse_half_characters(data, source)
     return data
 

@@ -22,9 +22,9 @@ from harness.model.wall import MOST_LOAD_CASES, Wall
 
 _TITLE_JOINT = ", load case "
 """Between the title of a wall and the name of a load case."""
-MOST_ADDED = 100_000
+_MOST_ADDED = 100_000
 """Forces and pressures that the combinations of a wall add up, a second of work."""
-MOST_BUILT = 200_000
+_MOST_BUILT = 200_000
 """Blocks that are built under load cases, those of every load case counted: some seconds of work."""
 
 
@@ -68,9 +68,9 @@ def named_loads(wall: Wall) -> dict[str, NamedLoads]:
         for suffix, chosen in _chosen(name, factors, members, alone, MOST_LOAD_CASES - len(found)):
             cases = {each: alone[each] for each in chosen}
             added += sum(_count(case.own) for case in cases.values())
-            if added > MOST_ADDED:
+            if added > _MOST_ADDED:
                 raise InputError(
-                    f"it and those before it add up more than {MOST_ADDED:,} forces and pressures",
+                    f"it and those before it add up more than {_MOST_ADDED:,} forces and pressures",
                     "Combine fewer load cases, or give those on the same blocks as one",
                     f"combinations.{name}",
                 )
@@ -170,10 +170,10 @@ def each_built(wall: Wall, names: Mapping[str, str], known: dict[str, NamedLoads
     """
     walls = {load_case: under_load_case(wall, load_case, known) for load_case in names}
     blocks = blocks_of_wall(wall)
-    if len(names) > 1 and len(names) * len(blocks) > MOST_BUILT:
+    if len(names) > 1 and len(names) * len(blocks) > _MOST_BUILT:
         raise InputError(
             f"its {len(blocks):,} blocks are built under each of {len(names):,} load cases, and at most "
-            f"{MOST_BUILT:,} in all",
+            f"{_MOST_BUILT:,} in all",
             "Give fewer load cases, or choose one with --load-case of run or expand",
             wall.load_cases_place,
         )

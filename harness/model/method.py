@@ -306,14 +306,14 @@ def check_takes(method: Method, assembly: Assembly) -> None:
 
 
 GROUP = "drystone.methods"
-UNLISTED = "drystone.unlisted_methods"
+_UNLISTED = "drystone.unlisted_methods"
 """Group of entry points of methods that run by name and stand in no list."""
 
 
 @cache
 def method_points() -> tuple[EntryPoint, ...]:
     """The entry points of all installed methods; looked for once in a process."""
-    return (*entry_points(group=GROUP), *entry_points(group=UNLISTED))
+    return (*entry_points(group=GROUP), *entry_points(group=_UNLISTED))
 
 
 def method_names() -> list[str]:
@@ -325,7 +325,7 @@ def method_names() -> list[str]:
 
 def listed_methods() -> list[str]:
     """Names of the methods that users choose from, sorted."""
-    unlisted = {point.name for point in method_points() if point.group == UNLISTED}
+    unlisted = {point.name for point in method_points() if point.group == _UNLISTED}
     return [name for name in method_names() if name not in unlisted]
 
 

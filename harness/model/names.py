@@ -12,7 +12,7 @@ from harness.model.pressure_fields import Fill, Pressure
 from harness.model.wall import Block, Detection, Wall
 
 
-def name_faults(blocks: Iterable[tuple[str, str]], named: Iterable[tuple[str, str]]) -> list[InputError]:
+def _name_faults(blocks: Iterable[tuple[str, str]], named: Iterable[tuple[str, str]]) -> list[InputError]:
     """What is wrong with names: ids that two blocks have, and blocks named that there are not.
 
     Args:
@@ -40,7 +40,7 @@ def name_faults(blocks: Iterable[tuple[str, str]], named: Iterable[tuple[str, st
 
 def faults_of_wall(wall: Wall, blocks: list[Block]) -> list[InputError]:
     """The faults of names of a wall whose patterns are blocks by now."""
-    found = name_faults(((f'block "{block.id}"', block.id) for block in blocks), _named(wall))
+    found = _name_faults(((f'block "{block.id}"', block.id) for block in blocks), _named(wall))
     return found + _groups_and_supports(wall, blocks)
 
 
@@ -153,7 +153,9 @@ def faults_of_data(data: dict[str, Any]) -> list[InputError]:
         for number, point in enumerate(_list(loads[kind], "points"))
         if isinstance(point.get("block"), str)
     ]
-    return faults + name_faults(((f'blocks[{k}] ("{item["id"]}")', item["id"]) for k, item in enumerate(blocks)), named)
+    return faults + _name_faults(
+        ((f'blocks[{k}] ("{item["id"]}")', item["id"]) for k, item in enumerate(blocks)), named
+    )
 
 
 def _list(data: dict[str, Any], name: str) -> list[dict[str, Any]]:

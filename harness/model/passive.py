@@ -34,7 +34,7 @@ Strip = tuple[int, int, FloatArray]
 """Part of a face: its edge, 1 where the fill is on its right and -1 on its left, and its two ends (2, 2) [length]."""
 
 
-def passive_coefficient(passive: Passive) -> float:
+def _passive_coefficient(passive: Passive) -> float:
     """Horizontal over vertical stress where the fill yields: K_p as given, or (1 + sin phi)/(1 - sin phi)."""
     if passive.coefficient is not None:
         return passive.coefficient
@@ -73,7 +73,7 @@ def passive_bars(
             'Leave "passive" out, or give a "level" above such a face, and "between" that begins or ends at it',
             place,
         )
-    strongest = passive.mobilised * passive_coefficient(passive) * unit_weight_factor * fill.unit_weight
+    strongest = passive.mobilised * _passive_coefficient(passive) * unit_weight_factor * fill.unit_weight
     names, keys, found = tuple(laid.index), list(full), np.array(list(full.values()))
     middle = found[:, 1:3] / found[:, :1]
     side = np.array([key[1] for key in keys], dtype=float)

@@ -11,9 +11,9 @@ from harness.model.errors import MOST_NAMED, InputError, first_few
 from harness.model.geometry import distances_beyond
 from harness.model.load_fields import Load, Loads
 
-BESIDE = 0.05
+_BESIDE = 0.05
 """Distance from its block, in typical block sizes, beyond which a point force or an interface is worth a warning."""
-ASTRAY = 0.5
+_ASTRAY = 0.5
 """Distance from its blocks, in typical block sizes, beyond which a given interface is refused."""
 SHORT = 1e-3
 """Length of an interface, in typical block sizes, below which it is worth a warning."""
@@ -91,16 +91,16 @@ def interface_warnings(assembly: Assembly, size: float, first: int = 0) -> list[
     off = np.zeros(assembly.n_interfaces)
     for block in (assembly.block_a, assembly.block_b):
         for end in (assembly.face1, assembly.face2):
-            off = np.maximum(off, distances_beyond(assembly.polygons, block, end, BESIDE * size))
+            off = np.maximum(off, distances_beyond(assembly.polygons, block, end, _BESIDE * size))
     off[:first] = 0.0
-    if off.max(initial=0.0) > ASTRAY * size:
+    if off.max(initial=0.0) > _ASTRAY * size:
         number = int(np.argmax(off))
         raise InputError(
             f"an end of it lies {off[number]:.3g} away from one of its blocks, whose typical size is {size:.3g}",
             'Let "from" and "to" lie on the faces that touch',
             f"interfaces[{number - first}] between {' and '.join(_blocks_of(assembly, number))}",
         )
-    beside = np.flatnonzero(off > BESIDE * size).tolist()
+    beside = np.flatnonzero(off > _BESIDE * size).tolist()
     if not beside:
         return []
     shown = first_few(
@@ -116,7 +116,7 @@ def force_warnings(assembly: Assembly, loads: Loads, size: float) -> list[str]:
     for where, load in (("loads.dead", loads.dead), ("loads.live", loads.live or Load())):
         blocks = np.array([index[point.block] for point in load.points], dtype=np.int64)
         places = np.array([point.at for point in load.points], dtype=float).reshape(-1, 2)
-        off = distances_beyond(assembly.polygons, blocks, places, BESIDE * size)
+        off = distances_beyond(assembly.polygons, blocks, places, _BESIDE * size)
         beside = np.flatnonzero(off).tolist()
         sentences += [
             f'{where}.points[{number}] acts {off[number]:.3g} away from block "{load.points[number].block}": an arm, '

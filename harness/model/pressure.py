@@ -18,11 +18,11 @@ from harness.model.errors import InputError
 from harness.model.geometry import following
 from harness.model.pressure_fields import Earth, Pressure, Water
 
-ON_FACE = 1e-3
+_ON_FACE = 1e-3
 """Distance from a face, in typical block sizes, within which a segment lies on it: coordinates are rounded."""
 
 
-def earth_coefficient(earth: Earth) -> float:
+def _earth_coefficient(earth: Earth) -> float:
     """Horizontal over vertical stress: K as given, (1 - sin phi)/(1 + sin phi) active, 1 - sin phi at rest."""
     if earth.coefficient is not None:
         return earth.coefficient
@@ -73,8 +73,8 @@ def pressure_forces(
     start, end = np.array(pressure.start), np.array(pressure.end)
     length = float(np.hypot(*(end - start)))
     along = (end - start) / length
-    faces = _faces_along(start, along, length, chosen, outlines, ON_FACE * size)
-    _check_cover(faces, start, along, length, ON_FACE * size, place)
+    faces = _faces_along(start, along, length, chosen, outlines, _ON_FACE * size)
+    _check_cover(faces, start, along, length, _ON_FACE * size, place)
     forces = np.zeros((len(centroids), 3))
     for first, last, block, side in faces:
         inward = side * np.array([-along[1], along[0]])
@@ -167,7 +167,7 @@ def _traction(
     if pressure.earth is not None:
         depth = np.maximum(0.0, pressure.earth.level - points[:, 1])
         vertical = pressure.earth.surcharge + unit_weight_factor * pressure.earth.unit_weight * depth
-        return np.outer(vertical, [earth_coefficient(pressure.earth) * inward[0], min(0.0, inward[1])])
+        return np.outer(vertical, [_earth_coefficient(pressure.earth) * inward[0], min(0.0, inward[1])])
     ends = (pressure.uniform,) * 2 if pressure.linear is None else pressure.linear
     begin, end = np.array(ends, dtype=float)
     return np.outer(begin + (end - begin) * np.array(shares), inward)

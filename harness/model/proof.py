@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from harness.model.comparison import CaseResults
     from harness.model.result import Result
 
-CERTIFIED = 3e-6
+_CERTIFIED = 3e-6
 """Relative height above a certified bound up to which a state is called the minimum: certificates leave 2e-6, and the
 rest is for rounding of the state."""
 EQUAL = 1e-9
@@ -140,7 +140,7 @@ def proof_of(item: CaseResults, result: Result) -> Proof:
     sound = [each for each in item.results if each.status is Status.OK and each.judge.accepted is not False]
     floating = [(_said(each), each.method) for each in sound if _said(each) <= min(value, least)]
     lower, by = max(floating, key=lambda pair: pair[0], default=(0.0, ""))
-    if bound is not None and value - bound <= CERTIFIED * abs(value):
+    if bound is not None and value - bound <= _CERTIFIED * abs(value):
         return Proof(Standing.MINIMUM, bound, refused=refused)
     if AnswerDetails(result.details).proved_least and value <= least + EQUAL * abs(least):
         return Proof(Standing.TO_ROUNDING, bound, by=result.method, refused=refused)
@@ -155,7 +155,7 @@ def _certified_bound(item: CaseResults, value: float, least: float) -> float | N
     known = item.certified
     if known is None or known.bound > value or (known.from_zero and value <= 0.0):
         return None
-    return None if known.bound - least > CERTIFIED * abs(known.bound) else known.bound
+    return None if known.bound - least > _CERTIFIED * abs(known.bound) else known.bound
 
 
 def _said(result: Result) -> float:

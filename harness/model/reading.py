@@ -167,7 +167,7 @@ def _members(annotation: Any) -> list[Any]:
     return [member for argument in arguments for member in _members(argument)]
 
 
-MOST_ENTRIES = {"blocks": MOST_BLOCKS, "interfaces": 3 * MOST_BLOCKS}
+_MOST_ENTRIES = {"blocks": MOST_BLOCKS, "interfaces": 3 * MOST_BLOCKS}
 """Of a wall: no plane graph has more than three joints a block."""
 DRAWINGS: dict[str, Callable[[Path], Any]] = {}
 """Readers of drawings by the ending of their names: each gives JSON data of a wall.
@@ -195,7 +195,7 @@ def parse_wall(data: Any, source: str) -> Wall:
     if data.get("format") != "wall/1":
         given = f"format is {data['format']!r}" if "format" in data else "it has no format"
         raise InputError(given, 'This release reads "format": "wall/1"', "format", source)
-    for entries, most in MOST_ENTRIES.items():
+    for entries, most in _MOST_ENTRIES.items():
         listed = data.get(entries)
         if isinstance(listed, list) and len(listed) > most:
             problem = f"it has {len(listed):,} {entries}, and at most {most:,} are read"

@@ -173,7 +173,7 @@ def _beside(result: Result, own: object) -> Result | None:
         return None
 
 
-def measured_bracket(answer: Answer | Result) -> tuple[float, float] | None:
+def _measured_bracket(answer: Answer | Result) -> tuple[float, float] | None:
     """The bracket between whose ends a multiplier was measured; None without one.
 
     The zero of a wall at its limit is no measurement: statics shows it (`harness.model.limit`).
@@ -183,7 +183,7 @@ def measured_bracket(answer: Answer | Result) -> tuple[float, float] | None:
 
 def measured_width(answer: Answer | Result) -> float | None:
     """Width of the bracket of a measured multiplier as a share of its larger end; None without one, or at zero."""
-    low, high = measured_bracket(answer) or (0.0, 0.0)
+    low, high = _measured_bracket(answer) or (0.0, 0.0)
     larger = max(abs(low), abs(high))
     return abs(high - low) / larger if larger > 0.0 else None
 
@@ -194,7 +194,7 @@ def bracket_is_wide(answer: Answer | Result, traits: Traits) -> bool:
     Within the stated accuracy the middle lies at most that far from either end. There is no other notion of "wide":
     every output marks such a bracket, and studies leave it out of means.
     """
-    low, high = measured_bracket(answer) or (0.0, 0.0)
+    low, high = _measured_bracket(answer) or (0.0, 0.0)
     return high - low > max(traits.accuracy * abs(low + high), traits.resolution) * (1.0 + 1e-9)
 
 

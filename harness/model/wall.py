@@ -43,11 +43,11 @@ from harness.model.load_fields import DEAD, Combination, Loads, Travelling
 from harness.model.pattern_fields import Pattern
 from harness.model.units import DIMENSIONLESS, KILONEWTONS, METRES, ForceUnit, LengthUnit, unit_weight_in_kn_m3
 
-MOST_VERTICES = 5_000
+_MOST_VERTICES = 5_000
 """Of one outline: joints of two faces are found in time that grows with the square of their vertices."""
 MOST_LOAD_CASES = 500
 """Each is built, and answered, as a wall of its own."""
-LOAD_CASE_NAME = r"[a-z0-9][a-z0-9-]{0,59}"
+_LOAD_CASE_NAME = r"[a-z0-9][a-z0-9-]{0,59}"
 """A load case is part of the id of a case, which users type."""
 
 
@@ -103,9 +103,9 @@ class Block(Strict):
     id: Name
     polygon: Annotated[
         list[Point],
-        Field(min_length=3, max_length=MOST_VERTICES, description="vertices in order round the block, either way"),
+        Field(min_length=3, max_length=_MOST_VERTICES, description="vertices in order round the block, either way"),
     ]
-    holes: list[Annotated[list[Point], Field(min_length=3, max_length=MOST_VERTICES)]] = Field(
+    holes: list[Annotated[list[Point], Field(min_length=3, max_length=_MOST_VERTICES)]] = Field(
         default_factory=list, description="polygons within it that are not stone, as of a frame"
     )
     weight: NonNegative | None = Field(None, description="weight [force]; else unit_weight x area x thickness")
@@ -300,7 +300,7 @@ class Wall(Strict):
         if self.combinations and DEAD in named:
             raise ValueError(f'"{DEAD}" is gravity and the dead load in combinations: give the load case another name')
         for name in named:
-            if re.fullmatch(LOAD_CASE_NAME, name) is None:
+            if re.fullmatch(_LOAD_CASE_NAME, name) is None:
                 raise ValueError(
                     f'"{name}" is no name of a load case: give small letters, digits and hyphens, as "snow-left"'
                 )

@@ -11,7 +11,7 @@ from typing import Any
 
 from harness.model.errors import InputError
 
-FORMULA = ("=", "+", "-", "@", "\t", "\r")
+_FORMULA = ("=", "+", "-", "@", "\t", "\r")
 """Beginnings of a cell that spreadsheets take for a formula."""
 
 
@@ -84,7 +84,7 @@ def cell(value: Any) -> Any:
 
     Texts that are numbers stay as they are, as numbers do.
     """
-    if not isinstance(value, str) or not value.startswith(FORMULA):
+    if not isinstance(value, str) or not value.startswith(_FORMULA):
         return value
     try:
         float(value)

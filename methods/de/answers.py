@@ -60,7 +60,7 @@ def solve_by_holds(
 
     def to_its_end() -> Answer:
         known.search_ahead(searches(candidates[0], 0), assembly.has_live_load)
-        tuning, first = first_bracket(lambda tuning: searches(tuning, 0, 1)[0], assembly, candidates, known)
+        tuning, first = _first_bracket(lambda tuning: searches(tuning, 0, 1)[0], assembly, candidates, known)
         known.finished.append(first)
         if tuning is not candidates[0]:
             known.search_ahead(searches(tuning, 1), assembly.has_live_load)
@@ -107,7 +107,7 @@ def _with_state(
     return answer
 
 
-def first_bracket(
+def _first_bracket(
     search: Callable[[MassScaling], BracketSearch],
     assembly: Assembly,
     candidates: list[MassScaling],

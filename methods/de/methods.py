@@ -12,7 +12,7 @@ from methods.de.settings import (
     UnevenSettings,
 )
 
-UNEVEN_RESOLUTION = 0.005
+_UNEVEN_RESOLUTION = 0.005
 """Difference to which brackets of uneven walls are narrowed by default."""
 
 DE = Listed(
@@ -82,7 +82,7 @@ DE_UNEVEN = Listed(
     traits=Traits(
         caption="between held and moving, uneven blocks",
         brackets=True,
-        resolution=UNEVEN_RESOLUTION,
+        resolution=_UNEVEN_RESOLUTION,
         colour="#2f6b3a",
         marker="h",
         line="dashdot",
@@ -100,7 +100,7 @@ DE_CLOSED = Listed(
     traits=Traits(
         caption="plateau over the closed contacts",
         brackets=True,
-        resolution=UNEVEN_RESOLUTION,
+        resolution=_UNEVEN_RESOLUTION,
         colour="#2f6b3a",
         marker="p",
         line="dashed",

@@ -20,7 +20,7 @@ from methods.springs.path.path_record import PathEnd, PathRecord
 from methods.springs.path.plateau import PlateauState
 from methods.springs.rest.newton import Equilibrium
 
-PATH_POINTS = 300
+_PATH_POINTS = 300
 """Points of a path that an answer keeps, at most."""
 
 SPREAD = 0.025
@@ -185,7 +185,7 @@ def collapse_answer(model: WallModel, results: list[HistoryResult], factorisatio
 def compact(model: WallModel, record: PathRecord) -> dict[str, list[float]]:
     """Some of the points of a path, evenly picked, the last one kept, with what changes there where that is known."""
     count = len(record.multiplier)
-    pick = np.unique(np.linspace(0, count - 1, min(count, PATH_POINTS)).astype(int)) if count else np.array([], int)
+    pick = np.unique(np.linspace(0, count - 1, min(count, _PATH_POINTS)).astype(int)) if count else np.array([], int)
     bars = [model.assembly.joint[p] for p in np.flatnonzero(model.assembly.is_bar)]
     scale = model.displacement / (float(np.abs(model.live.reshape(-1, 3)[:, :2]).sum()) or 1.0)
     changes = [record.change[i] for i in pick]

@@ -119,7 +119,7 @@ class GapSprings(Solver):
             settings.max_events or events.fewest + count * model.n_points for count in (events.first, events.further)
         ]
         limit = limits[model.assembly.n_free > histories.large]
-        for step in chosen_histories(model, settings, events):
+        for step in _chosen_histories(model, settings, events):
             if settings.histories is None and _agree(results, events.agreeing):
                 break
             plan = HistoryPlan(step, scale, limit, load_steps=settings.load_steps, options=histories)
@@ -159,7 +159,7 @@ def _by_displacement_control(model: WallModel, factor: Factor, gravity: Equilibr
     return single_state_answer(model, result.state, sentence, result.record, details, result.iterations)
 
 
-def chosen_histories(model: WallModel, settings: GapSpringsSettings, limits: BreakpointLimits) -> tuple[float, ...]:
+def _chosen_histories(model: WallModel, settings: GapSpringsSettings, limits: BreakpointLimits) -> tuple[float, ...]:
     """The commit intervals to run: as set, or by the size of the wall; none where joints dilate."""
     if settings.histories is not None:
         return settings.histories

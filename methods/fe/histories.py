@@ -62,7 +62,7 @@ SENTENCES = {
     PathEnd.BROKEN: "a brittle joint has reached its strength",
     PathEnd.TIME: f"the path was {STOPPED}",
 }
-BELOW_ZERO = "the path has a peak but runs down below zero: past its peak the wall falls under its dead load alone"
+_BELOW_ZERO = "the path has a peak but runs down below zero: past its peak the wall falls under its dead load alone"
 
 
 @dataclass(frozen=True)
@@ -243,7 +243,7 @@ def _followed(follower: PathFollower, plan: HistoryPlan, record: PathRecord) -> 
     )
     sentence = SENTENCES[end]
     if state is not None and state.multiplier < 0.0:
-        state, end, sentence = None, PathEnd.RUNS_DOWN, BELOW_ZERO
+        state, end, sentence = None, PathEnd.RUNS_DOWN, _BELOW_ZERO
     elif state is None and end == PathEnd.PLATEAU:
         sentence = _not_collapse(model, follower.present().velocity)
     if plan.committed_up_to < np.inf:

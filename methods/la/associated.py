@@ -37,7 +37,7 @@ class AssociatedLimitAnalysis(LimitAnalysisFamily):
 
     def answer(self, assembly: Assembly, problem: Problem, newton: NewtonMatrix, settings: Any) -> Answer:
         """The linear programme by simplex or interior point."""
-        return associated_answer(problem, solve_associated(problem, newton, settings.solver, self._end), 1e-9)
+        return _associated_answer(problem, solve_associated(problem, newton, settings.solver, self._end), 1e-9)
 
     def greatest(self, settings: Any) -> Greatest:
         """Linear programmes with chords and tangents of the stress blocks."""
@@ -51,15 +51,15 @@ class AssociatedLimitAnalysisCvxpy(LimitAnalysisFamily):
         """The linear programme through cvxpy; its mechanism is found as for `la-associated`."""
         outcome, forces, multiplier = solve_with_cvxpy(problem, settings.solver)
         if forces is None:
-            return associated_answer(problem, AssociatedResult(outcome), 1e-9)
-        return associated_answer(problem, with_mechanism(problem, newton, forces, multiplier, 0), 1e-9)
+            return _associated_answer(problem, AssociatedResult(outcome), 1e-9)
+        return _associated_answer(problem, with_mechanism(problem, newton, forces, multiplier, 0), 1e-9)
 
     def greatest(self, settings: Any) -> Greatest:
         """The programme of cones."""
         return partial(greatest_by_cones, solver=settings.cone_solver)
 
 
-def associated_answer(problem: Problem, result: AssociatedResult, tolerance: float) -> Answer:
+def _associated_answer(problem: Problem, result: AssociatedResult, tolerance: float) -> Answer:
     """The answer that belongs to the outcome of the associated programme."""
     if result.outcome == "unbounded":
         return unbounded_answer(

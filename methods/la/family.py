@@ -21,7 +21,7 @@ Answering = Callable[[Assembly, Problem, NewtonMatrix, Any], Answer]
 """Answers for a component that stands under its dead load and carries a live load, by the settings."""
 
 
-def proved_of_all(answer: Answer, parts: Sequence[Answer]) -> Answer:
+def _proved_of_all(answer: Answer, parts: Sequence[Answer]) -> Answer:
     """The answer for a wall with the lower bound that holds of all of its components, not of the deciding one alone.
 
     A component that fails at a higher multiplier, as far as is known, may fail below too. A certificate of one
@@ -70,7 +70,7 @@ class LimitAnalysisFamily(Solver):
             parts.append(self._of_component(part, settings, answer))
             return parts[-1]
 
-        return proved_of_all(analysed(assembly, solve_part), parts)
+        return _proved_of_all(analysed(assembly, solve_part), parts)
 
     def _of_component(self, assembly: Assembly, settings: Any, answer: Answering | None = None) -> Answer:
         """The answer of the dead load where it decides, else that of `answer`, by default the method's own."""

@@ -39,7 +39,7 @@ from methods.la.sources.budget import Budget, rounds_of
 from methods.la.sources.search import Choices, Search
 from methods.numerics.failures import NumericalFailure
 
-NOT_EXACT = "No state is in equilibrium at the lightest blocks too: weights differ too much within the wall"
+_NOT_EXACT = "No state is in equilibrium at the lightest blocks too: weights differ too much within the wall"
 SAME_MULTIPLIER = 1e-9
 """Relative difference of two multipliers below which the state with the smaller residuals is the better one."""
 
@@ -90,7 +90,7 @@ def _found(search: Search, settings: SearchSettings, tolerance: float) -> Answer
         return _with_falling_blocks(_nothing_found(search), falling)
     chosen = _chosen(search)
     if chosen is None:
-        return not_converged(f"{NOT_EXACT}.", search.budget.spent.newton_steps)
+        return not_converged(f"{_NOT_EXACT}.", search.budget.spent.newton_steps)
     best, proof = chosen
     details = _details(search, best, proof)
     exact = not problem.dilates and problem.law.is_cone  # the equations in fractions are of dry joints

@@ -102,14 +102,14 @@ class SettledUntil:
     reason: str
 
 
-def with_least_reaction(wall: MovedWall) -> StandingState | str:
+def _with_least_reaction(wall: MovedWall) -> StandingState | str:
     """The least reaction of a wall as it stands, or how the programme ended."""
     found = extreme_reaction(wall.assembly, greatest=False, parted=~wall.closed)
     return found if isinstance(found, str) else StandingState(wall, found.reaction, found.forces, found.mechanism)
 
 
 def settle(
-    start: MovedWall, steps: SettlingSteps = SettlingSteps(), state_of: StateOf = with_least_reaction
+    start: MovedWall, steps: SettlingSteps = SettlingSteps(), state_of: StateOf = _with_least_reaction
 ) -> SettledUntil | str:
     """Move the wall along its mechanisms until it falls; or how the first programme ended without a solution.
 

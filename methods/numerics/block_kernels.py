@@ -12,9 +12,9 @@ from methods.numerics.compiled import compiled, compiled_loosely
 
 COLUMNS = 8
 """Right-hand sides that are solved for at once: reading the factors from memory costs more than the sums."""
-LIBRARY_ENTRIES = 100
+_LIBRARY_ENTRIES = 100
 """Matrices of fewer entries than this are multiplied with COLUMNS columns by our own loops, for the same reason."""
-LIBRARY_PRODUCTS = 4000
+_LIBRARY_PRODUCTS = 4000
 """Products of fewer multiplications than this are spelt out: a library call would cost more."""
 
 
@@ -109,7 +109,7 @@ def _solve_columns(lu: FloatArray, swapped: IntArray, x: FloatArray) -> None:
 def _product(a: FloatArray, b: FloatArray, out: FloatArray) -> None:
     """out = a b' for row-major a (3 p, q), b (3 s, q)."""
     p, q, s = a.shape[0], a.shape[1], b.shape[0]
-    if p * q * s >= LIBRARY_PRODUCTS:
+    if p * q * s >= _LIBRARY_PRODUCTS:
         np.dot(a, b.T, out)
         return
     for i in range(p):
@@ -323,7 +323,7 @@ def substitute_many(
                 j = 3 * row[q0 + i // 3] + i % 3
                 for c in range(COLUMNS):
                     part[i, c] = x[j, c]
-            if r * w >= LIBRARY_ENTRIES:
+            if r * w >= _LIBRARY_ENTRIES:
                 np.dot(up.T, part, product)
                 for i in range(w):
                     for c in range(COLUMNS):
@@ -340,7 +340,7 @@ def substitute_many(
 @compiled_loosely
 def _times(a: FloatArray, x: FloatArray, out: FloatArray) -> None:
     """out = a x for x (q, COLUMNS)."""
-    if a.size >= LIBRARY_ENTRIES:
+    if a.size >= _LIBRARY_ENTRIES:
         np.dot(a, x, out)
         return
     for i in range(a.shape[0]):

@@ -46,7 +46,7 @@ class BlockPattern:
     """
 
     def __init__(self, first: IntArray, second: IntArray, n: int, supernodes: Supernodes = Supernodes()) -> None:
-        """Find the fill of n blocks of unknowns in contact in the pairs (first, second), each (m,), in postorder."""
+        """Find the fill of n blocks of unknowns in contact in the pairs (first, second), each (m,), in _postorder."""
         below, _ = _fill(first, second, n)
         start, rows = _supernodes(below, supernodes)
         self.n = n
@@ -122,7 +122,7 @@ class BlockFactor:
 
 
 def elimination_order(first: IntArray, second: IntArray, n: int) -> IntArray:
-    """Order of n blocks in contact in the pairs (first, second), each (k,): minimum degree, then postorder."""
+    """Order of n blocks in contact in the pairs (first, second), each (k,): minimum degree, then _postorder."""
     ones = np.ones(len(first))
     graph = sp.csr_matrix((ones, (first, second)), shape=(n, n))
     graph = graph + graph.T
@@ -130,11 +130,11 @@ def elimination_order(first: IntArray, second: IntArray, n: int) -> IntArray:
     lu = splu((graph + sp.diags(degree + 1.0)).tocsc(), permc_spec="MMD_AT_PLUS_A", options={"SymmetricMode": True})
     order = np.argsort(lu.perm_c)
     pairs = np.asarray(sp.triu(graph[order][:, order]).nonzero(), dtype=np.int64)
-    out: IntArray = order[postorder(pairs[0], pairs[1], n)]
+    out: IntArray = order[_postorder(pairs[0], pairs[1], n)]
     return out
 
 
-def postorder(first: IntArray, second: IntArray, n: int) -> IntArray:
+def _postorder(first: IntArray, second: IntArray, n: int) -> IntArray:
     """Blocks in an order with the same fill in which those that are eliminated into each other stand together."""
     below, parent = _fill(first, second, n)
     children: list[list[int]] = [[] for _ in range(n)]

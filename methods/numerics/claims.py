@@ -58,7 +58,7 @@ class Statics:
     at_limit: bool
 
 
-def statics_of(assembly: Assembly) -> Statics | None:
+def _statics_of(assembly: Assembly) -> Statics | None:
     """What statics says of a wall, or None where it has no greatest multiplier.
 
     Where rounding leaves no equilibrium at any multiplier, the strengthened wall shows one that is at its limit.
@@ -103,7 +103,7 @@ def _leaves_open(assembly: Assembly, answer: Answer) -> bool:
 
 def _at_limit(assembly: Assembly, answer: Answer) -> Answer:
     """As `at_limit`, of an answer that leaves it open; raises OutOfTime where the time is over."""
-    statics = statics_of(assembly)
+    statics = _statics_of(assembly)
     if statics is not None and statics.at_limit:
         return _with_limit(answer, statics)
     bears = 0.0 if statics is None else statics.multiplier
@@ -242,7 +242,7 @@ def _proved(assembly: Assembly, answer: Answer) -> Answer:
             answer, forces=forces, forces_multiplier=0.0, details=answer.details | {"live_forces": growth.tolist()}
         )
     if answer.finding is Finding.AT_LIMIT:
-        statics = statics_of(assembly)
+        statics = _statics_of(assembly)
         if statics is None or not statics.at_limit:
             return answer
         shown = {"dead_forces": statics.forces.tolist(), "dilatant_mechanism": statics.mechanism.tolist()}

@@ -15,7 +15,7 @@ from numba.extending import lower_builtin, type_callable
 
 AnyFunction = TypeVar("AnyFunction", bound=Callable[..., Any])
 
-LOOSELY = {"reassoc", "contract", "nsz"}
+_LOOSELY = {"reassoc", "contract", "nsz"}
 """What `compiled_loosely` allows of LLVM."""
 
 
@@ -33,7 +33,7 @@ def compiled_loosely(function: AnyFunction) -> AnyFunction:
 
     The order is fixed when the code is compiled, so runs on one machine repeat bit by bit.
     """
-    return _compile(function, fastmath=LOOSELY)
+    return _compile(function, fastmath=_LOOSELY)
 
 
 def _compile(function: AnyFunction, fastmath: Any) -> AnyFunction:

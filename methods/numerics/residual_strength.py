@@ -63,7 +63,7 @@ def between(assembly: Assembly, plastic: Answer, residual: Answer) -> Answer:
             "how they break."
         )
         return replace(plastic, sentence=sentence, details=plastic.details | {"without_strength": _as_detail(residual)})
-    kept = {name: value for name, value in residual.details.items() if name not in OF_PROOFS}
+    kept = {name: value for name, value in residual.details.items() if name not in _OF_PROOFS}
     upper = f"{plastic.multiplier:.7g}" if plastic.multiplier is not None else f'the answer "{plastic.finding}"'
     sentence = (
         f"{residual.sentence} That is with all brittle joints broken, a safe estimate; if all joints kept their "
@@ -74,7 +74,7 @@ def between(assembly: Assembly, plastic: Answer, residual: Answer) -> Answer:
     return replace(residual, sentence=sentence, details=kept | own)
 
 
-OF_PROOFS = ("proved_least", "lower_bound", "certificate", "certified_bound")
+_OF_PROOFS = ("proved_least", "lower_bound", "certificate", "certified_bound")
 """Details that prove no state to lie lower."""
 
 

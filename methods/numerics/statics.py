@@ -16,9 +16,9 @@ from harness.model.joint_law import JointLaw
 if TYPE_CHECKING:
     from methods.numerics.vertex import Vertex
 
-LEAST_WORK = 1e-7
+_LEAST_WORK = 1e-7
 """Work of the dead load that shows a fall, as total weight times speed: a programme to 1e-9 makes up less."""
-LEAST_EXACT_WORK = 1e-8
+_LEAST_EXACT_WORK = 1e-8
 """The same of a mechanism to rounding: on its closings, some 1e-16 a contact, forces of 1e7 dead loads do no more."""
 COST = 1e4
 """Of the multiplier in a programme for the greatest one, a block."""
@@ -174,7 +174,7 @@ def dilatant_mechanism(
 ) -> FloatArray | None:
     """A mechanism (n, 3) of dilatant flow on which a load does positive work, so that no equilibrium exists under it.
 
-    It is that of the greatest work near `about`; None where that is `LEAST_WORK` or less, or where the programme
+    It is that of the greatest work near `about`; None where that is `_LEAST_WORK` or less, or where the programme
     fails: exactly no work would mean an equilibrium (Farkas' lemma), but the programme holds to its tolerances only.
     None too where joints have strength, whose work is not in the programme.
 
@@ -183,7 +183,7 @@ def dilatant_mechanism(
         load: (n, 3) generalised loads on the blocks [force, force, moment].
         about: (n, 3) velocities [length, length, radian], or None for rest.
         within: largest difference from `about` of a speed, or of a rotation times the length scale.
-        exact: ask for a vertex to rounding, whose work may be as small as `LEAST_EXACT_WORK`.
+        exact: ask for a vertex to rounding, whose work may be as small as `_LEAST_EXACT_WORK`.
     """
     from methods.numerics.linear_programme import INFINITY, Programme  # HiGHS, which few answers need
 
@@ -206,7 +206,7 @@ def dilatant_mechanism(
         if vertex is None or not vertex.feasible:
             return None
         motion = vertex.value
-    if not pull @ motion > (LEAST_EXACT_WORK if exact else LEAST_WORK):
+    if not pull @ motion > (_LEAST_EXACT_WORK if exact else _LEAST_WORK):
         return None
     mechanism = np.zeros((assembly.n_blocks, 3))
     mechanism[assembly.free] = (motion * column).reshape(-1, 3)

@@ -7,7 +7,7 @@ import numpy as np
 from harness.model.assembly import FloatArray
 from methods.numerics.compiled import compiled
 
-UNSIGNED = 0x7FFFFFFFFFFFFFFF
+_UNSIGNED = 0x7FFFFFFFFFFFFFFF
 """All bits of a float but its sign."""
 
 
@@ -20,7 +20,7 @@ def largest(values: FloatArray) -> float:
     bits = values.view(np.int64)
     top = np.zeros(1, dtype=np.int64)
     for i in range(len(bits)):
-        top[0] = max(top[0], bits[i] & UNSIGNED)
+        top[0] = max(top[0], bits[i] & _UNSIGNED)
     size: float = top.view(np.float64)[0]
     return size
 

@@ -159,11 +159,11 @@ class StandardForm:
             return None
         try:
             basis = Basis(self._matrix[:, basic], self._tolerances.rounds)
-            value[basic] = basis.solved(-extended_product(self._by_row, value))
+            value[basic] = basis.solved(-_extended_product(self._by_row, value))
             dual = basis.multipliers(self._cost[basic])
         except NumericalFailure:
             return None
-        reduced = (self._cost - extended_product(self._transposed, dual)).astype(float)
+        reduced = (self._cost - _extended_product(self._transposed, dual)).astype(float)
         reduced[basic] = 0.0
         outside = np.where(basic, np.maximum(self._lower - value, value - self._upper), 0.0).clip(min=0.0)
         fixed = self._lower == self._upper
@@ -283,7 +283,7 @@ class Basis:
         right = np.asarray(right, dtype=np.longdouble)
         solution = np.zeros(len(right), dtype=np.longdouble)
         for _ in range(self._rounds):
-            residual = right - extended_product(by_row, solution)
+            residual = right - _extended_product(by_row, solution)
             change = approximate(residual.astype(float))
             if not np.isfinite(change).all():
                 raise SingularMatrix("the basis is singular to rounding")
@@ -300,7 +300,7 @@ def _largest(place: Any, values: FloatArray, count: int) -> FloatArray:
     return found
 
 
-def extended_product(matrix: sp.csr_matrix, vector: Any) -> Any:
+def _extended_product(matrix: sp.csr_matrix, vector: Any) -> Any:
     """The product of a sparse matrix with a vector in extended precision."""
     product = np.zeros(matrix.shape[0], dtype=np.longdouble)
     terms = matrix.data.astype(np.longdouble) * np.asarray(vector, dtype=np.longdouble)[matrix.indices]

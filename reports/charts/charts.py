@@ -19,7 +19,7 @@ LEFT, RIGHT, BOTTOM, TOP = 62, 14, 46, 14
 ROW, PER_ROW = 18, 3
 LETTER, NOTE = 6.6, 12
 """Width of a letter of a legend, about, and height of a line of notes."""
-MARKERS = (
+_MARKERS = (
     "M-3.5 0a3.5 3.5 0 1 0 7 0a3.5 3.5 0 1 0-7 0z",
     "M-3.2-3.2h6.4v6.4h-6.4z",
     "M0-4.2L4 3H-4z",
@@ -27,11 +27,11 @@ MARKERS = (
     "M0 4.2L4-3H-4z",
     "M-1.2-4.2h2.4v3h3v2.4h-3v3h-2.4v-3h-3v-2.4h3z",
 )
-DASHES = ("", "7 3", "2 3", "9 3 2 3", "4 2", "12 4")
+_DASHES = ("", "7 3", "2 3", "9 3 2 3", "4 2", "12 4")
 COLOURS = 6
 ROUNDING = 1e-9
 """Relative difference of values that are one: an axis of such values is as wide as one of a single value."""
-MOST_POINTS = 300
+_MOST_POINTS = 300
 
 
 @dataclass(frozen=True)
@@ -104,7 +104,7 @@ def ticks(low: float, high: float, wanted: int = 5) -> list[float]:
     return [k * step for k in range(first, last + 1)]
 
 
-def log_ticks(low: float, high: float) -> list[float]:
+def _log_ticks(low: float, high: float) -> list[float]:
     """Powers of ten within an interval; with 2 and 5 between them where it spans less than two decades."""
     decades = range(math.floor(math.log10(low)), math.ceil(math.log10(high)) + 1)
     heads = (1.0,) if math.log10(high / low) > 2.0 else (1.0, 2.0, 5.0)
@@ -127,7 +127,7 @@ class Axis:
             room = 0.06 * apart or 0.05 * abs(high) or 0.5
             low, high = (low if zero and low == 0.0 else low - room), high + room
         self.low, self.high = low, high
-        self.ticks = log_ticks(low, high) if log else ticks(low, high)
+        self.ticks = _log_ticks(low, high) if log else ticks(low, high)
 
     def place(self, value: float) -> float | None:
         """Where a value is drawn, or None if it has no place on this axis."""
@@ -159,7 +159,7 @@ def _short(value: float, digits: int = 4) -> str:
     return f"{value:.{digits}g}".replace("-", "−") if 1e-3 <= abs(value) < 1e5 else numbers.power(value, 2)
 
 
-def thin(x: list[float], y: list[float], most: int = MOST_POINTS) -> tuple[list[float], list[float]]:
+def thin(x: list[float], y: list[float], most: int = _MOST_POINTS) -> tuple[list[float], list[float]]:
     """A path with at most about so many points; in every stretch the first, lowest and highest are kept."""
     if len(x) <= most:
         return x, y
@@ -289,7 +289,7 @@ def _look(series: Series, number: int) -> tuple[Markup, Markup, str, str]:
     if series.mark is None:
         name = f"s{number % COLOURS}"
         line, marker = Markup('class="line {}"').format(name), Markup('class="mark {}"').format(name)
-        return line, marker, DASHES[number % len(DASHES)], MARKERS[number % len(MARKERS)]
+        return line, marker, _DASHES[number % len(_DASHES)], _MARKERS[number % len(_MARKERS)]
     line = Markup('class="line" style="color:{}"').format(series.mark.colour)
     marker = Markup('class="mark" style="color:{}"').format(series.mark.colour)
     return line, marker, series.mark.dashes, series.mark.shape

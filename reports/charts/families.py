@@ -20,7 +20,7 @@ from reports.charts.styles import mark_of
 from reports.geometry import shapes
 from reports.labels import labels, numbers
 
-SMALLEST_FAMILY = 3
+_SMALLEST_FAMILY = 3
 
 Members = list[tuple[float, CaseResults]]
 """Cases of one family, each with its value of the parameter."""
@@ -77,7 +77,7 @@ class Parameter:
 def families(run: ComparisonRun) -> list[StudyCurves]:
     """Studies of all families of at least three walls, friction first."""
     sound = [item for item in run.cases if not shapes.problem(item.case)]
-    return [study for parameter in PARAMETERS for study in _families(run, sound, parameter)]
+    return [study for parameter in _PARAMETERS for study in _families(run, sound, parameter)]
 
 
 def _families(run: ComparisonRun, items: list[CaseResults], parameter: Parameter) -> Iterator[StudyCurves]:
@@ -89,7 +89,7 @@ def _families(run: ComparisonRun, items: list[CaseResults], parameter: Parameter
             groups[parameter.key(item.case.assembly)].append((value, item))
     kinds: dict[str, list[Members]] = defaultdict(list)
     for members in groups.values():
-        if len({value for value, _ in members}) >= SMALLEST_FAMILY:
+        if len({value for value, _ in members}) >= _SMALLEST_FAMILY:
             members.sort(key=lambda pair: pair[0])
             kinds[same_but_both(members[0][1].case.assembly)].append(members)
     for kin in kinds.values():
@@ -211,7 +211,7 @@ def _stretched(assembly: Assembly) -> list[np.ndarray]:
     return [*polygons, np.asarray(assembly.block_a), np.asarray(assembly.block_b), *loads]
 
 
-PARAMETERS = (
+_PARAMETERS = (
     Parameter("friction", "friction tan φ", friction_of, _same_but_friction),
     Parameter("proportion", "width of a block over its height", proportion_of, _same_but_proportion),
 )

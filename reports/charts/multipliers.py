@@ -11,7 +11,7 @@ from reports.drawing.figures import COLUMN, style
 from reports.drawing.looks import COLOURS
 from reports.labels import labels
 
-TALLEST = 9.2
+_TALLEST = 9.2
 """Height of a page [inch]."""
 
 
@@ -22,7 +22,7 @@ def multipliers_figure(run: ComparisonRun) -> Figure:
         key=labels.order,
     )
     with style():
-        page = Figure(figsize=(COLUMN, min(TALLEST, 0.9 + 0.32 * len(run.cases))), layout="constrained")
+        page = Figure(figsize=(COLUMN, min(_TALLEST, 0.9 + 0.32 * len(run.cases))), layout="constrained")
         axes = page.subplots()
         for place, first in enumerate(ordered):
             shift = 0.6 * ((place + 0.5) / len(ordered) - 0.5)

@@ -10,7 +10,7 @@ import pandas as pd
 
 from reports.labels import numbers
 
-MOST_GROUPS = 6
+_MOST_GROUPS = 6
 """Groups told in sentences; more are read from charts and tables."""
 
 
@@ -47,7 +47,7 @@ def _levels(spread: pd.DataFrame, grid: Sequence[str]) -> Iterator[str]:
     told = spread[spread["answered"] > 0]
     varied = [name for name in grid if told[name].nunique() > 1]
     groups = list(told.groupby(["case", "method"], sort=False))
-    if len(groups) > MOST_GROUPS:
+    if len(groups) > _MOST_GROUPS:
         return
     for (case, method), group in groups:
         about = f"{method} on {case}" if told["case"].nunique() > 1 else str(method)
@@ -90,7 +90,7 @@ def _place(row: pd.Series[Any], varied: Sequence[str]) -> str:
 
 def _failures(table: pd.DataFrame | None, grid: Sequence[str]) -> Iterator[str]:
     """The probability of failure at each multiplier asked."""
-    if table is None or len(table) > MOST_GROUPS:
+    if table is None or len(table) > _MOST_GROUPS:
         return
     several = [name for name in ("case", "method", *grid) if table[name].nunique(dropna=False) > 1]
     for row in table.to_dict("records"):
@@ -108,7 +108,7 @@ def _matters(tables: Mapping[str, pd.DataFrame], grid: Sequence[str]) -> Iterato
     if table is None or table["quantity"].nunique() < 2:
         return
     groups = list(table.groupby(["case", "method", *grid], sort=False, dropna=False))
-    if len(groups) > MOST_GROUPS:
+    if len(groups) > _MOST_GROUPS:
         return
     for names, group in groups:
         first, second = (row for _, row in group.sort_values("delta", ascending=False).head(2).iterrows())

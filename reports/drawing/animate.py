@@ -26,10 +26,10 @@ from reports.labels import labels, numbers
 
 FORMATS = (".gif", ".png", ".apng", ".webp")
 FRAMES = 28
-FRAME_MILLISECONDS = 60
-PAUSE_MILLISECONDS = 900
-DOTS_PER_INCH = 160
-GREATEST = 2.0
+_FRAME_MILLISECONDS = 60
+_PAUSE_MILLISECONDS = 900
+_DOTS_PER_INCH = 160
+_GREATEST = 2.0
 """Last displacement, as a multiple of the one the report draws."""
 
 
@@ -58,8 +58,8 @@ def animate(case: Case, result: Result, path: Path) -> None:
             source=case.id,
         )
     images = frames(case, result)
-    durations = [FRAME_MILLISECONDS] * len(images)
-    durations[0] = durations[-1] = PAUSE_MILLISECONDS
+    durations = [_FRAME_MILLISECONDS] * len(images)
+    durations[0] = durations[-1] = _PAUSE_MILLISECONDS
     if suffix == ".gif":
         images = [image.quantize(colors=64, dither=Image.Dither.NONE) for image in images]
     name = {".gif": "GIF", ".webp": "WEBP"}.get(suffix, "PNG")
@@ -80,7 +80,7 @@ def frames(case: Case, result: Result) -> list[Image.Image]:
         return [_picture(case, result, displaced_drawing(case, outlines), box) for outlines in places]
     # The square of time lets the blocks move ever faster, as in a collapse.
     mechanism = np.asarray(result.mechanism, dtype=float)
-    scale = GREATEST * shapes.amplitude(assembly, mechanism)
+    scale = _GREATEST * shapes.amplitude(assembly, mechanism)
     box = _box(assembly, [shapes.displaced(assembly, mechanism, scale)])
     times = np.linspace(0.0, 1.0, FRAMES).tolist()
     return [_picture(case, result, moved_wall(assembly, result, scale * time**2), box) for time in times]
@@ -110,7 +110,7 @@ def _picture(case: Case, result: Result, drawn: DisplayList, box: Box) -> Image.
         value = "" if result.multiplier is None else f" at {numbers.multiplier(result.multiplier)}"
         axes[0][0].set_title(f"{case.id}, {result.method}{value}", pad=3, color=COLOURS["ink"])
         plot(axes[0][0], drawn)
-        page.set_dpi(DOTS_PER_INCH)
+        page.set_dpi(_DOTS_PER_INCH)
         canvas: Any = FigureCanvasAgg(page)
         canvas.draw()
         return Image.fromarray(np.asarray(canvas.buffer_rgba())).convert("RGB")

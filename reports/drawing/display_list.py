@@ -16,7 +16,7 @@ from harness.model.assembly import Assembly, FloatArray
 from reports.geometry import shapes
 
 SIZE = 4000
-MARGIN = 560
+_MARGIN = 560
 BELOW = 240
 LETTERS = 150.0
 """Size of letters that are read in a page: 11 px where a drawing takes a third of it."""
@@ -65,7 +65,7 @@ class Frame:
     def box(self) -> Box:
         """The part to show: the wall and room round it for loads and motion."""
         width, height = self.extent.width * self.scale, self.extent.height * self.scale
-        return -MARGIN, -MARGIN, width + 2 * MARGIN, height + MARGIN + self.below
+        return -_MARGIN, -_MARGIN, width + 2 * _MARGIN, height + _MARGIN + self.below
 
     def place(self, points: FloatArray) -> FloatArray:
         """Points (..., 2) [length] in drawing units."""

@@ -31,7 +31,7 @@ from reports.labels.wall_summary import friction_text, value_in_words
 
 COLUMN, PAGE = 88 / 25.4, 180 / 25.4
 """Width of one and of two columns [inch]."""
-WINDOW_DPI = 220
+_WINDOW_DPI = 220
 KINDS = ("mechanism", "forces", "thrust", "wall", "comparison")
 FORMATS = (".pdf", ".svg", ".png")
 _STYLE: dict[Any, Any] = {
@@ -117,7 +117,7 @@ def show_window(page: Figure, title: str) -> None:
     Raises:
         InputError: no window can be opened here.
     """
-    with style(), mpl.rc_context({"figure.dpi": WINDOW_DPI}):
+    with style(), mpl.rc_context({"figure.dpi": _WINDOW_DPI}):
         try:
             from tkinter import TclError
 

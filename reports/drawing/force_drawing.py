@@ -35,7 +35,7 @@ WIDEST, THINNEST = 0.16, 0.02
 LAYERS = ("forces", "thrust")
 CLEAR = 12.0
 """Least distance of a number from an arrow, in drawing units."""
-WORTH = 0.05
+_WORTH = 0.05
 """Share of the largest force from which a force has a number."""
 
 
@@ -141,7 +141,7 @@ def _sizes(ends: FloatArray, width: FloatArray, heads: FloatArray, sizes: FloatA
     placed: list[Text] = []
     centres, halves = np.empty((0, 2)), np.empty((0, 2))
     for k in np.argsort(-sizes, kind="stable").tolist():
-        if sizes[k] < WORTH * sizes.max():
+        if sizes[k] < _WORTH * sizes.max():
             break
         text = numbers.given(float(sizes[k]), 3)
         half = np.array([0.3 * len(text), 0.4]) * LETTERS  # of figures of the widest of our fonts

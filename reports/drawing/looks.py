@@ -19,7 +19,7 @@ COLOURS = {
     "crack": "#d9b8e0",
 }
 """Names of colours; those of the page's style sheet follow its variables."""
-VARIABLES = ("ink", "paper", "blue", "rust", "plum")
+_VARIABLES = ("ink", "paper", "blue", "rust", "plum")
 HATCH = (
     '<pattern id="hatch" width="90" height="90" patternUnits="userSpaceOnUse" patternTransform="rotate(45)">'
     '<rect width="90" height="90" fill="#fff"/><path d="M0 0V90" stroke="#14202b" stroke-width="14"/></pattern>'
@@ -90,7 +90,7 @@ LOOKS = {
     "doubt-held": Look("amber", "stone", 9, hatched=True, opacity=0.85),
 }
 """The look of every role but those of texts, which are written in ink: "said" stands over others, "" does not."""
-PAPER_ONLY = ("sound", "fault", "doubt", "size")
+_PAPER_ONLY = ("sound", "fault", "doubt", "size")
 """Beginnings of roles that no page shows."""
 
 
@@ -118,7 +118,7 @@ def css(thinner: float | None = None) -> str:
 
 
 def _on_screen(role: str) -> bool:
-    return not role.startswith(PAPER_ONLY)
+    return not role.startswith(_PAPER_ONLY)
 
 
 def _rule(look: Look, thinner: float | None) -> str:
@@ -140,4 +140,4 @@ def _rule(look: Look, thinner: float | None) -> str:
 def _colour(name: str, thinner: float | None) -> str:
     if not name:
         return "none"
-    return f"var(--{name})" if thinner is None and name in VARIABLES else COLOURS[name]
+    return f"var(--{name})" if thinner is None and name in _VARIABLES else COLOURS[name]

@@ -15,14 +15,14 @@ from reports.findings.agreement import measure_of
 from reports.geometry import shapes
 from reports.memo import memo
 
-ROLE = {
+_ROLE = {
     joints.SLIDE: "slide",
     joints.ROCK: "rock",
     joints.BOTH: "both",
     joints.OPEN: "open",
     joints.DILATANT: "dilatant",
 }
-OPENED = (joints.ROCK, joints.BOTH, joints.OPEN)
+_OPENED = (joints.ROCK, joints.BOTH, joints.OPEN)
 HEAVY = (joints.SLIDE, joints.BOTH, joints.DILATANT)
 ELSEWHERE = 0.004
 """Share of the wall's longer side from which a block of the second mechanism stands elsewhere: half a line's width."""
@@ -144,7 +144,7 @@ def _joints_of_one(
 def _cracks(frame: Frame, assembly: Assembly, result: Result, scale: float) -> list[Shape]:
     """What lies between the faces of joints that open, shaded: the crack pattern."""
     states = np.array(joints.joint_states(assembly, result) or [], dtype=object)
-    opened = np.flatnonzero(np.isin(states, OPENED))
+    opened = np.flatnonzero(np.isin(states, _OPENED))
     if not len(opened) or assembly.n_interfaces > DRAWN_INTERFACES:
         return []
     mechanism = np.asarray(result.mechanism, dtype=float)
@@ -170,7 +170,7 @@ def _marks(
         if state == joints.STICK:
             continue
         line, wide = (ends[p],), size if state in HEAVY else 0.6 * size
-        parts: list[Shape] = [Lines(ROLE[state], line, wide, 0.9 * size if state == joints.OPEN else None)]
+        parts: list[Shape] = [Lines(_ROLE[state], line, wide, 0.9 * size if state == joints.OPEN else None)]
         if state == joints.DILATANT:
             parts.append(Lines("core", line, 0.4 * size))
         if state in (joints.ROCK, joints.BOTH):

@@ -26,8 +26,8 @@ from reports.geometry import shapes, thrust_lines
 from reports.labels import numbers
 from reports.memo import memo
 
-LABELLED_BLOCKS = 160
-DOTTED_INTERFACES = 240
+_LABELLED_BLOCKS = 160
+_DOTTED_INTERFACES = 240
 DRAWN_INTERFACES = 4000
 READ = 130.0
 """Size of ids that are 11 px in half of a page; smaller ones are for files, which can be zoomed."""
@@ -77,7 +77,7 @@ def joint_lines(frame: Frame, assembly: Assembly) -> list[Shape]:
         return []
     ends = frame.place(np.stack([assembly.end1, assembly.end2], axis=1))
     drawn: list[Shape] = [Lines("joint", tuple(ends))]
-    if assembly.n_interfaces <= DOTTED_INTERFACES:
+    if assembly.n_interfaces <= _DOTTED_INTERFACES:
         points = np.unique(np.rint(ends.reshape(-1, 2)), axis=0)
         drawn.append(Lines("contact", tuple(np.stack([point, point]) for point in points)))
     return drawn
@@ -85,7 +85,7 @@ def joint_lines(frame: Frame, assembly: Assembly) -> list[Shape]:
 
 def _labels(frame: Frame, assembly: Assembly) -> list[Shape]:
     """In each block its id where all ids are short, its number otherwise, as large as it fits."""
-    if assembly.n_blocks > LABELLED_BLOCKS:
+    if assembly.n_blocks > _LABELLED_BLOCKS:
         return []
     short = all(len(name) <= 5 for name in assembly.block_ids)
     drawn: list[Shape] = []

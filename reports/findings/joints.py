@@ -12,9 +12,9 @@ from reports.memo import memo
 
 STILL = 1e-5
 """Relative velocity that counts as none, as in `harness.model.result.contact_states`; the fastest vertex has 1."""
-STILL_MEASURED = 1e-3
+_STILL_MEASURED = 1e-3
 """The same in a measured velocity field, in which nothing is exactly at rest; as blocks in `shapes.moving`."""
-CARRIES = 2e-3
+_CARRIES = 2e-3
 """Share of the largest contact force below which a joint counts as without force, as forces are drawn."""
 SLIDE, ROCK, BOTH, OPEN, DILATANT, STICK = "slide", "rock", "rock and slide", "open", "dilatant slip", "stick"
 
@@ -45,7 +45,7 @@ class JointMotion:
 def _motion(assembly: Assembly, result: Result) -> JointMotion:
     velocities = normalised_mechanism(assembly, np.asarray(result.mechanism, dtype=float))
     opening, slip = relative_velocities(assembly, velocities)
-    still = STILL_MEASURED if result.flow == "approximate" else STILL
+    still = _STILL_MEASURED if result.flow == "approximate" else STILL
     associated = result.flow == "associated"
     law = assembly.law.associated if associated else assembly.law
     lifted = law.dilatancy * abs(slip)
@@ -87,7 +87,7 @@ def open_with_force(assembly: Assembly, result: Result) -> int:
     forces = np.asarray(result.forces, dtype=float)
     normal = forces[:, 0] + forces[:, 1]
     size = np.hypot(normal, forces[:, 2])
-    carries = (normal > 0.0) & (size >= CARRIES * float(size.max(initial=0.0)))
+    carries = (normal > 0.0) & (size >= _CARRIES * float(size.max(initial=0.0)))
     return sum(bool(force) and name == OPEN for name, force in zip(states, carries, strict=True))
 
 

@@ -10,7 +10,7 @@ from reports.labels import labels
 WITHIN = 0.01
 """A range of less than a hundredth is none worth a sentence."""
 
-LIMITS: tuple[tuple[str, str, tuple[str, ...]], ...] = (
+_LIMITS: tuple[tuple[str, str, tuple[str, ...]], ...] = (
     (
         "All methods",
         "",
@@ -79,7 +79,7 @@ def known_limits(run: ComparisonRun) -> list[tuple[str, tuple[str, ...]]]:
         if result.traits != Traits():  # a run without an answer of its method tells none
             traits.setdefault(result.method, result.traits)
     found = []
-    for heading, trait, sentences in LIMITS:
+    for heading, trait, sentences in _LIMITS:
         names = [name for name, said in traits.items() if trait and getattr(said, trait)]
         if names or not trait:
             more = _widest(run) if trait == "brackets" else ()

@@ -19,11 +19,11 @@ SAME_MOTION = 0.9999
 """Cosine of velocity fields from which two mechanisms are called the same: fields rounded to 1e-5 differ by less."""
 ONE_BODY, APART = 0.01, 0.2
 """Share of a motion that one rigid motion leaves, up to which it is one body's, and up to which it is mainly one's."""
-TOE = 0.05
+_TOE = 0.05
 """Block sizes within which the centre of a rotation stands at the end of a joint: numerical fields are that near."""
 THRUST = 0.02
 """Share of the wall's weight by which thrusts through head joints differ worth a clause: the page prints hundredths."""
-SAME_VALUE = 1e-4
+_SAME_VALUE = 1e-4
 """Relative difference of multipliers that is not worth a reason: the page prints five digits."""
 
 
@@ -81,7 +81,7 @@ def _is_toe(assembly: Assembly, x: float, y: float) -> bool:
     """Whether a point is the end of a joint with a support."""
     held = assembly.fixed[assembly.block_a] | assembly.fixed[assembly.block_b]
     ends = np.concatenate([assembly.end1[held], assembly.end2[held]])
-    return bool((np.hypot(*(ends - [x, y]).T) < TOE * assembly.length_scale).any())
+    return bool((np.hypot(*(ends - [x, y]).T) < _TOE * assembly.length_scale).any())
 
 
 def _along(assembly: Assembly, moves: np.ndarray) -> str:
@@ -136,7 +136,7 @@ def _histories(states: list[Result], *, several: bool) -> list[str]:
         if len(ends) < 2:
             continue
         low, high = numbers.multiplier(min(ends)), numbers.multiplier(max(ends))
-        if max(ends) - min(ends) > SAME_VALUE * abs(max(ends)):
+        if max(ends) - min(ends) > _SAME_VALUE * abs(max(ends)):
             told.append(
                 f"{result.method} ends between {low} and {high} over {len(ends)} histories of friction: "
                 "which collapse state loading reaches depends on them."
@@ -172,7 +172,7 @@ def _same_value(least: Result, other: Result) -> bool:
     if least.multiplier is None or other.multiplier is None:
         return False
     pair = other.bracket if other.flow == "approximate" and other.bracket is not None else (other.multiplier,) * 2
-    near = SAME_VALUE * max(abs(least.multiplier), 1e-300)
+    near = _SAME_VALUE * max(abs(least.multiplier), 1e-300)
     return pair[0] - near <= least.multiplier <= pair[1] + near
 
 

@@ -45,7 +45,7 @@ def has_line_of_thrust(assembly: Assembly, found: Thrusts) -> bool:
     return len(found.size) > 0 and bool((touching[assembly.free] <= 2).all())
 
 
-def towards_ground(found: Thrusts) -> FloatArray:
+def _towards_ground(found: Thrusts) -> FloatArray:
     """Unit vectors (p, 2) of the resultants in the way they pass downwards, or to the right where they are level."""
     way = found.force / found.size[:, None]
     turned = (way[:, 1] > 1e-9) | ((abs(way[:, 1]) <= 1e-9) & (way[:, 0] < 0.0))
@@ -57,7 +57,7 @@ def drawn_ends(assembly: Assembly, found: Thrusts) -> FloatArray:
 
     One that a support takes stands on the free block alone and ends at the joint, so that nothing leaves the support.
     """
-    way = towards_ground(found)
+    way = _towards_ground(found)
     length = REACH * assembly.length_scale
     a, b = assembly.block_a[found.interface], assembly.block_b[found.interface]
     normal = assembly.normal[found.interface]  # from a to b

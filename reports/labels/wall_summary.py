@@ -32,7 +32,7 @@ def wall_summary(case: Case) -> list[tuple[str, str]]:
         ("Blocks", f"{assembly.n_free} free, {int(assembly.fixed.sum())} fixed"),
         ("Supports", _few([assembly.block_ids[k] for k in np.flatnonzero(assembly.fixed)])),
         ("Interfaces", str(assembly.n_interfaces)),
-        ("Contact found within", detection_text(case)),
+        ("Contact found within", _detection_text(case)),
         ("Friction tan φ", friction_text(assembly)),
         ("Size", f"{numbers.given(extent.width, 4)} × {numbers.given(extent.height, 4)} {units.length}"),
         ("Weight of free blocks", numbers.quantity(weight, units.force, 4)),
@@ -45,7 +45,7 @@ def wall_summary(case: Case) -> list[tuple[str, str]]:
     return found
 
 
-def detection_text(case: Case) -> str:
+def _detection_text(case: Case) -> str:
     """The tolerances within which two faces were taken to touch."""
     joints, unit = case.wall.interfaces, case.wall.units.length
     if not isinstance(joints, Detection):

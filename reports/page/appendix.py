@@ -30,13 +30,13 @@ from reports.labels.wall_summary import value_in_words, wall_summary
 from reports.page.governing import governing
 from reports.page.summary import wall_findings, which_number
 
-BLOCK_ROWS = 36
+_BLOCK_ROWS = 36
 """Largest number of blocks with a row each; of more only sums are given: the appendix stays within four sheets."""
 
-JOINT_ROWS = 8
+_JOINT_ROWS = 8
 """Number of most critical joints with a row each."""
 
-DRAWN_BLOCKS = 2000
+_DRAWN_BLOCKS = 2000
 """Largest number of blocks whose drawings stand in the page; a drawing takes some 5 kB a block."""
 
 
@@ -93,7 +93,7 @@ def render(run: ComparisonRun) -> str:
         run: a comparison of one wall; or of its load cases; or of two, the second with the opposite live load. The one
             that collapses at the lowest multiplier governs, and is the one whose state is shown.
     """
-    found = governing(run.cases, JOINT_ROWS)
+    found = governing(run.cases, _JOINT_ROWS)
     item, case, shown = found.item, found.item.case, found.shown
     document = json.dumps(run.cases[0].case.wall.document(), sort_keys=True, ensure_ascii=False)
     return (
@@ -132,7 +132,7 @@ def render(run: ComparisonRun) -> str:
 
 
 def _drawn(item: CaseResults) -> bool:
-    return item.case.assembly.n_blocks <= DRAWN_BLOCKS
+    return item.case.assembly.n_blocks <= _DRAWN_BLOCKS
 
 
 def _loads(item: CaseResults) -> list[tuple[str, str, str]]:
@@ -147,7 +147,7 @@ def _loads(item: CaseResults) -> list[tuple[str, str, str]]:
 
 def _blocks(item: CaseResults) -> list[SheetBlock]:
     assembly = item.case.assembly
-    if assembly.n_free > BLOCK_ROWS:
+    if assembly.n_free > _BLOCK_ROWS:
         return []
     return [
         SheetBlock(

@@ -15,7 +15,7 @@ from reports.environment import environment
 from reports.labels import numbers
 from reports.page.tables import Cell
 
-GLYPH = {"worse": "✗", "gone": "∅", "slower": "…", "better": "✓", "new": "+", "same": "="}
+_GLYPH = {"worse": "✗", "gone": "∅", "slower": "…", "better": "✓", "new": "+", "same": "="}
 
 
 @dataclass(frozen=True)
@@ -26,7 +26,7 @@ class DiffRow:
 
     def cell(self, column: DifferenceColumn) -> Cell:
         """What the page prints of a column."""
-        own = DIFF_TEXTS.get(column.name)
+        own = _DIFF_TEXTS.get(column.name)
         return Cell(column.text(self.row) if own is None else own(self.row))
 
     @property
@@ -35,7 +35,7 @@ class DiffRow:
         return str(self.row.kind)
 
 
-DIFF_TEXTS: dict[str, Callable[[Row], str]] = {
+_DIFF_TEXTS: dict[str, Callable[[Row], str]] = {
     "figures": lambda row: row.figures.replace("->", "→"),
     "old_seconds": lambda row: numbers.seconds(row.old_seconds),
     "new_seconds": lambda row: numbers.seconds(row.new_seconds),
@@ -62,7 +62,7 @@ def render(found: Difference) -> str:
             changed=[row for row in rows if row.kind != "same"],
             same=[row for row in rows if row.kind == "same"],
             counts=[(str(kind), number) for kind, number in found.counts.items() if number],
-            glyph=GLYPH,
+            glyph=_GLYPH,
             numbers=numbers,
         )
     )

@@ -49,7 +49,7 @@ def export(run: ComparisonRun, folder: Path, *, drawn: bool = False, columns: Se
     """
     folder.mkdir(parents=True, exist_ok=True)
     results = result_frame(((r, proof_of(item, r)) for item in run.cases for r in item.results), columns)
-    contents: dict[str, bytes] = {"results.csv": _csv(results), "comparisons.csv": _csv(comparison_frame(run))}
+    contents: dict[str, bytes] = {"results.csv": _csv(results), "comparisons.csv": _csv(_comparison_frame(run))}
     contents["joints.csv"] = _joints_csv(run)
     if any(len(item.case.assembly.bars) for item in run.cases if not shapes.problem(item.case)):
         contents["bars.csv"] = _bars_csv(run)
@@ -70,7 +70,7 @@ def export(run: ComparisonRun, folder: Path, *, drawn: bool = False, columns: Se
             )
         for what, svg in vectors.drawings(item).items():
             contents[f"{_safe(item.case.id)}/{_safe(what)}.svg"] = svg.encode()
-        drawing = comparison_figure(item) if drawn else None
+        drawing = _comparison_figure(item) if drawn else None
         if drawing is not None:
             contents[f"figures/{_safe(item.case.id)}.pdf"] = drawing
     contents |= _charts(run)
@@ -109,7 +109,7 @@ def _charts(run: ComparisonRun) -> dict[str, bytes]:
     return contents
 
 
-def comparison_figure(item: CaseResults) -> bytes | None:
+def _comparison_figure(item: CaseResults) -> bytes | None:
     """A PDF of the families' main results side by side, or None where there is nothing to draw or too much."""
     usable = [
         result
@@ -183,7 +183,7 @@ def _field(value: Any) -> Any:
     return "" if value is None else cell(value)
 
 
-def comparison_frame(run: ComparisonRun) -> pd.DataFrame:
+def _comparison_frame(run: ComparisonRun) -> pd.DataFrame:
     """Every result held against a reference, with the columns of comparisons.csv; units in `attrs["units"]`."""
     return _frame(COMPARISONS, [row for item in run.cases for _, row in compared_rows(item)])
 

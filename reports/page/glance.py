@@ -257,7 +257,7 @@ def _block(item: CaseResults) -> GlancePart:
         Dot(names[r.method], r.exact or 0.0, mark_of(results[r.method]), f"{r.method} {r.printed}") for r in printed
     ]
     rows = [
-        DotRow("Paper", theirs, labels_of(theirs)),
+        DotRow("Paper", theirs, _labels_of(theirs)),
         DotRow("Drystone", [dot(item, result, 0.0) for result in results.values()], ""),
     ]
     ends = [end for result in results.values() for end in range_of(result) or ()]
@@ -266,7 +266,7 @@ def _block(item: CaseResults) -> GlancePart:
     return GlancePart("Single block", html(plot) + legend(plot), _block_in_words(item, list(results.values())))
 
 
-def labels_of(dots: list[Dot]) -> str:
+def _labels_of(dots: list[Dot]) -> str:
     """The values of marks in rising order."""
     return ", ".join(numbers.given(dot.value, 3) for dot in sorted(dots, key=lambda dot: dot.value))
 

@@ -27,7 +27,7 @@ class HeldRow:
     def cell(self, column: str | ComparisonColumn) -> Cell:
         """What the report prints of a column, which may be named."""
         found = next(item for item in COMPARISONS if item.name == column) if isinstance(column, str) else column
-        own = HELD_CELLS.get(found.name)
+        own = _HELD_CELLS.get(found.name)
         return plain_cell(found, self.row) if own is None else own(self.row)
 
     @property
@@ -83,7 +83,7 @@ def _value_cell(row: ComparedRow) -> Cell:
 def _expected_cell(row: ComparedRow) -> Cell:
     expected = row.comparison.expected
     text = expected_text(row.comparison, row.reference.relation if row.reference else "equal")
-    if isinstance(expected, float) and row.comparison.quantity in COUNTS:
+    if isinstance(expected, float) and row.comparison.quantity in _COUNTS:
         text = f"{expected:.0f}"
     return Cell(text, numbers.every_digit(expected))
 
@@ -94,10 +94,10 @@ def _tolerance_cell(row: ComparedRow) -> Cell:
     return Cell(text, row.reference.tolerance_reason if row.reference else "")
 
 
-COUNTS = ("blocks", "interfaces", "unknowns")
+_COUNTS = ("blocks", "interfaces", "unknowns")
 
 
-HELD_CELLS: dict[str, Callable[[ComparedRow], Cell]] = {
+_HELD_CELLS: dict[str, Callable[[ComparedRow], Cell]] = {
     "quantity": _quantity_cell,
     "value": _value_cell,
     "expected": _expected_cell,
@@ -107,4 +107,4 @@ HELD_CELLS: dict[str, Callable[[ComparedRow], Cell]] = {
 
 
 def _count_or_number(value: float, quantity: str) -> str:
-    return f"{value:.0f}" if quantity in COUNTS else numbers.plain(value)
+    return f"{value:.0f}" if quantity in _COUNTS else numbers.plain(value)

@@ -187,11 +187,11 @@ def _cell(value: Any) -> str:
     return "" if value is None or value is pd.NA else str(value)
 
 
-POINTS = (
+_POINTS = (
     "Points are medians; bars, where there are any, reach from the 5 % to the 95 % quantile over seeds and draws, as "
     "low and as high as measured brackets allow. A bar without a point is a bracket."
 )
-COUNTED = (
+_COUNTED = (
     "Points are counted, one a wall; the line is the lognormal curve fitted to them, in its band of 95 %. Where a wall "
     "falls under its dead load there is no such curve, and the share counted is a staircase with its interval."
 )
@@ -209,14 +209,14 @@ def _charts(page: StudyPage) -> Iterator[StudyCharts]:
         drawn = [(name, *_over_axis(part, axis, page, name)) for name, part in parts[:MOST_CHARTS]]
         yield StudyCharts(
             f"Multiplier over {axis}",
-            POINTS,
+            _POINTS,
             [(name, charts.svg(chart)) for name, chart, _ in drawn],
             _left(sum(left for _, _, left in drawn), len(parts) - len(drawn)),
         )
     curves = page.tables.get("fragility")
     if curves is not None and len(curves):
         chart, left = _fragility(curves, page)
-        yield StudyCharts("Fragility", COUNTED, [("", charts.svg(chart))], _left(left, 0))
+        yield StudyCharts("Fragility", _COUNTED, [("", charts.svg(chart))], _left(left, 0))
 
 
 def _left(lines: int, whole: int) -> str:

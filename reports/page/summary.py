@@ -28,7 +28,7 @@ from reports.memo import memo
 from reports.page import paper
 from reports.page.tables import anchor_of
 
-JOINTS_OF_ONE = "Joints that slide (red) or open (violet) in one of them only are marked, those of the second dashed."
+_JOINTS_OF_ONE = "Joints that slide (red) or open (violet) in one of them only are marked, those of the second dashed."
 
 
 @dataclass(frozen=True)
@@ -76,7 +76,7 @@ def summary(run: ComparisonRun, governs: CaseResults | None = None) -> Summary:
         found.extend(_suite(items))
     elif not advice:
         found.append(wall_findings(told))
-    return Summary([*found, *missed], advice, red_rows(run))
+    return Summary([*found, *missed], advice, _red_rows(run))
 
 
 @memo
@@ -104,7 +104,7 @@ def _rank(item: CaseResults) -> int:
     return 2 if wrong or _apart(item) > AGREE else 3
 
 
-def red_rows(run: ComparisonRun) -> list[RedRow]:
+def _red_rows(run: ComparisonRun) -> list[RedRow]:
     """Failed and rejected runs, values that miss a reference, statements of theory that do not hold."""
     rows: list[RedRow] = []
     for number, item in enumerate(run.cases):
@@ -304,4 +304,4 @@ def figure_of(item: CaseResults) -> tuple[DisplayList | None, str]:
         return drawn, f"{caption}. Velocities drawn as displacements."
     caption += f"; dashed, by {other.method} at {value_in_words(other)}, where its blocks stand elsewhere"
     drawn = overlay_drawing(item.case, least, other)
-    return drawn, f"{caption}. Velocities drawn as displacements. {JOINTS_OF_ONE}"
+    return drawn, f"{caption}. Velocities drawn as displacements. {_JOINTS_OF_ONE}"

@@ -50,7 +50,7 @@ class RunRow:
     def cell(self, column: str | ResultColumn) -> Cell:
         """What the report prints of a column, which may be named."""
         (found,) = chosen(column) if isinstance(column, str) else (column,)
-        own = CELLS.get(found.name)
+        own = _CELLS.get(found.name)
         return plain_cell(found, self.row) if own is None else own(self)
 
     @property
@@ -172,7 +172,7 @@ def _residual_cell(row: RunRow) -> Cell:
     )
 
 
-CELLS: dict[str, Callable[[RunRow], Cell]] = {
+_CELLS: dict[str, Callable[[RunRow], Cell]] = {
     "multiplier": _multiplier_cell,
     "bracket": _bracket_cell,
     "reference": _reference_cell,
@@ -180,7 +180,7 @@ CELLS: dict[str, Callable[[RunRow], Cell]] = {
 }
 """Cells of columns whose text in the report is not that of the value alone, by the name of the column."""
 
-QUANTITIES: dict[str, tuple[Callable[[float], str], str]] = {
+_QUANTITIES: dict[str, tuple[Callable[[float], str], str]] = {
     "s": (numbers.seconds, "s"),
     "B": (numbers.memory, "bytes"),
 }
@@ -194,8 +194,8 @@ def plain_cell(column: TableColumn[Row], row: Row) -> Cell:
         return Cell(numbers.NOTHING)
     if not column.numeric:
         return Cell(column.text(row) or numbers.NOTHING)
-    if column.unit in QUANTITIES:
-        text, unit = QUANTITIES[column.unit]
+    if column.unit in _QUANTITIES:
+        text, unit = _QUANTITIES[column.unit]
         return Cell(text(value), f"{value!r} {unit}", float(value))
     if isinstance(value, int):
         return Cell(str(value), "", float(value))

@@ -26,7 +26,7 @@ from harness.model.method import load_method
 from harness.model.reading import parse_wall, validate, wall_json
 from harness.model.wall import Wall
 
-MOST_DRAWN = 10_000_000
+_MOST_DRAWN = 10_000_000
 """Values that a study draws: each takes some 100 bytes."""
 MOST_TOLD = 200
 """Characters of an error in which a wall of a study is told by its values."""
@@ -167,9 +167,9 @@ def expand(study: Study, sources: Sequence[WallSource]) -> list[SweepRun]:
     count = len(sources) * samples * len(study.methods) * math.prod(study.lengths())  # before any value is made
     if count > MOST_RUNS:
         raise InputError(f"it expands to {shown(count)} runs", f"A study makes at most {MOST_RUNS:,}", study.name)
-    if samples * len(study.draw) > MOST_DRAWN:
+    if samples * len(study.draw) > _MOST_DRAWN:
         problem = f"{samples:,} samples of {len(study.draw):,} quantities are drawn"
-        raise InputError(problem, f"A study draws at most {MOST_DRAWN:,} values", study.name)
+        raise InputError(problem, f"A study draws at most {_MOST_DRAWN:,} values", study.name)
     axes, draws = list(study.axes()), _draws(study)
     limits = Limits(study.limits.seconds, study.limits.memory * 2**20)
     runs, walls = list[SweepRun](), Walls()

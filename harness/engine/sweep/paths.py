@@ -13,16 +13,16 @@ from harness.model.errors import InputError
 from harness.model.library import library
 
 STEP = re.compile(r"([A-Za-z_][A-Za-z0-9_]*)|\[(\d+)\]")
-SETTING = "settings."
+_SETTING = "settings."
 
 
 def setting_of(name: str) -> tuple[str, str] | None:
     """The method and its setting that a name means, or None if it is a quantity of the wall."""
     short = library().settings.get(name)
-    full = name if short is None else SETTING + short
-    if not full.startswith(SETTING):
+    full = name if short is None else _SETTING + short
+    if not full.startswith(_SETTING):
         return None
-    method, dot, setting = full.removeprefix(SETTING).rpartition(".")
+    method, dot, setting = full.removeprefix(_SETTING).rpartition(".")
     if not dot or not method:
         raise InputError(f'"{name}" names no setting', "Give settings.METHOD.NAME", "vary")
     return method, setting
@@ -42,7 +42,7 @@ def with_values(data: Mapping[str, Any], values: Mapping[str, Any]) -> dict[str,
     """
     changed = copy.deepcopy(dict(data))
     for name, value in values.items():
-        rule = RULES.get(name)
+        rule = _RULES.get(name)
         if rule is not None:
             rule(changed, value)
         else:
@@ -53,12 +53,12 @@ def with_values(data: Mapping[str, Any], values: Mapping[str, Any]) -> dict[str,
 def has_number(data: Mapping[str, Any], name: str) -> bool:
     """Whether data of a wall have a number where a name leads; short names always mean one."""
     here: Any = data
-    for field, index in STEP.findall(name) if name not in RULES else ():
+    for field, index in STEP.findall(name) if name not in _RULES else ():
         try:
             here = here[field or int(index)]
         except (KeyError, IndexError, TypeError):
             return False
-    return name in RULES or (isinstance(here, int | float) and not isinstance(here, bool))
+    return name in _RULES or (isinstance(here, int | float) and not isinstance(here, bool))
 
 
 def _put(data: dict[str, Any], path: str, value: Any) -> None:
@@ -140,7 +140,7 @@ NUMBERS = {
     "direction": "degrees counter-clockwise, as 0,180 for a load to the right and to the left",
     "proportion": "block length over height, as 1.5",
 }
-RULES: dict[str, Callable[[dict[str, Any], Any], None]] = {
+_RULES: dict[str, Callable[[dict[str, Any], Any], None]] = {
     "friction": _friction,
     "proportion": _proportion,
     "inset": _inset,

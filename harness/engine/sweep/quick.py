@@ -17,7 +17,7 @@ from harness.model.errors import InputError
 from harness.model.library import library
 from harness.model.reading import validate
 
-LIKE_A_RANGE = re.compile(r"\s*(\d*\.?\d+)\s*(?:-|\.\.\.?|–|to)\s*(\d*\.?\d+)\s*")
+_LIKE_A_RANGE = re.compile(r"\s*(\d*\.?\d+)\s*(?:-|\.\.\.?|–|to)\s*(\d*\.?\d+)\s*")
 """Two numbers with a sign between them that people write for a range."""
 LONGEST = 100
 """Characters of a word that a sentence repeats."""
@@ -109,7 +109,7 @@ def axis_of(words: str, element: str, count: int | None) -> Any:
     with contextlib.suppress(ValueError, RecursionError):
         return json.loads(f"[{words}]")
     parts = words.split(":")
-    if ends := LIKE_A_RANGE.fullmatch(words):
+    if ends := _LIKE_A_RANGE.fullmatch(words):
         low, high = ends.groups()
         problem = f'"{words}" is no value'
         raise InputError(problem, f"Write a range as FROM:TO:COUNT, for example {low}:{high}:7", element)

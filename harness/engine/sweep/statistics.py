@@ -17,10 +17,10 @@ from harness.model.method import Finding, Status
 from harness.model.ranges import differences
 
 SHARES = (0.05, 0.25, 0.5, 0.75, 0.95)
-CONFIDENCE = 0.95
+_CONFIDENCE = 0.95
 FEWEST = 5
 """Walls of a group from which a fragility curve is drawn."""
-RESAMPLES = 400
+_RESAMPLES = 400
 """Bootstrap samples of a fitted fragility curve; the ends of its band then scatter by about a tenth of its width."""
 
 
@@ -78,7 +78,7 @@ def failure_probability(table: pd.DataFrame, by: Sequence[str], multipliers: Seq
         for multiplier in multipliers:
             surely, perhaps = (int((group[end] <= multiplier).sum()) for end in ("latest", "earliest"))
             intervals = [
-                stats.binomtest(failed, len(group)).proportion_ci(CONFIDENCE, method="wilson")
+                stats.binomtest(failed, len(group)).proportion_ci(_CONFIDENCE, method="wilson")
                 for failed in (surely, perhaps)
             ]
             rows.append(
@@ -165,7 +165,7 @@ def _between(place: dict[str, Any], earliest: FloatArray, latest: FloatArray) ->
 def _curve(place: dict[str, Any], values: FloatArray) -> list[dict[str, Any]]:
     found = stats.ecdf(values).cdf
     with warnings.catch_warnings(action="ignore"):  # beyond the last wall the interval is undefined, and stays empty
-        interval: Any = found.confidence_interval(CONFIDENCE, method="log-log")
+        interval: Any = found.confidence_interval(_CONFIDENCE, method="log-log")
     fitted = np.full((3, len(found.quantiles)), np.nan)
     median = dispersion = float("nan")
     if values[0] > 0.0 and values[-1] > values[0]:
@@ -173,10 +173,10 @@ def _curve(place: dict[str, Any], values: FloatArray) -> list[dict[str, Any]]:
         median, dispersion = float(np.exp(logs.mean())), float(logs.std())
         rng = np.random.default_rng(0)
         again = np.log(found.quantiles)[:, None]
-        drawn = rng.choice(logs, (len(logs), RESAMPLES))
+        drawn = rng.choice(logs, (len(logs), _RESAMPLES))
         spread = np.maximum(drawn.std(axis=0), 1e-12)
         curves = stats.norm.cdf((again - drawn.mean(axis=0)) / spread)
-        tail = 0.5 * (1.0 - CONFIDENCE)
+        tail = 0.5 * (1.0 - _CONFIDENCE)
         fitted[0] = stats.norm.cdf((again[:, 0] - logs.mean()) / logs.std())
         fitted[1:] = np.quantile(curves, [tail, 1.0 - tail], axis=1)
     return [

@@ -142,7 +142,7 @@ class Study(Strict):
         if bool(self.cases) == (self.wall is not None):
             raise ValueError("a study names either cases or a wall of its own")
         for group in self.together:
-            if len({length_of(axis) for axis in group.values()}) != 1:
+            if len({_length_of(axis) for axis in group.values()}) != 1:
                 raise ValueError(f"axes that vary together have equal length: {', '.join(group)}")
         names = [*self.vary, *self.draw, *(name for group in self.together for name in group)]
         twice = sorted(name for name, count in Counter(names).items() if count > 1)
@@ -152,26 +152,26 @@ class Study(Strict):
 
     def lengths(self) -> list[int]:
         """The number of values of each axis of the grid."""
-        together = [length_of(next(iter(group.values()))) for group in self.together]
-        return [*map(length_of, self.vary.values()), *together]
+        together = [_length_of(next(iter(group.values()))) for group in self.together]
+        return [*map(_length_of, self.vary.values()), *together]
 
     def axes(self) -> Iterator[list[dict[str, Any]]]:
         """Each axis of the grid as a list of assignments, one of which holds at a time."""
         for name, axis in self.vary.items():
-            yield [{name: value} for value in values_of(axis)]
+            yield [{name: value} for value in _values_of(axis)]
         for group in self.together:
-            columns = [values_of(axis) for axis in group.values()]
+            columns = [_values_of(axis) for axis in group.values()]
             yield [dict(zip(group, values, strict=True)) for values in zip(*columns, strict=True)]
 
 
-def length_of(axis: list[Any] | Range | Whole) -> int:
+def _length_of(axis: list[Any] | Range | Whole) -> int:
     """The number of values of an axis."""
     if isinstance(axis, Range):
         return axis.count
     return axis.seeds if isinstance(axis, Whole) else len(axis)
 
 
-def values_of(axis: list[Any] | Range | Whole) -> list[Any]:
+def _values_of(axis: list[Any] | Range | Whole) -> list[Any]:
     """The values of an axis in order."""
     return axis if isinstance(axis, list) else list(axis.values())
 

@@ -12,7 +12,7 @@ import pandas as pd
 from harness.engine.sweep import statistics
 from harness.engine.sweep.study import Study, Whole
 
-NO_SALIB = "SALib is not installed, so no sensitivities are reported: pip install 'drystone[sensitivity]'"
+_NO_SALIB = "SALib is not installed, so no sensitivities are reported: pip install 'drystone[sensitivity]'"
 
 
 @dataclass(frozen=True)
@@ -127,7 +127,7 @@ def summarise(study: Study, rows: pd.DataFrame) -> GridSummary:
         tables["failure"] = statistics.failure_probability(rows, groups, study.multipliers)
     if study.draw:
         if find_spec("SALib") is None:
-            remarks.append(NO_SALIB)
+            remarks.append(_NO_SALIB)
         else:
             found = statistics.sensitivity(rows, list(study.draw), groups)
             if len(found):

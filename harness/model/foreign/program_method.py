@@ -30,11 +30,11 @@ from harness.model.method import Answer, Method, Settings
 from harness.model.reading import validate
 from harness.model.run_context import run_folder
 
-DESCRIBE_SECONDS = 30.0
+_DESCRIBE_SECONDS = 30.0
 """In which a program must have described itself: the slowest of interpreters start within a few."""
-MOST_WORDS = 1_000_000
+_MOST_WORDS = 1_000_000
 """Bytes of a description, and of what is printed beside it."""
-FAREST = 1e9
+_FAREST = 1e9
 """Seconds that a program without a limit is given: `{seconds}` is always a number."""
 
 
@@ -131,7 +131,7 @@ class ProgramMethod(Method):
 
 
 def _seconds() -> float:
-    return min(Deadline.of_run().left, FAREST)
+    return min(Deadline.of_run().left, _FAREST)
 
 
 def _run(words: list[str], folder: Path, output: IO[bytes]) -> int:
@@ -178,13 +178,13 @@ def description_of(program: Program) -> Description:
     source = " ".join(words)
     remedy = "`--describe` prints one JSON object of format describe/1: docs/method-in-another-language.md"
     try:
-        code, said, errors = output_of(words, DESCRIBE_SECONDS, MOST_WORDS)
+        code, said, errors = output_of(words, _DESCRIBE_SECONDS, _MOST_WORDS)
     except OSError as error:
         raise InputError(
             f"it cannot be started ({error.strerror or error})", "Check the command", source=source
         ) from None
     except subprocess.TimeoutExpired:
-        raise InputError(f"it does not end within {DESCRIBE_SECONDS:g} s", remedy, source=source) from None
+        raise InputError(f"it does not end within {_DESCRIBE_SECONDS:g} s", remedy, source=source) from None
     except OverflowError:
         raise InputError("it prints more than a description", remedy, source=source) from None
     if code:

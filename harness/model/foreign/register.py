@@ -25,7 +25,7 @@ from harness.model.method import method_points
 from harness.model.reading import validate
 from harness.model.writing import write_whole
 
-METHODS_FILE = "methods.toml"
+_METHODS_FILE = "methods.toml"
 VARIABLE = "DRYSTONE_METHODS"
 """Environment variable with the path of a file of methods, in place of that of the working folder."""
 MOST_BYTES = 1_000_000
@@ -99,7 +99,7 @@ class _File(BaseModel):
 
 def methods_file() -> Path:
     """The file of methods: that of `DRYSTONE_METHODS`, else `methods.toml` in the working folder."""
-    return Path(os.environ.get(VARIABLE) or METHODS_FILE).absolute()
+    return Path(os.environ.get(VARIABLE) or _METHODS_FILE).absolute()
 
 
 def programs() -> dict[str, Program]:

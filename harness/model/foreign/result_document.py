@@ -20,11 +20,11 @@ from harness.model.reading import validate
 
 Finite = Annotated[float, Field(ge=-LARGEST, le=LARGEST, strict=True)]
 Triples = list[tuple[Finite, Finite, Finite]]
-OF_INTERFACES = ("forces", "live_forces", "dead_forces", MOVING_FORCES)
+_OF_INTERFACES = ("forces", "live_forces", "dead_forces", MOVING_FORCES)
 OF_BLOCKS = ("mechanism", "dilatant_mechanism")
-OF_BARS = (BAR_FORCES, DEAD_BAR_FORCES)
-OF_BRITTLE_JOINTS = ("broken", "breaking")
-IN_DETAILS = (*OF_INTERFACES[1:], *OF_BARS, "dilatant_mechanism", "lower_bound", "certificate")
+_OF_BARS = (BAR_FORCES, DEAD_BAR_FORCES)
+_OF_BRITTLE_JOINTS = ("broken", "breaking")
+_IN_DETAILS = (*_OF_INTERFACES[1:], *_OF_BARS, "dilatant_mechanism", "lower_bound", "certificate")
 """Fields that an `Answer` holds among its details."""
 
 
@@ -85,19 +85,19 @@ def answer_of(data: Any, assembly: Assembly, source: str) -> Answer:
         given = f"format is {data['format']!r:.60}" if "format" in data else "it has no format"
         raise InputError(given, 'This release reads "format": "result/1"', "format", source)
     found = validate(ResultDocument, data, source)
-    arrays = {name: getattr(found, name) for name in (*OF_INTERFACES, *OF_BLOCKS)}
+    arrays = {name: getattr(found, name) for name in (*_OF_INTERFACES, *OF_BLOCKS)}
     for name, listed in arrays.items():
-        rows = assembly.n_interfaces if name in OF_INTERFACES else assembly.n_blocks
+        rows = assembly.n_interfaces if name in _OF_INTERFACES else assembly.n_blocks
         if listed is not None and len(listed) != rows:
-            columns = "n1, n2, s of every interface" if name in OF_INTERFACES else "ux, uy, omega of every block"
+            columns = "n1, n2, s of every interface" if name in _OF_INTERFACES else "ux, uy, omega of every block"
             remedy = f"Give {columns} in the order of the wall (`drystone expand` prints it)"
             raise InputError(f"it has {len(listed)} entries, and should have {rows}", remedy, name, source)
-    for name in OF_BARS:
+    for name in _OF_BARS:
         listed = getattr(found, name)
         if listed is not None and len(listed) != len(assembly.bars):
             problem = f"it has {len(listed)} entries, and should have {len(assembly.bars)}"
             raise InputError(problem, "Give the tension of every tie and then of every prop", name, source)
-    own = {name: value for name in IN_DETAILS if (value := getattr(found, name)) is not None}
+    own = {name: value for name in _IN_DETAILS if (value := getattr(found, name)) is not None}
     shapes = {"forces": assembly.n_interfaces, "mechanism": assembly.n_blocks}
     fields = {
         name: None if arrays[name] is None else np.array(arrays[name], dtype=float).reshape(rows, 3)
@@ -134,10 +134,10 @@ def answer_from_file(data: Any, assembly: Assembly, source: str) -> Answer:
     details = within if isinstance(within, dict) else {}
     names = ("finding", "multiplier", "forces", "forces_multiplier", "mechanism", "flow")
     taken = {name: data[name] for name in names if name in data}
-    proofs = ("live_forces", "dead_forces", "dilatant_mechanism", *(OF_BARS if len(assembly.bars) else ()))
+    proofs = ("live_forces", "dead_forces", "dilatant_mechanism", *(_OF_BARS if len(assembly.bars) else ()))
     taken |= {name: listed for name in proofs if (listed := data.get(name, details.get(name))) is not None}
     if assembly.breaks:  # no program takes brittle joints, so `result/1` has no fields of its own for them
-        joints = {name: data.get(name, details.get(name)) for name in OF_BRITTLE_JOINTS}
+        joints = {name: data.get(name, details.get(name)) for name in _OF_BRITTLE_JOINTS}
         taken["details"] = {name: listed for name, listed in joints.items() if listed is not None}
     return answer_of({"format": "result/1", "sentence": "An answer from a file."} | taken, assembly, source)
 

@@ -75,7 +75,7 @@ class ElasticContacts(NamedTuple):
     friction: FloatArray
 
 
-def contacts_of(assembly: Assembly, stiffness: float, shear_ratio: float, least_radius: float) -> ElasticContacts:
+def _contacts_of(assembly: Assembly, stiffness: float, shear_ratio: float, least_radius: float) -> ElasticContacts:
     """The contacts of a wall.
 
     A contact point that is set in from the end of its face is where a round of that radius begins; other corners are
@@ -151,12 +151,12 @@ class SoftWall:
         """The wall before anything has moved.
 
         Args:
-            assembly: the wall; stiffness, shear_ratio, least_radius: as for `contacts_of`.
+            assembly: the wall; stiffness, shear_ratio, least_radius: as for `_contacts_of`.
             options: of its motion.
         """
         self._options = options
         self.assembly = assembly
-        self.contacts = contacts_of(assembly, stiffness, shear_ratio, least_radius)
+        self.contacts = _contacts_of(assembly, stiffness, shear_ratio, least_radius)
         self.places = np.zeros((assembly.n_blocks, 3))
         self.shear = np.zeros(len(self.contacts.kn))
         self.steps, self.multiplier = 0, 0.0

@@ -16,7 +16,7 @@ from shapely import STRtree, box
 
 from harness.model.assembly import Assembly, FloatArray, IntArray
 
-MAX_COLOURS = 32
+_MAX_COLOURS = 32
 """Bits of a collision category in Chipmunk."""
 
 
@@ -126,6 +126,6 @@ def colour_strips(vertices: FloatArray, margin: float) -> IntArray:
     for i, near in enumerate(neighbours):
         taken = {int(colour[j]) for j in near}
         colour[i] = next(c for c in range(len(boxes) + 1) if c not in taken)
-    if colour.max() >= MAX_COLOURS:
-        raise CannotModel(f"{colour.max() + 1} interfaces lie close together; the limit is {MAX_COLOURS}")
+    if colour.max() >= _MAX_COLOURS:
+        raise CannotModel(f"{colour.max() + 1} interfaces lie close together; the limit is {_MAX_COLOURS}")
     return colour

@@ -104,12 +104,12 @@ def settle_uneven(
     """
     outlines = uneven_blocks(assembly, size, faces, seed)
     space = PymunkBlocks(assembly, outlines, options.damping)
-    before, at_rest = come_to_rest(space, most_steps, np.inf, options)
+    before, at_rest = _come_to_rest(space, most_steps, np.inf, options)
     settled, single = with_contacts(assembly, space, before, options)
     return Settled(settled, at_rest, outlines, before, single)
 
 
-def come_to_rest(
+def _come_to_rest(
     space: PymunkBlocks, most_steps: int, reach: float, options: SettlingTuning
 ) -> tuple[FloatArray, bool]:
     """Advance until nothing moves, a block has moved by `reach` length scales, or the steps are over.
@@ -179,7 +179,7 @@ def load_uneven(
     outlines = uneven_blocks(assembly, size, faces, seed)
     space = PymunkBlocks(assembly, outlines, options.damping)
     # Gaps that close add up over the courses to more than `reach`, so the settling has none.
-    rest, at_rest = come_to_rest(space, most_steps, np.inf, options)
+    rest, at_rest = _come_to_rest(space, most_steps, np.inf, options)
     if not at_rest:
         falls = by_travel(assembly, assembly.dead, rest, reach) is not None
         return Loading(None, 0.0 if falls else None, 0.0, not falls)
@@ -192,7 +192,7 @@ def load_uneven(
             space = PymunkBlocks(assembly, outlines, options.damping)
             space.put(rest)
         space.load(trial)
-        places, at_rest = come_to_rest(space, most_steps, reach, options)
+        places, at_rest = _come_to_rest(space, most_steps, reach, options)
         load = assembly.dead + trial * assembly.live
         if at_rest:
             rest = places
@@ -239,7 +239,7 @@ def with_contacts(
     level = np.abs((two - one)[:, 0]) > np.abs((two - one)[:, 1])
     return replace(
         assembly,
-        polygons=tuple(moved_outline(assembly, i, places[i]) for i in range(assembly.n_blocks)),
+        polygons=tuple(_moved_outline(assembly, i, places[i]) for i in range(assembly.n_blocks)),
         centroid=assembly.centroid + places[:, :2],
         block_a=np.array([row[0] for row in rows], dtype=np.int64),
         block_b=np.array([row[1] for row in rows], dtype=np.int64),
@@ -258,7 +258,7 @@ def with_contacts(
     ), single
 
 
-def moved_outline(assembly: Assembly, i: int, place: FloatArray) -> FloatArray:
+def _moved_outline(assembly: Assembly, i: int, place: FloatArray) -> FloatArray:
     """Outline (k, 2) of block i after its displacement and rotation."""
     c, s = np.cos(place[2]), np.sin(place[2])
     turned = (assembly.polygons[i] - assembly.centroid[i]) @ np.array([[c, s], [-s, c]])

@@ -21,7 +21,7 @@ class NotShortError(ValueError):
     """A number of the wall is not a short fraction."""
 
 
-def short_fraction(value: float) -> Fraction:
+def _short_fraction(value: float) -> Fraction:
     """The fraction of denominator up to 10^6 that a float stands for.
 
     Raises:
@@ -40,7 +40,7 @@ def confirm(problem: Problem, state: CollapseState) -> dict[str, Any]:
         moving_ok, works = _check_mechanism(problem, state, columns)
     except (NotShortError, ArithmeticError) as error:
         return {"confirmed": False, "reason": str(error)}
-    friction = [short_fraction(mu) for mu in problem.assembly.friction.tolist()]
+    friction = [_short_fraction(mu) for mu in problem.assembly.friction.tolist()]
     held = True
     for p, (n1, n2, s) in enumerate(forces):
         strength = friction[p] * (n1 + n2)
@@ -61,17 +61,17 @@ def _fractions_of(problem: Problem) -> tuple[list[Row], list[Fraction], list[Fra
     for k in range(matrix.shape[0]):
         span = slice(matrix.indptr[k], matrix.indptr[k + 1])
         pairs = zip(matrix.indices[span].tolist(), matrix.data[span].tolist(), strict=True)
-        rows.append({column: short_fraction(value) for column, value in pairs if value != 0.0})
+        rows.append({column: _short_fraction(value) for column, value in pairs if value != 0.0})
     dead, live = assembly.free_loads()
     unit = problem.unit_force
-    return rows, [short_fraction(v / unit) for v in dead.tolist()], [short_fraction(v / unit) for v in live.tolist()]
+    return rows, [_short_fraction(v / unit) for v in dead.tolist()], [_short_fraction(v / unit) for v in live.tolist()]
 
 
 def _solve_statics(
     problem: Problem, state: CollapseState
 ) -> tuple[list[tuple[Fraction, Fraction, Fraction]], Fraction, list[Row]]:
     rows, dead, live = _fractions_of(problem)
-    friction = [short_fraction(mu) for mu in problem.assembly.friction.tolist()]
+    friction = [_short_fraction(mu) for mu in problem.assembly.friction.tolist()]
     tight = tight_contacts(problem, state.forces) | state.moving
     m, n = problem.n_interfaces, len(dead)
     equations: list[Row] = [{} for _ in range(n)]
@@ -116,7 +116,7 @@ def _check_mechanism(problem: Problem, state: CollapseState, rows: list[Row]) ->
                 equations.append(dict(rows[3 * p + k]))
                 right.append(Fraction(0))
     _, live = problem.assembly.free_loads()
-    equations.append({k: short_fraction(v / problem.unit_force) for k, v in enumerate(live.tolist()) if v})
+    equations.append({k: _short_fraction(v / problem.unit_force) for k, v in enumerate(live.tolist()) if v})
     right.append(Fraction(1))
     size = problem.unit_multiplier / problem.live_work
     guess = (state.velocities.reshape(-1, 3) / np.array([1.0, 1.0, problem.unit_length])).ravel() * size

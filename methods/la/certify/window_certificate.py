@@ -49,7 +49,7 @@ def certified_bracket(
 def certifier_of(problem: Problem) -> Certifier:
     """What keeps the certificate of a search for the bracket of a problem."""
     wall = ExactWall(wall_document(problem.assembly, problem.unit_force))
-    return Certifier(wall, scales_of(problem), equations_of(problem))
+    return Certifier(wall, _scales_of(problem), equations_of(problem))
 
 
 def certificate_of(
@@ -79,7 +79,7 @@ def certificate_of(
     return document
 
 
-def scales_of(problem: Problem) -> Scales:
+def _scales_of(problem: Problem) -> Scales:
     """From the scaled wall to that of a certificate."""
     assembly = problem.assembly
     length = np.linalg.norm(assembly.end2 - assembly.end1, axis=1)

@@ -18,10 +18,10 @@ from methods.numerics.failures import NoMechanism, SingularMatrix
 RIGID = 1e40
 """Weight of a slack that may not change."""
 
-PENALTY = 1e13
+_PENALTY = 1e13
 """Stiffness of contacts that may not move, against a unit stiffness of the velocities; near-singular sets need it."""
 
-DIVERGED = 1e100
+_DIVERGED = 1e100
 """Velocities above this come from a matrix singular to rounding; their products would overflow."""
 
 
@@ -91,7 +91,7 @@ def exact_forces(
             velocity = factor.solve(residual)
             change = -float(problem.live @ velocity) / stiffness if stiffness > 0.0 else 0.0
             velocity = velocity + change * by_live
-            if not float(abs(velocity).max(initial=0.0)) < DIVERGED:
+            if not float(abs(velocity).max(initial=0.0)) < _DIVERGED:
                 break
             shift = -compliance.forces(problem.strains(velocity))
             current, multiplier = snap(problem, current + shift, tight), multiplier + change
@@ -114,18 +114,18 @@ def exact_mechanism(
     sense = np.where(moving[:, 2], 1.0, np.where(moving[:, 3], -1.0, 0.0)) * problem.flow_law(associated).dilatancy
     transform[:, 0, 2] = transform[:, 1, 2] = -sense
     stiff = np.einsum("pki,pk,pkj->pij", transform, still, transform)
-    factor = newton.factorise(stiff * PENALTY, 0.0, shift=1.0)
+    factor = newton.factorise(stiff * _PENALTY, 0.0, shift=1.0)
     least = np.inf
     for _ in range(30):
-        if not float(abs(velocities).max(initial=0.0)) < DIVERGED:
+        if not float(abs(velocities).max(initial=0.0)) < _DIVERGED:
             raise SingularMatrix("the kinematic matrix is singular to rounding")
         strain = np.einsum("pij,pj->pi", stiff, problem.strains(velocities))
         size = float(abs(strain).max(initial=0.0))
         if size > 0.5 * least and size < 1e-14 * float(abs(velocities).max(initial=0.0)):
             break
         least = min(least, size)
-        velocities = velocities - factor.solve(PENALTY * np.asarray(problem.statics @ strain.ravel()))
-    if not float(abs(velocities).max(initial=0.0)) < DIVERGED:
+        velocities = velocities - factor.solve(_PENALTY * np.asarray(problem.statics @ strain.ravel()))
+    if not float(abs(velocities).max(initial=0.0)) < _DIVERGED:
         raise SingularMatrix("the kinematic matrix is singular to rounding")
     work = float(problem.live @ velocities)
     if work <= 1e-6 * problem.live_work:

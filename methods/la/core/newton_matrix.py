@@ -27,7 +27,7 @@ if TYPE_CHECKING:
 FEW = 200
 """Blocks up to which SuperLU factorises."""
 
-LEAF = 24
+_LEAF = 24
 """Blocks up to which a part is not divided further by nested dissection."""
 
 
@@ -48,7 +48,7 @@ def dissection_order(centroid: FloatArray, first: IntArray, second: IntArray) ->
 
 
 def _dissect(part: IntArray, centroid: FloatArray, graph: sp.csr_matrix, pieces: list[IntArray]) -> None:
-    if len(part) <= LEAF:
+    if len(part) <= _LEAF:
         pieces.append(part)
         return
     place = centroid[part]

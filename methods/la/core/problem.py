@@ -18,10 +18,10 @@ from harness.model.assembly import Assembly, BoolArray, FloatArray
 from harness.model.deadline import Deadline
 from harness.model.joint_law import JointLaw
 
-NO_FRICTION = 1e-12
+_NO_FRICTION = 1e-12
 """Friction coefficients below this are zero to rounding."""
 
-NO_MULTIPLIER = 1e-15
+_NO_MULTIPLIER = 1e-15
 """Scaled multipliers up to this are zero to rounding, as of a wall without friction."""
 
 UNLOADED = 0.05
@@ -143,7 +143,7 @@ class Problem:
 
     def to_multiplier(self, multiplier: float) -> float:
         """The multiplier of a scaled one; zero where the live load is rounding beside the dead load."""
-        return 0.0 if abs(multiplier) <= NO_MULTIPLIER else multiplier * self.unit_multiplier
+        return 0.0 if abs(multiplier) <= _NO_MULTIPLIER else multiplier * self.unit_multiplier
 
     def to_forces(self, forces: FloatArray) -> FloatArray:
         """(m, 3) contact forces [force] of scaled ones."""
@@ -185,7 +185,7 @@ def make_problem(assembly: Assembly) -> Problem:
     dead = dead * column / unit_force
     live = live * column / unit_force
     size = float(abs(live.reshape(-1, 3)).sum())
-    friction = np.where(abs(assembly.friction) < NO_FRICTION, 0.0, assembly.friction)
+    friction = np.where(abs(assembly.friction) < _NO_FRICTION, 0.0, assembly.friction)
     unit_multiplier = assembly.n_free / size if size > 0.0 else 1.0
     return Problem(
         assembly=assembly,

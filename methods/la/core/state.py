@@ -16,7 +16,7 @@ from methods.numerics.failures import NumericalFailure
 MOVING = 1e-11
 """Rates below this, relative to the largest, are rounding."""
 
-TIGHT = 1e-8
+_TIGHT = 1e-8
 """Slacks below this, in mean block weights, are rounding."""
 
 LIGHTEST, SLOWEST = 1e-13, 1e-2
@@ -102,7 +102,7 @@ def moving_contacts(rates: FloatArray) -> BoolArray:
 
 def tight_contacts(problem: Problem, forces: FloatArray) -> BoolArray:
     """(m, 4) slacks that are no more than rounding."""
-    return problem.slacks(forces) <= TIGHT
+    return problem.slacks(forces) <= _TIGHT
 
 
 def polished(

@@ -19,13 +19,13 @@ from methods.numerics.linear_programme import INFINITY, Programme
 from methods.numerics.statics import Entries, entries_of_shear_limits, least_shear_slacks, rows_of_blocks, shear_unit
 from methods.numerics.vertex import Vertex
 
-SIMPLEX_UP_TO = 400
+_SIMPLEX_UP_TO = 400
 """Interfaces above which the interior point with crossover of HiGHS is quicker than its simplex method."""
 
 COST = 1e4
 """Of the multiplier: speeds of the dual mechanism are of this order, far above what HiGHS rounds off."""
 
-BADLY_SCALED = 1e3
+_BADLY_SCALED = 1e3
 """Ratio of loads of two blocks from which forces and equilibrium are measured in units of their own."""
 
 
@@ -228,7 +228,7 @@ class ForceProgramme:
         )
         programme.highs.setOptionValue("small_matrix_value", 1e-12)
         if solver == "auto":
-            solver = "simplex" if m <= SIMPLEX_UP_TO else "ipm"
+            solver = "simplex" if m <= _SIMPLEX_UP_TO else "ipm"
         programme.highs.setOptionValue("solver", solver)
         # It costs the dual simplex method more than it saves for greatest multipliers; the primal one takes .9 of the
         # time, and ends at vertices with self-stress of thousands of weights where joints are rough.
@@ -275,7 +275,7 @@ def rates_against_any_load(problem: Problem, units: RowScaling | None, tight: Bo
 def badly_scaled(problem: Problem) -> bool:
     """Whether loads of blocks differ so much that forces and equilibrium are measured in units of their own."""
     size = _loads(problem)
-    return bool(size.max(initial=0.0) >= BADLY_SCALED * size.min(initial=np.inf) > 0.0)
+    return bool(size.max(initial=0.0) >= _BADLY_SCALED * size.min(initial=np.inf) > 0.0)
 
 
 def _loads(problem: Problem) -> FloatArray:

@@ -16,7 +16,7 @@ from harness.model.joint_law import block_diagonal
 from methods.numerics.optional import optional
 from methods.numerics.stress_blocks import BlockLimit, crushing_force, kinematic_multiplier
 
-ACCURATE = {"CLARABEL": {"tol_gap_abs": 1e-12, "tol_gap_rel": 1e-12, "tol_feas": 1e-12, "tol_ktratio": 1e-9}}
+_ACCURATE = {"CLARABEL": {"tol_gap_abs": 1e-12, "tol_gap_rel": 1e-12, "tol_feas": 1e-12, "tol_ktratio": 1e-9}}
 """Options of the cone solver: the judge holds its forces to 1e-9."""
 
 
@@ -45,7 +45,7 @@ def greatest_by_cones(
     programme = cvxpy.Problem(cvxpy.Maximize(multiplier), [balance, yields, *blocks, *limit])
     with warnings.catch_warnings():  # cvxpy warns of a status that is looked at here
         warnings.filterwarnings("ignore", message="Solution may be inaccurate", category=UserWarning)
-        programme.solve(solver=solver, **ACCURATE.get(solver, {}))
+        programme.solve(solver=solver, **_ACCURATE.get(solver, {}))
     outcome = {"optimal": "optimal", "optimal_inaccurate": "optimal"}.get(programme.status, programme.status)
     if outcome != "optimal":
         return BlockLimit(outcome if outcome in ("infeasible", "unbounded") else "unknown")

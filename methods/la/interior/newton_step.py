@@ -16,7 +16,7 @@ from methods.la.core.flexibility import Compliance
 from methods.la.core.newton_matrix import NewtonMatrix
 from methods.la.core.problem import Problem
 
-SOFTEST = 1e-25
+_SOFTEST = 1e-25
 """Least weight g/y in the matrix of a path, far below what any reaches, so that no stiffness overflows."""
 
 
@@ -66,7 +66,7 @@ class NewtonStep:
         if not (np.all(point.slack[~tight] > 0.0) and np.all(point.rates[~tight] > 0.0)):
             raise FloatingPointError("the iterate left the interior")
         self.slack = np.where(tight, 1.0, point.slack)
-        self.weight = np.where(tight, RIGID, np.maximum(point.rates / self.slack, SOFTEST))
+        self.weight = np.where(tight, RIGID, np.maximum(point.rates / self.slack, _SOFTEST))
         self.compliance = Compliance(problem.law, self.weight, problem.law.lift(dilatancy))
         self.statics = problem.imbalance(problem.forces_of_slacks(point.slack), point.multiplier)
         self.kinematics = problem.strains(point.velocities) - problem.strains_of_rates(point.rates, dilatancy)

@@ -47,7 +47,7 @@ class TrescaIteration:
     clipped: float = 5.0
 
 
-def with_bounds(problem: Problem, bound: FloatArray) -> Problem:
+def _with_bounds(problem: Problem, bound: FloatArray) -> Problem:
     """The problem with fixed bounds (m,) on shear instead of friction and cohesion."""
     none = np.zeros(len(bound))
     constant = np.column_stack([problem.law.constant[:, :2], bound, bound])
@@ -78,7 +78,7 @@ def tresca_mechanism(
     taken = 0
     for _ in range(steps):
         problem.deadline.ask()
-        held = with_bounds(problem, bound)
+        held = _with_bounds(problem, bound)
         try:
             step = NewtonStep(held, newton, point, 1.0, tight)
         except (NumericalFailure, FloatingPointError):
@@ -91,7 +91,7 @@ def tresca_mechanism(
             break
         if length > options.free:
             mean = max(options.fall * mean, least)
-    held = with_bounds(problem, bound)
+    held = _with_bounds(problem, bound)
     sharp = follow_path(held, newton, start_point(held), PathSettings.sharp())
     return sharp, start.iterations + taken + sharp.iterations
 

@@ -24,7 +24,7 @@ from methods.la.core.problem import Problem
 from methods.numerics.failures import sparse_lu
 from methods.numerics.optional import optional
 
-FASTEST = 1e3
+_FASTEST = 1e3
 """Bound on the rates at a mean live displacement of one; without it Ipopt's tolerances admit rates of any size."""
 
 
@@ -40,7 +40,7 @@ class PaperResult:
     message: str
 
 
-def determined_system(problem: Problem) -> IntArray:
+def _determined_system(problem: Problem) -> IntArray:
     """(n,) interfaces of a kinematically determined system: every block hangs on the supports by one chain of joints.
 
     The chains prefer joints that face gravity over head joints, and of the two halves of a bed joint the one towards
@@ -89,7 +89,7 @@ def solve_paper_programme(
     """
     casadi = optional("casadi", "paper", "la-paper")
 
-    m, first = problem.n_interfaces, np.sort(determined_system(problem))
+    m, first = problem.n_interfaces, np.sort(_determined_system(problem))
     second = np.setdiff1d(np.arange(m), first)
     rows1, rows2 = ((3 * part[:, None] + np.arange(3)).ravel() for part in (first, second))
     b1, b2 = problem.kinematic[rows1].tocsc(), problem.kinematic[rows2].tocsc()
@@ -124,7 +124,7 @@ def solve_paper_programme(
     programme: Any = {"x": unknowns, "f": multiplier, "g": constraints}
     solver = casadi.nlpsol("paper", "ipopt", programme, options)
     lower = np.concatenate([[0.0], np.full(len(rows2), -np.inf), np.zeros(4 * m)])
-    upper = np.concatenate([np.full(1 + len(rows2), np.inf), np.full(4 * m, FASTEST)])
+    upper = np.concatenate([np.full(1 + len(rows2), np.inf), np.full(4 * m, _FASTEST)])
     start = np.concatenate([[0.0], np.zeros(len(rows2)), np.full(4 * m, 0.1)])
     if start_forces is not None:
         start[1 : 1 + len(rows2)] = start_forces.ravel()[rows2]

@@ -23,13 +23,13 @@ from methods.la.sources.search import Search
 from methods.numerics.failures import NumericalFailure
 
 
-def finite_element_answer(assembly: Assembly, name: str) -> Answer:
+def _finite_element_answer(assembly: Assembly, name: str) -> Answer:
     """The answer of an installed finite-element method at its default settings."""
     method = load_method(name)
     return method.solve(assembly, method.Settings())
 
 
-def without_start(given: Answer) -> Answer:
+def _without_start(given: Answer) -> Answer:
     """The answer where finite elements end without a collapse state to start from."""
     if given.finding is Finding.UNBOUNDED:
         return unbounded_answer(f"There is no collapse state to start from: {given.sentence}.")
@@ -50,18 +50,18 @@ class PaperProgramme(LimitAnalysisFamily):
             )
         start = None
         if settings.start == "fe":
-            given = finite_element_answer(assembly, "fe")
+            given = _finite_element_answer(assembly, "fe")
             if given.finding is not Finding.COLLAPSES or given.forces is None:
-                return without_start(given)
+                return _without_start(given)
             start = given.forces / problem.unit_force
         try:
             result = solve_paper_programme(problem, start, settings.max_iterations, settings.epsilons)
         except (ValueError, NumericalFailure) as error:
             return not_converged(f"The programme could not be set up or solved: {error}")
-        return paper_answer(problem, newton, result, settings.start, LA_PAPER.tolerance)
+        return _paper_answer(problem, newton, result, settings.start, LA_PAPER.tolerance)
 
 
-def paper_answer(problem: Problem, newton: NewtonMatrix, result: PaperResult, start: str, tolerance: float) -> Answer:
+def _paper_answer(problem: Problem, newton: NewtonMatrix, result: PaperResult, start: str, tolerance: float) -> Answer:
     """The exact state on the mechanism that the programme ends at, with what the programme itself said."""
     details: dict[str, Any] = {
         "unknowns": result.unknowns,
@@ -129,15 +129,15 @@ class FromFiniteElements(LimitAnalysisFamily):
 
     def answer(self, assembly: Assembly, problem: Problem, newton: NewtonMatrix, settings: Any) -> Answer:
         """FE forces projected onto equilibrium and yield, nearest mechanism, descent; and the same from cold."""
-        given = finite_element_answer(assembly, settings.fe_method)
+        given = _finite_element_answer(assembly, settings.fe_method)
         if given.finding is not Finding.COLLAPSES or given.forces is None or given.multiplier is None:
-            return without_start(given)
+            return _without_start(given)
         forces, _, projected = project_forces(
             problem, given.forces / problem.unit_force, given.multiplier / problem.unit_multiplier
         )
         limits = SearchLimits(failures=settings.failures)
         warm = Search(problem, newton, settings.seed, Budget(limits))
-        first = warm.nearest_state(problem.slacks(forces), fe_rates(problem, given))
+        first = warm.nearest_state(problem.slacks(forces), _fe_rates(problem, given))
         warm_end = None if first is None else warm.descend(first)
         cold = Search(problem, newton, settings.seed, Budget(limits))
         second = cold.interior()
@@ -175,7 +175,7 @@ class FromFiniteElements(LimitAnalysisFamily):
         )
 
 
-def fe_rates(problem: Problem, answer: Answer) -> np.ndarray[Any, np.dtype[np.float64]] | None:
+def _fe_rates(problem: Problem, answer: Answer) -> np.ndarray[Any, np.dtype[np.float64]] | None:
     """(m, 4) rates of the finite-element mechanism, scaled to the live work; None if it has none."""
     if answer.mechanism is None:
         return None

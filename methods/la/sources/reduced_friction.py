@@ -12,14 +12,14 @@ import numpy as np
 
 from methods.la.core.problem import Problem
 
-ROUGHEST = 1.5
+_ROUGHEST = 1.5
 """Friction of all joints at most, where unloaded ones are lowered further; above, starts end at self-stress."""
 
 
 def with_reduced_friction(problem: Problem, factor: float) -> Problem | None:
-    """The wall with friction of ROUGHEST at most, times `factor` in the unloaded joints; None if all are loaded."""
+    """The wall with friction of _ROUGHEST at most, times `factor` in the unloaded joints; None if all are loaded."""
     unloaded = problem.unloaded_joints
     if not unloaded.any():
         return None
-    friction = np.minimum(problem.friction, ROUGHEST)
+    friction = np.minimum(problem.friction, _ROUGHEST)
     return replace(problem, law=problem.law.with_friction(np.where(unloaded, factor * friction, friction)))

@@ -141,10 +141,10 @@ ZERO, ONE = Fraction(0), Fraction(1)
 EQUAL: Limits = (ZERO, ZERO)
 
 
-POSITIVE: Limits = (ZERO, None)
+_POSITIVE: Limits = (ZERO, None)
 
 
-NEGATIVE: Limits = (None, ZERO)
+_NEGATIVE: Limits = (None, ZERO)
 
 
 def exact_state(wall: Fractions, moving: BoolArray) -> tuple[Fraction, dict[str, Any]]:
@@ -160,14 +160,14 @@ def exact_state(wall: Fractions, moving: BoolArray) -> tuple[Fraction, dict[str,
     for p, mu in enumerate(wall.friction):
         a, b, s = 3 * p, 3 * p + 1, 3 * p + 2
         slacks: list[Row] = [{a: ONE}, {b: ONE}, {a: mu, b: mu, s: ONE}, {a: mu, b: mu, s: -ONE}]
-        rows += [(slack, EQUAL if moving[4 * p + k] else POSITIVE) for k, slack in enumerate(slacks)]
+        rows += [(slack, EQUAL if moving[4 * p + k] else _POSITIVE) for k, slack in enumerate(slacks)]
     forces = _vertex(rows, 3 * m + 1, {3 * m: ONE})
     rows = [(_sparse(wall.live), (ONE, ONE))]
     for p in range(m):
         open1, open2, slip = wall.rows[3 * p : 3 * p + 3]
-        rows += [(row, POSITIVE if moving[4 * p + k] else EQUAL) for k, row in enumerate((open1, open2))]
+        rows += [(row, _POSITIVE if moving[4 * p + k] else EQUAL) for k, row in enumerate((open1, open2))]
         forward, back = moving[4 * p + 2], moving[4 * p + 3]
-        rows.append((slip, POSITIVE if forward and not back else NEGATIVE if back and not forward else EQUAL))
+        rows.append((slip, _POSITIVE if forward and not back else _NEGATIVE if back and not forward else EQUAL))
     velocities = _vertex(rows, len(wall.dead), {})
     return forces[3 * m], {"forces": _text(forces[: 3 * m]), "velocities": _text(velocities)}
 
@@ -186,13 +186,13 @@ def _velocities(wall: Fractions, bound: Fraction, tight: BoolArray) -> list[Frac
     n = len(wall.dead)
     live = _sparse(wall.live)
     rest = _sparse([-d - bound * f for d, f in zip(wall.dead, wall.live, strict=True)])
-    rows: list[tuple[Row, Limits]] = [(live, POSITIVE), (rest, POSITIVE), (_sum(live, rest), (ONE, ONE))]
+    rows: list[tuple[Row, Limits]] = [(live, _POSITIVE), (rest, _POSITIVE), (_sum(live, rest), (ONE, ONE))]
     for p, mu in enumerate(wall.friction):
         open1, open2, slip = wall.rows[3 * p : 3 * p + 3]
         back = {k: -value for k, value in slip.items()}
         for k, (row, weight) in enumerate(((open1, -mu), (open2, -mu), (slip, ONE), (back, ONE))):
             if not tight[4 * p + k]:
-                rows.append((row | {n + p: weight}, NEGATIVE))
+                rows.append((row | {n + p: weight}, _NEGATIVE))
     return _vertex(rows, n + len(wall.friction), {k: -value for k, value in rest.items()})[:n]
 
 
@@ -200,11 +200,11 @@ def _forces(wall: Fractions, bound: Fraction, still: BoolArray) -> list[Fraction
     m = len(wall.friction)
     dead = [d + bound * f for d, f in zip(wall.dead, wall.live, strict=True)]
     rows = [(row, EQUAL) for row in _balance(wall, {3 * m: dead, 3 * m + 1: wall.live})]
-    rows += [({3 * m: ONE}, POSITIVE), ({3 * m + 1: ONE}, POSITIVE), ({3 * m: ONE, 3 * m + 1: ONE}, (ONE, ONE))]
+    rows += [({3 * m: ONE}, _POSITIVE), ({3 * m + 1: ONE}, _POSITIVE), ({3 * m: ONE, 3 * m + 1: ONE}, (ONE, ONE))]
     for p in range(m):
         for k, (column, sign) in enumerate(((0, ONE), (1, ONE), (2, ONE), (2, -ONE))):
             if not still[4 * p + k]:
-                rows.append(({3 * p + column: sign}, POSITIVE))
+                rows.append(({3 * p + column: sign}, _POSITIVE))
     return _vertex(rows, 3 * m + 2, {3 * m: -ONE})
 
 

@@ -15,8 +15,8 @@ MOST_BYTES = 64 * 2**20
 """Of a certificate, unpacked. The largest of the library has a third of that."""
 MOST_VALUES = 8_000_000
 """Numbers, texts, lists and objects of a certificate: what it holds takes about 60 bytes each when it is read."""
-LONG = re.compile(rb"[0-9]{%d}" % (MOST_DIGITS + 1))
-GZIP = b"\x1f\x8b"
+_LONG = re.compile(rb"[0-9]{%d}" % (MOST_DIGITS + 1))
+_GZIP = b"\x1f\x8b"
 
 
 def unpacked(content: bytes) -> bytes:
@@ -25,7 +25,7 @@ def unpacked(content: bytes) -> bytes:
     Raises:
         CertificateError: it is cut short, or is too much to be checked: nothing of it is read then.
     """
-    if content.startswith(GZIP):
+    if content.startswith(_GZIP):
         unpacker = zlib.decompressobj(wbits=zlib.MAX_WBITS | 16)
         try:
             content = unpacker.decompress(content, MOST_BYTES + 1)
@@ -37,7 +37,7 @@ def unpacked(content: bytes) -> bytes:
         raise CertificateError(f"it has more than {MOST_BYTES:,} bytes, unpacked")
     if 1 + sum(content.count(sign) for sign in (b",", b"[", b"{")) > MOST_VALUES:
         raise CertificateError(f"it has more than {MOST_VALUES:,} values")
-    if LONG.search(content):
+    if _LONG.search(content):
         raise CertificateError(f"it has a number of more than {MOST_DIGITS} digits")
     return content
 

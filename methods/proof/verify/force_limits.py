@@ -42,7 +42,7 @@ class Forces:
         sides: Sides | None = None,
     ) -> None:
         self.wall, self.low, self.high = wall, low, high
-        self.tight, self.rays = frozenset(tight), rays_of(wall, tight)
+        self.tight, self.rays = frozenset(tight), _rays_of(wall, tight)
         self.sides: Sides = {} if sides is None else sides
         self.unit = 2 ** whole(document["exponent"], 0, 200)
         m = wall.n_interfaces
@@ -61,7 +61,7 @@ class Forces:
     def within(self, low: Fraction, tight: Collection[int]) -> Forces:
         """The same bounds for the states from `low` on, of them those without slack in these contacts."""
         part = copy.copy(self)
-        part.low, part.tight, part.rays = low, frozenset(tight), rays_of(self.wall, tight)
+        part.low, part.tight, part.rays = low, frozenset(tight), _rays_of(self.wall, tight)
         return part
 
     def beside(self, interface: int, normal: Fraction, above: bool) -> Forces:
@@ -151,7 +151,7 @@ class Forces:
         return paid / (scale * mu_unit), Fraction(worst, scale * mu_unit)
 
 
-def rays_of(wall: ExactWall, tight: Collection[int]) -> list[list[tuple[int, int]]]:
+def _rays_of(wall: ExactWall, tight: Collection[int]) -> list[list[tuple[int, int]]]:
     """The extreme forces of every interface without slack in `tight`: the end that presses, the side of friction."""
     rays: list[list[tuple[int, int]]] = []
     for p, mu in enumerate(wall.friction):

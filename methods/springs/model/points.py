@@ -12,7 +12,7 @@ from numpy.polynomial import legendre
 
 from harness.model.assembly import FloatArray
 
-GAUSS_REFUSAL = (
+_GAUSS_REFUSAL = (
     "Gauss points are refused: none of them lies at an end of the interface, so the hinge would form inside the joint "
     "and the multiplier would be too small (0.468 in place of 0.565 on the 21-brick wall); use 'uniform' or 'lobatto'"
 )
@@ -33,7 +33,7 @@ def gap_points(rule: str, count: int) -> tuple[FloatArray, FloatArray]:
         ValueError: the rule is unknown or leaves the ends out, or fewer than two points are asked for.
     """
     if rule == "gauss":
-        raise ValueError(GAUSS_REFUSAL)
+        raise ValueError(_GAUSS_REFUSAL)
     if count < 2:
         raise ValueError(f"an interface needs a gap point at each of its two ends; {count} given")
     if rule == "uniform":

@@ -54,7 +54,7 @@ def committed_step(follower: PathFollower, ahead: float) -> PathFollower | None:
             if key in seen:
                 return None
             seen.add(key)
-            change_states(model, factor, state, landed)
+            _change_states(model, factor, state, landed)
     except SingularTangent:
         return None
     return None
@@ -70,7 +70,7 @@ def _near(follower: PathFollower, u: FloatArray, ahead: float) -> bool:
     )
 
 
-def change_states(model: WallModel, factor: Factor, state: IntArray, wanted: IntArray) -> None:
+def _change_states(model: WallModel, factor: Factor, state: IntArray, wanted: IntArray) -> None:
     """Bring a factor from one set of states (changed in place) to another.
 
     A tangent that turns singular on the way belongs to a step gone astray, which is not worth a regularised factor.

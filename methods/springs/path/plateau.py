@@ -22,10 +22,10 @@ from methods.springs.model.point_loops import point_strains
 from methods.springs.model.wall_model import WallModel
 from methods.springs.path.path_record import PathSnapshot
 
-IDLE = 1e-12
+_IDLE = 1e-12
 """Work of the live load on a mechanism, as a share of the sum of its terms' sizes, that is rounding."""
 
-NOT_UNIQUE = "the plateau is not unique: more than one mechanism moves at once"
+_NOT_UNIQUE = "the plateau is not unique: more than one mechanism moves at once"
 
 
 @dataclass(frozen=True)
@@ -114,7 +114,7 @@ def _solve_last_piece(model: WallModel, shot: PathSnapshot) -> PlateauState:
         factor = _bordered(tangent, fastest, model.live)
         multiplier = _corrected(model, factor, fastest, opening, trial, state, multiplier)
         if not np.isfinite(opening + trial).all():
-            raise SingularTangent(NOT_UNIQUE)
+            raise SingularTangent(_NOT_UNIQUE)
         beyond = _beyond_yield(model, opening, trial, state)
         if not beyond.any():
             break
@@ -122,7 +122,7 @@ def _solve_last_piece(model: WallModel, shot: PathSnapshot) -> PlateauState:
         state[beyond] = landed[beyond]
     mechanism = factor.solve(-tangent[:, [fastest]].toarray().ravel())
     if not np.isfinite(mechanism).all():
-        raise SingularTangent(NOT_UNIQUE)
+        raise SingularTangent(_NOT_UNIQUE)
     mechanism[fastest] = 1.0
     mechanism *= np.sign(shot.velocity[fastest])
     return _collapse_state(model, multiplier, opening, trial, state, mechanism)
@@ -160,7 +160,7 @@ def _of_many_mechanisms(model: WallModel, shot: PathSnapshot) -> PlateauState:
         strain(change + rise * by_live)
         opening, trial, multiplier = opening + opening_rate, trial + model.kt * slip_rate, multiplier + rise
     if not np.isfinite(opening + trial).all() or not np.isfinite(velocity).all():
-        raise SingularTangent(NOT_UNIQUE)
+        raise SingularTangent(_NOT_UNIQUE)
     return _collapse_state(model, multiplier, opening, trial, shot.state, velocity)
 
 
@@ -168,7 +168,7 @@ def _regular(model: WallModel, state: IntArray) -> SuperLU:
     try:
         return sparse_lu(model.tangent(state, model.options.collapse.inertia))
     except SingularMatrix as error:
-        raise SingularTangent(NOT_UNIQUE) from error
+        raise SingularTangent(_NOT_UNIQUE) from error
 
 
 def _beyond_yield(model: WallModel, opening: FloatArray, trial: FloatArray, state: IntArray) -> BoolArray:
@@ -185,7 +185,7 @@ def _bordered(tangent: sp.csc_matrix, fastest: int, live: FloatArray) -> SuperLU
     try:
         return sparse_lu(_with_column(tangent, fastest, -live))
     except SingularMatrix as error:
-        raise SingularTangent(NOT_UNIQUE) from error
+        raise SingularTangent(_NOT_UNIQUE) from error
 
 
 def _corrected(
@@ -202,7 +202,7 @@ def _corrected(
     for _ in range(model.options.collapse.corrections):
         answer = factor.solve(model.out_of_balance(opening, trial, state, multiplier))
         if not np.isfinite(answer).all():
-            raise SingularTangent(NOT_UNIQUE)
+            raise SingularTangent(_NOT_UNIQUE)
         multiplier += float(answer[fastest])
         answer[fastest] = 0.0
         point_strains(model.unknown, model.rows, model.interface, model.position, answer, opening_rate, slip_rate)
@@ -241,8 +241,8 @@ def check(assembly: Assembly, multiplier: float, forces: FloatArray, mechanism: 
     rates = (matrix @ velocity).reshape(-1, 3)
     power = float(live @ velocity)
     share = power / (float(abs(live) @ abs(velocity)) or 1.0)
-    power = power if share > IDLE else 0.0
-    speed = float(np.abs(velocity * lengths).max()) * min(1.0, max(share, IDLE)) or 1.0
+    power = power if share > _IDLE else 0.0
+    speed = float(np.abs(velocity * lengths).max()) * min(1.0, max(share, _IDLE)) or 1.0
     law = assembly.law
     opened, slipped = law.rates(rates)[:, :2], np.abs(rates[:, 2])
     slacks, forwards = law.slacks(forces), rates[:, 2] > 0.0
