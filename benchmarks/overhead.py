@@ -53,7 +53,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
         if full:
             _line("suite small, CPU s", command_cost(folder, "compare", "--suite", "small"), 22.0)
             command_cost(folder, "compare", "--suite", "all", "--no-report", repeats=1)
-            _line("report of the library (67 cases) again, CPU s", command_cost(folder, "report", repeats=4), 2.0)
+            _line("report of the whole library again, CPU s", command_cost(folder, "report", repeats=4), 2.0)
         overhead, idle, _ = _many(folder, 2000, ["la-associated"])
         _line("overhead of each of 2,000 runs of la-associated, CPU ms", 1e3 * overhead, 20.0)
         _line("two cores idle meanwhile (of a machine of its own), %", 100.0 * idle, 10.0)

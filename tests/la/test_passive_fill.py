@@ -286,6 +286,38 @@ def test_command_prints_what_the_fill_bears(tmp_path: Path):
     np.testing.assert_array_equal(again.assembly.bars.least, wall.assembly.bars.least)
 
 
+def bond_beside_fill() -> dict[str, Any]:
+    """Ten bricks in running bond, pushed into passive fill on their right."""
+    height, width = 0.55, 2.0
+    ends = [[(0.0, 1.0), (1.0, 2.0)], [(0.0, 0.5), (0.5, 1.5), (1.5, 2.0)]]
+    bricks = [
+        {"id": f"{course}-{k}", "polygon": [(a, y), (b, y), (b, y + height), (a, y + height)]}
+        for course in range(4)
+        for y in (course * height,)
+        for k, (a, b) in enumerate(ends[course % 2])
+    ]
+    ground = {"id": "ground", "polygon": [(-3, -1), (8, -1), (8, 0), (-3, 0)], "fixed": True}
+    passive = {"mobilised": 0.34, "friction_angle": 30.0}
+    fill = {"level": 2.01, "unit_weight": 18.0, "between": (width, 7.0), "passive": passive}
+    return {
+        "format": "wall/1",
+        "unit_weight": 20.0,
+        "friction": 0.9,
+        "blocks": [ground, *bricks],
+        "loads": {"live": {"body": [{"per_weight": (1.0, 0.0)}]}, "dead": {"fills": [fill]}},
+    }
+
+
+def test_the_least_state_beside_fill_is_not_above_the_plateau_of_the_springs():
+    wall = drystone.build_wall(bond_beside_fill(), "bond")
+    least, plateau, most = (drystone.analyse(wall, method).multiplier for method in ("la", "fe", "la-associated"))
+    assert least is not None
+    assert plateau is not None
+    assert most is not None
+    assert least <= plateau + 1e-9
+    assert plateau < 0.98 * most
+
+
 TIE = {"from": {"block": "block", "at": [0.5, 0.8]}, "to": {"block": "base", "at": [-2.0, -0.5]}, "yield_force": 2.0}
 
 

@@ -122,8 +122,8 @@ class LowPrestress:
     heavy: int = 3
 
     def applies(self, problem: Problem) -> bool:
-        """On dry joints that slide without lifting, as springs do."""
-        return self.least <= problem.n_interfaces <= self.most and not problem.dilates and problem.law.is_cone
+        """On joints that slide without lifting; with strength, ties or props from gravity's forces alone."""
+        return self.least <= problem.n_interfaces <= self.most and not problem.dilates
 
     def states(self, search: Search) -> Iterator[CollapseState]:
         """One state a path that ends, until the breakpoints are spent."""
@@ -148,7 +148,7 @@ class LowPrestress:
     def _starts(self, search: Search) -> Iterator[Start]:
         problem = search.problem
         yield partial(_from_gravity, search, search.gravity, problem.unit_multiplier)
-        if problem.n_interfaces > self.gravity_alone:
+        if problem.n_interfaces > self.gravity_alone or not problem.law.is_cone:
             return
         if problem.n_interfaces > self.vertices_up_to:
             yield from self.committed.starts(search)
