@@ -147,7 +147,12 @@ def under_load_case(wall: Wall, name: str, known: dict[str, NamedLoads] | None =
     known = named_loads(wall) if known is None else known
     if name not in known:
         there = f"There are: {first_few(list(known), MOST_NAMED)}" if known else 'A wall gives them in "load_cases"'
-        remedy = f"{did_you_mean(name, known)} {there}".strip()
+        made = [each for each, loads in known.items() if loads.place in (f"travelling.{name}", f"combinations.{name}")]
+        if made:
+            which = made[0] if len(made) == 1 else f"one of {made[0]} to {made[-1]}"
+            remedy = f"It acts at {len(made)} place(s), each a load case: give {which}"
+        else:
+            remedy = f"{did_you_mean(name, known)} {there}".strip()
         raise InputError(f'no load case is called "{name}"', remedy, wall.load_cases_place)
     own, factor = known[name].own, known[name].common
     gravity = wall.loads.gravity if own.gravity is None else own.gravity
