@@ -17,7 +17,7 @@ from drystone.walls import library_wall
 from harness.engine.plan import find_cases
 from harness.model.method import Status
 
-LIMITS = (1e-9, 1e-4, 2e-2)
+_LIMITS = (1e-9, 1e-4, 2e-2)
 """Up to which walls are counted; the last is what the judge tolerates."""
 
 
@@ -42,6 +42,6 @@ def main(arguments: Sequence[str] | None = None) -> None:
         found[case.id] = residuals[worst]
         size = f"{case.id:<34} {case.assembly.n_free:4d} blocks"
         say(f"{size}  {residuals[worst]:9.2e} {worst:<24} {result.judge.outcome}")
-    below = ", ".join(f"{sum(value <= limit for value in found.values())} at most {limit:g}" for limit in LIMITS)
+    below = ", ".join(f"{sum(value <= limit for value in found.values())} at most {limit:g}" for limit in _LIMITS)
     largest = max(found.values(), default=0.0)
     say(f"{len(found)} motions of {asked.method}: {below}; largest {largest:.2e}. Without: {dict(without)}.")

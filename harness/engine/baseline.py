@@ -35,7 +35,7 @@ class Change(StrEnum):
     NEW = "new"
 
 
-Multiplier = Annotated[float, Field(ge=0.0, strict=True)]
+_Multiplier = Annotated[float, Field(ge=0.0, strict=True)]
 """As the judge accepts it: no live load brings a collapse at a negative one about."""
 
 
@@ -45,8 +45,8 @@ class Value(BaseModel):
     model_config = ConfigDict(extra="forbid", allow_inf_nan=False)
     status: Status
     finding: Finding
-    multiplier: Multiplier | None = None
-    bracket: tuple[Multiplier, Multiplier] | None = None
+    multiplier: _Multiplier | None = None
+    bracket: tuple[_Multiplier, _Multiplier] | None = None
 
     @model_validator(mode="after")
     def _bracket_has_an_order(self) -> Value:

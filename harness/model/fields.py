@@ -12,7 +12,7 @@ MOST_BLOCKS = 100_000
 """Blocks of a wall at most, those that patterns make included."""
 Number = Annotated[float, Field(ge=-LARGEST, le=LARGEST, strict=True)]
 Point = tuple[Number, Number]
-SMALLEST = 1e-100
+_SMALLEST = 1e-100
 """Least size of a number that has to be positive, whatever its unit, so that no quotient of a few of them overflows."""
 
 
@@ -22,8 +22,8 @@ def _can_divide(value: float) -> float:
     Raises:
         ValueError: it is as small as none.
     """
-    if value < SMALLEST:
-        raise ValueError(f"{value:.3g} is as small as none: give at least {SMALLEST:g}")
+    if value < _SMALLEST:
+        raise ValueError(f"{value:.3g} is as small as none: give at least {_SMALLEST:g}")
     return value
 
 

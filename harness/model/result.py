@@ -25,7 +25,7 @@ class Verdict(StrEnum):
     """The method needs a package that is not installed here."""
 
 
-WORKS = {
+_WORKS = {
     "live_work": "work of the live load, must be positive",
     "dead_work": "work of the dead load, must exceed closing_work",
     "closing_work": "what immense forces do on closings, must be below dead_work",
@@ -60,13 +60,13 @@ class Judgement(BaseModel):
 
         Work is no residual, and those of a measured motion have a tolerance of their own.
         """
-        small = [item for item in self.residuals.items() if item[0] not in WORKS and not item[0].startswith("motion_")]
+        small = [item for item in self.residuals.items() if item[0] not in _WORKS and not item[0].startswith("motion_")]
         return max(small, key=lambda item: item[1], default=None)
 
     def listed(self, digits: int = 2) -> list[tuple[str, str]]:
         """Name and value of each number that was found, for people; what is work says so, and what is asked of it."""
         return [
-            (name, f"{value:.{digits}e}" + (f" (no residual: {WORKS[name]})" if name in WORKS else ""))
+            (name, f"{value:.{digits}e}" + (f" (no residual: {_WORKS[name]})" if name in _WORKS else ""))
             for name, value in self.residuals.items()
         ]
 
