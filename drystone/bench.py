@@ -13,7 +13,7 @@ import math
 import statistics
 import time
 import tomllib
-from collections.abc import Iterator, Sequence
+from collections.abc import Collection, Iterator, Sequence
 from dataclasses import dataclass
 from importlib.resources import files
 from pathlib import Path
@@ -37,6 +37,12 @@ if TYPE_CHECKING:
 
 SAME = 1e-6
 """Relative distance from the least known multiplier up to which two states are the same one."""
+COLUMNS = (
+    "set", "version", "wall", "blocks", "interfaces", "method", "finding", "status", "judge", "multiplier", "lower",
+    "upper", "answered", "correct", "exact", "proved", "cpu_seconds", "wall_seconds", "peak_memory_bytes",
+    "speed_seconds", "speed_spread", "processor",
+)  # fmt: skip
+"""Of the table, in their order."""
 WRONG = (Verdict.OUTSIDE_TOLERANCE, Verdict.VIOLATES_BOUND)
 
 
@@ -195,24 +201,8 @@ class Bench:
         """
         import pandas as pd
 
-        missing = [column for column in self.table.columns if column not in other.columns]
-        if missing:
-            raise InputError(
-                f"it has no column {', '.join(missing)}", "Give a table of `drystone bench -o`", source=name
-            )
-        for column in ("set", "version"):
-            own, theirs = set(self.table[column]), set(other[column])
-            if own != theirs:
-                raise InputError(
-                    f"its {column} is {', '.join(map(str, theirs))} and not {', '.join(map(str, own))}",
-                    "Join tables of one set and version",
-                    source=name,
-                )
-        strange = next((column for column, wrong in _wrong_cells(other, set(self.table["wall"])) if wrong.any()), None)
-        if strange is not None:
-            problem = f"column {strange} has a cell that cannot be in it"
-            raise InputError(problem, "Give a table of `drystone bench -o`", source=name)
-        kept = other[list(self.table.columns)].astype(self.table.dtypes.to_dict())
+        check_table(other, name, *(set(self.table[column]) for column in ("set", "version", "wall")))
+        kept = other[list(COLUMNS)].astype(self.table.dtypes.to_dict())
         return Bench(pd.concat([self.table, kept], ignore_index=True))
 
     def plot(self) -> Figure:
@@ -220,6 +210,34 @@ class Bench:
         from reports.drawing.profile import profile_figure
 
         return profile_figure(self.profile(), self.complete)
+
+
+def check_table(
+    table: pd.DataFrame, name: str, sets: Collection[str], versions: Collection[int], walls: Collection[str]
+) -> None:
+    """Refuse a table of others that cannot be joined to one of these sets, versions and walls.
+
+    Args:
+        table: of others; name: of its file.
+
+    Raises:
+        InputError: as `Bench.joined`.
+    """
+    missing = [column for column in COLUMNS if column not in table.columns]
+    if missing:
+        raise InputError(f"it has no column {', '.join(missing)}", "Give a table of `drystone bench -o`", source=name)
+    for column, own in (("set", sets), ("version", versions)):
+        theirs = set(table[column])
+        if set(own) != theirs:
+            raise InputError(
+                f"its {column} is {', '.join(map(str, theirs)) or 'missing'} and not {', '.join(map(str, own))}",
+                "Join tables of one set and version",
+                source=name,
+            )
+    strange = next((column for column, wrong in _wrong_cells(table, set(walls)) if wrong.any()), None)
+    if strange is not None:
+        problem = f"column {strange} has a cell that cannot be in it"
+        raise InputError(problem, "Give a table of `drystone bench -o`", source=name)
 
 
 def _wrong_cells(table: pd.DataFrame, walls: set[str]) -> Iterator[tuple[str, Any]]:
@@ -240,10 +258,8 @@ def _wrong_cells(table: pd.DataFrame, walls: set[str]) -> Iterator[tuple[str, An
 def rows_of(chosen: WallSet, compared: Comparison, speed: Speed) -> pd.DataFrame:
     """The table of a comparison on a set of walls.
 
-    Columns: set, version, wall, blocks, interfaces, method, finding, status, judge, multiplier, lower, upper (of a
-    measured bracket), answered, correct, exact (a state of the joint law, not a measured bracket), proved (minimum,
-    by a certificate or to rounding), cpu_seconds, wall_seconds, peak_memory_bytes, speed_seconds and speed_spread of
-    the machine, processor.
+    Its columns are `COLUMNS`: lower and upper of a measured bracket; exact: a state of the joint law, not a measured
+    bracket; proved: the minimum, by a certificate or to rounding; speed_seconds and speed_spread of the machine.
     """
     import pandas as pd
 
@@ -281,7 +297,7 @@ def rows_of(chosen: WallSet, compared: Comparison, speed: Speed) -> pd.DataFrame
             }
         )
     # A gated reference may ask for other settings besides: the first row is that of the method as it is.
-    return pd.DataFrame(rows).drop_duplicates(["wall", "method"], ignore_index=True)
+    return pd.DataFrame(rows, columns=list(COLUMNS)).drop_duplicates(["wall", "method"], ignore_index=True)
 
 
 def bench(

@@ -6,8 +6,13 @@ parameters, the model answers with vectors. It needs the package umbridge, which
 
 from __future__ import annotations
 
+import socket
+import threading
+import time
 from collections.abc import Callable, Mapping, Sequence
+from contextlib import closing
 from dataclasses import dataclass, field
+from http.client import HTTPConnection, HTTPException
 from typing import Any
 
 from drystone.analysis import Result
@@ -98,16 +103,23 @@ def _multiplier(found: Result) -> float:
     raise InputError(f"{found.method} finds no collapse multiplier: {found.sentence}", "", "result")
 
 
-def serve(template: TemplateWall, port: int = 4242, told: Callable[[str], None] = print) -> None:
+def serve(
+    template: TemplateWall,
+    port: int = 4242,
+    told: Callable[[str], None] = print,
+    ready: Callable[[str], None] = print,
+) -> None:
     """Answer clients of UM-Bridge until the process is ended; a wall without an answer is an error of the protocol.
 
     Args:
         template: the wall. Its first input are all parameters, its outputs are `OUTPUTS`, a number each.
         port: of this machine, on which it listens.
         told: called with a sentence on each error.
+        ready: called with the address once it answers there.
 
     Raises:
         MissingPackage: umbridge is not installed.
+        InputError: it cannot listen on that port.
     """
     try:
         import umbridge
@@ -131,4 +143,26 @@ def serve(template: TemplateWall, port: int = 4242, told: Callable[[str], None] 
                 told(str(error))
                 return None  # umbridge answers with an error of the protocol, "InvalidOutput"
 
-    umbridge.serve_models([Model(NAME)], port)
+    try:
+        with socket.socket() as tried:  # umbridge says nothing when it has bound the port, so a failure is met here
+            tried.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
+            tried.bind(("", port))
+        threading.Thread(target=_when_it_answers, args=(port, ready), daemon=True).start()
+        umbridge.serve_models([Model(NAME)], port)
+    except OSError as error:
+        problem = f"it cannot listen on the port {port} ({error.strerror or error})"
+        raise InputError(problem, "End what listens there, or give another", "--port") from None
+
+
+def _when_it_answers(port: int, ready: Callable[[str], None]) -> None:
+    """Call `ready` with the address of a port of this machine when the server there answers."""
+    while True:
+        with closing(HTTPConnection("localhost", port, timeout=1.0)) as asked:
+            try:
+                asked.request("GET", "/Info")
+                asked.getresponse()
+            except (OSError, HTTPException):
+                time.sleep(0.05)
+                continue
+        ready(f"http://localhost:{port}")
+        return

@@ -161,10 +161,9 @@ def least_known_reactions(
     found: list[Reaction] = []
     for greatest, begins in ((False, high - inside * (high - low)), (True, low + inside * (high - low))):
         guided = released(assembly, begins, greatest)
-        result, judgement = answered(load_method(method), guided.assembly)
+        # The multiplier of the released wall is how far the reaction has changed since the search began.
+        result, judgement = answered(load_method(method), guided.assembly, "change of the reaction")
         tensions = bar_tensions(guided.assembly, result)
-        # The multiplier of the released wall is a reaction, but for a constant.
-        judgement.sentence = judgement.sentence.replace("multiplier", "reaction")
         if result.multiplier is None or result.mechanism is None or result.forces is None or tensions is None:
             return f"No reaction without dilatancy is known: {result.sentence}"
         if not guided.holds(tensions):

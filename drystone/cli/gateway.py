@@ -60,5 +60,9 @@ def gateway(
     template = TemplateWall(
         Wall(found if chosen[1:] else chosen[0]), names, method, limits, settings_of(method, settings)
     )
-    say(f'Model "{NAME}" at http://localhost:{port}: {", ".join(names)} -> {", ".join(OUTPUTS)}')
-    serve(template, port, lambda sentence: say(f"drystone: {sentence}", err=True))
+    serve(
+        template,
+        port,
+        lambda sentence: say(f"drystone: {sentence}", err=True),
+        lambda address: say(f'Model "{NAME}" at {address}: {", ".join(names)} -> {", ".join(OUTPUTS)}'),
+    )

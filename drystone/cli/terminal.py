@@ -280,7 +280,7 @@ def print_result(result: Result, case: Case, proof: Proof) -> None:
         rows.append(("proof", proof.sentence))
     rows += [*_bar_lines(case, result), *_reaction_lines(case, result)]
     rows += [("status", str(result.status)), ("judge", result.judge.sentence)]
-    rows += [("", f"{name} {value:.2e}") for name, value in result.judge.residuals.items()]
+    rows += [("", f"{name} {value}") for name, value in result.judge.listed()]
     for comparison in result.comparisons:
         rows.append(
             ("reference", f"{VERDICT_TEXTS[comparison.verdict]}: {comparison.reference}: {comparison.sentence}")
@@ -303,8 +303,8 @@ def _print_named(rows: list[tuple[str, str]]) -> None:
 def print_judgement(judgement: Judgement) -> None:
     """What the judge says, for a person."""
     print(visible(judgement.sentence))
-    for name, value in judgement.residuals.items():
-        print(f"  {name:16s} {value:.3e}")
+    for name, value in judgement.listed(3):
+        print(f"  {name:16s} {value}")
     print(judgement.outcome.replace("_", " "))
 
 

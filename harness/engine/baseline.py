@@ -11,13 +11,13 @@ import json
 from collections.abc import Sequence
 from enum import StrEnum
 from pathlib import Path
-from typing import Any
+from typing import Annotated, Any
 
-from pydantic import BaseModel, ConfigDict, Field
+from pydantic import BaseModel, ConfigDict, Field, model_validator
 
 from harness.engine.run import Run
 from harness.model.json_text import read_json
-from harness.model.method import Status
+from harness.model.method import Finding, Status
 from harness.model.reading import validate
 from harness.model.result import Result
 from harness.model.writing import write_whole
@@ -35,14 +35,24 @@ class Change(StrEnum):
     NEW = "new"
 
 
-class Value(BaseModel):
-    """What one method found on one case."""
+_Multiplier = Annotated[float, Field(ge=0.0, strict=True)]
+"""As the judge accepts it: no live load brings a collapse at a negative one about."""
 
-    model_config = ConfigDict(extra="forbid")
+
+class Value(BaseModel):
+    """What one method found on one case: an answer that the judge accepts, or that there was none."""
+
+    model_config = ConfigDict(extra="forbid", allow_inf_nan=False)
     status: Status
-    finding: str
-    multiplier: float | None = None
-    bracket: tuple[float, float] | None = None
+    finding: Finding
+    multiplier: _Multiplier | None = None
+    bracket: tuple[_Multiplier, _Multiplier] | None = None
+
+    @model_validator(mode="after")
+    def _bracket_has_an_order(self) -> Value:
+        if self.bracket is not None and self.bracket[0] > self.bracket[1]:
+            raise ValueError("the bracket ends below its begin: give the lower end first")
+        return self
 
 
 class Entry(BaseModel):
@@ -80,9 +90,10 @@ def write_baseline(path: Path, baseline: Baseline) -> None:
 
 def value_of(result: Result) -> Value:
     """What of a result the baseline keeps. An answer that the judge does not accept counts as not converged."""
-    shown = result.status is not Status.OK or result.judge.accepted
-    status = result.status if shown else Status.NOT_CONVERGED
-    return Value(status=status, finding=str(result.finding), multiplier=result.multiplier, bracket=result.bracket)
+    if result.status is not Status.OK or not result.judge.accepted:
+        status = Status.NOT_CONVERGED if result.status is Status.OK else result.status
+        return Value(status=status, finding=result.finding)
+    return Value(status=result.status, finding=result.finding, multiplier=result.multiplier, bracket=result.bracket)
 
 
 def change(old: Value | None, new: Value, *, seeks_least: bool) -> tuple[Change, str]:

@@ -69,20 +69,21 @@ from harness.model.method import Finding, Method, Status, check_takes
 from harness.model.result import Judgement, Result, bracket_is_wide, plastic_of, residual_of, result_of
 
 
-def judge(assembly: Assembly, result: Result, tolerance: float) -> Judgement:
+def judge(assembly: Assembly, result: Result, tolerance: float, quantity: str = "multiplier") -> Judgement:
     """What an independent check says of the claim that a result makes; see this module's docstring.
 
     Args:
         assembly: the wall.
         result: the answer as a result.
         tolerance: the largest residual that is acceptable for this method.
+        quantity: what sentences call the multiplier, where that of this wall stands for another quantity.
     """
     if result.status is not Status.OK or result.finding is Finding.NONE:
         return Judgement(tolerance=tolerance, sentence="There is no answer to judge.")
     forces = None if result.forces is None else np.asarray(result.forces, dtype=float).reshape(-1, 3)
     mechanism = None if result.mechanism is None else np.asarray(result.mechanism, dtype=float).reshape(-1, 3)
     numbers: dict[str, Any] = {"forces": forces, "mechanism": mechanism, "bracket": result.bracket}
-    numbers |= {"multiplier": result.multiplier, "multiplier of the forces": result.forces_multiplier}
+    numbers |= {quantity: result.multiplier, f"{quantity} of the forces": result.forces_multiplier}
     for name, value in numbers.items():
         if value is not None and not countable(value):
             return said_of(tolerance, False, f"Its {name}: not finite, or larger than {COUNTABLE:g}.")
@@ -90,16 +91,18 @@ def judge(assembly: Assembly, result: Result, tolerance: float) -> Judgement:
         return said_of(tolerance, False, beyond)
     if forces is not None and beyond is not None and not countable(beyond):
         return said_of(tolerance, False, f"Its tensions of ties and props: larger than {COUNTABLE:g}.")
-    if fault := _contradiction(assembly, result, tolerance):
+    if fault := _contradiction(assembly, result, tolerance, quantity):
         return said_of(tolerance, False, fault)
     judged = _judge_brittle if assembly.breaks else _judge_finding
-    said = judged(assembly, forces, mechanism, result, tolerance)
+    said = judged(assembly, forces, mechanism, result, tolerance, quantity)
     details = AnswerDetails(result.details)
     if assembly.strong and details.has_without_strength:
-        said = _with_other(said, assembly.residual, residual_of(result), "Without cohesion and tensile strength")
+        said = _with_other(
+            said, assembly.residual, residual_of(result), "Without cohesion and tensile strength", quantity
+        )
     if assembly.breaks and details.has_with_strength:
         plastic = replace(assembly, brittle=np.zeros_like(assembly.brittle))
-        said = _with_other(said, plastic, plastic_of(result), "With plastic strength")
+        said = _with_other(said, plastic, plastic_of(result), "With plastic strength", quantity)
     if said.accepted and tolerance > COARSEST:
         said.accepted = None
         said.sentence += f" A tolerance above {COARSEST:g} shows nothing."
@@ -109,7 +112,12 @@ def judge(assembly: Assembly, result: Result, tolerance: float) -> Judgement:
 
 
 def _judge_finding(
-    assembly: Assembly, forces: FloatArray | None, mechanism: FloatArray | None, result: Result, tolerance: float
+    assembly: Assembly,
+    forces: FloatArray | None,
+    mechanism: FloatArray | None,
+    result: Result,
+    tolerance: float,
+    quantity: str,
 ) -> Judgement:
     """What is said of the finding of a result."""
     match result.finding:
@@ -122,12 +130,17 @@ def _judge_finding(
         case Finding.AT_LIMIT:
             return judge_limit(assembly, forces, mechanism, result, tolerance)
     if result.flow == "approximate":
-        return _judge_bracket(assembly, forces, result, tolerance)
-    return _judge_collapse(assembly, forces, mechanism, result, tolerance)
+        return _judge_bracket(assembly, forces, result, tolerance, quantity)
+    return _judge_collapse(assembly, forces, mechanism, result, tolerance, quantity)
 
 
 def _judge_brittle(
-    assembly: Assembly, forces: FloatArray | None, mechanism: FloatArray | None, result: Result, tolerance: float
+    assembly: Assembly,
+    forces: FloatArray | None,
+    mechanism: FloatArray | None,
+    result: Result,
+    tolerance: float,
+    quantity: str,
 ) -> Judgement:
     """What is said of the finding on a wall with brittle joints, those that the answer calls broken being dry."""
     broken = listed(assembly, result.details, BROKEN)
@@ -136,7 +149,7 @@ def _judge_brittle(
     wall = assembly.with_broken(broken)
     if result.finding is Finding.COLLAPSES and BREAKING in result.details:
         return judge_breaking(wall, forces, mechanism, result, tolerance)
-    said = _judge_finding(wall, forces, mechanism, result, tolerance)
+    said = _judge_finding(wall, forces, mechanism, result, tolerance, quantity)
     if broken.any():
         said.sentence += f" {int(broken.sum())} of {int(assembly.brittle.sum())} brittle joints are taken as broken."
         if result.finding is Finding.FALLS and said.accepted:
@@ -158,7 +171,7 @@ def _judge_brittle(
     return said
 
 
-def _with_other(said: Judgement, wall: Assembly, other: Result | None, words: str) -> Judgement:
+def _with_other(said: Judgement, wall: Assembly, other: Result | None, words: str, quantity: str) -> Judgement:
     """The judgement of an answer, no better than that of the answer that comes with it, if that claims a thing.
 
     Args:
@@ -171,35 +184,36 @@ def _with_other(said: Judgement, wall: Assembly, other: Result | None, words: st
         if other.status is not Status.OK:
             if other.multiplier is None and other.bracket is None:
                 return said
-            own = said_of(said.tolerance, False, f'It gives a multiplier beside the status "{other.status}".')
+            own = said_of(said.tolerance, False, f'It gives a {quantity} beside the status "{other.status}".')
         else:
-            own = judge(wall, other, said.tolerance)
+            own = judge(wall, other, said.tolerance, quantity)
     both = (said.accepted, own.accepted)
     accepted = False if False in both else None if None in both else True
     sentence = f"{said.sentence} {words}: {own.sentence}"
     return said.model_copy(update={"accepted": accepted, "sentence": sentence})
 
 
-def _contradiction(assembly: Assembly, result: Result, tolerance: float) -> str:
+def _contradiction(assembly: Assembly, result: Result, tolerance: float, quantity: str) -> str:
     """What parts of a result say against each other or against the question, in words; empty where nothing does."""
     multiplier, bracket = result.multiplier, result.bracket
     if not result.finding.has_multiplier:
         if result.finding is Finding.UNBOUNDED and not assembly.has_live_load:
             return "It speaks of a live load that the wall does not have."
         if multiplier is not None or bracket is not None:
-            return f'It gives a multiplier or a bracket beside the finding "{result.finding}", which has none.'
+            return f'It gives a {quantity} or a bracket beside the finding "{result.finding}", which has none.'
         return ""
     if not assembly.has_live_load:
-        return "It gives a multiplier of a live load that the wall does not have."
+        return f"It gives a {quantity} of a live load that the wall does not have."
     lowest = min(0.0 if multiplier is None else multiplier, 0.0 if bracket is None else bracket[0])
     if lowest < 0.0:
         return (
-            "Its multiplier or the lower end of its bracket lies below zero: no live load brings such a collapse about."
+            f"Its {quantity} or the lower end of its bracket lies below zero: no live load brings such a collapse "
+            "about."
         )
     if bracket is not None and multiplier is not None:
         slack = tolerance * max(abs(bracket[0]), abs(bracket[1]))
         if not bracket[0] - slack <= multiplier <= bracket[1] + slack:
-            return f"Its multiplier {multiplier:.6g} lies outside its bracket [{bracket[0]:.6g}, {bracket[1]:.6g}]."
+            return f"Its {quantity} {multiplier:.6g} lies outside its bracket [{bracket[0]:.6g}, {bracket[1]:.6g}]."
     return ""
 
 
@@ -217,14 +231,16 @@ def _with_motion(said: Judgement, residuals: dict[str, float], fault: str) -> Ju
     return said
 
 
-def answered(method: Method, assembly: Assembly, **settings: Any) -> tuple[Result, Judgement]:
-    """What a method answers in this process, and what the judge says of it."""
+def answered(
+    method: Method, assembly: Assembly, quantity: str = "multiplier", **settings: Any
+) -> tuple[Result, Judgement]:
+    """What a method answers in this process, and what the judge says of it, which calls the multiplier `quantity`."""
     check_takes(method, assembly)
     answer = checked(method.solve(assembly.copied(), method.Settings.model_validate(settings)), assembly)
     result = result_of(
         answer, assembly, case=assembly.name, method=method.name, family=method.family, traits=method.traits
     )
-    return result, judge(assembly, result, method.tolerance)
+    return result, judge(assembly, result, method.tolerance, quantity)
 
 
 WITHOUT_END = 1e-12
@@ -240,19 +256,24 @@ _MOVED_FAR = " Its blocks rest so far from where they were drawn that this shows
 
 
 def _judge_collapse(
-    assembly: Assembly, forces: FloatArray | None, mechanism: FloatArray | None, result: Result, tolerance: float
+    assembly: Assembly,
+    forces: FloatArray | None,
+    mechanism: FloatArray | None,
+    result: Result,
+    tolerance: float,
+    quantity: str,
 ) -> Judgement:
     """Collapse at the multiplier that is reported, by a whole collapse state."""
     multiplier = result.multiplier
     if multiplier is None:
-        return said_of(tolerance, False, "It gives no multiplier.")
+        return said_of(tolerance, False, f"It gives no {quantity}.")
     if forces is None:
         return said_of(tolerance, None, NO_FORCES)
     at = multiplier if result.forces_multiplier is None else result.forces_multiplier
     beyond = beyond_prestress(assembly, result)
     if mechanism is None:
         found = force_residuals(assembly, forces, at, beyond=beyond)
-        said = decide(found, tolerance, f"The contact forces at multiplier {at:.6g} were")
+        said = decide(found, tolerance, f"The contact forces at {quantity} {at:.6g} were")
         said.accepted = None if said.accepted else said.accepted
         said.sentence += " It gives no mechanism, so that it collapses there is not shown."
         return said
@@ -264,22 +285,24 @@ def _judge_collapse(
         size = max(assembly.load_unit, abs(multiplier))
         error = abs(multiplier - at) + size * (residuals["complementarity"] + residuals["virtual_work"])
         said.multiplier_error = float(error)
-        said.sentence += f" By virtual work the multiplier of this mechanism is known to within {error:.1g}."
+        said.sentence += f" By virtual work the {quantity} of this mechanism is known to within {error:.1g}."
     return said
 
 
-def _judge_bracket(assembly: Assembly, forces: FloatArray | None, result: Result, tolerance: float) -> Judgement:
+def _judge_bracket(
+    assembly: Assembly, forces: FloatArray | None, result: Result, tolerance: float, quantity: str
+) -> Judgement:
     """A measured collapse: forces show its lower end; its upper end and its motion are not judged."""
     lower = result.multiplier if result.bracket is None else result.bracket[0]
     at = result.multiplier if result.forces_multiplier is None else result.forces_multiplier
     if lower is None or at is None:
-        return said_of(tolerance, False, "It gives no multiplier.")
+        return said_of(tolerance, False, f"It gives no {quantity}.")
     if result.bracket is not None and at > result.bracket[1] + tolerance * abs(at):
         return said_of(tolerance, False, f"Its forces bear {at:.6g}, above the upper end of its bracket.")
     far = False
     if forces is not None:
         residuals = force_residuals(assembly, forces, at, beyond=beyond_prestress(assembly, result))
-        what = f"Equilibrium and yield of the contact forces at multiplier {at:.6g} were"
+        what = f"Equilibrium and yield of the contact forces at {quantity} {at:.6g} were"
     else:
         moved = DisplacedState.of(result.details)
         if moved is None:
@@ -287,7 +310,7 @@ def _judge_bracket(assembly: Assembly, forces: FloatArray | None, result: Result
         if fault := displaced_fault(assembly, moved):
             return said_of(tolerance, False, f"The state of rest is no proof: {fault}.")
         residuals, far = displaced_residuals(assembly, moved, at), moved_far(assembly, moved)
-        what = f"Equilibrium and yield of the contact forces on the displaced blocks, at multiplier {at:.6g}, were"
+        what = f"Equilibrium and yield of the contact forces on the displaced blocks, at {quantity} {at:.6g}, were"
     residuals["multiplier"] = apart(lower, at) if lower > at else 0.0
     said = decide(residuals, tolerance, what)
     if said.accepted and far:
@@ -301,7 +324,7 @@ def _judge_bracket(assembly: Assembly, forces: FloatArray | None, result: Result
             said.accepted = None
             said.sentence += (
                 f" The lower end of its bracket is zero beside the upper end {upper:.6g}, within the tolerance of the "
-                "judge: it states no multiplier."
+                f"judge: it states no {quantity}."
             )
         else:
             said.sentence += " They prove the lower end; the collapse above it is measured and not judged."

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field, replace
+from functools import cached_property
 
 import numpy as np
 import shapely
@@ -88,9 +89,9 @@ class Outline:
     fixed: bool = False
     holes: tuple[FloatArray, ...] = ()
 
-    @property
+    @cached_property
     def shape(self) -> shapely.Polygon:
-        """The stone it encloses."""
+        """The stone it encloses; made once, as most of the time of a large drawing would be that of making it again."""
         return shapely.Polygon(self.polygon, self.holes)
 
 
@@ -235,6 +236,8 @@ class Drawing:
 
     def scaled(self, scale: float) -> Drawing:
         """The drawing with every length times `scale`."""
+        if scale == 1.0:
+            return self
         outlines = [
             replace(item, polygon=scale * item.polygon, holes=tuple(scale * hole for hole in item.holes))
             for item in self.outlines

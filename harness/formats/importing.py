@@ -14,6 +14,7 @@ from pathlib import Path
 from typing import Annotated, Any, Literal
 
 import numpy as np
+import shapely
 from pydantic import BeforeValidator, Field
 
 from harness.formats.drawing import LINES, Asked, Drawing, Outline
@@ -323,7 +324,7 @@ def _names(outlines: list[Outline]) -> list[str]:
 
 def _size(outlines: list[Outline]) -> float:
     """Typical size of a stone: the median of the square roots of their areas."""
-    return float(np.median([math.sqrt(item.shape.area) for item in outlines]))
+    return float(np.median(np.sqrt(shapely.area([item.shape for item in outlines]))))
 
 
 def _tolerance(outlines: list[Outline], mapping: Mapping) -> tuple[float | None, list[str]]:

@@ -68,7 +68,7 @@ def refuse_frame(outlines: Sequence[Outline]) -> None:
     Raises:
         InputError: naming the outermost, and what would mend the drawing.
     """
-    shapes = np.array([shapely.Polygon(item.polygon) for item in outlines])
+    shapes = shapely.polygons(shapely.get_exterior_ring([item.shape for item in outlines]))
     size = shapely.area(shapes)
     order = np.argsort(-size, kind="stable")
     frames = 0

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import csv
 import io
+import json
 from pathlib import Path
 from typing import Any
 
@@ -31,10 +32,8 @@ def read_geojson(path: Path, _asked: Asked) -> Drawing:
     if not isinstance(features, list) or not all(isinstance(item, dict) for item in features):
         raise InputError("it is no GeoJSON", "Give a FeatureCollection of polygons", source=str(path))
     drawing = Drawing()
-    system = data.get("crs")
-    if isinstance(system, dict):
-        named = system.get("properties")
-        reference_system(str(named.get("name", "") if isinstance(named, dict) else system), drawing)
+    if data.get("crs") is not None:
+        reference_system(_named_system(data["crs"], path), drawing)
     for number, feature in enumerate(features):
         properties = feature.get("properties") or {}
         if not isinstance(properties, dict):
@@ -49,10 +48,36 @@ def read_geojson(path: Path, _asked: Asked) -> Drawing:
     return drawing
 
 
+def _named_system(system: Any, path: Path) -> str:
+    """The name of a GeoJSON member crs (GeoJSON 1.0, Butler et al. 2008, section 3)."""
+    named = system.get("properties") if isinstance(system, dict) else None
+    name = named.get("name") if isinstance(named, dict) else None
+    if not isinstance(name, str) or not name.strip():
+        raise InputError(
+            "it names no system of coordinates",
+            'Give {"type": "name", "properties": {"name": "EPSG:32632"}} with your system, or leave crs out',
+            "crs",
+            str(path),
+        )
+    return name
+
+
+def _no_position(value: Any) -> Any:
+    """What stands in the coordinates of a GeoJSON geometry and is no number; None where all are numbers."""
+    if isinstance(value, list | tuple):
+        return next((found for item in value if (found := _no_position(item)) is not None), None)
+    return None if isinstance(value, int | float) and not isinstance(value, bool) else json.dumps(value)
+
+
 def _shape(geometry: Any, element: str) -> Any:
     """The shapely geometry of a GeoJSON geometry."""
     from shapely.geometry import shape
 
+    members = [geometry, *(geometry.get("geometries") or [])] if isinstance(geometry, dict) else []
+    for member in members:
+        wrong = _no_position(member.get("coordinates", [])) if isinstance(member, dict) else None
+        if wrong is not None:
+            raise InputError(f"its coordinates hold {wrong[:40]}", "Give positions as [x, y], numbers both", element)
     try:
         return shape(geometry)
     except (AttributeError, KeyError, TypeError, ValueError, IndexError, shapely.errors.ShapelyError) as error:

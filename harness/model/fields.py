@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Annotated
 
-from pydantic import BaseModel, ConfigDict, Field
+from pydantic import AfterValidator, BaseModel, ConfigDict, Field
 
 LARGEST = 1e15
 """Greatest size of any number of the format, whatever its unit, so that no product of a few of them overflows."""
@@ -12,12 +12,29 @@ MOST_BLOCKS = 100_000
 """Blocks of a wall at most, those that patterns make included."""
 Number = Annotated[float, Field(ge=-LARGEST, le=LARGEST, strict=True)]
 Point = tuple[Number, Number]
-Positive = Annotated[float, Field(gt=0.0, le=LARGEST, strict=True)]
+_SMALLEST = 1e-100
+"""Least size of a number that has to be positive, whatever its unit, so that no quotient of a few of them overflows."""
+
+
+def _can_divide(value: float) -> float:
+    """A positive number.
+
+    Raises:
+        ValueError: it is as small as none.
+    """
+    if value < _SMALLEST:
+        raise ValueError(f"{value:.3g} is as small as none: give at least {_SMALLEST:g}")
+    return value
+
+
+Positive = Annotated[float, Field(gt=0.0, le=LARGEST, strict=True), AfterValidator(_can_divide)]
 NonNegative = Annotated[float, Field(ge=0.0, le=LARGEST, strict=True)]
 Coefficient = Annotated[float, Field(ge=0.0, le=1e4, strict=True)]
 Angle = Annotated[float, Field(ge=0.0, lt=90.0, strict=True)]
 Count = Annotated[int, Field(ge=1, le=MOST_BLOCKS)]
 Name = Annotated[str, Field(min_length=1, max_length=200)]
+Blocks = Annotated[list[Name], Field(min_length=1)]
+"""Ids of the blocks that a load or a settlement is about: of none it would do nothing."""
 
 
 class Strict(BaseModel):

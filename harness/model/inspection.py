@@ -21,6 +21,7 @@ from harness.model.contacts import check_gap
 from harness.model.errors import MOST_WORDED, InputError, Spot, sorted_out, uncounted
 from harness.model.input_checks import unknown_in_rules
 from harness.model.interfaces import Joints, faults_of_given, floating, floating_groups, joints_of, limits_of
+from harness.model.laid import lay
 from harness.model.load_cases import each_built, named_loads
 from harness.model.names import faults_of_wall
 from harness.model.plausibility import NEAR_MISS, allowing, saying, span
@@ -121,14 +122,15 @@ def inspect(wall: Wall, name: str = "wall", before: Sequence[InputError] = ()) -
     faults = [*faults_of_wall(wall, blocks), *bad, *sorted_out(lambda block: weight_of(block, wall), blocks)[0]]
     faults += support_faults(fixed)
     doubts: list[FaultMark] = []
+    joints: Joints | None = None
     if polygons:
-        kept = np.array(list(polygons), dtype=np.int64)
-        found, doubts = _lying(wall, [apart[k] for k in kept], list(polygons.values()), _hulls(blocks, polygons))
+        kept = [apart[k] for k in polygons]
+        found, doubts, joints = _lying(wall, kept, list(polygons.values()), _hulls(blocks, polygons))
         faults += found
     built = None
     if not faults and not before:
         try:
-            built = _first_built(wall, name)
+            built = _first_built(wall, name, blocks, joints)
         except InputError as error:
             faults += error.faults
     marks = [*(_marked(fault, "fault") for fault in (*before, *faults)), *doubts]
@@ -141,12 +143,16 @@ def inspect(wall: Wall, name: str = "wall", before: Sequence[InputError] = ()) -
     return Inspection(wall, names, outlines, fixed, tuple(_placed(mark, middle) for mark in _once(marks)), built)
 
 
-def _first_built(wall: Wall, name: str) -> Built:
-    """The wall under the first of its load cases, all of which can be built, or as it is if it has none."""
+def _first_built(wall: Wall, name: str, blocks: list[Block], joints: Joints | None) -> Built:
+    """The wall under the first of its load cases, all of which can be built, or as it is if it has none.
+
+    Its blocks have no faults, and the joints between them are known, unless no two blocks can have one.
+    """
     known, first = named_loads(wall), None
-    for _, _, built in each_built(wall, dict.fromkeys(known, name), known) if known else ():
+    laid = lay(wall, blocks, joints)
+    for _, _, built in each_built(wall, dict.fromkeys(known, name), known, laid) if known else ():
         first = first or built
-    return first or build(wall, name)
+    return first or build(wall, name, laid)
 
 
 def _outlines(blocks: Sequence[Block]) -> tuple[list[InputError], dict[int, FloatArray]]:
@@ -183,12 +189,12 @@ def _hulls(blocks: Sequence[Block], polygons: dict[int, FloatArray]) -> list[sha
 
 def _lying(
     wall: Wall, blocks: Sequence[Block], polygons: Sequence[FloatArray], hulls: Sequence[shapely.Geometry]
-) -> tuple[list[InputError], list[FaultMark]]:
-    """What is wrong and doubtful about where blocks of sound outlines lie."""
+) -> tuple[list[InputError], list[FaultMark], Joints | None]:
+    """What is wrong and doubtful about where blocks of sound outlines lie, and their joints where they were found."""
     names = [block.id for block in blocks]
     fixed = np.array([block.fixed for block in blocks], dtype=bool)
     if fixed.all() or not fixed.any():
-        return [], []
+        return [], [], None
     asked = wall.interfaces
     shapes = geometry.shapes_of(polygons)
     size = geometry.typical_size(shapes[~fixed])
@@ -199,7 +205,7 @@ def _lying(
         faults += geometry.overlap_faults(shapes, names, overlapping, shared)
         joints = Joints(asked) if isinstance(asked, list) else joints_of(asked, polygons, names, fixed, limits)
     except InputError as error:  # there is more than can be looked at
-        return [*faults, *error.faults], []
+        return [*faults, *error.faults], [], None
     if isinstance(asked, Detection):
         try:
             check_gap(shapes, names, limits.gap)
@@ -216,7 +222,7 @@ def _lying(
     if len(groups) > MOST_WORDED:
         faults.append(uncounted(len(groups) - MOST_WORDED, "groups of blocks float", "blocks"))
     said = {fault.spot.blocks for fault in faults if fault.spot is not None}
-    return faults, [mark for mark in _missed(names, joints) if mark.blocks not in said]
+    return faults, [mark for mark in _missed(names, joints) if mark.blocks not in said], joints
 
 
 def _joined(interfaces: Iterable[Interface], index: dict[str, int]) -> IntArray:

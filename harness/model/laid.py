@@ -69,8 +69,12 @@ class Laid:
         return np.union1d(by_name, self._groups.get(given.group or "", by_name))
 
 
-def lay(wall: Wall, blocks: list[Block]) -> Laid:
+def lay(wall: Wall, blocks: list[Block], joints: Joints | None = None) -> Laid:
     """The blocks of a wall, as `blocks_of_wall` gives them, with their joints.
+
+    Args:
+        wall: as described; blocks: of it.
+        joints: of blocks that are known not to overlap, where they were found before.
 
     Raises:
         InputError: naming the block or the interface that is wrong.
@@ -84,7 +88,7 @@ def lay(wall: Wall, blocks: list[Block]) -> Laid:
     centroids = geometry.centroids(polygons)
     shapes = geometry.shapes_of(polygons)
     size = geometry.typical_size(shapes[~fixed])
-    found = find_joints(wall.interfaces, polygons, names, fixed, shapes, size)
+    found = joints or find_joints(wall.interfaces, polygons, names, fixed, shapes, size)
     block_a, block_b, face1, face2 = faces_of(found, index, fixed)
     check_held(names, fixed, block_a, block_b, found)
     normal = normals_of(

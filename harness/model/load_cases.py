@@ -14,7 +14,7 @@ from harness.model.blocks import blocks_of_wall, polygons_of
 from harness.model.build import Built, build
 from harness.model.case import Case
 from harness.model.errors import MOST_NAMED, InputError, did_you_mean, first_few, raise_faults
-from harness.model.laid import lay
+from harness.model.laid import Laid, lay
 from harness.model.load_fields import DEAD, Load, Loads
 from harness.model.loads import times, together
 from harness.model.travelling import Upward
@@ -147,7 +147,12 @@ def under_load_case(wall: Wall, name: str, known: dict[str, NamedLoads] | None =
     known = named_loads(wall) if known is None else known
     if name not in known:
         there = f"There are: {first_few(list(known), MOST_NAMED)}" if known else 'A wall gives them in "load_cases"'
-        remedy = f"{did_you_mean(name, known)} {there}".strip()
+        made = [each for each, loads in known.items() if loads.place in (f"travelling.{name}", f"combinations.{name}")]
+        if made:
+            which = made[0] if len(made) == 1 else f"one of {made[0]} to {made[-1]}"
+            remedy = f"It acts at {len(made)} place(s), each a load case: give {which}"
+        else:
+            remedy = f"{did_you_mean(name, known)} {there}".strip()
         raise InputError(f'no load case is called "{name}"', remedy, wall.load_cases_place)
     own, factor = known[name].own, known[name].common
     gravity = wall.loads.gravity if own.gravity is None else own.gravity
@@ -158,18 +163,21 @@ def under_load_case(wall: Wall, name: str, known: dict[str, NamedLoads] | None =
     return wall.model_copy(update={"loads": loads, "load_cases": {}, "travelling": {}, "combinations": {}})
 
 
-def each_built(wall: Wall, names: Mapping[str, str], known: dict[str, NamedLoads]) -> Iterator[tuple[str, Wall, Built]]:
+def each_built(
+    wall: Wall, names: Mapping[str, str], known: dict[str, NamedLoads], laid: Laid | None = None
+) -> Iterator[tuple[str, Wall, Built]]:
     """A wall under its load cases, one after another, with the assembly; blocks and joints are laid once.
 
     Args:
         wall: with load cases; names: of the assemblies by load case; known: all load cases.
+        laid: its blocks and joints, where they are known.
 
     Raises:
         InputError: as `under_load_case`; as `build`, with the place where the file says it; or so many load cases of so
             many blocks that they take minutes to build.
     """
     walls = {load_case: under_load_case(wall, load_case, known) for load_case in names}
-    blocks = blocks_of_wall(wall)
+    blocks = blocks_of_wall(wall) if laid is None else laid.blocks
     if len(names) > 1 and len(names) * len(blocks) > _MOST_BUILT:
         raise InputError(
             f"its {len(blocks):,} blocks are built under each of {len(names):,} load cases, and at most "
@@ -177,7 +185,7 @@ def each_built(wall: Wall, names: Mapping[str, str], known: dict[str, NamedLoads
             "Give fewer load cases, or choose one with --load-case of run or expand",
             wall.load_cases_place,
         )
-    laid = lay(wall, blocks)
+    laid = lay(wall, blocks) if laid is None else laid
     for load_case, name in names.items():
         try:
             built = build(walls[load_case], name, laid)

@@ -6,7 +6,7 @@ from typing import Annotated, Any, Literal
 
 from pydantic import Discriminator, Field, StrictBool, Tag, model_validator
 
-from harness.model.fields import MANY, OTHER, Name, Number, Point, Strict
+from harness.model.fields import MANY, OTHER, Blocks, Name, Number, Point, Strict
 from harness.model.pressure_fields import Fill, Pressure
 
 
@@ -14,7 +14,7 @@ class BodyForce(Strict):
     """A force on blocks as a multiple of their weight, at their centroids."""
 
     per_weight: Point = Field(description="(x, y) multiple of the weight; gravity is [0, -1]")
-    blocks: list[Name] | None = Field(None, description="ids; all free blocks if neither blocks nor group is given")
+    blocks: Blocks | None = Field(None, description="ids; all free blocks if neither blocks nor group is given")
     group: Name | None = None
 
     @model_validator(mode="after")
@@ -83,7 +83,7 @@ class Travelling(Strict):
         "top",
         description="top: faces that look up and have no block above; extrados: all faces that look up without a joint",
     )
-    blocks: list[Name] | None = Field(None, description="on these alone; on all free blocks if absent")
+    blocks: Blocks | None = Field(None, description="on these alone; on all free blocks if absent")
     group: Name | None = Field(None, description="on the blocks of this group alone")
     per_face: Annotated[int, Field(ge=1, le=100, strict=True)] = Field(
         1, description="places on each face, in the middle of equal parts"

@@ -7,7 +7,7 @@ from typing import Annotated, Literal
 
 from pydantic import Field, model_validator
 
-from harness.model.fields import Angle, Name, NonNegative, Number, Point, Positive, Strict
+from harness.model.fields import Angle, Blocks, Name, NonNegative, Number, Point, Positive, Strict
 
 
 class Water(Strict):
@@ -67,7 +67,7 @@ class Fill(Strict):
     between: tuple[Number, Number] | None = Field(
         None, description="x of its left and right end [length]; the whole wall if absent"
     )
-    blocks: list[Name] | None = Field(None, description="ids; all free blocks if neither blocks nor group is given")
+    blocks: Blocks | None = Field(None, description="ids; all free blocks if neither blocks nor group is given")
     group: Name | None = None
     factor: Number = Field(1.0, description="multiple of its weight that acts; its resistance is not multiplied")
     passive: Passive | None = Field(None, description="of a dead fill: it resists faces that move into it")
@@ -88,7 +88,7 @@ class Pressure(Strict):
 
     start: Point = Field(alias="from", description="one end of the loaded segment, on a face")
     end: Point = Field(alias="to", description="its other end")
-    blocks: list[Name] | None = Field(None, description="ids; all free blocks if neither blocks nor group is given")
+    blocks: Blocks | None = Field(None, description="ids; all free blocks if neither blocks nor group is given")
     group: Name | None = None
     uniform: Number | None = Field(None, description="pressure [force/length^2]; negative: suction")
     linear: Annotated[tuple[Number, Number] | None, Field(description="pressure at `from` and `to`")] = None

@@ -25,6 +25,14 @@ class Verdict(StrEnum):
     """The method needs a package that is not installed here."""
 
 
+_WORKS = {
+    "live_work": "work of the live load, must be positive",
+    "dead_work": "work of the dead load, must exceed closing_work",
+    "closing_work": "what immense forces do on closings, must be below dead_work",
+}
+"""Numbers of a judgement beside its residuals, which need not vanish, and what is asked of them."""
+
+
 class Judgement(BaseModel):
     """What an independent check of an answer found.
 
@@ -52,9 +60,15 @@ class Judgement(BaseModel):
 
         Work is no residual, and those of a measured motion have a tolerance of their own.
         """
-        work = ("live_work", "dead_work", "closing_work")
-        small = [item for item in self.residuals.items() if item[0] not in work and not item[0].startswith("motion_")]
+        small = [item for item in self.residuals.items() if item[0] not in _WORKS and not item[0].startswith("motion_")]
         return max(small, key=lambda item: item[1], default=None)
+
+    def listed(self, digits: int = 2) -> list[tuple[str, str]]:
+        """Name and value of each number that was found, for people; what is work says so, and what is asked of it."""
+        return [
+            (name, f"{value:.{digits}e}" + (f" (no residual: {_WORKS[name]})" if name in _WORKS else ""))
+            for name, value in self.residuals.items()
+        ]
 
     @property
     def decimals(self) -> int | None:

@@ -19,6 +19,7 @@ from harness.model.fields import (
     ONE,
     OTHER,
     Angle,
+    Blocks,
     Coefficient,
     Name,
     NonNegative,
@@ -200,7 +201,7 @@ class Detection(Strict):
 class Settlement(Strict):
     """A prescribed motion of fixed blocks, by which the reaction along it is asked for."""
 
-    blocks: list[Name] | None = Field(None, description="ids of fixed blocks")
+    blocks: Blocks | None = Field(None, description="ids of fixed blocks")
     group: Name | None = Field(None, description="a group of fixed blocks")
     translation: Point = Field((0.0, 0.0), description="(x, y); a vector of length 1 makes the reaction a force")
     rotation: Number = Field(0.0, description="counter-clockwise [radian]; of length 1 it makes the reaction a moment")

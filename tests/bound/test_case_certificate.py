@@ -28,7 +28,7 @@ from methods.proof.verify.checker import verify
 from methods.proof.verify.document import digest
 from methods.proof.verify.exact_wall import CertificateError, ExactWall
 from methods.proof.verify.windows import WindowLimits
-from tests.bound.by_cases import certificate_of_cases
+from tests.bound.by_cases import ShortFirst, certificate_of_cases
 from tests.bound.digits import one_digit_changed, refused_or_true
 from tests.bound.test_bracket import IRREGULAR
 from tests.la.bodies import running_bond
@@ -44,7 +44,7 @@ def of_bond() -> dict[str, Any]:
 
 @cache
 def of_irregular_wall() -> dict[str, Any]:
-    return certificate_of_cases(small_wall(10))
+    return certificate_of_cases(small_wall(10), ShortFirst)
 
 
 def nodes(node: dict[str, Any]) -> Iterator[dict[str, Any]]:
@@ -176,6 +176,19 @@ def test_forces_show_how_little_a_contact_moves_and_opposite_ones_do_not() -> No
         if "parts" in node:
             left += zip(states.halves(node), node["parts"], strict=True)
     assert found > 0
+
+
+def test_a_step_about_an_interface_beyond_the_last_is_refused() -> None:
+    document = of_bond()
+    limits = WindowLimits(ExactWall(document), document["windows"][-1])
+    states = states_of(limits, Fraction(1), limits.forces.low)
+    still = [0] * (3 * running_bond(2, 2, 0.2, 0.65).n_free)
+    count = running_bond(2, 2, 0.2, 0.65).n_interfaces
+    step = {"shows": "loaded", "least": "0", "velocities": still}
+    assert states.after(step | {"interface": count - 1}).known.least[count - 1] == 0  # no force is below zero
+    for beyond in (count, count + 1, -1):
+        with pytest.raises(CertificateError):
+            states.after(step | {"interface": beyond})
 
 
 def test_a_case_in_which_nothing_moves_is_empty() -> None:

@@ -6,8 +6,10 @@ from collections.abc import Callable
 from fractions import Fraction
 from typing import Any
 
+import numpy as np
 import pytest
 
+from methods.proof.same_wall import load_sizes
 from methods.proof.verify.exact_wall import (
     MOST_BITS,
     MOST_DIGITS,
@@ -73,3 +75,9 @@ def test_how_many_digits_a_number_may_have_is_said_in_the_refusal():
             BEYOND[name]()
     with pytest.raises(CertificateError, match="more than 20,000 bits"):
         BEYOND["many bits"]()
+
+
+def test_a_moment_is_measured_by_the_forces_at_the_farthest_vertex():
+    """A moment of 10 on a block whose farthest vertex is .5 away is that of a force of 20 there, above 3 and 4."""
+    assert load_sizes(np.array([3.0, -4.0, 10.0]), 0.5).tolist() == [20.0, 20.0, 10.0]
+    assert load_sizes(np.array([3.0, -4.0, 1.0]), 0.5).tolist() == [4.0, 4.0, 2.0]

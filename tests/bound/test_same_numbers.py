@@ -151,6 +151,30 @@ def test_both_checkers_compute_the_same_bounds_where_a_joint_is_at_its_friction(
         compare(case, part, window, reach, False, draw)
 
 
+@pytest.mark.parametrize("contacts", [(0, 1), (1, 4), (2, 7), (0, 3, 5)])
+def test_both_checkers_compute_the_same_bounds_where_several_slacks_are_zero(contacts: tuple[int, ...]) -> None:
+    """Each adds an equation of its own, whose multiples pay for what products leave."""
+    document, draw = of_slab(), random.Random(str(contacts))
+    window = copy.deepcopy(document["windows"][0])
+    for products in (window["size"], window["multiplier"]):
+        unit = 2 ** products["exponent"]
+        products["balance"] = [[*row, *(draw.randint(-unit, unit) for _ in contacts)] for row in products["balance"]]
+    first, second = ExactWall(document), Wall(document)
+    limits, other = WindowLimits(first, document["windows"][0]), window_of(second, document["windows"][0])
+    reach = dict(zip(Motion(other, document["windows"][0]).unknowns, limits.motions.limits, strict=True))
+    own = states_of(limits, Fraction(1), other.low)
+    other = replace(other, reach=tuple(up(reach[d], 60) for d in range(second.n)))
+    for contact in contacts:
+        own, other = own.half(contact, True), halves_of(other, {"contact": contact})[0]
+    case = own.window(window)
+    part = replace(other, low=case.forces.low).with_forces(window["forces"])
+    assert case.forces.tight == part.tight == set(contacts)
+    reach = dict(zip(Motion(part, window).unknowns, case.motions.limits, strict=True))
+    compare(case, part, window, reach, False, draw)
+    gained = gain(Motion(part, window), window["multiplier"], False, reach, False)
+    assert case.bound(window["multiplier"], Fraction(1)) == raised(part, gained, Fraction(1))
+
+
 def compare_step(own: States, other: Set, step: Any, draw: random.Random) -> None:
     """What a step shows with its proof changed, at any contact."""
     for share in (0.1, 0.5):

@@ -2,17 +2,20 @@
 
 from __future__ import annotations
 
+import json
 from pathlib import Path
 
 import pytest
 
-from harness.engine.baseline import Baseline, Change, Entry, Value, change, read_baseline, write_baseline
+from harness.engine.baseline import Baseline, Change, Entry, Value, change, read_baseline, value_of, write_baseline
 from harness.model.errors import InputError
-from harness.model.method import Status
+from harness.model.method import Finding, Status
+from harness.model.result import Judgement, Result
 
 
 def value(multiplier: float | None = None, **more) -> Value:
-    return Value(status=more.pop("status", Status.OK), finding="collapses", multiplier=multiplier, **more)
+    finding = more.pop("finding", Finding.COLLAPSES)
+    return Value(status=more.pop("status", Status.OK), finding=finding, multiplier=multiplier, **more)
 
 
 @pytest.mark.parametrize(
@@ -52,3 +55,28 @@ def test_file_keeps_values_and_history(tmp_path: Path):
     path.write_text('{"values": 3}')
     with pytest.raises(InputError, match="values"):
         read_baseline(path)
+
+
+@pytest.mark.parametrize(
+    "changed",
+    [{"multiplier": True}, {"multiplier": -0.1}, {"multiplier": "0.5"}, {"bracket": [False, 0.5]},
+     {"bracket": [-0.1, 0.5]}, {"bracket": [0.5, 0.4]}, {"finding": "colapses"}],
+)  # fmt: skip
+def test_what_no_answer_can_be_is_refused_in_a_baseline_with_its_place(tmp_path: Path, changed):
+    path = tmp_path / "baseline.json"
+    held = {"status": "ok", "finding": "collapses", "multiplier": 0.5} | changed
+    path.write_text(json.dumps({"values": {"wall": {"la": held}}}))
+    with pytest.raises(InputError, match=r"values\.wall\.la") as refused:
+        read_baseline(path)
+    assert refused.value.source == str(path)
+
+
+def test_no_number_of_an_answer_that_is_not_accepted_is_recorded():
+    for status, accepted in ((Status.OK, False), (Status.OK, None), (Status.TIMEOUT, None)):
+        result = Result(
+            case="wall", method="la", family="la", status=status, finding=Finding.COLLAPSES, sentence="",
+            multiplier=-0.2, bracket=(-0.3, -0.1), judge=Judgement(accepted=accepted), blocks=1, interfaces=1,
+        )  # fmt: skip
+        kept = value_of(result)
+        assert (kept.multiplier, kept.bracket) == (None, None)
+        assert kept.status is (Status.NOT_CONVERGED if status is Status.OK else status)

@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from drystone.cli.terminal import print_result
+from drystone.cli.terminal import print_judgement, print_result
 from harness.engine.judge import judge
 from harness.model.assembly import Assembly
 from harness.model.build import build
@@ -26,6 +26,7 @@ from methods.numerics.statics import admissible_forces
 from reports.labels import numbers
 from tests.walls import PUSH, assembly, case, running_bond, stack
 
+OVERTURNED: dict[str, Any] = {"dead": {"body": [{"per_weight": [2.0, 0.0]}]}}
 DATA = Path(__file__).parent.parent / "data" / "judge"
 
 
@@ -262,3 +263,21 @@ def test_multiplier_is_printed_with_the_digits_that_its_error_allows(capsys: pyt
     assert numbers.multiplier(rough.multiplier, rough.judge.decimals) == "0.5000"
     print_result(rough, case(stack(1), 0.5), Proof())
     assert re.search(r"finding +0\.5000 *\n", capsys.readouterr().out)
+
+
+def test_work_among_the_residuals_says_that_it_is_none(bonded, capsys: pytest.CaptureFixture[str]):
+    wall, answer = bonded
+    judgement = said(wall, answer)
+    assert judgement.worst is not None
+    assert judgement.worst[0] != "live_work"
+    for shown in (print_judgement, lambda judgement: print("\n".join(map(" ".join, judgement.listed())))):
+        shown(judgement)
+        lines = [line for line in capsys.readouterr().out.splitlines() if "no residual" in line]
+        assert len(lines) == 1
+        assert "live_work" in lines[0]
+        assert "work of the live load, must be positive" in lines[0]
+    stands = load_method("fe").solve(falling := assembly(stack(2), 0.3, loads=OVERTURNED), load_method("fe").Settings())
+    falls = dict(said(falling, stands).listed())
+    assert stands.finding is Finding.FALLS
+    assert "must exceed closing_work" in falls["dead_work"]
+    assert "must be below dead_work" in falls["closing_work"]

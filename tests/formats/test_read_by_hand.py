@@ -14,6 +14,7 @@ import shapely
 
 from harness.formats.importing import Imported, import_drawing
 from harness.model.build import build
+from harness.model.errors import InputError
 from tests.formats.drawings import boxes, csv, dxf, read, square, svg
 
 COLUMN = ((-1.0, -1.0, 2.0, 0.0), (0.0, 0.0, 1.0, 1.0), (0.0, 1.0, 1.0, 2.0))
@@ -298,3 +299,38 @@ def test_small_walls_far_from_the_origin_are_degrees_only_where_a_latitude_can_b
     with pytest.raises(Exception, match="look like degrees"):
         read(tmp_path / "d.csv", far(*shift))
     assert len(read(tmp_path / "d.csv", far(shift[0], 95.0)).wall.blocks) == 3
+
+
+def triangle(**members: Any) -> str:
+    """GeoJSON of one triangle on the ground, with other members."""
+    ring = [[0.0, 0.0], [1.0, 0.0], [0.0, 1.0], [0.0, 0.0]]
+    return json.dumps({"type": "Polygon", "coordinates": [ring]} | members)
+
+
+@pytest.mark.parametrize("wrong", ["0", True, None, {}, "", [True, 0.0], [0.0, "1"]])
+def test_coordinates_of_geojson_that_are_no_numbers_are_refused(wrong: Any, tmp_path: Path) -> None:
+    path = tmp_path / "t.geojson"
+    position = wrong if isinstance(wrong, list) else [0.0, wrong]
+    for geometry in (
+        {"coordinates": [[[0.0, 0.0], [1.0, 0.0], position, [0.0, 0.0]]]},
+        {"type": "GeometryCollection", "geometries": [json.loads(triangle(coordinates=[[[0, 0], [1, 0], position]]))]},
+    ):
+        path.write_text(triangle(**geometry))
+        with pytest.raises(InputError, match="coordinates hold"):
+            import_drawing(path)
+    path.write_text(triangle())
+    assert len(import_drawing(path).wall.blocks) == 1
+
+
+@pytest.mark.parametrize(
+    "crs",
+    ["EPSG:25832", 25832, True, [], {}, {"type": "name"}, {"properties": "EPSG:25832"}, {"properties": {"name": 3}},
+     {"properties": {"name": " "}}, {"type": "link", "properties": {"href": "http://example.org/crs"}}],
+)  # fmt: skip
+def test_a_crs_of_geojson_that_names_no_system_is_refused(crs: Any, tmp_path: Path) -> None:
+    path = tmp_path / "t.geojson"
+    path.write_text(triangle(crs=crs))
+    with pytest.raises(InputError, match="names no system"):
+        import_drawing(path)
+    path.write_text(triangle(crs=None))  # GeoJSON 1.0: null is a system that is not known
+    assert len(import_drawing(path).wall.blocks) == 1

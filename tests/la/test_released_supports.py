@@ -12,11 +12,11 @@ import pytest
 import drystone
 from drystone.reactions import Reaction, least_known_reactions, reactions
 from drystone.released_supports import released
-from harness.engine.judge import answered
+from harness.engine.judge import answered, judge
 from harness.engine.residuals import block_sums
 from harness.model.bars import bar_tensions
 from harness.model.errors import InputError
-from harness.model.method import load_method
+from harness.model.method import Finding, load_method
 from methods.la.core.reaction import ExtremeReaction, extreme_reaction
 from tests.commands import drystone as command
 from tests.la.test_reaction_command import DOWN, data
@@ -69,6 +69,34 @@ def test_block_on_a_base_that_settles():
     found = both(least_known_reactions(drystone.build_wall(data(DOWN))))
     assert [each.value for each in found] == pytest.approx([2.0 / 7.0 * 4.0, 4.0], rel=EXACT)
     assert all(each.moving == ("block",) for each in found)
+
+
+def test_judge_calls_the_reaction_what_it_is():
+    """What the search finds is a change of the reaction: the judge is told so, and speaks of no multiplier."""
+    for each in both(least_known_reactions(drystone.build_wall(data(DOWN)))):
+        assert (
+            "By virtual work the change of the reaction of this mechanism is known to within" in each.judgement.sentence
+        )
+        assert "multiplier" not in each.judgement.sentence
+
+
+def test_judge_names_the_quantity_in_whatever_it_finds_wrong():
+    guided = released(drystone.build_wall(data(DOWN)).assembly, 2.0, True)
+    result, right = answered(load_method("la"), guided.assembly, "thrust")
+    assert right.accepted
+    assert result.multiplier is not None
+    wrong: list[tuple[dict[str, Any], str]] = [
+        ({"multiplier": -1.0}, "Its thrust or the lower end of its bracket lies below zero"),
+        ({"bracket": (10.0, 11.0)}, "Its thrust 2 lies outside its bracket [10, 11]"),
+        ({"multiplier": 1e200}, "Its thrust: not finite"),
+        ({"finding": Finding.STANDS}, "It gives a thrust or a bracket beside"),
+        ({"mechanism": None}, "The contact forces at thrust 2 were"),
+        ({"flow": "approximate", "mechanism": None, "bracket": (2.0, 2.1)}, "contact forces at thrust 2 were"),
+    ]
+    for change, words in wrong:
+        said = judge(guided.assembly, result.model_copy(update=change), 1e-9, "thrust").sentence
+        assert words in said
+        assert "multiplier" not in said
 
 
 @pytest.mark.parametrize("settlement", [DOWN, AROUND])
@@ -140,7 +168,7 @@ def test_command(tmp_path: Path):
     done = command("reaction", path, "--without-dilatancy")
     assert done.returncode == 0, done.stderr
     assert "greatest known reaction of a support that gives way, without dilatancy, is 1.142857 kN" in done.stdout
-    assert "By virtual work the reaction of this mechanism is known" in done.stdout
+    assert "By virtual work the change of the reaction of this mechanism is known" in done.stdout
     assert "multiplier" not in done.stdout
     listed = json.loads(command("reaction", path, "--without-dilatancy", "--json").stdout)
     assert listed["pushing"]["value"] == pytest.approx(4.0, rel=EXACT)

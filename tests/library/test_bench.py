@@ -11,7 +11,9 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from drystone.bench import Bench, machine_speed, wall_set
+from drystone.bench import COLUMNS, Bench, Speed, WallSet, machine_speed, rows_of, wall_set
+from drystone.comparing import compare
+from drystone.walls import library_wall
 from harness.model.errors import InputError
 from tests import commands
 
@@ -121,6 +123,15 @@ def test_table_read_back_from_its_file_is_joined(tmp_path: Path):
     assert len(Bench(TABLE).joined(pd.read_csv(tmp_path / "t.csv"), "t.csv").table) == 2 * len(TABLE)
 
 
+def test_table_has_all_columns_that_are_promised_and_no_other():
+    compared = compare([library_wall("single-block")], ["la-associated"])
+    made = rows_of(WallSet("core", "", 1, (library_wall("single-block"),)), compared, Speed(1.0, 0.1))
+    assert tuple(made.columns) == COLUMNS
+    assert set(TABLE.columns) == set(COLUMNS)
+    assert made["correct"].all()
+    assert set(made.dropna(axis="columns", how="all").columns) == set(COLUMNS) - {"lower", "upper"}
+
+
 def test_speed_of_a_machine_has_a_spread():
     speed = machine_speed(5)
     assert 0.0 < speed.seconds < 60.0
@@ -153,6 +164,11 @@ def test_command_refuses_what_is_no_table(tmp_path: Path):
     done = commands.drystone("bench", "--join", tmp_path / "t.csv")
     assert done.returncode == 2
     assert "no table of `drystone bench`" in done.stderr
+    TABLE.assign(version=2).to_csv(tmp_path / "t.csv", index=False)
+    done = commands.drystone("bench", "--join", tmp_path / "t.csv", "--store", tmp_path / "s.sqlite")
+    assert done.returncode == 2
+    assert "its version is 2" in done.stderr
+    assert not (tmp_path / "s.sqlite").exists()  # refused before anything is run
     done = commands.drystone("bench", "--set", "cor")
     assert done.returncode == 2
     assert 'no set of walls is called "cor"' in done.stderr

@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
+import os
 import socket
 import subprocess
 import sys
-import time
 from collections.abc import Iterator
 
 import pytest
@@ -24,13 +24,18 @@ def url() -> Iterator[str]:
         free.bind(("localhost", 0))
         port = free.getsockname()[1]
     words = ["gateway", "slide", "--vary", "friction", "--vary", "unit_weight", "--port", str(port)]
-    with subprocess.Popen([sys.executable, "-m", "drystone", *words], stderr=subprocess.PIPE, text=True) as server:
+    environment = os.environ | {"PYTHONUNBUFFERED": "1"}
+    with subprocess.Popen(
+        [sys.executable, "-m", "drystone", *words], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True,
+        env=environment,
+    ) as server:  # fmt: skip
         found = f"http://localhost:{port}"
-        for _ in range(300):
-            with socket.socket() as tried:
-                if tried.connect_ex(("localhost", port)) == 0:
-                    break
-            time.sleep(0.2)
+        assert server.stdout is not None
+        for line in server.stdout:
+            if line == f'Model "drystone" at {found}: friction, unit_weight -> multiplier, bound, residual\n':
+                break
+        with socket.socket() as tried:  # it is told when it answers, and not before
+            assert tried.connect_ex(("localhost", port)) == 0
         yield found
         server.kill()
         assert server.stderr is not None
@@ -91,3 +96,14 @@ def test_a_command_refuses_before_it_listens():
     done = command("gateway", "slide", "--vary", "settings.la.effort")
     assert done.returncode == 2
     assert "is a setting of a method" in done.stderr
+
+
+def test_a_port_that_another_process_has_is_refused():
+    with socket.socket() as other:
+        other.bind(("", 0))
+        other.listen()
+        port = other.getsockname()[1]
+        done = command("gateway", "slide", "--vary", "friction", "--port", str(port))
+    assert done.returncode == 2
+    assert f"--port: it cannot listen on the port {port}" in done.stderr
+    assert "Model" not in done.stdout

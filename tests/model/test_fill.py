@@ -148,7 +148,7 @@ def test_fill_belongs_to_load_cases_combinations_and_sums():
     [
         (SOIL | {"level": 0.5}, "no face of a free block that it may load looks up below its level 0.5"),
         (SOIL | {"between": [2, 3]}, "no face of a free block"),
-        (SOIL | {"blocks": []}, "it names no free block"),
+        (SOIL | {"blocks": []}, "blocks: it has 0 entries"),
         (SOIL | {"between": [1, 0]}, "the first is the smaller"),
         (SOIL | {"blocks": ["block"], "group": "x"}, "either blocks or group"),
         (SOIL | {"blocks": ["ground"]}, 'block "ground" is fixed'),

@@ -8,6 +8,7 @@ import pytest
 
 import drystone
 from harness.model.errors import InputError
+from harness.model.fields import LARGEST
 from harness.model.live_load import both_signs, direction_in_words, is_horizontal, reversed_live, with_live_load
 
 STONES = [
@@ -86,6 +87,10 @@ def test_another_live_load_takes_the_place_of_that_of_the_file_and_what_is_known
     assert "live load (0.5, -2) times the weight replaces that of the file" in loaded_anew.warnings[0]
     with pytest.raises(InputError, match="the live load 0,0 is none"):
         with_live_load(case, 0.0, 0.0)
+    for x, y in ((LARGEST, 0.0), (0.0, -LARGEST)):
+        assert with_live_load(case, x, y).wall.loads.live is not None
+        with pytest.raises(InputError, match="is no pair of numbers up to 1e\\+15"):
+            with_live_load(case, 2.0 * x, 2.0 * y)
 
 
 def test_both_signs_are_two_load_cases_of_one_wall():

@@ -12,7 +12,7 @@ import pytest
 import drystone
 from harness.model.build import build
 from harness.model.errors import InputError
-from harness.model.load_cases import named_loads
+from harness.model.load_cases import named_loads, under_load_case
 from harness.model.load_fields import Load
 from harness.model.reading import parse_wall
 from harness.model.travelling import upward_faces
@@ -128,6 +128,12 @@ def test_combination_of_a_load_that_travels_is_one_for_each_place():
     names = list(named_loads(Wall.model_validate(document)))
     assert names == [f"wheel-{k}" for k in range(1, 21)] + [f"uls-{k}" for k in range(1, 21)]
     wall = drystone.build_wall(document, "arch").load_cases
+    for name in ("wheel", "uls"):  # the load itself is no load case: its places are
+        words = rf"no load case is called \"{name}\".*at 20 place\(s\).*: give one of {name}-1 to {name}-20$"
+        with pytest.raises(InputError, match=words):
+            under_load_case(Wall.model_validate(document), name)
+    with pytest.raises(InputError, match='Did you mean "wheel-2"'):
+        under_load_case(Wall.model_validate(document), "whel-2")
     alone, combined = (drystone.analyse(wall[name], "la-associated").multiplier for name in ("wheel-9", "uls-9"))
     assert alone is not None
     assert combined == pytest.approx(alone * 1.35 / 1.5, rel=1e-9)

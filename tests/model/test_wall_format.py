@@ -177,6 +177,24 @@ BAD: list[tuple[str, dict[str, Any], list[str]]] = [
     ),
     ("unknown group", two_blocks(loads={"live": {"body": [{"per_weight": [1, 0], "group": "zz"}]}}), ['"zz"']),
     ("live load of nothing", two_blocks(loads={"live": {"body": [{"per_weight": [0, 0]}]}}), ["loads.live", "force"]),
+    (
+        "load on a list of no blocks",
+        two_blocks(loads={"live": {"body": [{"per_weight": [1, 0], "blocks": []}]}}),
+        ["loads.live.body[0].blocks", "0 entries"],
+    ),
+    ("settlement of no blocks", two_blocks(settlements=[{"blocks": [], "translation": [0, -1]}]), ["0 entries"]),
+    (
+        "stiffness as small as none",
+        two_blocks(
+            ties=[
+                {"from": {"block": "base", "at": [0, 0]}, "to": {"block": "a", "at": [0, 1]}, "yield_force": 1.0}
+                | {"stiffness": 1e-320}
+            ]
+        ),
+        ["ties[0].stiffness", "as small as none", "at least 1e-100"],
+    ),
+    ("thickness as small as none", two_blocks(thickness=5e-324), ["thickness", "at least 1e-100"]),
+    ("thickness of none", two_blocks(thickness=0.0), ["thickness", "greater than 0"]),
     ("no fixed block", two_blocks(blocks=[block("a", [[0, 0], [1, 0], [1, 1]])]), ["no block is fixed"]),
     (
         "no weight",

@@ -145,7 +145,7 @@ class WindowSearch:
         for case, first in zip(self.case.halves(at), (True, False), strict=True):
             certify = None if self._certify is None else self._certify.part(at, first)
             known = Bracket(self.found.lower, self.found.upper)
-            part = WindowSearch(self.equations, self._slacks, known, self.until, certify, case)
+            part = type(self)(self.equations, self._slacks, known, self.until, certify, case)
             part._runs, part._rates, part._weights = dict(self._runs), rates, self._weights
             part._made_by = at
             parts.append(part)
