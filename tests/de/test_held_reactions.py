@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -11,9 +12,14 @@ import pytest
 import drystone
 from drystone.held_reactions import HeldReaction, held_reactions
 from drystone.reactions import reactions
-from harness.engine.reaction_judge import judge_held
+from harness.engine.reaction_judge import judge_held, reaction_of
 from harness.engine.residuals import block_sums
+from harness.model.assembly import Assembly
 from harness.model.errors import InputError
+from methods.de.engines.engine import motion_units
+from methods.de.engines.mass_scaling import courses, insertion_orders, tunings
+from methods.de.engines.sequential_impulses import SequentialImpulses
+from methods.de.settings import HoldSettings
 from tests.commands import drystone as command
 from tests.la.test_reaction_command import DOWN, WEIGHT, data
 from tests.la.test_released_supports import AROUND
@@ -80,6 +86,47 @@ def test_bricks_are_held_between_the_extremes(friction: float):
     assert low * (1.0 - 1e-6) <= gives.held < gives.rest < pushes.held <= high * (1.0 + 1e-6)
     assert low * (1.0 - STATED) <= gives.value
     assert pushes.value <= high * (1.0 + STATED)
+
+
+def driven(wall: Assembly, sense: float, order: int) -> float:
+    """The reaction of a support that is moved at a given speed, ever slower, as the mean over the last time steps.
+
+    The support is a body whose velocity is set before each step and which no impulse changes: no bracket, no guide.
+    """
+    moving = np.flatnonzero(np.any(wall.support_motion, axis=1))
+    freed = replace(wall, fixed=np.array(wall.fixed), support_motion=np.zeros_like(wall.support_motion))
+    freed.fixed[moving] = False
+    course = courses(wall)
+    _, blocks, joints = insertion_orders(freed, course, 3, 0)[order]
+    engine = SequentialImpulses(freed, blocks, joints, HoldSettings().iterations, tunings(course, None)[0])
+    bodies = np.flatnonzero(np.isin(blocks, moving))
+    engine._inverse[bodies] = 0.0
+    engine._rows = engine._contact_points(joints)
+    engine.load(0.0)
+    engine.advance(3000)
+    motion = sense * wall.support_motion[blocks[bodies]] / motion_units(wall)
+    measured = []
+    for speed in np.repeat([0.03, 0.003, 0.0003], 6000):
+        engine._velocity[bodies] = speed * motion / engine._keep
+        engine.advance(1)
+        measured.append(engine.save())
+    engine.restore(np.mean(measured[-1000:], axis=0))
+    return reaction_of(wall, engine.contact_forces(), np.zeros(0))
+
+
+def test_support_that_is_driven_measures_the_reactions_of_the_block():
+    wall = drystone.build_wall(data(DOWN)).assembly
+    found = [driven(wall, sense, 1) / WEIGHT for sense in (1.0, -1.0)]
+    assert found == pytest.approx([2.0 / 7.0, 1.0], rel=1e-5)
+
+
+@pytest.mark.parametrize("order", range(3))
+def test_support_that_is_driven_measures_reactions_within_the_brackets(order: int):
+    """Each sweep order chooses forces of its own; all measure within the ends over all orders, to half a percent."""
+    wall = bricks(0.65)
+    for each, sense in zip(both(held_reactions(wall)), (1.0, -1.0), strict=True):
+        low, high = sorted([each.held, each.moving])
+        assert low * (1.0 - STATED) <= driven(wall.assembly, sense, order) <= high * (1.0 + STATED)
 
 
 def test_tie_on_the_moving_support():
