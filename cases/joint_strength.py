@@ -120,7 +120,9 @@ def bonded_wall() -> Iterator[Recipe]:
 
 def _dilatant_wall() -> Iterator[Recipe]:
     """The 21-brick wall whose slips lift by the friction: associated flow, so that all methods have one multiplier."""
-    methods = ("la", "la-associated", "fe")
+    exact = ("la", "la-associated", "fe")
+    value, shown = 0.5844609341, "a linear programme of other code: max lambda under equilibrium and yield"
+    sentence = "With the dilatancy of the friction every method finds the associated maximum 0.5844609."
     content = wall(
         "The 21-brick wall whose joints lift by their friction as they slip",
         unit_weight=20.0,
@@ -132,20 +134,23 @@ def _dilatant_wall() -> Iterator[Recipe]:
         r.reference(
             "associated",
             "exact",
-            0.5844609341,
-            methods,
-            "a linear programme of other code: max lambda under equilibrium and yield",
-            "With the dilatancy of the friction every method finds the associated maximum 0.5844609.",
+            value,
+            exact,
+            shown,
+            sentence,
             tolerance=1e-9,
             tolerance_reason="ten digits recorded",
             gate=True,
-        )
+        ),
+        r.of_de("associated-de", value, shown, sentence),
     ]
     summary = (
         "With the dilatancy of the friction the flow is associated and the limit unique (Drucker 1954), whatever the "
         "self-stress and the stiffness of joints; dry stone lifts by less and collapses at 0.5579978 (least known)."
     )
-    yield recipe("dilatant-wall-21", content, references, Remarks(_DRUCKER, summary, ("strength",), methods=methods))
+    yield recipe(
+        "dilatant-wall-21", content, references, Remarks(_DRUCKER, summary, ("strength",), methods=(*exact, "de"))
+    )
 
 
 def _crushing_piers() -> Iterator[Recipe]:

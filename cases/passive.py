@@ -9,7 +9,8 @@ from typing import Any
 import cases.recipe as r
 from cases.recipe import STATICS, Recipe, Remarks, push, recipe, wall
 
-METHODS = ("la", "la-associated", "fe")
+EXACT = ("la", "la-associated", "fe")
+METHODS = (*EXACT, "de")
 RING = (
     "M. Gilbert, Limit analysis applied to masonry arch bridges: state-of-the-art and recent developments, 5th "
     "International Conference on Arch Bridges (2007) 13-28: passive pressure on the extrados"
@@ -33,19 +34,22 @@ def _pushed_block() -> Recipe:
         loads={**push(), "dead": {"fills": [fill]}},
     )
     formula = "mu + m K_p gamma h^2 / (2 W)"
+    shown = f"{STATICS}: lambda = {formula}"
+    sentence = f"The block slides at {formula} = {value:g}, and the whole face bears the passive pressure."
     closed = r.reference(
         "closed-form",
         "exact",
         value,
-        METHODS,
-        f"{STATICS}: lambda = {formula}",
-        f"The block slides at {formula} = {value:g}, and the whole face bears the passive pressure.",
+        EXACT,
+        shown,
+        sentence,
         tolerance=r.ROUND_OFF,
         tolerance_reason=r.ROUND_OFF_REASON,
         gate=True,
     )
+    references = [closed, r.of_de("closed-form-de", value, shown, sentence)]
     summary = f"Pushed by a multiple of its weight, it slides at {formula}; without the fill it would at mu."
-    return recipe("passive-block", content, [closed], Remarks(STATICS, summary, ("ties",), methods=METHODS))
+    return recipe("passive-block", content, references, Remarks(STATICS, summary, ("ties",), methods=METHODS))
 
 
 def _filled_arch(*, passive: bool) -> Recipe:
@@ -65,13 +69,15 @@ def _filled_arch(*, passive: bool) -> Recipe:
         pattern={"type": "ring", "inner_radius": inner, "outer_radius": outer, "count": count},
         loads={"dead": {"fills": [fill]}, "live": {"points": [load]}},
     )
+    shown = "a linear programme of other code (tests/la/test_passive_fill.py)"
+    sentence = f"The arch bears {value:g} on its haunch where nothing slides."
     programme = r.reference(
         "programme",
         "exact",
         value,
-        METHODS,
-        "a linear programme of other code (tests/la/test_passive_fill.py)",
-        f"The arch bears {value:g} on its haunch where nothing slides.",
+        EXACT,
+        shown,
+        sentence,
         tolerance=5e-7,
         tolerance_reason="half of the last digit that is given",
         gate=True,
@@ -80,7 +86,12 @@ def _filled_arch(*, passive: bool) -> Recipe:
         "The voussoirs of the other haunch move into the fill: with its passive pressure the arch bears three times."
     )
     name = "filled-arch-passive" if passive else "filled-arch"
-    return recipe(name, content, [programme], Remarks(RING, summary, ("ties",), methods=METHODS))
+    return recipe(
+        name,
+        content,
+        [programme, r.of_de("programme-de", value, shown, sentence)],
+        Remarks(RING, summary, ("ties",), methods=METHODS),
+    )
 
 
 def recipes() -> Iterator[Recipe]:

@@ -85,18 +85,25 @@ def exact(
             tolerance_reason=ROUND_OFF_REASON,
             gate=True,
         ),
-        reference(
-            "closed-form-de",
-            "exact",
-            value,
-            ["de"],
-            source,
-            f"DE: {requirement}",
-            tolerance=relative_de * abs(value),
-            tolerance_reason=reason,
-            gate=True,
-        ),
+        of_de("closed-form-de", value, source, requirement, relative_de, reason),
     ]
+
+
+def of_de(
+    name: str, value: float, source: str, requirement: str, relative: float = 5e-3, reason: str = DE_REASON
+) -> Reference:
+    """An exact value for the bracket of DE, to a relative accuracy."""
+    return reference(
+        name,
+        "exact",
+        value,
+        ["de"],
+        source,
+        f"DE: {requirement}",
+        tolerance=relative * abs(value),
+        tolerance_reason=reason,
+        gate=True,
+    )
 
 
 def finding(word: str, source: str, requirement: str, *, gate_de: bool = True) -> list[Reference]:

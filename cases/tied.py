@@ -9,7 +9,8 @@ from typing import Any
 import cases.recipe as r
 from cases.recipe import STATICS, Recipe, Remarks, push, recipe, wall
 
-METHODS = ("la", "la-associated", "fe")
+EXACT = ("la", "la-associated", "fe")
+METHODS = (*EXACT, "de")
 SUITES = ("ties",)
 THRUST = (
     "J. Heyman, The stone skeleton, International Journal of Solids and Structures 2 (1966) 249-279: an arch spreads "
@@ -44,18 +45,21 @@ def _held_blocks() -> Iterator[Recipe]:
             **{f"{kind}s": [bar]},
         )
         formula = "b / h + 2 T_y z / (W h)"
+        shown = f"{STATICS}: moments about the edge, lambda = {formula}"
+        sentence = f"The block topples at {formula} = {value:g}, and the {kind} yields."
         references = [
             r.reference(
                 "closed-form",
                 "exact",
                 value,
-                METHODS,
-                f"{STATICS}: moments about the edge, lambda = {formula}",
-                f"The block topples at {formula} = {value:g}, and the {kind} yields.",
+                EXACT,
+                shown,
+                sentence,
                 tolerance=r.ROUND_OFF,
                 tolerance_reason=r.ROUND_OFF_REASON,
                 gate=True,
-            )
+            ),
+            r.of_de("closed-form-de", value, shown, sentence),
         ]
         summary = f"Pushed by a multiple of its weight, it topples at {formula}; alone it would at b / h = 0.2."
         yield recipe(f"{kind}-block", content, references, Remarks(STATICS, summary, SUITES, methods=METHODS))

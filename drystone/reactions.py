@@ -132,6 +132,14 @@ def moving_blocks(assembly: Assembly, mechanism: FloatArray) -> tuple[str, ...]:
     return tuple(assembly.block_ids[k] for k in np.flatnonzero(moves))
 
 
+def one_alone(assembly: Assembly, low: float, high: float) -> str:
+    """That the extremes are one reaction, in words; empty where they are apart by more than programmes to 1e-9 tell."""
+    speed = fastest_vertex(assembly, assembly.support_motion)
+    if high - low > 1e-9 * max(assembly.force_scale * speed, abs(low)):
+        return ""
+    return f"Equilibrium leaves one reaction alone, {low:.7g}: it does not depend on the flow."
+
+
 def least_known_reactions(
     wall: Wall, method: str = "la", inside: float = 0.01, tolerance: float = 1e-9
 ) -> tuple[Reaction, Reaction] | str:
@@ -155,9 +163,8 @@ def least_known_reactions(
     if isinstance(extremes, str):
         return extremes
     assembly, (low, high) = wall.assembly, (each.value for each in extremes)
-    speed = fastest_vertex(assembly, assembly.support_motion)
-    if high - low <= 1e-9 * max(assembly.force_scale * speed, abs(low)):
-        return f"Equilibrium leaves one reaction alone, {low:.7g}: it does not depend on the flow."
+    if alone := one_alone(assembly, low, high):
+        return alone
     found: list[Reaction] = []
     for greatest, begins in ((False, high - inside * (high - low)), (True, low + inside * (high - low))):
         guided = released(assembly, begins, greatest)

@@ -32,6 +32,11 @@ SAID = {
     help="The reactions at which the wall collapses without dilatancy, as far as `la` knows, in place of the extremes.",
 )
 @click.option(
+    "--held",
+    is_flag=True,
+    help="The reactions between which `de` holds the support from rest on, each as a bracket between held and moving.",
+)
+@click.option(
     "--path", "as_path", is_flag=True, help="The reaction against the imposed displacement, by the gap springs of `fe`."
 )
 @click.option(
@@ -46,6 +51,7 @@ SAID = {
 def reaction(
     case: str,
     without_dilatancy: bool,
+    held: bool,
     as_path: bool,
     until_collapse: bool,
     output: Path | None,
@@ -59,8 +65,10 @@ def reaction(
     are the greatest reaction known at which a support gives way, and the least known at which one pushes back. Exit
     code 1: there is none, or the judge rejects one.
     """
-    if without_dilatancy + as_path + until_collapse > 1:
-        raise InputError("they are different questions", "Give one of --without-dilatancy, --path, --until-collapse")
+    if without_dilatancy + held + as_path + until_collapse > 1:
+        raise InputError(
+            "they are different questions", "Give one of --without-dilatancy, --held, --path, --until-collapse"
+        )
     if output is not None and not (as_path or until_collapse):
         raise InputError("two numbers are no curve", "Give --path or --until-collapse with it", "--output")
     check_output(output)
@@ -71,6 +79,8 @@ def reaction(
         _print_paths(wall, output, as_json)
     elif until_collapse:
         _print_collapse(wall, output, as_json)
+    elif held:
+        _print_held(wall, as_json)
     else:
         _print_reactions(wall, without_dilatancy, as_json)
 
@@ -89,6 +99,26 @@ def _print_reactions(wall: Wall, without_dilatancy: bool, as_json: bool) -> None
             value = f"{each.value:.7g} {unit}".rstrip()
             moving = first_few(each.moving, 8) if each.moving else "no free block"
             say(f"The {SAID[name]} is {value}; in its mechanism move: {moving}. {each.judgement.sentence}")
+    sys.exit(0 if all(each.judgement.accepted for each in answer) else 1)
+
+
+def _print_held(wall: Wall, as_json: bool) -> None:
+    """The brackets of a support that gives way and of one that pushes."""
+    from drystone.held_reactions import held_reactions
+
+    answer = held_reactions(wall)
+    names = ("giving_way", "pushing")
+    if isinstance(answer, str):
+        _print_none(answer, names, as_json)
+    if as_json:
+        print_json({name: each.as_json() for name, each in zip(names, answer, strict=True)})
+    else:
+        unit = reaction_unit(wall)
+        if unit:
+            say(f"Reactions in {unit}.")
+        for each in answer:
+            moving = first_few(each.moving_blocks, 8) if each.moving_blocks else "no free block"
+            say(f"{each.sentence} In its mechanism move: {moving}.")
     sys.exit(0 if all(each.judgement.accepted for each in answer) else 1)
 
 

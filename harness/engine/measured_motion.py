@@ -110,6 +110,7 @@ def motion_residuals(
     for component, motion in parts:
         part, interfaces = component.assembly, component.interfaces
         opening, slip = relative_velocities(part, motion)
+        opening = opening - (part.dilatancy * abs(slip))[:, None]
         found = {"motion_interpenetration": max(0.0, float((-opening).max(initial=0.0)))}
         if forces is not None and scale is not None:
             own = scale[interfaces, None]

@@ -43,8 +43,7 @@ def judge_reaction(
     work = _work(assembly, reaction)
     opening, slip = relative_velocities(assembly, mechanism)
     beyond = opening - (assembly.friction * abs(slip))[:, None]
-    on_blocks = block_sums(assembly, forces) + bars.generalised(tensions, assembly.centroid)
-    shown = power(on_blocks, assembly.support_motion)
+    shown = reaction_of(assembly, forces, tensions)
     taken = dissipated_by_strength(assembly, beyond, slip) + dissipated_by_bars(assembly, mechanism)
     on_supports = np.where(assembly.fixed[:, None], bars.generalised(bars.prestress, assembly.centroid), 0.0)
     bound = sense * (power(assembly.dead + on_supports, mechanism) - taken)
@@ -95,6 +94,39 @@ def judge_plateau(
         "extremes": max(0.0, low - reaction, reaction - high) / work,
     }
     return held(residuals, tolerance, "Forces and mechanism of the constant reaction were")
+
+
+def judge_held(
+    assembly: Assembly,
+    reaction: float,
+    forces: FloatArray,
+    tensions: FloatArray,
+    *,
+    tolerance: float,
+    extremes: tuple[float, float],
+) -> Judgement:
+    """Whether forces show that a reaction is possible, on the wall as drawn: equilibrium, yield, and their own work.
+
+    Args:
+        assembly: the wall with its `support_motion`.
+        reaction: work R on the motion of the supports; extremes: least and greatest R of associated flow.
+        forces: (m, 3) contact forces [force]; tensions: (k,) of the ties and props, prestress included [force].
+        tolerance: the largest residual that is acceptable.
+    """
+    bars, work = assembly.bars, _work(assembly, reaction)
+    low, high = extremes
+    residuals = force_residuals(assembly, forces, 0.0, beyond=tensions - bars.prestress if len(bars) else None)
+    residuals |= {
+        "reaction": abs(reaction_of(assembly, forces, tensions) - reaction) / work,
+        "extremes": max(0.0, low - reaction, reaction - high) / work,
+    }
+    return held(residuals, tolerance, f"Forces at the reaction {reaction:.6g} were")
+
+
+def reaction_of(assembly: Assembly, forces: FloatArray, tensions: FloatArray) -> float:
+    """Work of contact forces (m, 3) and of tensions (k,), prestress included, on the motion of the supports."""
+    on_blocks = block_sums(assembly, forces) + assembly.bars.generalised(tensions, assembly.centroid)
+    return float(power(on_blocks, assembly.support_motion))
 
 
 def _work(assembly: Assembly, reaction: float) -> float:

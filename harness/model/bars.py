@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from harness.model.details import BAR_FORCES, DEAD_BAR_FORCES, AnswerDetails
+from harness.model.details import BAR_FORCES, DEAD_BAR_FORCES, MOVING_FORCES, AnswerDetails
 
 if TYPE_CHECKING:
     from harness.model.assembly import Assembly
@@ -159,7 +159,7 @@ def with_bar_forces(answer: Answer, bars: Bars, m: int) -> Answer:
     details = dict(answer.details)
     named = {BAR_FORCES: answer.forces, DEAD_BAR_FORCES: details.get("dead_forces")}
     details |= {name: tensions(bars, np.asarray(all_)).tolist() for name, all_ in named.items() if all_ is not None}
-    details |= {name: details[name][:m] for name in ("live_forces", "dead_forces") if name in details}
+    details |= {name: details[name][:m] for name in ("live_forces", "dead_forces", MOVING_FORCES) if name in details}
     whole = {
         path_column(name): [prestress + beyond for beyond in answer.path[path_column(name)]]
         for name, prestress in zip(bars.names, bars.prestress.tolist(), strict=True)

@@ -28,6 +28,8 @@ DE = Listed(
         brackets=True,
         moves_no_lower=True,
         any_strength=True,
+        any_bars=True,
+        any_dilatancy=True,
         colour="#2f6b3a",
         marker="d",
     ),

@@ -134,5 +134,5 @@ def test_methods_without_dilatancy_refuse_the_wall_by_name():
             continue
         with pytest.raises(InputError, match=f"{name} takes no dilatancy"):
             check_takes(method, wall)
-    assert takes == {"la", "la-associated", "la-associated-cvxpy", "fe", "fe-newton", "fe-qp"}
+    assert takes == {"la", "la-associated", "la-associated-cvxpy", "fe", "fe-newton", "fe-qp", "de"}
     check_takes(load_method("de"), assembly(running_bond(2, 2), 0.6))

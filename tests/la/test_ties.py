@@ -364,7 +364,7 @@ def test_judge_counts_what_ties_take_of_a_fall():
 
 
 def test_other_methods_refuse_ties_by_name():
-    taken = {*TAKEN, "fe", "fe-newton", "fe-qp"}
+    taken = {*TAKEN, "fe", "fe-newton", "fe-qp", "de"}
     assert set(methods_with("any_bars")) == taken
     for name in method_names():
         if name not in taken:

@@ -113,10 +113,10 @@ def test_report_and_its_data(tmp_path: Path):
     path = tmp_path / "tied.json"
     path.write_text(json.dumps(document()), encoding="utf-8")
     report = tmp_path / "report.html"
-    asked = ("--methods", "fe,de,la", "--report", report, "--store", tmp_path / "store.sqlite")
+    asked = ("--methods", "fe,de-soft,la", "--report", report, "--store", tmp_path / "store.sqlite")
     done = command("compare", path, *asked)
     assert done.returncode == 0, done.stderr
-    assert "de takes no ties, props and passive fill; the wall has tie 1, raker" in " ".join(done.stdout.split())
+    assert "de-soft takes no ties, props and passive fill; the wall has tie 1, raker" in " ".join(done.stdout.split())
     page = report.read_text(encoding="utf-8")
     assert "Forces of ties and props" in page
     assert "1 tie, yield force 2 kN; 1 prop, yield force 1.5 kN" in page

@@ -55,7 +55,8 @@ class PymunkJoints:
         options: of the strips in pymunk; shape: how they are drawn.
 
     Raises:
-        CannotModel: joints have strength; or see `methods.de.engines.strips.build_strips`.
+        CannotModel: joints have strength or dilatancy, or the wall ties or props; or see
+            `methods.de.engines.strips.build_strips`.
     """
 
     def __init__(
@@ -68,6 +69,10 @@ class PymunkJoints:
         options: StripTuning = StripTuning(),
         shape: StripShape = StripShape(),
     ) -> None:
+        if assembly.is_bar.any():
+            raise CannotModel("contacts in pymunk are no ties or props; take the engine 'sweeps'")
+        if assembly.dilates:
+            raise CannotModel("contacts in pymunk do not dilate; take the engine 'sweeps'")
         if assembly.strong:
             raise CannotModel("contacts in pymunk have no strength beside friction; take the engine 'sweeps'")
         self._options, self._shape = options, shape

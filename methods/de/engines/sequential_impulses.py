@@ -4,8 +4,12 @@ A time step solves M (v+ - beta v) = f + C' J with 0 <= J_n, w_n >= 0, J_n w_n =
 slip rate w_t where it slips, w = C v+ (Moreau 1988; Jean 1999). One contact after the other, J_n <- max(J_n - m_n w_n,
 0) and J_t <- min(max(J_t - m_t w_t, -mu J_n), mu J_n) with effective masses m_n, m_t, from the impulses of the last
 step (E. Catto, Iterative dynamics with temporal coherence, GDC 2005). Joints with strength have J_n >= -T/2 and
-|J_t| <= mu J_n + c A/2 at each of their two contacts, for as long as they move. Contacts are constant, so there is no
-search for them and no position to integrate. Units: length scale, mean dead load of a block, time step.
+|J_t| <= mu J_n + c A/2 at each of their two contacts, for as long as they move. Ties and props are rows without a
+normal force, -T_y/2 <= J_t <= P_y/2 at each of their two ends (`harness.model.bars.with_bars_as_joints`): w_t is the
+rate of elongation. A contact with the dilatancy psi has w_n - psi |w_t| in the place of w_n: impulses beyond friction
+return to |J_t| = mu J_n along the flow, with the effective masses for stiffness (return mapping: J. C. Simo and
+T. J. R. Hughes, Computational Inelasticity, 1998). Contacts are constant, so there is no search for them and no
+position to integrate. Units: length scale, mean dead load of a block, time step.
 
 Contacts that share no free block do not affect each other, so a sweep visits them level by level, each as early as the
 contacts before it in the given order allow (level scheduling: Y. Saad, Iterative Methods for Sparse Linear Systems,
@@ -37,8 +41,10 @@ class Rows(NamedTuple):
             then along the tangent (the normal turned by +90 degrees).
         across, along: (k,) effective mass of both bodies along normal and tangent.
         friction: (k,) coefficients.
+        dilatancy: (k,) coefficients by which a slip opens a contact that bears.
         least: (k,) least normal impulse: minus half the tensile strength of the joint; zero in dry joints.
-        cohesion: (k,) half the cohesion of the joint, an impulse.
+        cohesion: (k, 2) constant part of the shear impulse against the tangent and along it: half the cohesion of the
+            joint, half the range of a bar.
     """
 
     first: IntArray
@@ -48,6 +54,7 @@ class Rows(NamedTuple):
     across: FloatArray
     along: FloatArray
     friction: FloatArray
+    dilatancy: FloatArray
     least: FloatArray
     cohesion: FloatArray
 
@@ -78,6 +85,7 @@ class SequentialImpulses:
         self._mass = self._masses(masses(assembly, course, tuning.mass_decay))
         self._inverse = np.zeros((len(blocks) + 1, 3))
         self._inverse[:-1] = 1.0 / self._mass[blocks]
+        self._normal = _unit_normals(assembly)
         self._rows = self._contact_points(joints)
         scale = 1.0 / np.array([self._force, self._force, self._force * self._unit])
         self._dead, self._live = np.zeros((2, len(blocks) + 1, 3))
@@ -101,7 +109,7 @@ class SequentialImpulses:
         body[self._blocks] = np.arange(len(self._blocks))
         blocks = np.repeat(np.stack([wall.block_a[joints], wall.block_b[joints]]), 2, axis=1)
         point = np.stack([wall.end1, wall.end2], axis=1)[joints].reshape(-1, 2)
-        normal = np.repeat(wall.normal[joints], 2, axis=0)
+        normal = np.repeat(self._normal[joints], 2, axis=0)
         tangent = np.stack([-normal[:, 1], normal[:, 0]], axis=1)
         arm = (point - wall.centroid[blocks]) / self._unit
         turned = [side[:, 0] * d[:, 1] - side[:, 1] * d[:, 0] for d in (normal, tangent) for side in arm]
@@ -114,13 +122,16 @@ class SequentialImpulses:
             mass: FloatArray = np.divide(1.0, give, out=np.zeros_like(give), where=give > 0.0)
             return mass
 
-        friction = np.repeat(wall.friction[joints], 2)
+        friction, dilatancy = np.repeat(np.stack([wall.friction[joints], wall.dilatancy[joints]]), 2, axis=1)
         across, along = effective(*arms[:, :2].T), effective(*arms[:, 2:].T)
+        across[np.repeat(wall.is_bar[joints], 2)] = 0.0  # nothing presses in a bar
         law = wall.law.in_units(self._force)
-        strength = law.least_normal[joints].ravel(), np.repeat(0.5 * law.constant[joints, 2], 2)
+        # A left-handed pair of normal and tangent turns the sign of the shear, and with it the two ends of its range.
+        ends = np.where(self._handed[joints, None] > 0.0, law.constant[joints, 2:], law.constant[joints, :1:-1])
+        strength = law.least_normal[joints].ravel(), np.repeat(0.5 * ends, 2, axis=0)
         by_level = np.argsort(_levels(first, second, len(self._blocks)), kind="stable")
         self._points = (2 * np.repeat(joints, 2) + np.tile([0, 1], len(joints)))[by_level]
-        given = Rows(first, second, normal, arms, across, along, friction, *strength)
+        given = Rows(first, second, normal, arms, across, along, friction, dilatancy, *strength)
         return Rows._make(part[by_level] for part in given)
 
     def load(self, multiplier: float) -> None:
@@ -158,9 +169,21 @@ class SequentialImpulses:
         force = np.zeros((2 * self.interfaces, 2))
         force[self._points] = self._impulses * self._force
         ends = force.reshape(-1, 2, 2)
-        normal, tangent = self.assembly.normal, self.assembly.tangent
-        sign = normal[:, 0] * tangent[:, 1] - normal[:, 1] * tangent[:, 0]
-        return np.column_stack([ends[:, 0, 0], ends[:, 1, 0], sign * ends[:, :, 1].sum(axis=1)])
+        return np.column_stack([ends[:, 0, 0], ends[:, 1, 0], self._handed * ends[:, :, 1].sum(axis=1)])
+
+    @property
+    def _handed(self) -> FloatArray:
+        """(m,) 1 where the tangent is the normal turned by +90 degrees, -1 where it is turned the other way."""
+        normal, tangent = self._normal, self.assembly.tangent
+        handed: FloatArray = normal[:, 0] * tangent[:, 1] - normal[:, 1] * tangent[:, 0]
+        return handed
+
+
+def _unit_normals(assembly: Assembly) -> FloatArray:
+    """(m, 2) unit normals; of bars, which have none, their axis turned by -90 degrees."""
+    axis = assembly.tangent
+    across = np.column_stack([axis[:, 1], -axis[:, 0]])
+    return np.where(assembly.is_bar[:, None], across, assembly.normal)
 
 
 @compiled
@@ -202,9 +225,15 @@ def _step(
                 va, vb = velocity[a, 2], velocity[b, 2]
                 opening = vx * nx + vy * ny + vb * arms[q, 1] - va * arms[q, 0]
                 slip = vy * nx - vx * ny + vb * arms[q, 3] - va * arms[q, 2]
-                normal_force = max(impulses[q, 0] - opening * rows.across[q], rows.least[q])
-                limit = rows.friction[q] * normal_force + rows.cohesion[q]
-                shear = min(max(impulses[q, 1] - slip * rows.along[q], -limit), limit)
+                normal_force = impulses[q, 0] - opening * rows.across[q]
+                shear = impulses[q, 1] - slip * rows.along[q]
+                if rows.dilatancy[q] > 0.0:  # what slip is left beyond friction lifts the contact, and so adds to it
+                    beyond = abs(shear) - rows.friction[q] * normal_force - rows.cohesion[q, 0]
+                    lift = rows.dilatancy[q] * rows.across[q]
+                    normal_force += lift * max(beyond, 0.0) / (rows.along[q] + rows.friction[q] * lift)
+                normal_force = max(normal_force, rows.least[q])
+                limit = rows.friction[q] * normal_force
+                shear = min(max(shear, -(limit + rows.cohesion[q, 0])), limit + rows.cohesion[q, 1])
                 pressed, rubbed = normal_force - impulses[q, 0], shear - impulses[q, 1]
                 impulses[q, 0], impulses[q, 1] = normal_force, shear
             fx, fy = pressed * nx - rubbed * ny, pressed * ny + rubbed * nx

@@ -134,7 +134,9 @@ def by_virtual_work(assembly: Assembly, load: FloatArray, field: FloatArray, nea
 
 
 def by_power(assembly: Assembly, load: FloatArray, field: FloatArray, forces: FloatArray) -> HeldMotion | None:
-    """The motion, where the loads give more power than friction and contacts can take; else None.
+    """The motion, where the loads give more power than friction, bars and contacts can take; else None.
+
+    Bars take what they bear: no normal force is behind it that might grow, as behind friction.
 
     Args:
         assembly: the wall.
@@ -143,10 +145,12 @@ def by_power(assembly: Assembly, load: FloatArray, field: FloatArray, forces: Fl
     """
     rates = (assembly.kinematic_matrix @ field[assembly.free].ravel()).reshape(-1, 3)
     given = _power(assembly, load, field)
-    friction = float(
-        np.sum(assembly.law.strength(np.maximum(forces[:, :2], assembly.law.least_normal)) * np.abs(rates[:, 2]))
-    )
-    contacts = float(np.sum(np.abs(forces[:, :2] * rates[:, :2])))
+    least, greatest = assembly.law.shear_range(np.maximum(forces[:, :2], assembly.law.least_normal))
+    against = np.where(rates[:, 2] < 0.0, greatest, -least)
+    lift = np.where(assembly.is_bar, 0.0, assembly.dilatancy) * np.abs(rates[:, 2])
+    against = np.where(assembly.is_bar, np.abs(forces[:, 2]), against)
+    friction = float(np.sum(against * np.abs(rates[:, 2])) - np.sum(lift * forces[:, :2].sum(axis=1)))
+    contacts = float(np.sum(np.abs(forces[:, :2] * (rates[:, :2] - lift[:, None]))))
     return HeldMotion(MotionProof.POWER, field) if given - friction - contacts > 0.0 else None
 
 
