@@ -101,7 +101,7 @@ def least_shaking(
     """
     if not 1e-9 <= accuracy < 1.0:
         raise InputError(f"the accuracy {accuracy:g} is out of range", "Give one from 1e-9 to below 1", "accuracy")
-    search = _Search(Shaker(wall, motion, gravity, steps))
+    search = _Multiples(Shaker(wall, motion, gravity, steps))
     search.climb(search.start())
     search.bisect(accuracy)
     fell = {Finding.FALLS: 1.0, Finding.STANDS: 0.0}
@@ -110,7 +110,7 @@ def least_shaking(
     return LeastShaking(*ends, search.lower, search.upper, np.array(tried))
 
 
-class _Search:
+class _Multiples:
     """Multiples of one motion that were tried on one wall."""
 
     def __init__(self, shaker: Shaker) -> None:

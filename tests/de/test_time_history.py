@@ -181,7 +181,7 @@ COLUMN = {
     0.5: (0.25, 0.27),
     0.8: (0.22, 0.22),
 }
-"""Least toppling acceleration [g] by UDEC, LMGC90 and HybriDFEM: the range of the three, by the duration of the pulse."""
+"""Least toppling acceleration [g], range of UDEC, LMGC90 and HybriDFEM, by the duration of the first pulse [s]."""
 
 
 @pytest.mark.slow
