@@ -20,6 +20,7 @@ from harness.model.errors import InputError
 from harness.model.ground_motion import GRAVITY, GroundMotion, pulses_of, read_motion
 from harness.model.method import Finding
 from harness.model.result import Judgement
+from harness.model.units import DIMENSIONLESS
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -109,7 +110,7 @@ class Shaking:
             "time": float(self.time[-1]),
             "fallen": list(self.fallen),
             "at_rest": self.at_rest,
-            "energy": self.energy,
+            "energy": self.energy if np.isfinite(self.energy) else None,
             "furthest": {"block": name, "displacement": travel},
             "places": self.places[-1].tolist(),
             "motion": {"peak": self.motion.peak, "seconds": self.motion.duration, "gravity": self.gravity},
@@ -159,7 +160,8 @@ def shake(
     <Finding.STANDS: 'stands'>
 
     Args:
-        wall: of dry joints, in a unit of length, under the weights of its blocks; its live load does not act.
+        wall: of dry joints, in a unit of length, under the weights of its blocks; its live load does not act. Forces
+            need no unit: masses are to each other as weights are.
         motion: of the ground: pulses as "0.5:0.3,-0.25:0.6", accelerations in g and durations in s, to the right where
             positive; or the path of a CSV file (`harness.model.ground_motion.read_motion`).
         multiple: of the motion.
@@ -239,9 +241,9 @@ def _check_impact(measured: float) -> None:
 def _check(wall: Wall) -> None:
     """Refuse what is not followed in time. Raises InputError."""
     assembly: Assembly = wall.assembly
-    if wall.case.wall.units.dimensionless:
-        problem = "the wall has no unit of length or force, so that its motion has no time"
-        raise InputError(problem, 'Give "units", as {"length": "m", "force": "kN"}', "units")
+    if wall.case.wall.units.length == DIMENSIONLESS:
+        problem = "the wall has no unit of length, so that its motion has no time"
+        raise InputError(problem, 'Give one, as "units": {"length": "m"}', "units")
     if np.any(assembly.support_motion):
         raise InputError("the wall has settlements", "Leave them out", "settlements")
     if assembly.dilates:

@@ -197,6 +197,21 @@ def test_column_topples_as_in_three_other_programs(seconds: float):
     assert drystone.shake(column(), motion, 0.9 * least).finding is Finding.STANDS
 
 
+@pytest.mark.slow
+def test_first_mode_of_the_column_sets_in_between_two_durations():
+    """At half a g and less: never at 0.32 s, in a narrow range at 0.33 s, from 0.458 g on at 0.34 s."""
+    for seconds, level, finding in (
+        (0.32, 0.46, Finding.STANDS),
+        (0.32, 0.5, Finding.STANDS),
+        (0.33, 0.46, Finding.STANDS),
+        (0.33, 0.495, Finding.FALLS),
+        (0.34, 0.45, Finding.STANDS),
+        (0.34, 0.46, Finding.FALLS),
+    ):
+        found = drystone.shake(column(), f"1:{seconds},-0.5:{2.0 * seconds}", level)
+        assert found.finding is finding, (seconds, level)
+
+
 def test_means_keep_the_impulse():
     motion = GroundMotion(np.array([0.0, 1.0, 1.5, 4.0]), np.array([1.0, -2.0, 0.0]), np.array([3.0, -2.0, 5.0]))
     at = np.sort(np.concatenate([[0.0, 6.0], np.random.default_rng(1).uniform(0.0, 5.0, 50)]))

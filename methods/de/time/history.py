@@ -54,7 +54,7 @@ class TimeHistory:
         finding: stands, falls, or none where neither was shown.
         time: (k,) of the states [s].
         places: (k, n, 3) displacements of the centroids from where they were drawn [length] and rotations [rad].
-        energy: kinetic and potential of the last state, zero for the wall at rest as drawn [force x length].
+        energy: kinetic and potential in the end, zero for the wall at rest as drawn [force x length]; nan: no number.
         fallen: (n,) indices of the blocks that have fallen in the end.
         at_rest: whether all motion has died.
         steps: time steps made.
@@ -152,10 +152,11 @@ def follow(assembly: Assembly, motion: GroundMotion, gravity: float, steps: Time
             space.load(0.0)
             space.advance(further)
         made += count.stride
-        times.append(made * count.step)
-        places.append(space.places())
-        if not np.isfinite(places[-1]).all():
+        now = space.places()
+        if not np.isfinite(now).all():  # the engine has failed, and nothing is found
             break
+        times.append(made * count.step)
+        places.append(now)
         if below_supports(assembly, places[-1]).any():
             finding = Finding.FALLS
         elif made >= count.moving:
