@@ -10,7 +10,7 @@
 `compare` many, each run in a process of its own; `judge` holds an answer against equilibrium, yield and flow. `sweep`
 varies friction, proportions or seeds over many walls, and `check` compares methods with checked references.
 `factor` is the factor of safety on friction, `domain` the interaction domain of two live loads, and `capacity` the
-capacity curve, on updated geometry.
+capacity curve, on updated geometry; `shake` and `least_shaking` follow walls in time on ground that accelerates.
 """
 
 from __future__ import annotations
@@ -29,7 +29,9 @@ __all__ = [
     "Finding",
     "InputError",
     "Judgement",
+    "LeastShaking",
     "Result",
+    "Shaking",
     "Status",
     "Sweep",
     "Traits",
@@ -44,11 +46,13 @@ __all__ = [
     "domain",
     "factor",
     "judge",
+    "least_shaking",
     "library_wall",
     "library_walls",
     "methods",
     "new_wall",
     "read_wall",
+    "shake",
     "sweep",
 ]
 
@@ -59,7 +63,9 @@ if TYPE_CHECKING:
     from drystone.comparing import Comparison, compare
     from drystone.interaction import Domain, domain
     from drystone.safety import FactorOfSafety, factor
+    from drystone.shaking import Shaking, shake
     from drystone.studies import Sweep, sweep
+    from drystone.toppling import LeastShaking, least_shaking
     from drystone.walls import Wall, build_wall, library_wall, library_walls, new_wall, read_wall
     from harness.model.errors import InputError
     from harness.model.method import Answer, Finding, Status, Traits
@@ -71,7 +77,9 @@ _HOME = {
     "drystone.checking": ("Check", "check"),
     "drystone.comparing": ("Comparison", "compare"),
     "drystone.interaction": ("Domain", "domain"),
+    "drystone.toppling": ("LeastShaking", "least_shaking"),
     "drystone.safety": ("FactorOfSafety", "factor"),
+    "drystone.shaking": ("Shaking", "shake"),
     "drystone.studies": ("Sweep", "sweep"),
     "drystone.walls": ("Wall", "build_wall", "library_wall", "library_walls", "new_wall", "read_wall"),
     "harness.model.errors": ("InputError",),

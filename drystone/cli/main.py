@@ -43,6 +43,7 @@ COMMANDS = {
     "show": ("drawings", "show", "Draw CASE to a file or in a window."),
     "factor": ("factor", "factor", "Find the factor of safety on friction of CASE."),
     "capacity": ("capacity", "capacity", "Find how far CASE can move before it falls, and what it bears on the way."),
+    "shake": ("shake", "shake", "Find whether CASE stands or falls when the ground moves."),
     "domain": ("domain", "domain", "Find the pairs of multipliers of two live loads under which CASE stands."),
     "gateway": ("gateway", "gateway", "Answer clients of UM-Bridge with the multiplier of CASE."),
     "figure": ("walls", "figure", "Draw the answers of methods as a figure for a paper."),

@@ -51,6 +51,7 @@ class PymunkBlocks:
         damping: part of the velocity kept by a unit of time sqrt(length_scale / gravity); 1 is none.
         iterations: sweeps of the contact solver in a time step.
         options: of the blocks in pymunk.
+        weighed: masses follow from the weights of the blocks, as motion in time needs them; else from their areas.
     """
 
     def __init__(
@@ -60,6 +61,7 @@ class PymunkBlocks:
         damping: float = 1.0,
         iterations: int = 30,
         options: BodyTuning = BodyTuning(),
+        weighed: bool = False,
     ) -> None:
         self.options = options
         self.assembly = assembly
@@ -74,7 +76,8 @@ class PymunkBlocks:
         shapes = assembly.polygons if polygons is None else polygons
         mean = float(np.mean([polygon_area(assembly.polygons[i]) for i in assembly.free]))
         for i in assembly.free:
-            self._add_block(int(i), shapes[i], polygon_area(assembly.polygons[i]) / mean)
+            mass = assembly.weight[i] / self._force if weighed else polygon_area(assembly.polygons[i]) / mean
+            self._add_block(int(i), shapes[i], float(mass))
         for i in np.flatnonzero(assembly.fixed):
             self._add_parts(self._space.static_body, int(i), shapes[i] / self.unit)
         self._set_friction()
@@ -150,6 +153,14 @@ class PymunkBlocks:
     def speed(self) -> float:
         """Largest velocity component of a free block [sqrt(length_scale x gravity)]."""
         return float(np.abs(self._read(_VELOCITY)[: self.assembly.n_free]).max(initial=0.0))
+
+    def energy(self) -> float:
+        """Kinetic energy and potential of the dead load, zero at rest as drawn [mean dead load x length_scale]."""
+        free, unit = self.assembly.free, np.array([self._force, self._force, self._force * self.unit])
+        moved = self.places()[free] / np.array([self.unit, self.unit, 1.0])
+        masses = np.array([[body.mass, body.mass, body.moment] for body in self._bodies])
+        kinetic = 0.5 * np.sum(masses * self._read(_VELOCITY)[: len(free)] ** 2)
+        return float(kinetic - np.sum(self.assembly.dead[free] / unit * moved))
 
     def _read(self, fields: batch.BodyFields) -> FloatArray:
         self._out.clear()
