@@ -29,6 +29,8 @@ _MARKERS = (
 )
 _DASHES = ("", "7 3", "2 3", "9 3 2 3", "4 2", "12 4")
 COLOURS = 6
+BESIDE = 7.0
+"""Distance between bars of two series at one place; a bar is 5 wide."""
 ROUNDING = 1e-9
 """Relative difference of values that are one: an axis of such values is as wide as one of a single value."""
 _MOST_POINTS = 300
@@ -60,6 +62,16 @@ class Series:
     mark: Mark | None = None
     curve: list[float] = field(default_factory=list)
 
+    @property
+    def bars(self) -> bool:
+        """Whether points have bars; low and high of a fitted curve are its band."""
+        return bool(self.low) and not self.curve
+
+    @property
+    def points(self) -> bool:
+        """Whether there is any point; of wide brackets alone there are bars only."""
+        return any(math.isfinite(value) for value in self.y)
+
 
 @dataclass(frozen=True)
 class Chart:
@@ -85,6 +97,14 @@ class Chart:
     levels: list[tuple[str, float]] = field(default_factory=list)
     whole: bool = False
     dots: list[tuple[float, float]] = field(default_factory=list)
+
+    def aside(self, number: int) -> float:
+        """How far the bars of a series, and its points with them, stand beside their place, so that none hide others.
+
+        In units of the drawing; zero where no other series has bars.
+        """
+        barred = [k for k, series in enumerate(self.series) if series.bars]
+        return BESIDE * (barred.index(number) - (len(barred) - 1) / 2.0) if number in barred else 0.0
 
     @property
     def per_row(self) -> int:
@@ -233,7 +253,7 @@ def svg(chart: Chart) -> Markup:
     ]
     parts.append(_levels(chart, up))
     for number, series in enumerate(chart.series):
-        parts.append(_series(series, number, across, up))
+        parts.append(_series(series, number, across, up, chart.aside(number)))
         if rows:
             parts.append(_legend(series, number, chart.per_row))
     if chart.dots:
@@ -295,9 +315,13 @@ def _look(series: Series, number: int) -> tuple[Markup, Markup, str, str]:
     return line, marker, series.mark.dashes, series.mark.shape
 
 
-def _series(series: Series, number: int, across: Axis, up: Axis) -> Markup:
+def _series(series: Series, number: int, across: Axis, up: Axis, aside: float) -> Markup:
+    def place_of(x: float) -> float | None:
+        place = across.place(x)
+        return None if place is None else place + aside
+
     x_values, y_values = thin(series.x, series.y) if not series.low else (series.x, series.y)
-    places = [(across.place(x), up.place(y), x, y) for x, y in zip(x_values, y_values, strict=True)]
+    places = [(place_of(x), up.place(y), x, y) for x, y in zip(x_values, y_values, strict=True)]
     points = [(px, py, x, y) for px, py, x, y in places if px is not None and py is not None]
     drawn = Markup("")
     line, marker, dashes, shape = _look(series, number)
@@ -312,9 +336,9 @@ def _series(series: Series, number: int, across: Axis, up: Axis) -> Markup:
             on = f"H{px:.1f}V{py:.1f}" if series.step else f"L{px:.1f} {py:.1f}"
             path, joined = path + (on if joined else f"M{px:.1f} {py:.1f}"), True
         drawn += Markup('<path {} stroke-dasharray="{}" d="{}"/>').format(line, dashes, path)
-    bar = Markup(str(line).replace('class="line', 'class="bar'))
-    for x, low, high in zip(series.x, series.low, series.high, strict=False) if not series.curve else ():
-        place, bottom, top = across.place(x), up.place(low), up.place(high)
+    bar = _as_bar(line)
+    for x, low, high in zip(series.x, series.low, series.high, strict=False) if series.bars else ():
+        place, bottom, top = place_of(x), up.place(low), up.place(high)
         if place is not None and bottom is not None and top is not None:
             drawn += Markup('<path {} d="M{:.1f} {:.1f}V{:.1f}"/>').format(bar, place, bottom, top)
     # Later series are smaller, so that points on one place show as rings.
@@ -348,8 +372,15 @@ def _legend(series: Series, number: int, per_row: int) -> Markup:
     y = TOP + (number // per_row) * ROW - 2
     line, marker, dashes, shape = _look(series, number)
     sample = Markup("")
-    if series.line:
+    if series.bars and not series.points:
+        sample = Markup('<path {} d="M{:.0f} {}v10"/>').format(_as_bar(line), x + 13, y - 5)
+    elif series.line:
         sample = Markup('<path {} stroke-dasharray="{}" d="M{:.0f} {}h26"/>').format(line, dashes, x, y)
-    if series.marks:
+    if series.marks and series.points:
         sample += Markup('<path {} transform="translate({:.0f} {})" d="{}"/>').format(marker, x + 13, y, shape)
     return sample + Markup('<text x="{:.0f}" y="{}">{}</text>').format(x + 32, y + 4, series.name)
+
+
+def _as_bar(line: Markup) -> Markup:
+    """Attributes of the bars of a series from those of its line."""
+    return Markup(str(line).replace('class="line', 'class="bar'))

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import re
 
 import numpy as np
 import pytest
@@ -61,3 +62,19 @@ def test_multipliers_over_the_grid_are_drawn_and_printed():
     points = Read(page.split("<h2>Multiplier over friction</h2>")[1]).marks
     assert np.array(points) == pytest.approx(np.array(told), abs=NEAR)
     assert all(f"<td>{value:g}</td>" in page for pair in told for value in pair)
+
+
+def test_bars_of_two_series_stand_beside_each_other_and_the_legend_shows_what_is_drawn():
+    nothing = [math.nan, math.nan]
+    series = [
+        charts.Series("means", [1.0, 2.0], [3.0, 4.0], low=[2.0, 3.0], high=[4.0, 5.0]),
+        charts.Series("brackets alone", [1.0, 2.0], nothing, low=[2.5, 3.5], high=[4.5, 5.5]),
+    ]
+    text = str(charts.svg(charts.Chart("both", "x", "y", series)))
+    bars = re.findall(r'class="bar (s\d)" d="M([\d.]+) ([\d.]+)[Vv]', text)
+    places = {name: [float(x) for other, x, _ in bars if other == name][:2] for name in ("s0", "s1")}
+    for first, second in zip(places["s0"], places["s1"], strict=True):
+        assert 5.0 < second - first < 9.0
+    legends = text.count('class="mark s0"'), text.count('class="mark s1"')
+    assert legends == (3, 0)  # two points and their sample; none where there are brackets alone
+    assert text.count('class="line s1"') == 0
