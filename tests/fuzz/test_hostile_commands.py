@@ -37,12 +37,12 @@ READ = ("factor {}", "reaction {}", "bound {} -o o.json", "domain {}", "figure {
         "export {} -o o.csv", "compare {} --methods la", "run la {}", "judge {} long.json")  # fmt: skip
 ASKED = [
     *(each.format(name) for each in READ for name in ("product.json", "names.json", "nested.json")),
-    *("run de-soft tied.json", "run de tied.json", "run la crushed.json"),
+    *("run de-soft tied.json", "run de-uneven tied.json", "run la crushed.json"),
     "factor crushed.json",
-    "domain tied.json --method de",
-    "figure tied.json --methods de -o o.pdf",
-    "animate tied.json --method de -o o.gif",
-    "export tied.json --method de -o o.vtu",
+    "domain tied.json --method de-soft",
+    "figure tied.json --methods de-soft -o o.pdf",
+    "animate tied.json --method de-soft -o o.gif",
+    "export tied.json --method de-soft -o o.vtu",
     "run la cases.json",
     "run la w.json --live 1e308,1e308",
     "run la w.json --seconds 1e308",

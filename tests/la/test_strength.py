@@ -166,12 +166,12 @@ def test_strength_never_lowers_the_associated_maximum_nor_leads_below_the_dry_le
         before = value
 
 
-def test_sources_on_springs_are_left_out_where_yield_is_no_cone():
+def test_springs_start_from_gravity_alone_where_yield_is_no_cone():
     problem = make_problem(assembly(BOND, 0.65, cohesion=1.0))
     assert not problem.law.is_cone
     dry = make_problem(assembly(BOND, 0.65))
     left_out = [type(source).__name__ for source in SOURCES if source.applies(dry) and not source.applies(problem)]
-    assert left_out == ["LowPrestress", "ShiftedAssociated", "AnalyticCentre"]
+    assert left_out == ["ShiftedAssociated", "AnalyticCentre"]
     assert not close_tight(problem).any()
 
 
