@@ -15,6 +15,7 @@ from harness.model.method import Finding, Status, load_method
 from harness.model.result import Result
 from methods.de.engines.mass_scaling import courses, insertion_orders, tunings
 from methods.de.engines.sequential_impulses import SequentialImpulses
+from methods.de.holds.motion import by_power
 from methods.de.settings import HoldSettings
 from tests.la.test_ties import BLOCK, SIDE, bar, block, built, tied
 
@@ -102,3 +103,18 @@ def test_pymunk_has_no_bars_and_says_so():
     result, _ = answered(load_method("de"), tied(2.0), engine="pymunk")
     assert result.status is Status.REFUSED
     assert "take the engine 'sweeps'" in result.sentence
+
+
+@pytest.mark.parametrize(("beyond", "moves"), [(1.0, False), (1.9, False), (2.1, True)])
+@pytest.mark.parametrize("tension", [0.0, 1.0, 2.0])
+def test_tie_that_does_not_yield_yet_may_bear_more(beyond: float, moves: bool, tension: float):
+    """Measured at less than its yield force 2, a tie still bears up to it: the loads must beat friction and 2."""
+    wall = with_bars_as_joints(built(block(ties=[bar(("left", SIDE), ("block", BLOCK), 2.0)])))
+    own, slide = int(wall.free[0]), np.zeros((wall.n_blocks, 3))
+    slide[own, 0] = 1.0
+    forces = np.zeros((len(wall.is_bar), 3))
+    forces[~wall.is_bar, :2] = 0.5 * float(wall.weight[own]) / np.count_nonzero(~wall.is_bar)
+    forces[wall.is_bar, 2] = -tension
+    load = wall.dead.copy()
+    load[own, 0] += float(wall.friction[0] * wall.weight[own]) + beyond
+    assert (by_power(wall, load, slide, forces) is not None) == moves

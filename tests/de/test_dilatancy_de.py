@@ -45,6 +45,25 @@ def test_block_between_two_plates_jams_where_it_would_have_to_lift(share: float)
     assert found(between_plates(share)).finding is Finding.UNBOUNDED
 
 
+def test_dry_block_between_two_plates_slides_at_the_thrust_that_it_bears():
+    """Each P >= 0 of the upper plate is in balance with sliding at mu (W + 2 P): the limit has no one value.
+
+    `la` and `fe` find the least, P = 0; statics knows no greatest. `de` ends where its history left P.
+    """
+    wall = between_plates(0.0)
+    least, greatest = found(wall, "la").multiplier, found(wall, "la-associated")
+    assert least is not None
+    assert least == pytest.approx(0.4 * 20.0)
+    assert greatest.finding is Finding.UNBOUNDED
+    result = found(wall)
+    assert result.bracket is not None
+    assert result.forces is not None
+    assert result.bracket[0] >= least * (1.0 - STATED)
+    lower, upper = np.asarray(result.forces)[:, :2].sum(axis=1)
+    assert lower - upper == pytest.approx(20.0, rel=STATED)
+    assert result.multiplier == pytest.approx(0.4 * (20.0 + 2.0 * upper), rel=STATED)
+
+
 @pytest.mark.parametrize("dilatancy", [0.1, 0.2])
 def test_wedge_is_driven_in_at_the_force_of_statics_whatever_its_joints_lift(dilatancy: float):
     """W (tan(slope + phi) + tan phi) pushes a wedge under a weight W that a smooth wall holds (Coulomb)."""

@@ -136,7 +136,8 @@ def by_virtual_work(assembly: Assembly, load: FloatArray, field: FloatArray, nea
 def by_power(assembly: Assembly, load: FloatArray, field: FloatArray, forces: FloatArray) -> HeldMotion | None:
     """The motion, where the loads give more power than friction, bars and contacts can take; else None.
 
-    Bars take what they bear: no normal force is behind it that might grow, as behind friction.
+    A bar that does not yield yet may bear more, so it takes its yield force in the sense in which it moves, and never
+    less than what was measured.
 
     Args:
         assembly: the wall.
@@ -148,7 +149,7 @@ def by_power(assembly: Assembly, load: FloatArray, field: FloatArray, forces: Fl
     least, greatest = assembly.law.shear_range(np.maximum(forces[:, :2], assembly.law.least_normal))
     against = np.where(rates[:, 2] < 0.0, greatest, -least)
     lift = np.where(assembly.is_bar, 0.0, assembly.dilatancy) * np.abs(rates[:, 2])
-    against = np.where(assembly.is_bar, np.abs(forces[:, 2]), against)
+    against = np.where(assembly.is_bar, np.maximum(against, np.abs(forces[:, 2])), against)
     friction = float(np.sum(against * np.abs(rates[:, 2])) - np.sum(lift * forces[:, :2].sum(axis=1)))
     contacts = float(np.sum(np.abs(forces[:, :2] * (rates[:, :2] - lift[:, None]))))
     return HeldMotion(MotionProof.POWER, field) if given - friction - contacts > 0.0 else None
