@@ -124,7 +124,7 @@ def _bracket(
     """The bracket of one sense from the reaction at rest on."""
     assembly = wall.assembly
     guided = released(assembly, begins, not gives_way)
-    result, said = answered(method, guided.assembly, **settings)
+    result, said = answered(method, guided.assembly, "change of the reaction", **settings)
     state = _state(guided, result)
     if result.bracket is None or result.multiplier is None or result.forces_multiplier is None or state is None:
         return f"No reaction was found of a support that {'gives way' if gives_way else 'pushes'}: {result.sentence}"
@@ -163,11 +163,10 @@ def _state(guided: ReleasedWall, result: Result) -> tuple[FloatArray, FloatArray
 
 def _of_both(of_forces: Judgement, of_bracket: Judgement) -> Judgement:
     """Accepted where the forces hold on the wall as drawn and the bracket on the wall with a guided support."""
-    bracket = of_bracket.sentence.replace("multiplier", "change of the reaction")
     return of_forces.model_copy(
         update={
             "residuals": of_forces.residuals | {f"released_{k}": v for k, v in of_bracket.residuals.items()},
             "accepted": bool(of_forces.accepted and of_bracket.accepted),
-            "sentence": f"{of_forces.sentence} With the support released: {bracket}",
+            "sentence": f"{of_forces.sentence} With the support released: {of_bracket.sentence}",
         }
     )
