@@ -17,7 +17,7 @@ from harness.model.assembly import Assembly
 from harness.model.case import read_case, shipped_cases
 from methods.fe.gap_springs import GapSprings
 from methods.fe.settings import GapSpringsSettings
-from methods.springs.patterns import block_on_halves
+from methods.springs.warm_up import block_on_halves
 
 WALLS: tuple[tuple[int, int, float, float, float], ...] = (
     (21, 3, 0.65, 13 / 23, 0.05),

@@ -127,7 +127,7 @@ class Result(Record):
         return results_figure(self._wall.case, [self], kind)
 
     def _repr_html_(self) -> str:
-        from drystone.pictures import html
+        from reports.drawing.figures import html
 
         drawn = self.plot() if self.mechanism is not None else None
         return html(f"{self._wall.name}, {self.method}: {self.sentence} ({self.judge.outcome})", drawn)

@@ -2,7 +2,7 @@
 
 The collapse begins at the associated maximum of the wall as drawn. The blocks follow its mechanism by finite rotations
 about joints that have opened, and at every point the multiplier is found again in the wall as it stands there
-(`methods.la.capacity`). It falls to zero at the ultimate displacement, beyond which the wall falls under its dead load.
+(`methods.la.settling`). It falls to zero at the ultimate displacement, beyond which the wall falls under its dead load.
 """
 
 from __future__ import annotations
@@ -114,9 +114,8 @@ def capacity(
         InputError: no block is called so or the wall has no live load; strength, bars, loads beside the centroids, or
             supports that move.
     """
-    from methods.la.capacity import with_multiplier
     from methods.la.moved_wall import MovedWall
-    from methods.la.settling import SettlingSteps, settle
+    from methods.la.settling import SettlingSteps, settle, with_multiplier
 
     assembly = wall.assembly
     _check(assembly, block)

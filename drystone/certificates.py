@@ -24,14 +24,13 @@ from harness.model.details import AnswerDetails
 from harness.model.errors import InputError
 from harness.model.json_text import json_of, read_bytes
 from harness.model.library import library
-from harness.model.proof import is_collapse_state
+from harness.model.proof import in_words, is_collapse_state
 from harness.model.result import Result, Verdict
 from harness.model.writing import write_whole
 from methods.proof.same_wall import require_same_wall
 from methods.proof.verify.checker import SECONDS, verify
 from methods.proof.verify.document import MOST_BYTES, MOST_VALUES, unpacked
 from methods.proof.verify.exact_wall import CertificateError, number
-from methods.proof.words import in_words
 
 CERTIFICATE = "certificate.json"
 PACKED = ".gz"

@@ -78,7 +78,7 @@ class Comparison:
         return multipliers_figure(self.run)
 
     def _repr_html_(self) -> str:
-        from drystone.pictures import html
+        from reports.drawing.figures import html
 
         return html(self.run.title, None, str(self.multipliers().to_html(na_rep="-", float_format="{:.6g}".format)))
 

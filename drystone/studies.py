@@ -107,7 +107,7 @@ class Sweep:
         return target
 
     def _repr_html_(self) -> str:
-        from drystone.pictures import html
+        from reports.drawing.figures import html
 
         return html(self.study.title, None, str(self.tables["quantiles"].to_html(float_format="{:.6g}".format)))
 

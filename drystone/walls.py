@@ -90,7 +90,7 @@ class Wall:
         return wall_figure(self.case.built, self.title)
 
     def _repr_html_(self) -> str:
-        from drystone.pictures import html
+        from reports.drawing.figures import html
 
         free, joints = self.assembly.n_free, self.assembly.n_interfaces
         return html(f"{self.title}: {free} free blocks, {joints} interfaces", self.plot())

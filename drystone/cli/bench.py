@@ -12,6 +12,7 @@ from drystone.cli import terminal
 from drystone.cli.options import (
     OUTPUT,
     catching,
+    check_table_or_figure,
     fresh_flag,
     jobs_option,
     json_flag,
@@ -20,8 +21,8 @@ from drystone.cli.options import (
     say,
     seconds_option,
     store_option,
+    write_output,
 )
-from drystone.cli.outputs import check_output, write_output
 from harness.engine.isolate import preload_methods
 from harness.engine.plan import check_methods
 from harness.engine.run import Limits
@@ -67,7 +68,7 @@ def bench_(
     Exit code 0 whatever the methods answer: `drystone check` holds methods to references.
     """
     for path in output:
-        check_output(path)
+        check_table_or_figure(path)
     chosen = wall_set(name)
     names = (
         list(library().methods.compare) if methods is None else [part.strip() for part in methods.split(",") if part]

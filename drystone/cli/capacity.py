@@ -8,8 +8,17 @@ from pathlib import Path
 import click
 
 from drystone.capacity_curve import capacity as curve_of
-from drystone.cli.options import OUTPUT, cases_option, catching, json_flag, print_json, say, warn
-from drystone.cli.outputs import check_output, write_output
+from drystone.cli.options import (
+    OUTPUT,
+    cases_option,
+    catching,
+    check_table_or_figure,
+    json_flag,
+    print_json,
+    say,
+    warn,
+    write_output,
+)
 from drystone.walls import Wall
 from harness.engine.plan import find_cases
 
@@ -27,7 +36,7 @@ def capacity(case: str, block: str | None, output: Path | None, as_json: bool, f
     The wall follows its mechanism by finite rotations, and the multiplier is found again on the way, until it is zero
     at the ultimate displacement. All states are judged. Exit code 1: it was followed less far, or one is rejected.
     """
-    check_output(output)
+    check_table_or_figure(output)
     (found,) = find_cases([case], None, folders)
     warn(found)
     wall = Wall(found)

@@ -11,6 +11,7 @@ from drystone.cli.options import (
     OUTPUT,
     cases_option,
     catching,
+    check_table_or_figure,
     fresh_flag,
     json_flag,
     memory_option,
@@ -20,8 +21,8 @@ from drystone.cli.options import (
     seconds_option,
     settings_option,
     warn,
+    write_output,
 )
-from drystone.cli.outputs import check_output, write_output
 from drystone.cli.settings import settings_of
 from drystone.interaction import LoadPair, domain_by
 from harness.engine.plan import find_cases
@@ -72,7 +73,7 @@ def domain(
     A method of the associated maximum gives the whole convex polygon, others points of its boundary. Exit code 1: it is
     incomplete.
     """
-    check_output(output)
+    check_table_or_figure(output)
     (found,) = find_cases([case], None, folders)
     loads = LoadPair.of(found, load_cases=() if load_cases is None else load_cases.split(","), live=live)
     warn(loads.cases[0])

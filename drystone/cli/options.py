@@ -1,4 +1,4 @@
-"""What the commands share: their options, their exit codes, and how an input error is told."""
+"""What the commands share: options, exit codes, the files they also write, and how an input error is told."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ import sys
 from collections.abc import Callable
 from functools import wraps
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import click
 
@@ -23,7 +23,11 @@ from harness.model.json_text import MOST_SHOWN
 from harness.model.live_load import both_signs as signs_of
 from harness.model.live_load import is_horizontal, with_live_load
 from harness.model.load_cases import load_cases_of
-from harness.model.writing import check_output
+from harness.model.writing import check_output, replacing
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
 
 STORE = Path("out/drystone.sqlite")
 _REPORT = Path("out/report.html")
@@ -220,3 +224,35 @@ def warn(case: Case) -> None:
     """Tell what a person should hear about a wall, on standard error."""
     for sentence in case.warnings:
         say(f"drystone: {case.id}: {sentence}", err=True)
+
+
+TABLE = ".csv"
+
+
+def check_table_or_figure(path: Path | None) -> None:
+    """Refuse an ending that neither a table nor a figure has; asked before the work begins.
+
+    Raises:
+        InputError: naming the endings of figures.
+    """
+    if path is not None and path.suffix.lower() != TABLE:
+        from reports.drawing.figures import check_ending
+
+        check_ending(path)
+
+
+def write_output(path: Path | None, table: Callable[[], str], figure: Callable[[], Figure]) -> None:
+    """Write the table, as CSV, or draw the figure; nothing without a path.
+
+    Raises:
+        InputError: as `check_table_or_figure`, or the path of something that is no regular file.
+    """
+    if path is None:
+        return
+    if path.suffix.lower() == TABLE:
+        with replacing(path) as draft:
+            draft.write_text(table(), encoding="utf-8")
+        return
+    from reports.drawing.figures import save
+
+    save(figure, path)

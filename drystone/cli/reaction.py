@@ -8,8 +8,17 @@ from typing import NoReturn
 
 import click
 
-from drystone.cli.options import OUTPUT, cases_option, catching, json_flag, print_json, say, warn
-from drystone.cli.outputs import check_output, write_output
+from drystone.cli.options import (
+    OUTPUT,
+    cases_option,
+    catching,
+    check_table_or_figure,
+    json_flag,
+    print_json,
+    say,
+    warn,
+    write_output,
+)
 from drystone.reactions import least_known_reactions, reaction_unit, reactions
 from drystone.walls import Wall
 from harness.engine.plan import find_cases
@@ -71,7 +80,7 @@ def reaction(
         )
     if output is not None and not (as_path or until_collapse):
         raise InputError("two numbers are no curve", "Give --path or --until-collapse with it", "--output")
-    check_output(output)
+    check_table_or_figure(output)
     (found,) = find_cases([case], None, folders)
     warn(found)
     wall = Wall(found)

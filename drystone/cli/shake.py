@@ -7,8 +7,18 @@ from pathlib import Path
 
 import click
 
-from drystone.cli.options import OUTPUT, cases_option, catching, finite, json_flag, print_json, say, warn
-from drystone.cli.outputs import check_output, write_output
+from drystone.cli.options import (
+    OUTPUT,
+    cases_option,
+    catching,
+    check_table_or_figure,
+    finite,
+    json_flag,
+    print_json,
+    say,
+    warn,
+    write_output,
+)
 from drystone.shaking import shake as shaken
 from drystone.toppling import least_shaking
 from drystone.walls import Wall
@@ -48,7 +58,7 @@ def shake(
     The blocks are followed in time by distinct elements, until one has fallen or all motion has died. Exit code 1: it
     is undecided, or the judge rejects it.
     """
-    check_output(output)
+    check_table_or_figure(output)
     if (pulse is None) == (motion is None):
         raise InputError("one motion of the ground is asked for", "Give either --pulse 0.5:0.3 or --motion FILE.csv")
     if least and multiple != 1.0:

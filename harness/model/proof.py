@@ -1,4 +1,4 @@
-"""What is proved of a collapse state: the minimum, the minimum to rounding, or the least that is known.
+"""What is proved of a collapse state, in words: the minimum, the minimum to rounding, or the least that is known.
 
 This is the one place that decides it. Report, appendix, CSV, JSON, terminal and library print what it says.
 """
@@ -17,6 +17,9 @@ from harness.model.method import Status
 if TYPE_CHECKING:
     from harness.model.comparison import CaseResults
     from harness.model.result import Result
+
+
+from fractions import Fraction
 
 _CERTIFIED = 3e-6
 """Relative height above a certified bound up to which a state is called the minimum: certificates leave 2e-6, and the
@@ -161,3 +164,24 @@ def _certified_bound(item: CaseResults, value: float, least: float) -> float | N
 def _said(result: Result) -> float:
     """The lower bound that a method says it found in floating point; zero where it says none, or no number."""
     return AnswerDetails(result.details).lower_bound or 0.0
+
+
+SHORT, SHOWN = 9, 40
+"""Characters of a fraction up to which a sentence shows it alone, and beside its value."""
+
+
+def in_words(value: Fraction) -> str:
+    """A multiplier as a fraction where that is short, else as a decimal: all of it, or cut off after nine decimals.
+
+    >>> in_words(Fraction(7, 11)), in_words(Fraction(499999, 1250000))
+    ('7/11', '0.3999992')
+    >>> in_words(Fraction(1567589759, 2809311829))
+    '0.557997778 (1567589759/2809311829)'
+    """
+    if len(str(value)) <= SHORT:
+        return str(value)
+    exact = next((places for places in (9, 12) if 10**places % value.denominator == 0), None)
+    places = 9 if exact is None else exact
+    whole, part = divmod(value.numerator * 10**places // value.denominator, 10**places)
+    decimal = f"{whole}.{part:0{places}d}".rstrip("0")
+    return f"{decimal} ({value})" if exact is None and len(str(value)) <= SHOWN else decimal

@@ -2,15 +2,16 @@
 
 from __future__ import annotations
 
+from functools import cache
+
 import numpy as np
 
 from harness.model.assembly import Assembly, IntArray
 from harness.model.deadline import STOPPED, best_so_far
 from harness.model.method import Answer, Finding, Solver, Status
 from methods.de.answers import solve_by_holds
-from methods.de.engines.compile_impulses import load_impulses
 from methods.de.engines.engine import Engine, motion_units
-from methods.de.engines.mass_scaling import MassScaling
+from methods.de.engines.mass_scaling import MassScaling, courses, insertion_orders, tunings
 from methods.de.engines.mujoco_wall import MujocoWall, SolverFailed, load_mujoco, mujoco_tunings
 from methods.de.engines.pymunk_joints import PymunkJoints
 from methods.de.engines.sequential_impulses import SequentialImpulses
@@ -20,6 +21,16 @@ from methods.de.methods import DE, DE_MUJOCO
 from methods.de.settings import MujocoSettings, ReleaseSettings, SweepSettings
 from methods.numerics.claims import analysed
 from methods.numerics.residual_strength import plastic_and_residual
+from methods.springs.warm_up import block_on_halves
+
+
+@cache
+def load_impulses() -> None:
+    """Make a time step of a single block, once in a process."""
+    block = block_on_halves((0.6, 0.4))
+    course = courses(block)
+    ((_, blocks, joints),) = insertion_orders(block, course, 1, 0)
+    SequentialImpulses(block, blocks, joints, 1, tunings(course, None)[0]).advance(1)
 
 
 class DampedHolds(Solver):

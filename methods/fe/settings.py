@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from pydantic import Field
 
-from methods.springs.model.settings import GapSettings
+from methods.springs.model.points import GapSettings
 
 
 class GapSpringsSettings(GapSettings):

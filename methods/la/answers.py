@@ -14,7 +14,7 @@ from methods.la.core.problem import Problem
 from methods.la.core.programmes import KinematicSolution
 from methods.la.core.state import CollapseState, local_residuals, residuals
 from methods.la.core.vertex_programmes import badly_scaled, standing
-from methods.la.interior.phase_one import phase_one_forces
+from methods.la.interior.interior_starting_point import phase_one_forces
 from methods.numerics.statics import dilatant_mechanism
 
 LOCAL_RESIDUAL = 1e-8

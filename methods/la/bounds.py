@@ -12,16 +12,19 @@ from harness.model.answer_check import DEEPEST
 from harness.model.assembly import Assembly
 from harness.model.json_text import nested_deeper
 from harness.model.method import Answer, Finding, Status
-from methods.la.certify.tree_certificate import certificate
+from harness.model.proof import in_words
 from methods.la.certify.window_certificate import certified_bracket
+from methods.la.core.newton_matrix import NewtonMatrix
 from methods.la.core.problem import Problem
-from methods.la.find_certificate import account, beyond
-from methods.la.least import SAME_MULTIPLIER
+from methods.la.family import LimitAnalysisFamily
+from methods.la.find_certificate import account, beyond, certificate
+from methods.la.least import SAME_MULTIPLIER, least_known
+from methods.la.methods import LA_BOUND
 from methods.la.settings import BoundSettings
 from methods.proof.search.options import PROVED
 from methods.proof.search.window_search import Bracket
 from methods.proof.verify.checker import verify
-from methods.proof.words import in_words
+from methods.springs.warm_up import load_kernels
 
 
 def with_bound(assembly: Assembly, problem: Problem, known: Answer, settings: BoundSettings) -> Answer:
@@ -125,3 +128,15 @@ def bounded(problem: Problem, known: Answer, found: Bracket) -> Answer:
     else:
         sentence = f"{least}; no lower bound above zero was found."
     return replace(known, sentence=sentence, details=details)
+
+
+load_kernels()
+
+
+class BoundedLimitAnalysis(LimitAnalysisFamily):
+    """The state of `la`, and a multiplier below which there is no collapse state (`la-bound`)."""
+
+    def answer(self, assembly: Assembly, problem: Problem, newton: NewtonMatrix, settings: Any) -> Answer:
+        """The search of `la`, then windows on the multiplier below its state."""
+        known = least_known(problem, newton, settings.search(), LA_BOUND.tolerance)
+        return with_bound(assembly, problem, known, settings)

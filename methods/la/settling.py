@@ -8,6 +8,12 @@ mechanism with the supports at rest proves it. A joint that closes again bears a
 followed: dilatant slip, which the programme has, would lift a wall that really does not lift.
 
 Sources: Portioli and Cascini (2017); Iannuzzo et al. (2020).
+
+In `with_multiplier` the live load takes the place of the support: the collapse goes on, and the greatest multiplier and
+its dual mechanism are found again on the way, until the wall falls under its dead load. Mechanisms that slide are not
+followed, so that the flow does not matter beyond the first state.
+
+Sources: Heyman (1995) on rocking blocks; Makris and Vassiliou (2013) on the portal.
 """
 
 from __future__ import annotations
@@ -23,6 +29,7 @@ from harness.model.deadline import Deadline
 from harness.model.result import fastest_vertex
 from methods.la.core.problem import make_problem
 from methods.la.core.reaction import extreme_reaction
+from methods.la.core.vertex_programmes import force_programme
 from methods.la.moved_wall import ClosureTolerances, MovedWall
 from methods.numerics.linear_programme import INFINITY, Programme
 
@@ -257,3 +264,27 @@ def _falling(wall: MovedWall, immense: float) -> FloatArray | None:
     mechanism = np.zeros((assembly.n_blocks, 3))
     mechanism[assembly.free] = problem.velocities_of_blocks(velocities)
     return mechanism
+
+
+def with_multiplier(wall: MovedWall) -> StandingState | str:
+    """The greatest multiplier of a wall as it stands, and its mechanism with a fastest vertex of speed one.
+
+    Returns:
+        The state; `FALLS` where its multiplier is below zero; `STUCK` where it has moved and no multiplier balances it;
+        or how the programme of the wall as drawn ended.
+    """
+    assembly = wall.assembly
+    problem = make_problem(assembly)
+    tight = np.zeros((assembly.n_interfaces, 4), dtype=bool)
+    tight[:, :2] = ~wall.closed
+    found = force_programme(problem).extreme(greatest=True, tight=tight)
+    if isinstance(found, str):
+        return STUCK if np.any(wall.places) else found
+    multiplier = problem.to_multiplier(found.statics.multiplier)
+    if multiplier < 0.0:
+        return FALLS
+    mechanism = np.zeros((assembly.n_blocks, 3))
+    mechanism[assembly.free] = problem.velocities_of_blocks(found.kinematics.velocities)
+    return StandingState(
+        wall, multiplier, problem.to_forces(found.statics.forces), mechanism / fastest_vertex(assembly, mechanism)
+    )

@@ -14,7 +14,7 @@ from benchmarks.bounds import small_wall
 from harness.model.assembly import Assembly
 from harness.model.build import build
 from harness.model.wall import Wall
-from methods.la.bounded import BoundedLimitAnalysis
+from methods.la.bounds import BoundedLimitAnalysis
 from methods.la.certify.window_certificate import equations_of
 from methods.la.core.newton_matrix import NewtonMatrix
 from methods.la.core.problem import Problem, make_problem

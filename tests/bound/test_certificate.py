@@ -17,8 +17,8 @@ from hypothesis import strategies as st
 from drystone.certificates import CERTIFICATE, read_certificate
 from drystone.cli.main import main as drystone
 from harness.model.case import read_case, shipped_cases
-from methods.la.bounded import BoundedLimitAnalysis
-from methods.la.certify.tree_certificate import certificate
+from methods.la.bounds import BoundedLimitAnalysis
+from methods.la.find_certificate import certificate
 from methods.la.settings import BoundSettings
 from methods.proof.same_wall import require_same_wall
 from methods.proof.verify.checker import main, verify

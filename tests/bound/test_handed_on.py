@@ -21,8 +21,8 @@ from harness.model.json_text import MOST_NESTED, nested_deeper
 from harness.model.method import Answer, Finding, Status
 from harness.model.proof import Standing, proof_of
 from harness.model.result import Result
-from methods.la.bounded import BoundedLimitAnalysis
-from methods.la.certify.tree_certificate import certificate
+from methods.la.bounds import BoundedLimitAnalysis
+from methods.la.find_certificate import certificate
 from methods.la.settings import BoundSettings
 from methods.proof.verify.document import digest
 from reports.page.build import write_report

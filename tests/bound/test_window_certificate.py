@@ -18,7 +18,7 @@ from drystone.certificates import CERTIFICATE, PACKED, read_certificate
 from drystone.cli.main import main as drystone
 from harness.model.assembly import Assembly
 from harness.model.case import read_case, shipped_cases
-from methods.la.bounded import BoundedLimitAnalysis
+from methods.la.bounds import BoundedLimitAnalysis
 from methods.la.certify.window_certificate import certified_bracket
 from methods.la.core.newton_matrix import NewtonMatrix
 from methods.la.core.problem import make_problem

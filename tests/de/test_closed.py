@@ -12,10 +12,10 @@ from harness.engine.residuals import displaced_residuals, force_residuals
 from harness.model.displaced import DisplacedState
 from harness.model.method import Finding, Status, load_method
 from harness.model.result import result_of
-from methods.de.closed_contacts import ClosedContacts, ClosedSettings
 from methods.de.engines.edges import FacingEdges
 from methods.de.methods import DE_CLOSED
 from methods.de.uneven.settled_contacts import settle_uneven
+from methods.de.uneven_walls import ClosedContacts, ClosedSettings
 from tests.walls import assembly, running_bond, stack
 
 

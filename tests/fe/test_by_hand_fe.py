@@ -11,19 +11,19 @@ from pydantic import ValidationError
 
 from benchmarks.walls import running_bond
 from harness.model.load_steps import STATES
-from methods.fe.load_steps import joint_states
+from methods.fe.answers import joint_states
 from methods.fe.settings import ConvexSettings, GapSpringsSettings, NewtonSettings
 from methods.springs.model.factor import DenseFactor, Factor, SingularTangent, make_factor, refactor_any
 from methods.springs.model.gap_law import OPEN, SLIP_MINUS, SLIP_PLUS, STICK
 from methods.springs.model.options import SoftMotions
-from methods.springs.model.settings import GapSettings
+from methods.springs.model.points import GapSettings
 from methods.springs.model.wall_model import WallModel, build_model
 from methods.springs.path.continuation import PathFollower
 from methods.springs.path.direction import PathDirection
 from methods.springs.path.path_record import PathEnd, PathRecord
 from methods.springs.path.plateau import PlateauState, _of_many_mechanisms, _solve_last_piece, check
-from methods.springs.patterns import block_on_halves
 from methods.springs.rest.equilibrium import gravity_state
+from methods.springs.warm_up import block_on_halves
 from tests.known_walls import box, of_blocks
 
 

@@ -26,9 +26,9 @@ from methods.springs.model.gap_law import SLIP_MINUS, SLIP_PLUS
 from methods.springs.model.wall_model import build_model
 from methods.springs.path.continuation import PathFollower
 from methods.springs.path.plateau import check
-from methods.springs.patterns import block_on_halves
 from methods.springs.rest.equilibrium import gravity_state
 from methods.springs.rest.newton import newton
+from methods.springs.warm_up import block_on_halves
 from tests.walls import assembly, stack, wall_data
 
 CASES = Path(__file__).parents[2] / "cases"

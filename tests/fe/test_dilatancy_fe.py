@@ -21,7 +21,7 @@ from harness.model.method import Finding, Status, load_method
 from harness.model.result import Result
 from harness.model.wall import Wall
 from methods.springs.model.factor import make_factor
-from methods.springs.model.settings import GapSettings
+from methods.springs.model.points import GapSettings
 from methods.springs.model.wall_model import build_model
 from methods.springs.rest.newton import newton
 from methods.springs.rest.pseudo_transient import PseudoTransient

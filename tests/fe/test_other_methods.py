@@ -15,7 +15,7 @@ from harness.model.method import Finding, Status
 from harness.model.wall import Wall
 from methods.fe.gap_springs import ConvexSteps, GapSprings, IncrementalNewton
 from methods.fe.settings import ConvexSettings, GapSpringsSettings, NewtonSettings
-from methods.springs.patterns import block_on_halves
+from methods.springs.warm_up import block_on_halves
 
 
 def test_newton_reaches_the_plateau_of_the_single_block() -> None:

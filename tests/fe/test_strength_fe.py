@@ -16,7 +16,7 @@ from harness.model.assembly import Assembly
 from harness.model.load_steps import STATES
 from harness.model.method import Finding, load_method
 from harness.model.result import Result, residual_of
-from methods.fe.load_steps import joint_states
+from methods.fe.answers import joint_states
 from methods.fe.settings import GapSpringsSettings
 from methods.springs.model.gap_law import OPEN, SLIP_PLUS, STICK
 from methods.springs.model.wall_model import WallModel, build_model

@@ -12,17 +12,17 @@ from harness.model.method import Answer, Finding, Status
 from methods.la.answers import moving_blocks
 from methods.la.bounds import bounded, certified, with_bound
 from methods.la.certify.proof import TreeProof
-from methods.la.certify.tree_certificate import certificate
 from methods.la.core.exact import close_tight, exact_forces
 from methods.la.core.newton_matrix import NewtonMatrix
 from methods.la.core.problem import Problem, make_problem
 from methods.la.core.state import CollapseState, friction_work, local_residuals, residuals
 from methods.la.core.vertex_programmes import ForceProgramme, RowScaling, row_scaling
+from methods.la.find_certificate import certificate
 from methods.la.interior.arc import ArcPath, Stepping
 from methods.la.interior.associated import EndOfPath, _by_interior_point, solve_associated
 from methods.la.interior.interior_point import PathResult, start_point
+from methods.la.interior.interior_starting_point import phase_one_forces
 from methods.la.interior.newton_step import Direction, Point
-from methods.la.interior.phase_one import phase_one_forces
 from methods.la.interior.region import in_whole, moving_region
 from methods.la.least import _chosen, _of_uneven, confirmed
 from methods.la.search import LimitAnalysis

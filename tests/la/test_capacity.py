@@ -14,9 +14,8 @@ import drystone
 from drystone.capacity_curve import CapacityCurve, capacity
 from harness.engine.settled_judge import judge_moved_collapse
 from harness.model.errors import InputError
-from methods.la.capacity import with_multiplier
 from methods.la.moved_wall import MovedWall
-from methods.la.settling import SettledUntil, SettlingSteps, settle
+from methods.la.settling import SettledUntil, SettlingSteps, settle, with_multiplier
 from tests.commands import drystone as command
 from tests.moving_supports import semicircle
 from tests.walls import PUSH, stack, wall_data

@@ -15,7 +15,7 @@ from methods.la.core.problem import make_problem
 from methods.la.interior.interior_point import PathSettings, follow_path, start_point
 from methods.numerics.linear_programme import INFINITY, Programme
 from methods.springs.model.factor import make_factor
-from methods.springs.model.settings import GapSettings
+from methods.springs.model.points import GapSettings
 from methods.springs.model.wall_model import build_model
 from methods.springs.rest.equilibrium import gravity_state
 from tests.walls import assembly, running_bond

@@ -13,7 +13,7 @@ from methods.springs.model.gap_law import OPEN, SLIP_PLUS, STICK, neighbour_stat
 from methods.springs.model.options import SoftMotions
 from methods.springs.model.wall_model import WallModel, build_model
 from methods.springs.path.direction import PathDirection
-from methods.springs.patterns import block_on_halves
+from methods.springs.warm_up import block_on_halves
 
 Kind = type[DenseFactor] | type[SparseFactor]
 EXTENT = 100.0

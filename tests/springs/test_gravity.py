@@ -6,7 +6,7 @@ import numpy as np
 
 from benchmarks.walls import drawn
 from methods.springs.model.factor import make_factor
-from methods.springs.model.settings import GapSettings
+from methods.springs.model.points import GapSettings
 from methods.springs.model.wall_model import build_model
 from methods.springs.rest.equilibrium import equilibrium, gravity_state
 

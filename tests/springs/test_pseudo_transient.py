@@ -10,7 +10,7 @@ import pytest
 from benchmarks.walls import drawn, running_bond
 from harness.model.assembly import Assembly
 from methods.springs.model.factor import make_factor
-from methods.springs.model.settings import GapSettings
+from methods.springs.model.points import GapSettings
 from methods.springs.model.wall_model import build_model
 from methods.springs.rest.newton import newton
 from methods.springs.rest.pseudo_transient import PseudoTransient

@@ -14,11 +14,11 @@ from harness.model.assembly import Assembly, FloatArray
 from methods.fe.settings import GapSpringsSettings
 from methods.springs.model.exact_rates import add_product, exact_gap_rates
 from methods.springs.model.gap_law import OPEN, SLIP_MINUS, SLIP_PLUS, STICK, neighbour_states
-from methods.springs.model.settings import GapSettings
+from methods.springs.model.points import GapSettings
 from methods.springs.model.wall_model import WallModel, build_model, load_scale
 from methods.springs.path.path_record import PathRecord, PathStep
 from methods.springs.path.plateau import check
-from methods.springs.patterns import block_on_halves
+from methods.springs.warm_up import block_on_halves
 from tests.known_walls import box, of_blocks
 
 SETTINGS: list[dict[str, Any]] = [

@@ -20,7 +20,7 @@ from methods.de.engines.pymunk_blocks import BodyTuning
 from methods.de.holds.loading import raise_until_it_falls, shown_to_fall
 from methods.de.holds.motion import by_travel
 from methods.springs.model.factor import make_factor
-from methods.springs.model.settings import GapSettings
+from methods.springs.model.points import GapSettings
 from methods.springs.model.wall_model import WallModel, build_model
 from methods.springs.rest.newton import Equilibrium, newton
 from methods.springs.rest.pseudo_transient import PseudoTransient

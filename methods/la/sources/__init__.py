@@ -10,7 +10,7 @@ from harness.model.assembly import FloatArray
 from methods.la.sources.arcs import FAR, ArcPaths
 from methods.la.sources.blocks import JoinedBlocks, SingleBlocks
 from methods.la.sources.friction_continuation import FrictionContinuation
-from methods.la.sources.given import GivenMechanisms
+from methods.la.sources.mechanisms import GivenMechanisms
 from methods.la.sources.paths import AssociatedForces, CentralPath, RandomStarts, ReducedFriction, TrescaMechanisms
 from methods.la.sources.search import Search
 from methods.la.sources.source import Source

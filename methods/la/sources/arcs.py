@@ -15,7 +15,7 @@ from methods.la.interior.arc import ArcPath
 from methods.la.interior.interior_starting_point import interior_starting_point
 from methods.la.interior.path_programmes import cheapest_mechanism, exact_state
 from methods.la.interior.region import Region, in_whole, moving_region
-from methods.la.sources.reduced_friction import with_reduced_friction
+from methods.la.sources.friction_continuation import with_reduced_friction
 from methods.la.sources.search import Search
 from methods.numerics.failures import SingularMatrix
 

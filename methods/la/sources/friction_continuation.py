@@ -2,6 +2,10 @@
 
 The mechanisms of zero-dilatancy flow do not depend on friction, only the forces that fit them do. At high friction
 the low collapse states have small basins; at lower friction the same mechanisms are found at once.
+
+With less friction in the joints that the dead load leaves unloaded, the head joints of a wall, self-stress gives these
+no shear. Little of the non-associated problem is left that is not convex, and the interior point ends low on walls of
+any size.
 """
 
 from __future__ import annotations
@@ -16,6 +20,18 @@ from harness.model.assembly import FloatArray
 from methods.la.core.problem import Problem
 from methods.la.core.state import CollapseState
 from methods.la.sources.search import Search
+
+_ROUGHEST = 1.5
+"""Friction of all joints at most, where unloaded ones are lowered further; above, starts end at self-stress."""
+
+
+def with_reduced_friction(problem: Problem, factor: float) -> Problem | None:
+    """The wall with friction of _ROUGHEST at most, times `factor` in the unloaded joints; None if all are loaded."""
+    unloaded = problem.unloaded_joints
+    if not unloaded.any():
+        return None
+    friction = np.minimum(problem.friction, _ROUGHEST)
+    return replace(problem, law=problem.law.with_friction(np.where(unloaded, factor * friction, friction)))
 
 
 @dataclass(frozen=True)

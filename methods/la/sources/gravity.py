@@ -8,7 +8,7 @@ from functools import cached_property
 from harness.model.assembly import FloatArray
 from methods.la.core.problem import Problem
 from methods.springs.model.factor import Factor, make_factor
-from methods.springs.model.settings import GapSettings
+from methods.springs.model.points import GapSettings
 from methods.springs.model.wall_model import WallModel, build_model
 from methods.springs.rest.equilibrium import gravity_state
 from methods.springs.rest.newton import Equilibrium

@@ -1,4 +1,4 @@
-"""The motions of one block among others, and the least multiplier at which its own equilibrium allows each.
+"""Mechanisms that need no search: those of walls alike, and motions of one block with the least multiplier of each.
 
 Interior paths, descent and paths of springs all begin with forces, and so with the joints that those press. A block
 that slides out alone from among others, which could press on it but need not, is seldom found from there. Its motions
@@ -9,7 +9,8 @@ dimensions, and each is a mechanism whose least multiplier is one linear program
 from __future__ import annotations
 
 from collections.abc import Iterator
-from typing import Any
+from dataclasses import dataclass
+from typing import Any, ClassVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -18,6 +19,8 @@ from scipy.optimize import linprog
 from harness.model.assembly import FloatArray
 from harness.model.joint_law import block_diagonal
 from methods.la.core.problem import Problem
+from methods.la.core.state import CollapseState, moving_contacts
+from methods.la.sources.search import Search
 
 ROUNDING = 1e-9
 """Rates and products of unit vectors up to this are zero to rounding."""
@@ -88,3 +91,38 @@ def _distinct(vectors: FloatArray) -> FloatArray:
     leading = np.take_along_axis(unit, (abs(unit) > ROUNDING).argmax(axis=1)[:, None], axis=1)
     unit = unit * np.sign(leading)
     return np.asarray(unit[np.unique(unit.round(8), axis=0, return_index=True)[1]])
+
+
+@dataclass(frozen=True, eq=False)
+class GivenMechanisms:
+    """Mechanisms told by how their joints move. A state counts here only if forces of this wall fit its mechanism.
+
+    Attributes:
+        motions: (m, 3) openings at both ends and slip of the joints of each, at any scale.
+        most: interfaces up to which mechanisms are vertices, which tell whether the joints can move so here.
+    """
+
+    motions: tuple[FloatArray, ...]
+    most: int = 1000
+    name: ClassVar[str] = "mechanisms of neighbouring walls"
+
+    @property
+    def moves(self) -> bool:
+        """Whether anything moves in any of them."""
+        return any(motion.any() for motion in self.motions)
+
+    def applies(self, problem: Problem) -> bool:
+        """Where mechanisms are vertices."""
+        return problem.n_interfaces <= self.most
+
+    def states(self, search: Search) -> Iterator[CollapseState]:
+        """One state a mechanism whose joints can move alike in this wall and that forces fit."""
+        for motion in self.motions:
+            moving = moving_contacts(search.problem.rates_of_strains(motion, False))
+            if not moving.any():
+                continue
+            search.budget.spent.programmes += 1
+            mechanism = search.kinematic.solve(moving, np.ones(moving.shape))
+            state = None if mechanism is None else search.state_of(mechanism.velocities, mechanism.rates)
+            if state is not None:
+                yield state

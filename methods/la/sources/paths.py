@@ -10,7 +10,7 @@ from methods.la.core.problem import Problem
 from methods.la.core.state import CollapseState
 from methods.la.interior.path_programmes import exact_state
 from methods.la.interior.tresca_iteration import tresca_mechanism
-from methods.la.sources.reduced_friction import with_reduced_friction
+from methods.la.sources.friction_continuation import with_reduced_friction
 from methods.la.sources.search import Search
 from methods.numerics.failures import SingularMatrix
 

@@ -21,9 +21,9 @@ from methods.la.core.programmes import KinematicProgramme, StaticProgramme
 from methods.la.core.state import CollapseState, moving_contacts, residuals, tight_contacts
 from methods.la.interior.associated import AssociatedResult, EndOfPath, solve_associated
 from methods.la.interior.interior_point import PathResult, PathSettings, follow_path, start_point
+from methods.la.interior.interior_starting_point import phase_one_forces
 from methods.la.interior.newton_step import Point
 from methods.la.interior.path_programmes import Exactness, cheapest_mechanism, exact_state, state_of_mechanism
-from methods.la.interior.phase_one import phase_one_forces
 from methods.la.sources.budget import Budget, SearchLimits
 from methods.la.sources.gravity import Gravity, Springs, gravity_of
 from methods.la.sources.record import LEAST_IMPROVEMENT, Record

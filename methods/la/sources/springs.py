@@ -28,18 +28,17 @@ from methods.la.core.problem import Problem
 from methods.la.core.state import CollapseState, friction_work, moving_contacts
 from methods.la.interior.interior_point import PathSettings, follow_path, start_point
 from methods.la.sources.arcs import ArcPaths
+from methods.la.sources.friction_continuation import with_reduced_friction
 from methods.la.sources.gravity import Gravity, gravity_of
 from methods.la.sources.record import LEAST_IMPROVEMENT
-from methods.la.sources.reduced_friction import with_reduced_friction
 from methods.la.sources.search import Search
 from methods.springs.model.factor import SingularTangent, make_factor
-from methods.springs.model.settings import GapSettings
+from methods.springs.model.points import GapSettings
 from methods.springs.model.wall_model import build_model
 from methods.springs.path.continuation import PathFollower
 from methods.springs.path.load_path import follow
 from methods.springs.path.path_record import PathEnd, PathRecord
 from methods.springs.path.plateau import finish
-from methods.springs.path.preload import preloaded
 from methods.springs.rest.equilibrium import doubled, first_step
 
 
@@ -311,7 +310,7 @@ def _from_forces(search: Search, forces: FloatArray, multiplier: float, ratio: f
     problem = search.problem
     model = build_model(problem.assembly, GapSettings(stiffness_ratio=ratio))
     start = multiplier * problem.unit_multiplier, problem.to_forces(forces)
-    return PathStart(preloaded(model, make_factor(model), *start, search.choices.springs.certificate))
+    return PathStart(PathFollower.from_forces(model, make_factor(model), *start, search.choices.springs.certificate))
 
 
 def _collapse_state(search: Search, path_start: PathStart) -> CollapseState | None:

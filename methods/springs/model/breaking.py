@@ -13,7 +13,7 @@ import numpy as np
 
 from harness.model.assembly import BoolArray, FloatArray, IntArray
 from methods.springs.model.gap_law import gap_forces
-from methods.springs.model.settings import GapSettings
+from methods.springs.model.points import GapSettings
 from methods.springs.model.wall_model import WallModel, build_model
 
 

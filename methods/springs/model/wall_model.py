@@ -24,8 +24,7 @@ from methods.springs.model.exact_rates import tangent_defect
 from methods.springs.model.gap_law import classify, equivalent_end_forces, gap_forces
 from methods.springs.model.options import SpringOptions
 from methods.springs.model.point_loops import add_changes, add_tangent, point_strains, rank_one_change
-from methods.springs.model.points import gap_points
-from methods.springs.model.settings import GapSettings
+from methods.springs.model.points import GapSettings, gap_points
 from methods.springs.model.strength import with_strength
 
 
