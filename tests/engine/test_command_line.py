@@ -259,7 +259,7 @@ def test_settings_that_no_method_has_are_refused(given: str, wall: Path):
     assert not (wall.parent / "out").exists()
 
 
-SOLVERS = ("highspy", "numba", "scipy.optimize", "cvxpy", "pymunk", "casadi", "osqp", "mujoco")
+SOLVERS = ("highspy", "numba", "scipy.optimize", "cvxpy", "pymunk", "ipyopt", "osqp", "mujoco")
 
 
 @pytest.mark.parametrize(
