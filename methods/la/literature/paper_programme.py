@@ -11,13 +11,17 @@ with 1 + 3 (m - n) + 4 m unknowns. Gradients are exact; Ipopt solves a sequence 
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 import scipy.sparse as sp
+from numpy.typing import NDArray
 from scipy.sparse.csgraph import dijkstra
 
 from harness.model.assembly import FloatArray, IntArray
+from harness.model.deadline import Deadline, OutOfTime
 from harness.model.joint_law import block_diagonal
 from methods.la.core.problem import Problem
 from methods.numerics.failures import sparse_lu
@@ -100,6 +104,9 @@ def solve_paper_programme(
         start_forces: (m, 3) whose r2 starts the programme, or None for the paper's r2 = 0.
         max_iterations: of Ipopt, for each relaxation.
         epsilons: bounds of y.m relative to the live work, decreasing.
+
+    Raises:
+        OutOfTime: the time of the run is over.
     """
     ipyopt = optional("ipyopt", "paper", "la-paper")
 
@@ -127,12 +134,26 @@ def solve_paper_programme(
             intermediate_callback=goes_on,
             ipopt_options={"print_level": 0, "sb": "yes", "max_iter": max_iterations, "tol": 1e-9},
         )
-        unknowns, _, status = solver.solve(unknowns.copy())
+        unknowns, status = _solved(solver, unknowns, problem.deadline)
         iterations += max(counted, default=0)
-        message = _ENDS.get(int(status), f"status {status}")
+        message = _ENDS.get(status, f"status {status}")
     return PaperResult(
         programme.forces(unknowns), float(unknowns[0]), programme.rates(unknowns), len(unknowns), iterations, message
     )
+
+
+def _solved(solver: Any, start: FloatArray, deadline: Deadline) -> tuple[FloatArray, int]:
+    """The unknowns that Ipopt ends at and its status; an alarm that rings inside one of its callbacks is not lost."""
+    try:
+        unknowns, _, status = solver.solve(start.copy())
+    except RuntimeError:
+        if deadline.raised:
+            raise OutOfTime from None
+        raise
+    if deadline.raised:
+        raise OutOfTime
+    deadline.ask()
+    return unknowns, int(status)
 
 
 @dataclass(frozen=True)
@@ -190,7 +211,7 @@ class _Programme:
         return len(lower), lower, np.concatenate([none, np.full(self._rates, np.inf), [epsilon, 0.0]])
 
     def _slacks(self, unknowns: FloatArray) -> FloatArray:
-        return self.fixed_slacks + self.slacks_of @ unknowns[: self._forces]
+        return np.asarray(self.fixed_slacks + self.slacks_of @ unknowns[: self._forces])
 
     def put_slope(self, unknowns: FloatArray, out: FloatArray) -> None:
         """The gradient of lambda."""
@@ -210,9 +231,9 @@ class _Programme:
         k, forces = len(self.second), self._forces
         compatible, slack, live = self.compatibility.tocoo(), self.slacks_of.tocoo(), np.flatnonzero(self.live_row)
         work = k + self._rates
-        rows = [compatible.row, k + slack.row, np.full(forces + self._rates, work), np.full(len(live), work + 1)]
-        columns = [forces + compatible.col, slack.col, np.arange(forces + self._rates), forces + live]
-        return np.concatenate(rows).astype(np.int64), np.concatenate(columns).astype(np.int64)
+        rows = (compatible.row, k + slack.row, np.full(forces + self._rates, work), np.full(len(live), work + 1))
+        columns = (compatible.col + forces, slack.col, np.arange(forces + self._rates), forces + live)
+        return _joined(rows), _joined(columns)
 
     def put_derivatives(self, unknowns: FloatArray, out: FloatArray) -> None:
         """The derivatives of the constraints: constant but those of y.m."""
@@ -230,11 +251,15 @@ class _Programme:
     def entries_of_curvature(self) -> tuple[IntArray, IntArray]:
         """Row and column of each second derivative: y.m alone is curved, as a product of rates and x_f."""
         slack = self.slacks_of.tocoo()
-        return (self._forces + slack.row).astype(np.int64), slack.col.astype(np.int64)
+        return _joined((self._forces + slack.row,)), _joined((slack.col,))
 
     def put_curvature(self, unknowns: FloatArray, weights: FloatArray, slope: float, out: FloatArray) -> None:
         """The second derivatives of the Lagrangian."""
         out[:] = weights[-2] * self.slacks_of.tocoo().data / self.live_work
+
+
+def _joined(parts: Sequence[NDArray[np.integer[Any]]]) -> IntArray:
+    return np.concatenate([part.astype(np.int64) for part in parts])
 
 
 def _programme_of(problem: Problem) -> _Programme:
