@@ -45,6 +45,7 @@ lint: $(TESTED)  ## style, types and the layer contract
 
 docs: $(TESTED)  ## build the documentation into out/docs; a warning is an error
 	$(RUN)/python -m sphinx -W --keep-going -q -b html docs out/docs
+	@! grep -rlE '(src|href)="https://[^"]*\.(js|css)"' out/docs --include='*.html' || { echo "these pages need a network"; exit 1; }
 
 schema: $(READY)  ## write the JSON Schemas of the formats again
 	for format in wall result describe; do $(BIN)/drystone schema $$format > docs/$$format-1.schema.json; done
